@@ -1,0 +1,254 @@
+#include "base/context.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MESSAGE_MAX = 1024, CHAIN_MAX = 2048 };
+
+struct dea_context {
+  struct dea_allocator allocator;
+  dea_status status;
+  char message[MESSAGE_MAX];
+  char chain[CHAIN_MAX];
+  struct dea_finding *findings;
+  size_t finding_count, finding_room;
+  char **names;
+  size_t name_count, name_room;
+  dea_progress_fn progress;
+  void *progress_user;
+  const volatile sig_atomic_t *interrupt;
+};
+
+static void *default_resize(void *user, void *pointer, size_t size)
+{
+  (void)user;
+  return realloc(pointer, size);
+}
+
+static void default_release(void *user, void *pointer)
+{
+  (void)user;
+  free(pointer);
+}
+
+dea_status dea_context_create(const struct dea_allocator *allocator, struct dea_context **out)
+{
+  static const struct dea_allocator standard = {default_resize, default_release, NULL};
+  const struct dea_allocator *a = allocator != NULL ? allocator : &standard;
+  *out = a->resize(a->user, NULL, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memset(*out, 0, sizeof **out);
+  (*out)->allocator = *a;
+  return DEA_OK;
+}
+
+void dea_context_destroy(struct dea_context *ctx)
+{
+  if (ctx == NULL) {
+    return;
+  }
+  dea_finding_clear(ctx);
+  dea_free(ctx, ctx->findings);
+  for (size_t i = 0; i < ctx->name_count; i++) {
+    dea_free(ctx, ctx->names[i]);
+  }
+  dea_free(ctx, ctx->names);
+  struct dea_allocator allocator = ctx->allocator;
+  allocator.release(allocator.user, ctx);
+}
+
+void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size)
+{
+  if (size != 0 && count > SIZE_MAX / size) {
+    dea_fail(ctx, DEA_E_MEMORY, "%zu items of %zu bytes are more than this machine can address",
+             count, size);
+    return NULL;
+  }
+  size_t bytes = count * size;
+  void *moved = ctx->allocator.resize(ctx->allocator.user, pointer, bytes > 0 ? bytes : 1);
+  if (moved == NULL) {
+    dea_fail(ctx, DEA_E_MEMORY, "out of memory (%zu bytes wanted)", bytes);
+  }
+  return moved;
+}
+
+void *dea_alloc(struct dea_context *ctx, size_t count, size_t size)
+{
+  void *pointer = dea_resize(ctx, NULL, count, size);
+  if (pointer != NULL) {
+    memset(pointer, 0, count * size > 0 ? count * size : 1);
+  }
+  return pointer;
+}
+
+char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length)
+{
+  size_t n = 0;
+  while (n < length && text[n] != '\0') {
+    n++;
+  }
+  char *copy = dea_resize(ctx, NULL, n + 1, 1);
+  if (copy != NULL) {
+    memcpy(copy, text, n);
+    copy[n] = '\0';
+  }
+  return copy;
+}
+
+void dea_free(struct dea_context *ctx, void *pointer)
+{
+  if (pointer != NULL) {
+    ctx->allocator.release(ctx->allocator.user, pointer);
+  }
+}
+
+dea_status dea_fail(struct dea_context *ctx, dea_status status, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  vsnprintf(ctx->message, sizeof ctx->message, format, args);
+  va_end(args);
+  ctx->chain[0] = '\0';
+  ctx->status = status;
+  return status;
+}
+
+dea_status dea_fail_chain(struct dea_context *ctx, dea_status status, const char *function,
+                          const char *file, int line)
+{
+  if (ctx->status != status) {
+    dea_fail(ctx, status, "%s", dea_status_message(status));
+  }
+  size_t used = strlen(ctx->chain);
+  snprintf(ctx->chain + used, sizeof ctx->chain - used, "%s%s (%s:%d)", used > 0 ? " < " : "",
+           function, file, line);
+  return status;
+}
+
+const char *dea_context_message(const struct dea_context *ctx)
+{
+  return ctx->message;
+}
+
+const char *dea_context_chain(const struct dea_context *ctx)
+{
+  return ctx->chain;
+}
+
+dea_status dea_context_status(const struct dea_context *ctx)
+{
+  return ctx->status;
+}
+
+void dea_context_clear(struct dea_context *ctx)
+{
+  ctx->status = DEA_OK;
+  ctx->message[0] = '\0';
+  ctx->chain[0] = '\0';
+}
+
+/* Makes room for one more item; returns the (possibly moved) array or NULL, old one then intact. */
+static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *room, size_t size)
+{
+  if (count < *room) {
+    return items;
+  }
+  size_t wanted = *room > 0 ? 2 * *room : 8;
+  void *moved = dea_resize(ctx, items, wanted, size);
+  if (moved != NULL) {
+    *room = wanted;
+  }
+  return moved;
+}
+
+dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
+                           struct dea_place place, const char *format, ...)
+{
+  char text[MESSAGE_MAX];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  void *items = grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room,
+                     sizeof *ctx->findings);
+  if (items == NULL) {
+    return DEA_E_MEMORY;
+  }
+  ctx->findings = items;
+  char *copy = dea_copy_text(ctx, text, sizeof text);
+  if (copy == NULL) {
+    return DEA_E_MEMORY;
+  }
+  ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, place, copy};
+  return DEA_OK;
+}
+
+size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least)
+{
+  size_t count = 0;
+  for (size_t i = 0; i < ctx->finding_count; i++) {
+    count += ctx->findings[i].severity >= at_least;
+  }
+  return count;
+}
+
+const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count)
+{
+  *count = ctx->finding_count;
+  return ctx->findings;
+}
+
+void dea_finding_clear(struct dea_context *ctx)
+{
+  for (size_t i = 0; i < ctx->finding_count; i++) {
+    dea_free(ctx, ctx->findings[i].text);
+  }
+  ctx->finding_count = 0;
+}
+
+const char *dea_intern(struct dea_context *ctx, const char *text)
+{
+  for (size_t i = 0; i < ctx->name_count; i++) {
+    if (strcmp(ctx->names[i], text) == 0) {
+      return ctx->names[i];
+    }
+  }
+  void *items = grow(ctx, ctx->names, ctx->name_count, &ctx->name_room, sizeof *ctx->names);
+  if (items == NULL) {
+    return NULL;
+  }
+  ctx->names = items;
+  char *copy = dea_copy_text(ctx, text, SIZE_MAX);
+  if (copy != NULL) {
+    ctx->names[ctx->name_count++] = copy;
+  }
+  return copy;
+}
+
+void dea_context_set_progress(struct dea_context *ctx, dea_progress_fn fn, void *user)
+{
+  ctx->progress = fn;
+  ctx->progress_user = user;
+}
+
+void dea_progress(struct dea_context *ctx, const char *what, size_t done, size_t total)
+{
+  if (ctx->progress != NULL) {
+    ctx->progress(ctx->progress_user, what, done, total);
+  }
+}
+
+void dea_context_set_interrupt(struct dea_context *ctx, const volatile sig_atomic_t *flag)
+{
+  ctx->interrupt = flag;
+}
+
+bool dea_interrupted(const struct dea_context *ctx)
+{
+  return ctx->interrupt != NULL && *ctx->interrupt != 0;
+}

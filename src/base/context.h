@@ -1,0 +1,105 @@
+/* The context: allocator, messages, progress and interruption of one caller.
+ *
+ * Nothing in the library prints, exits or keeps global state. A function that can fail takes the
+ * context first and returns a status; the context then holds the message, the chain of calls that
+ * led to it, and for errors in an input file every finding with its file, line and column.
+ * A context belongs to one thread at a time. */
+#ifndef DEA_BASE_CONTEXT_H
+#define DEA_BASE_CONTEXT_H
+
+#include "base/status.h"
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#if defined(__GNUC__)
+#define DEA_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+#else
+#define DEA_PRINTF(fmt, args)
+#endif
+
+/* Place of a value in an input. file: lent, lives as long as the context; "" when there is none.
+ * line and column count from 1; 0 when unknown. */
+struct dea_place {
+  const char *file;
+  size_t line, column;
+};
+
+enum dea_severity { DEA_NOTE, DEA_WARNING, DEA_ERROR };
+
+/* One thing found in an input or during a run. text: one sentence without the place. */
+struct dea_finding {
+  enum dea_severity severity;
+  struct dea_place place;
+  char *text;
+};
+
+/* Memory functions; resize follows realloc (pointer may be NULL, size is never 0). */
+struct dea_allocator {
+  void *(*resize)(void *user, void *pointer, size_t size);
+  void (*release)(void *user, void *pointer);
+  void *user;
+};
+
+/* done and total count the same thing; total is 0 when unknown. what: for example "lumped sweep". */
+typedef void (*dea_progress_fn)(void *user, const char *what, size_t done, size_t total);
+
+struct dea_context;
+
+/* allocator: NULL for malloc/free; copied. out: owned by the caller, NULL on failure. */
+dea_status dea_context_create(const struct dea_allocator *allocator, struct dea_context **out);
+void dea_context_destroy(struct dea_context *ctx);
+
+/* Memory from the context's allocator, zeroed. count * size is checked for overflow; both may be 0
+ * (then a valid pointer comes back). NULL on failure, after dea_fail(DEA_E_MEMORY). */
+void *dea_alloc(struct dea_context *ctx, size_t count, size_t size);
+/* Grows or shrinks memory of dea_alloc; new bytes are not zeroed. NULL on failure: old one stays. */
+void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size);
+/* Copies text (at most `length` bytes of it); NULL on failure. */
+char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length);
+/* NULL is fine. */
+void dea_free(struct dea_context *ctx, void *pointer);
+
+/* Records a failure: message (printf style, one sentence, no final full stop) and the code, which is
+ * returned. Replaces what was recorded before. */
+dea_status dea_fail(struct dea_context *ctx, dea_status status, const char *format, ...)
+    DEA_PRINTF(3, 4);
+/* Adds "function (file:line)" to the chain of calls of the recorded failure; returns status. */
+dea_status dea_fail_chain(struct dea_context *ctx, dea_status status, const char *function,
+                          const char *file, int line);
+/* Last recorded message ("" if none) and chain of calls, innermost first; lent until the next call. */
+const char *dea_context_message(const struct dea_context *ctx);
+const char *dea_context_chain(const struct dea_context *ctx);
+dea_status dea_context_status(const struct dea_context *ctx);
+/* Forgets the recorded failure (not the findings). */
+void dea_context_clear(struct dea_context *ctx);
+
+/* Returns the status of `call` from the enclosing function unless it is DEA_OK. */
+#define DEA_TRY(ctx, call)                                                                         \
+  do {                                                                                             \
+    dea_status dea_try_status_ = (call);                                                           \
+    if (dea_try_status_ != DEA_OK) {                                                               \
+      return dea_fail_chain((ctx), dea_try_status_, __func__, __FILE__, __LINE__);                 \
+    }                                                                                              \
+  } while (0)
+
+/* Adds a finding (printf style). Fails only for want of memory. */
+dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
+                           struct dea_place place, const char *format, ...) DEA_PRINTF(4, 5);
+size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least);
+/* All findings in the order they were added; lent until the next dea_finding_add. */
+const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count);
+void dea_finding_clear(struct dea_context *ctx);
+
+/* Keeps a copy of a name (file name, ...) until the context dies; the same text gives the same
+ * pointer. NULL on failure. */
+const char *dea_intern(struct dea_context *ctx, const char *text);
+
+void dea_context_set_progress(struct dea_context *ctx, dea_progress_fn fn, void *user);
+void dea_progress(struct dea_context *ctx, const char *what, size_t done, size_t total);
+/* flag: lent; a non-zero value (set by a signal handler) stops long work between points. */
+void dea_context_set_interrupt(struct dea_context *ctx, const volatile sig_atomic_t *flag);
+bool dea_interrupted(const struct dea_context *ctx);
+
+#endif

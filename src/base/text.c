@@ -1,0 +1,114 @@
+#define _GNU_SOURCE // newlocale, strtod_l
+#include "base/text.h"
+
+#include <ctype.h>
+#include <locale.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool text_reserve(struct dea_text *text, size_t more)
+{
+  if (text->length + more + 1 <= text->room) {
+    return true;
+  }
+  size_t wanted = 2 * text->room + more + 64;
+  char *moved = dea_resize(text->ctx, text->data, wanted, 1);
+  if (moved == NULL) {
+    text->failed = true;
+    return false;
+  }
+  text->data = moved;
+  text->room = wanted;
+  return true;
+}
+
+void dea_text_add(struct dea_text *text, const char *format, ...)
+{
+  va_list args, again;
+  va_start(args, format);
+  va_copy(again, args);
+  int needed = vsnprintf(NULL, 0, format, args);
+  va_end(args);
+  if (needed < 0) {
+    text->failed = true;
+  } else if (text_reserve(text, (size_t)needed)) {
+    vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
+    text->length += (size_t)needed;
+  }
+  va_end(again);
+}
+
+const char *dea_text_get(const struct dea_text *text)
+{
+  return text->data != NULL ? text->data : "";
+}
+
+void dea_text_free(struct dea_text *text)
+{
+  dea_free(text->ctx, text->data);
+  text->data = NULL;
+  text->length = text->room = 0;
+}
+
+enum { NAME_MAX_LENGTH = 63 };
+
+/* Damerau-Levenshtein distance in its restricted form; words longer than the limit never match. */
+static size_t edit_distance(const char *a, const char *b)
+{
+  size_t n = strlen(a), m = strlen(b);
+  size_t row[3][NAME_MAX_LENGTH + 2];
+  if (n > NAME_MAX_LENGTH || m > NAME_MAX_LENGTH) {
+    return NAME_MAX_LENGTH;
+  }
+  for (size_t j = 0; j <= m; j++) {
+    row[0][j] = j;
+  }
+  for (size_t i = 1; i <= n; i++) {
+    size_t *now = row[i % 3];
+    const size_t *last = row[(i + 2) % 3], *before = row[(i + 1) % 3];
+    now[0] = i;
+    for (size_t j = 1; j <= m; j++) {
+      int x = tolower((unsigned char)a[i - 1]), y = tolower((unsigned char)b[j - 1]);
+      size_t best = last[j - 1] + (x != y);
+      best = last[j] + 1 < best ? last[j] + 1 : best;
+      best = now[j - 1] + 1 < best ? now[j - 1] + 1 : best;
+      if (i > 1 && j > 1 && x == tolower((unsigned char)b[j - 2]) &&
+          y == tolower((unsigned char)a[i - 2]) && before[j - 2] + 1 < best) {
+        best = before[j - 2] + 1;
+      }
+      now[j] = best;
+    }
+  }
+  return row[n % 3][m];
+}
+
+const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count)
+{
+  size_t limit = strlen(word) / 3 > 1 ? strlen(word) / 3 : 1, best = limit + 1;
+  const char *nearest = NULL;
+  for (size_t i = 0; i < count; i++) {
+    size_t d = edit_distance(word, candidates[i]);
+    if (d < best) {
+      best = d;
+      nearest = candidates[i];
+    }
+  }
+  return nearest;
+}
+
+double dea_text_to_double(const char *text, const char **end)
+{
+  char *stop = NULL;
+  double value;
+  locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+  if (c_locale == (locale_t)0) {
+    value = strtod(text, &stop);
+  } else {
+    value = strtod_l(text, &stop, c_locale);
+    freelocale(c_locale);
+  }
+  *end = stop;
+  return value;
+}

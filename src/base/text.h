@@ -1,0 +1,28 @@
+/* A growing text, and small things on text. */
+#ifndef DEA_BASE_TEXT_H
+#define DEA_BASE_TEXT_H
+
+#include "base/context.h"
+
+/* Zero-initialise with the context set: struct dea_text t = {.ctx = ctx}. After a failed append the
+ * text keeps what it had and `failed` stays set, so that it can be checked once at the end. */
+struct dea_text {
+  struct dea_context *ctx;
+  char *data; // NULL or NUL-terminated; owned
+  size_t length, room;
+  bool failed;
+};
+
+void dea_text_add(struct dea_text *text, const char *format, ...) DEA_PRINTF(2, 3);
+/* The text so far, "" if nothing was added; lent until the next change. */
+const char *dea_text_get(const struct dea_text *text);
+void dea_text_free(struct dea_text *text);
+
+/* Candidate nearest to `word` by edit distance (case folded), or NULL when none is near enough to be
+ * what was meant (distance above a third of the word's length, at least 1). */
+const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);
+
+/* Number of a text in the C locale, whatever the program's locale; *end as in strtod. */
+double dea_text_to_double(const char *text, const char **end);
+
+#endif

@@ -1,0 +1,56 @@
+/* The command `dea`: a table of commands, one cmd_*.c each. Only this folder prints. */
+#ifndef DEA_CLI_CLI_H
+#define DEA_CLI_CLI_H
+
+#include "base/context.h"
+
+#include <stdio.h>
+
+/* What all commands share. Results go to stdout, everything else to stderr. */
+struct dea_cli {
+  struct dea_context *ctx;
+  bool quiet;    // --quiet: no progress, no notes
+  bool verbose;  // --verbose: with the chain of calls of an error
+  bool terminal; // stderr is a terminal
+  bool colour;   // stderr takes colours (terminal, no NO_COLOR)
+  const char *command_line; // the whole of it, for provenance
+};
+
+struct dea_command {
+  const char *name;
+  const char *summary; // one line
+  const char *usage;   // "dea run DESIGN [options]" and the options, a line each
+  /* argv[0] is the command's name. Returns the exit code. */
+  int (*run)(struct dea_cli *cli, int argc, char **argv);
+};
+
+// X(name of the `const struct dea_command`)
+#define DEA_COMMAND_LIST(X)                                                                        \
+  X(cmd_run)                                                                                       \
+  X(cmd_check)                                                                                     \
+  X(cmd_schema)                                                                                    \
+  X(cmd_materials)                                                                                 \
+  X(cmd_plot)                                                                                      \
+  X(cmd_compare)                                                                                   \
+  X(cmd_examples)                                                                                  \
+  X(cmd_doctor)                                                                                    \
+  X(cmd_completion)
+
+#define DEA_COMMAND_DECLARE(name) extern const struct dea_command name;
+DEA_COMMAND_LIST(DEA_COMMAND_DECLARE)
+#undef DEA_COMMAND_DECLARE
+
+/* Prints all findings, then the recorded failure, in the form "file:line:column: error: text";
+ * returns the exit code of `status`. */
+int cli_report(struct dea_cli *cli, dea_status status);
+/* Prints "dea COMMAND: text" and a hint to --help; returns the exit code of a usage error. */
+int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
+    DEA_PRINTF(3, 4);
+/* Prints a command's usage to stdout. */
+void cli_print_usage(const struct dea_command *command);
+/* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */
+void cli_progress(void *cli, const char *what, size_t done, size_t total);
+/* True after SIGINT or SIGTERM. */
+bool cli_interrupted(void);
+
+#endif

@@ -1,0 +1,212 @@
+#define _POSIX_C_SOURCE 200809L // sigaction, isatty
+#include "base/text.h"
+#include "base/version.h"
+#include "cli/cli.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const struct dea_command *const commands[] = {
+#define COMMAND_ROW(name) &name,
+    DEA_COMMAND_LIST(COMMAND_ROW)
+#undef COMMAND_ROW
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static volatile sig_atomic_t interrupt_flag;
+
+static void on_signal(int number)
+{
+  if (interrupt_flag != 0) {
+    _exit(128 + number); // a second one: the user means it
+  }
+  interrupt_flag = 1;
+}
+
+bool cli_interrupted(void)
+{
+  return interrupt_flag != 0;
+}
+
+void cli_progress(void *user, const char *what, size_t done, size_t total)
+{
+  const struct dea_cli *cli = user;
+  if (cli->quiet) {
+    return;
+  }
+  if (cli->terminal) {
+    fprintf(stderr, "\r\033[K%s %zu/%zu%s", what, done, total, done == total ? "\n" : "");
+    fflush(stderr);
+  } else if (done == total) {
+    fprintf(stderr, "%s: %zu points\n", what, done);
+  }
+}
+
+static const char *severity_text(enum dea_severity severity, bool colour)
+{
+  static const char *const plain[] = {"note", "warning", "error"};
+  static const char *const coloured[] = {"\033[36mnote\033[0m", "\033[35mwarning\033[0m",
+                                         "\033[1;31merror\033[0m"};
+  return colour ? coloured[severity] : plain[severity];
+}
+
+static void print_place(const struct dea_place *place)
+{
+  if (place->file == NULL || place->file[0] == '\0') {
+    fputs("dea: ", stderr);
+  } else if (place->line == 0) {
+    fprintf(stderr, "%s: ", place->file);
+  } else {
+    fprintf(stderr, "%s:%zu:%zu: ", place->file, place->line, place->column);
+  }
+}
+
+int cli_report(struct dea_cli *cli, dea_status status)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(cli->ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity == DEA_NOTE && cli->quiet) {
+      continue;
+    }
+    print_place(&findings[i].place);
+    fprintf(stderr, "%s: %s\n", severity_text(findings[i].severity, cli->colour), findings[i].text);
+  }
+  bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
+  if (status != DEA_OK && !said) {
+    const char *message = dea_context_message(cli->ctx);
+    fprintf(stderr, "dea: %s: %s\n", severity_text(DEA_ERROR, cli->colour),
+            message[0] != '\0' ? message : dea_status_message(status));
+  }
+  if (status != DEA_OK && cli->verbose) {
+    fprintf(stderr, "dea: in %s\n", dea_context_chain(cli->ctx));
+  }
+  dea_finding_clear(cli->ctx);
+  return dea_status_exit_code(status);
+}
+
+int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  fprintf(stderr, "dea %s: %s: ", command->name, severity_text(DEA_ERROR, cli->colour));
+  vfprintf(stderr, format, args);
+  fprintf(stderr, "\nTry 'dea %s --help'.\n", command->name);
+  va_end(args);
+  return dea_status_exit_code(DEA_E_USAGE);
+}
+
+void cli_print_usage(const struct dea_command *command)
+{
+  printf("%s\n\nUsage: %s", command->summary, command->usage);
+}
+
+static void print_help(void)
+{
+  puts("dea - design and simulation of dielectric elastomer actuators\n\n"
+       "Usage: dea COMMAND [arguments]\n       dea --version | --help\n\nCommands:");
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    printf("  %-12s %s\n", commands[i]->name, commands[i]->summary);
+  }
+  puts("\nBefore or after the command: --quiet, --verbose. 'dea COMMAND --help' says more.\n"
+       "Exit codes: 0 ok, 1 comparison out of tolerance, 2 usage, 3 bad design, 4 not converged or\n"
+       "no equilibrium (partial results kept), 5 file or program, 130 interrupted.\n\n"
+       "Start with:  dea examples frdea-4 > my.yaml && dea run my.yaml");
+}
+
+static const struct dea_command *find_command(const char *name)
+{
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    if (strcmp(commands[i]->name, name) == 0) {
+      return commands[i];
+    }
+  }
+  const char *names[COMMAND_COUNT];
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    names[i] = commands[i]->name;
+  }
+  const char *nearest = dea_nearest_name(name, names, COMMAND_COUNT);
+  fprintf(stderr, "dea: '%s' is not a command", name);
+  fprintf(stderr, nearest != NULL ? "; did you mean '%s'?\n" : "; see 'dea --help'\n", nearest);
+  return NULL;
+}
+
+/* Takes the options common to all commands out of argv; returns the new argc. */
+static int take_common_options(struct dea_cli *cli, int argc, char **argv)
+{
+  int kept = 0;
+  for (int i = 0; i < argc; i++) {
+    if (strcmp(argv[i], "--quiet") == 0 || strcmp(argv[i], "-q") == 0) {
+      cli->quiet = true;
+    } else if (strcmp(argv[i], "--verbose") == 0 || strcmp(argv[i], "-v") == 0) {
+      cli->verbose = true;
+    } else {
+      argv[kept++] = argv[i];
+    }
+  }
+  argv[kept] = NULL;
+  return kept;
+}
+
+static void watch_signals(void)
+{
+  struct sigaction action = {.sa_handler = on_signal};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+static int run_command(struct dea_cli *cli, int argc, char **argv)
+{
+  const struct dea_command *command = find_command(argv[0]);
+  if (command == NULL) {
+    return dea_status_exit_code(DEA_E_USAGE);
+  }
+  for (int i = 1; i < argc; i++) {
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+      cli_print_usage(command);
+      return 0;
+    }
+  }
+  watch_signals();
+  return command->run(cli, argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+  struct dea_cli cli = {.terminal = isatty(STDERR_FILENO) == 1};
+  cli.colour = cli.terminal && getenv("NO_COLOR") == NULL;
+  if (dea_context_create(NULL, &cli.ctx) != DEA_OK) {
+    fputs("dea: out of memory\n", stderr);
+    return dea_status_exit_code(DEA_E_MEMORY);
+  }
+  struct dea_text line = {.ctx = cli.ctx};
+  for (int i = 0; i < argc; i++) {
+    dea_text_add(&line, "%s%s", i > 0 ? " " : "", i > 0 ? argv[i] : "dea");
+  }
+  cli.command_line = dea_text_get(&line);
+  dea_context_set_progress(cli.ctx, cli_progress, &cli);
+  dea_context_set_interrupt(cli.ctx, &interrupt_flag);
+  int code = 0;
+  argc = take_common_options(&cli, argc, argv);
+  if (argc < 2) {
+    print_help();
+    code = dea_status_exit_code(DEA_E_USAGE);
+  } else if (strcmp(argv[1], "--version") == 0) {
+    printf("dea %s\n", DEA_VERSION);
+  } else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+             strcmp(argv[1], "help") == 0) {
+    print_help();
+  } else {
+    code = run_command(&cli, argc - 1, argv + 1);
+  }
+  dea_text_free(&line);
+  dea_context_destroy(cli.ctx);
+  if (fflush(stdout) != 0 && code == 0) {
+    code = dea_status_exit_code(DEA_E_IO);
+  }
+  return code;
+}

@@ -1,0 +1,131 @@
+/* The design: what a user wrote, checked for form, in SI, each value with its place.
+ *
+ * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is what
+ * the models see. The schema (one table, design/schema.c) says key, unit, range, default and meaning
+ * of every member. */
+#ifndef DEA_DESIGN_DESIGN_H
+#define DEA_DESIGN_DESIGN_H
+
+#include "base/context.h"
+#include "material/material.h"
+
+enum {
+  DEA_DESIGN_VERSION = 1,
+  DEA_TITLE_SIZE = 256,
+  DEA_DESIGN_MODELS_MAX = 4,
+  DEA_DESIGN_MATERIALS_MAX = 16,
+  DEA_DESIGN_VOLTAGES_MAX = 10000,
+};
+
+enum dea_origin {
+  DEA_ABSENT,   // not given and no default: the value is NAN (or -1)
+  DEA_DEFAULT,  // from the schema; listed by `dea check`
+  DEA_GIVEN,    // in the file
+  DEA_OVERRIDE, // from --set
+};
+
+/* A number in SI. place: of the value; for a default the place of the section it belongs to. */
+struct dea_quantity {
+  double si;
+  enum dea_origin origin;
+  struct dea_place place;
+};
+
+/* Which film a length lies in. */
+enum dea_film_state { DEA_STRETCHED, DEA_UNSTRETCHED };
+
+/* A length in the plane of the film, always with the film state it was measured in. */
+struct dea_inplane_length {
+  struct dea_quantity length; // [m] as written
+  enum dea_film_state state;
+};
+
+struct dea_choice {
+  int value; // an enumerator; -1 when absent
+  enum dea_origin origin;
+  struct dea_place place;
+};
+
+struct dea_label {
+  char text[DEA_TITLE_SIZE];
+  enum dea_origin origin;
+  struct dea_place place;
+};
+
+enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
+enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
+
+struct dea_design {
+  const char *file; // as given by the caller; interned in the context
+  struct dea_label title;
+
+  struct { // film
+    struct dea_label material, law, permittivity; // catalogue or inline name; set ids, "" = default
+    struct dea_quantity thickness_m;              // unstretched
+  } film;
+  struct dea_quantity pre_stretch; // equibiaxial, >= 1
+
+  struct { // frame: rigid, so its lengths are lengths of the stretched film
+    struct dea_quantity radius_m; // inner radius (given as radius or diameter)
+  } frame;
+
+  struct { // electrodes: a disc on both faces
+    struct dea_inplane_length radius; // given as radius or diameter; length.si is the radius
+    struct dea_label material;
+    struct dea_quantity thickness_m; // of each; 0 = no stiffness
+  } electrodes;
+
+  bool has_fibres;
+  struct { // fibres on the +z face, from the frame towards the centre
+    struct dea_quantity count;
+    struct dea_quantity width_m, thickness_m;
+    // Exactly one of the next three says where the tip is; the others are absent.
+    struct dea_inplane_length length;     // from the inner edge of the frame to the tip
+    struct dea_inplane_length tip_radius; // from the centre to the tip ("reach")
+    struct dea_inplane_length overlap;    // with the electrode; negative: a gap
+    struct dea_label material;
+    struct dea_quantity bond_thickness_m; // glue layer; 0 = none
+    struct dea_quantity bond_modulus_Pa;  // Young's modulus of the glue
+    struct dea_choice outer_end;          // enum dea_outer_end
+  } fibres;
+
+  struct dea_material materials[DEA_DESIGN_MATERIALS_MAX]; // inline ones of this file
+  size_t material_count;
+
+  struct { // compute
+    struct dea_label models[DEA_DESIGN_MODELS_MAX]; // names; which exist the model list knows
+    size_t model_count;
+    double *voltages_V; // [voltage_count], owned; in the order to be computed
+    size_t voltage_count;
+    struct dea_place voltages_place;
+    struct dea_quantity path_max_stretch; // the path study ends here (electrode, total stretch)
+    struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
+    struct dea_quantity coverage;         // R itself; absent: from coverage_by
+  } compute;
+
+  struct { // report
+    bool svg, pdf, png;
+    struct dea_quantity width_m; // of a figure
+  } report;
+};
+
+/* One override of --set: key is the dotted path in the file ("film.thickness"), value as it would
+ * stand in the file ("200 um"). */
+struct dea_override {
+  const char *key, *value;
+};
+
+/* Reads and checks a file. All findings go to the context with file:line:column; any error gives
+ * DEA_E_DESIGN (DEA_E_IO when the file cannot be read at all) after the whole file was looked at.
+ * out: owned by the caller, NULL on failure. */
+dea_status dea_design_read(struct dea_context *ctx, const char *file,
+                           const struct dea_override *overrides, size_t override_count,
+                           struct dea_design **out);
+/* The same from memory; name stands for the file in messages. */
+dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
+                                  size_t length, const struct dea_override *overrides,
+                                  size_t override_count, struct dea_design **out);
+/* NULL is fine. */
+void dea_design_destroy(struct dea_context *ctx, struct dea_design *design);
+
+#endif

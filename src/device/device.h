@@ -1,0 +1,38 @@
+/* The device: a design resolved to what the models need, in SI, in the stretched flat film.
+ *
+ * Reference configuration of all lengths here: the pre-stretched, flat film (what is cut, glued and
+ * measured), except film_thickness_unstretched_m. A device is constant once built. */
+#ifndef DEA_DEVICE_DEVICE_H
+#define DEA_DEVICE_DEVICE_H
+
+#include "design/design.h"
+
+struct dea_device {
+  struct dea_material film;
+  struct dea_material electrode;       // name "" when the design names none
+  double film_thickness_unstretched_m; // H0
+  double pre_stretch;                  // l_pre
+  double film_thickness_m;             // h = H0 / l_pre^2
+  double frame_radius_m;               // L_r of paper eq 20
+  double electrode_radius_m;           // r_a of paper eq 18
+  double electrode_thickness_m;        // 0: without stiffness
+  double coverage;                     // R of paper eq 17
+
+  int fibre_count; // 0: none; the rest then is 0
+  double fibre_width_m, fibre_thickness_m;
+  double fibre_tip_radius_m; // distance of the tip from the centre
+  double fibre_length_m;     // L_f of paper eq 19: frame radius - tip radius
+  double fibre_overlap_m;    // electrode radius - tip radius; negative: a gap
+  struct dea_material fibre;
+  double bond_thickness_m, bond_modulus_Pa;
+  enum dea_outer_end outer_end;
+};
+
+/* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:
+ * electrode inside the frame, fibres that meet neither each other nor the centre, and so on. Findings
+ * point at the value that is at fault; any error gives DEA_E_DESIGN. out: owned by the caller. */
+dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
+                            struct dea_device **out);
+void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);
+
+#endif

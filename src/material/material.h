@@ -1,0 +1,43 @@
+/* A material as the models use it: a law with its numbers, permittivity, density, breakdown.
+ *
+ * It is filled by the catalogue (data/materials) or from a design file, and is plain data. */
+#ifndef DEA_MATERIAL_MATERIAL_H
+#define DEA_MATERIAL_MATERIAL_H
+
+#include "material/law.h"
+
+enum { DEA_NAME_SIZE = 64 };
+
+/* Vacuum permittivity [F/m], CODATA 2018. */
+#define DEA_EPSILON_0 8.8541878128e-12
+
+/* Relative permittivity eps_r = at_rest + slope * (s - 1), s = sqrt(lambda_1 lambda_2) the mean
+ * in-plane stretch from the unstretched film. */
+struct dea_permittivity {
+  double at_rest; // at s = 1
+  double slope;   // per unit of s; 0 for a constant permittivity
+};
+
+/* True breakdown field E_b = at_rest * s^exponent; known is false when no value was sourced. */
+struct dea_breakdown {
+  bool known;
+  double at_rest_V_per_m;
+  double exponent; // 0 where a dependence on stretch is unknown
+  bool exponent_known;
+};
+
+struct dea_material {
+  char name[DEA_NAME_SIZE];       // catalogue name or the design's own
+  char law_id[DEA_NAME_SIZE];     // which parameter set ("yeoh-178"); "" for a single one
+  const struct dea_law *law;      // NULL for a material without a hyperelastic law (PET)
+  double param[DEA_LAW_PARAM_MAX]; // of the law, SI
+  double fibre_angle_rad;         // of an anisotropic law: angle of a0 to the radial direction
+  struct dea_permittivity permittivity; // at_rest = 0 when unknown
+  struct dea_breakdown breakdown;
+  double density_kg_per_m3;       // 0 when unknown
+  double young_modulus_Pa;        // linear elastic materials; 0 when not given
+  double poisson_ratio;
+  double stretch_min, stretch_max; // range of the law's data (uniaxial or biaxial stretch); 0 unknown
+};
+
+#endif

@@ -1,0 +1,30 @@
+/* An incompressible film in plane stress whose principal axes are known: the two in-plane stretches
+ * give everything (lambda_3 = 1/(lambda_1 lambda_2), paper eq 2). */
+#ifndef DEA_MATERIAL_PLANE_H
+#define DEA_MATERIAL_PLANE_H
+
+#include "material/material.h"
+
+/* Energy per unstretched volume [Pa], nominal stresses s_i = dW/dlambda_i [Pa] (paper eq 5, one
+ * in-plane direction at a time) and their derivatives [Pa]. */
+struct dea_plane {
+  dea_scalar W;
+  dea_scalar s1, s2;
+  dea_scalar k11, k12, k22;
+};
+
+/* Elastic part. lambda1 is the direction that fibre_angle of an anisotropic law counts from.
+ * DEA_E_DOMAIN beyond the law's domain or for a stretch that is not positive. */
+dea_status DEA_NAME(dea_plane_elastic)(const struct dea_material *material, dea_scalar lambda1,
+                                       dea_scalar lambda2, struct dea_plane *out);
+
+/* Electric part W_E = -(eps_0 eps_r/2) E~^2 (lambda1 lambda2)^2 (paper eq 14) at a nominal field
+ * E~ = V/H [V/m], H the unstretched thickness; with a permittivity that depends on stretch its
+ * derivative (electrostriction) is included. Never fails for positive stretches. */
+void DEA_NAME(dea_plane_electric)(const struct dea_material *material, double nominal_field_V_per_m,
+                                  dea_scalar lambda1, dea_scalar lambda2, struct dea_plane *out);
+
+/* True breakdown field [V/m] at the mean in-plane stretch s; NAN when unknown. */
+double dea_breakdown_field(const struct dea_material *material, double mean_stretch);
+
+#endif

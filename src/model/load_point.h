@@ -1,0 +1,44 @@
+/* What every model answers at one load point: one list for C, CSV, JSON, HDF5 and figures.
+ *
+ * Values are SI. NAN means that the model has no such quantity; writers then leave the key out.
+ * The keys are published and stay as they are. z is positive towards the fibre side. */
+#ifndef DEA_MODEL_LOAD_POINT_H
+#define DEA_MODEL_LOAD_POINT_H
+
+#include <stdbool.h>
+
+// X(member = JSON key, SI unit, display unit, factor SI -> display, CSV header, meaning)
+#define DEA_LOAD_POINT_LIST(X)                                                                     \
+  X(voltage_V, "V", "kV", 1e-3, "V", "voltage between the electrodes")                             \
+  X(electrode_stretch, "1", "1", 1.0, "electrode stretch",                                         \
+    "electrode edge radius over its pre-stretched value (lambda_a)")                               \
+  X(passive_stretch, "1", "1", 1.0, "passive stretch",                                             \
+    "stretch of the passive film relative to the pre-stretched state (lambda_p, mean)")            \
+  X(centre_z_m, "m", "um", 1e6, "z centre", "displacement of the centre, positive to the fibres")  \
+  X(fibre_tip_z_m, "m", "um", 1e6, "z fibre tip", "displacement of the fibre tip")                 \
+  X(electrode_edge_u_m, "m", "um", 1e6, "u electrode edge",                                        \
+    "radial displacement of the electrode edge between fibres")                                    \
+  X(force_N, "N", "mN", 1e3, "force", "out-of-plane force (largest along the load line)")          \
+  X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field", "V over the unstretched thickness") \
+  X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \
+  X(breakdown_margin, "1", "%", 100.0, "breakdown margin",                                         \
+    "1 - true field / breakdown field: 1 without field, 0 at breakdown")                           \
+  X(min_tension_N_per_m, "N/m", "N/m", 1.0, "smallest tension",                                    \
+    "smallest principal tension (true stress x current thickness); below 0 the film is slack")     \
+  X(pull_in_distance_V, "V", "kV", 1e-3, "distance to pull-in",                                    \
+    "voltage of the next limit point of this branch minus voltage")                                \
+  X(energy_J, "J", "uJ", 1e6, "energy", "potential energy at this voltage, 0 at rest")             \
+  X(capacitance_F, "F", "pF", 1e12, "capacitance", "charge over voltage")
+
+struct dea_load_point {
+#define DEA_LOAD_POINT_MEMBER(member, si, display, factor, header, meaning) double member;
+  DEA_LOAD_POINT_LIST(DEA_LOAD_POINT_MEMBER)
+#undef DEA_LOAD_POINT_MEMBER
+  bool stable;        // under voltage control, within the motions the model knows
+  int unstable_modes; // number of negative modes of the tangent
+};
+
+/* Point with every number NAN, stable, no unstable mode. */
+struct dea_load_point dea_load_point_empty(void);
+
+#endif

@@ -1,0 +1,65 @@
+/* The one interface of the models: three ways to answer the same question.
+ *
+ * A model is one folder and one line in model_list.h. Studies know nothing else of it. */
+#ifndef DEA_MODEL_MODEL_H
+#define DEA_MODEL_MODEL_H
+
+#include "base/context.h"
+#include "device/device.h"
+#include "model/load_point.h"
+
+struct dea_model; // state of one solve: device, last equilibrium
+
+/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down. */
+enum dea_event_kind { DEA_EVENT_PULL_IN, DEA_EVENT_SNAP_BACK, DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN };
+
+struct dea_event {
+  enum dea_event_kind kind;
+  struct dea_load_point point;
+};
+
+/* Takes a point of a path; anything but DEA_OK stops the path with that status. */
+typedef dea_status (*dea_point_sink)(void *user, const struct dea_load_point *point);
+typedef dea_status (*dea_event_sink)(void *user, const struct dea_event *event);
+
+struct dea_path_options {
+  double max_stretch;   // end: total electrode stretch (pre-stretch included)
+  double max_voltage_V; // end; INFINITY for none
+  size_t max_points;
+};
+
+/* Values along the radius of an axisymmetric answer: arrays [count], lent until the next call. */
+struct dea_profile {
+  size_t count;
+  const double *radius_m;       // in the stretched flat film
+  const double *displacement_m; // radial
+  const double *stretch_r, *stretch_t; // total, from the unstretched film
+  const double *tension_r_N_per_m, *tension_t_N_per_m;
+};
+
+struct dea_model_type {
+  const char *name;      // "lumped"
+  const char *long_name; // for figures
+  /* device: lent, outlives the model. */
+  dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
+                       struct dea_model **out);
+  void (*destroy)(struct dea_context *ctx, struct dea_model *model);
+  /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film at
+   * 0 V). DEA_E_NO_EQUILIBRIUM beyond the last limit point: the model stays at its last point. */
+  dea_status (*solve)(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                      struct dea_load_point *out);
+  /* The whole equilibrium path by arc-length from 0 V, through limit points; events (may be NULL)
+   * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the path
+   * itself ends, with DEA_OK. */
+  dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
+                     const struct dea_path_options *options, dea_point_sink points,
+                     dea_event_sink events, void *user);
+  /* Profile at the last point solved; NULL when the model has none. */
+  dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
+};
+
+/* Model of that name, or NULL. Static storage. */
+const struct dea_model_type *dea_model_find(const char *name);
+const struct dea_model_type *const *dea_model_all(size_t *count);
+
+#endif

@@ -1,0 +1,72 @@
+/* What every study fills and every output reads. */
+#ifndef DEA_RESULT_RESULT_H
+#define DEA_RESULT_RESULT_H
+
+#include "design/design.h"
+#include "device/device.h"
+#include "model/model.h"
+
+/* Points in the order computed; a curve of kind "sweep" stays on stable equilibria at the asked
+ * voltages, one of kind "path" is the whole equilibrium path. */
+struct dea_curve {
+  char model[DEA_NAME_SIZE]; // "lumped"
+  char kind[DEA_NAME_SIZE];  // "sweep", "path"
+  struct dea_load_point *points;
+  size_t count, room;
+  struct dea_event *events; // of a path
+  size_t event_count, event_room;
+  bool complete;      // false: stopped early; `stopped` says why
+  dea_status status;  // DEA_OK or why it stopped
+  char stopped[256];  // one sentence; ""
+};
+
+/* Copy of a profile (see struct dea_profile), arrays owned: columns in that order, [6][count]. */
+struct dea_profile_record {
+  char model[DEA_NAME_SIZE];
+  double voltage_V;
+  size_t count;
+  double *columns;
+};
+
+/* Where a result comes from. */
+struct dea_provenance {
+  char program[DEA_NAME_SIZE];   // "dea 0.1.0"
+  char compiler[128], build[64]; // "GCC 12.2.0", "Release"
+  char libraries[256];           // "libyaml 0.2.5, HDF5 1.10.8, ..."
+  char started[32];              // ISO 8601, UTC
+  double wall_s;
+  char input_sha256[65];         // of the design file's bytes
+  char *input;                   // the design file itself; owned
+  char *overrides;               // "key=value" a line; owned, may be NULL
+  char *command;                 // command line; owned, may be NULL
+};
+
+struct dea_result {
+  const struct dea_design *design; // lent
+  const struct dea_device *device; // lent
+  struct dea_curve *curves;
+  size_t curve_count;
+  struct dea_profile_record *profiles;
+  size_t profile_count, profile_room;
+  struct dea_provenance provenance;
+};
+
+dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device, struct dea_result **out);
+void dea_result_destroy(struct dea_context *ctx, struct dea_result *result);
+/* A new empty curve; *out lent until the next call of this function. */
+dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *result,
+                                const char *model, const char *kind, struct dea_curve **out);
+dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
+                               const struct dea_load_point *point);
+dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
+                               const struct dea_event *event);
+/* Copies the profile. */
+dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, double voltage_V,
+                                  const struct dea_profile *profile);
+/* Curve of that model and kind, or NULL; lent. */
+const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,
+                                        const char *kind);
+
+#endif

@@ -1,0 +1,23 @@
+/* What every test program needs beside cmocka. */
+#ifndef DEA_TESTS_TESTING_H
+#define DEA_TESTS_TESTING_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/* |value - wanted| <= absolute + relative * |wanted|; prints both numbers when it is not. */
+#define assert_close(value, wanted, relative, absolute)                                            \
+  do {                                                                                             \
+    double close_value_ = (value), close_wanted_ = (wanted);                                       \
+    if (!(fabs(close_value_ - close_wanted_) <= (absolute) + (relative)*fabs(close_wanted_))) {    \
+      fail_msg("%s = %.15g, wanted %.15g (off by %.3g)", #value, close_value_, close_wanted_,      \
+               close_value_ - close_wanted_);                                                      \
+    }                                                                                              \
+  } while (0)
+
+#endif
