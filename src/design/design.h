@@ -1,55 +1,19 @@
 /* The design: what a user wrote, checked for form, in SI, each value with its place.
  *
- * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is what
- * the models see. The schema (one table, design/schema.c) says key, unit, range, default and meaning
- * of every member. */
+ * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is
+ * what the models see. The schema (one table, design/schema.c) says key, unit, range, default and
+ * meaning of every member. */
 #ifndef DEA_DESIGN_DESIGN_H
 #define DEA_DESIGN_DESIGN_H
 
-#include "base/context.h"
+#include "base/value.h"
 #include "material/material.h"
 
 enum {
   DEA_DESIGN_VERSION = 1,
-  DEA_TITLE_SIZE = 256,
   DEA_DESIGN_MODELS_MAX = 4,
   DEA_DESIGN_MATERIALS_MAX = 16,
   DEA_DESIGN_VOLTAGES_MAX = 10000,
-};
-
-enum dea_origin {
-  DEA_ABSENT,   // not given and no default: the value is NAN (or -1)
-  DEA_DEFAULT,  // from the schema; listed by `dea check`
-  DEA_GIVEN,    // in the file
-  DEA_OVERRIDE, // from --set
-};
-
-/* A number in SI. place: of the value; for a default the place of the section it belongs to. */
-struct dea_quantity {
-  double si;
-  enum dea_origin origin;
-  struct dea_place place;
-};
-
-/* Which film a length lies in. */
-enum dea_film_state { DEA_STRETCHED, DEA_UNSTRETCHED };
-
-/* A length in the plane of the film, always with the film state it was measured in. */
-struct dea_inplane_length {
-  struct dea_quantity length; // [m] as written
-  enum dea_film_state state;
-};
-
-struct dea_choice {
-  int value; // an enumerator; -1 when absent
-  enum dea_origin origin;
-  struct dea_place place;
-};
-
-struct dea_label {
-  char text[DEA_TITLE_SIZE];
-  enum dea_origin origin;
-  struct dea_place place;
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
@@ -59,17 +23,17 @@ struct dea_design {
   const char *file; // as given by the caller; interned in the context
   struct dea_label title;
 
-  struct { // film
+  struct {                                        // film
     struct dea_label material, law, permittivity; // catalogue or inline name; set ids, "" = default
     struct dea_quantity thickness_m;              // unstretched
   } film;
   struct dea_quantity pre_stretch; // equibiaxial, >= 1
 
-  struct { // frame: rigid, so its lengths are lengths of the stretched film
+  struct {                        // frame: rigid, so its lengths are lengths of the stretched film
     struct dea_quantity radius_m; // inner radius (given as radius or diameter)
   } frame;
 
-  struct { // electrodes: a disc on both faces
+  struct {                            // electrodes: a disc on both faces
     struct dea_inplane_length radius; // given as radius or diameter; length.si is the radius
     struct dea_label material;
     struct dea_quantity thickness_m; // of each; 0 = no stiffness
@@ -92,7 +56,7 @@ struct dea_design {
   struct dea_material materials[DEA_DESIGN_MATERIALS_MAX]; // inline ones of this file
   size_t material_count;
 
-  struct { // compute
+  struct {                                          // compute
     struct dea_label models[DEA_DESIGN_MODELS_MAX]; // names; which exist the model list knows
     size_t model_count;
     double *voltages_V; // [voltage_count], owned; in the order to be computed
