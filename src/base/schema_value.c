@@ -114,7 +114,8 @@ static dea_status check_range(const struct dea_reader *reader, const struct dea_
     return DEA_OK;
   }
   bool low = field->above_min ? si <= field->min : si < field->min;
-  bool high = field->max > field->min && (field->below_max ? si >= field->max : si > field->max);
+  bool limited = field->max > field->min || (field->max == field->min && field->max != 0);
+  bool high = limited && (field->below_max ? si >= field->max : si > field->max);
   if (!low && !high) {
     return DEA_OK;
   }

@@ -7,7 +7,7 @@
 #define DEA_DESIGN_DESIGN_H
 
 #include "base/value.h"
-#include "material/material.h"
+#include "material/catalogue.h"
 
 enum {
   DEA_DESIGN_VERSION = 1,
@@ -53,7 +53,7 @@ struct dea_design {
     struct dea_choice outer_end;          // enum dea_outer_end
   } fibres;
 
-  struct dea_material materials[DEA_DESIGN_MATERIALS_MAX]; // inline ones of this file
+  struct dea_material_data *materials; // [material_count] inline ones of this file, owned
   size_t material_count;
 
   struct {                                          // compute
@@ -71,6 +71,9 @@ struct dea_design {
     bool svg, pdf, png;
     struct dea_quantity width_m; // of a figure
   } report;
+
+  struct dea_listing values; // every value as written or by default, in the order of the schema
+  struct dea_yaml *document; // the file; texts of materials and values live in it
 };
 
 /* One override of --set: key is the dotted path in the file ("film.thickness"), value as it would
