@@ -1,0 +1,79 @@
+/* Eqs 16-17 for many designs: Newton from the pre-stretched state. The imbalance f rises and is
+ * concave up to its first root as long as the film softens, so that Newton from the left never
+ * passes it; where that fails (stiffening, pull-in) a scan brackets the first stable root. */
+#include "model/lumped/lumped.h"
+
+#include <math.h>
+
+enum { NEWTON_MAX = 30, SCAN_STEPS = 2000, BISECTIONS = 60 };
+
+static const double newton_last = 1e-8; // an error e leaves one of order e^2
+static const double newton_longest = 0.1;
+
+/* First crossing of f from below to above 0 beyond l_a = 1. */
+static double scan(const struct dea_lumped *lumped, double field, double max_electrode_stretch)
+{
+  struct dea_lumped_balance balance;
+  double step = (max_electrode_stretch - 1) / SCAN_STEPS, before = 1;
+  bool below = false;
+  for (int i = 0; i <= SCAN_STEPS; i++) {
+    double l_a = 1 + step * i;
+    if (dea_lumped_balance_eval(lumped, l_a, field, &balance) != DEA_OK) {
+      return NAN;
+    }
+    if (balance.imbalance_Pa >= 0 && below) {
+      double low = before, high = l_a;
+      for (int k = 0; k < BISECTIONS; k++) {
+        double middle = 0.5 * (low + high);
+        if (dea_lumped_balance_eval(lumped, middle, field, &balance) != DEA_OK) {
+          return NAN;
+        }
+        *(balance.imbalance_Pa < 0 ? &low : &high) = middle;
+      }
+      return 0.5 * (low + high);
+    }
+    below = balance.imbalance_Pa < 0;
+    before = l_a;
+  }
+  return NAN;
+}
+
+static double solve_one(const struct dea_lumped *lumped, double field, double max_electrode_stretch)
+{
+  struct dea_lumped_balance balance;
+  double l_a = 1;
+  for (int i = 0; i < NEWTON_MAX; i++) {
+    if (dea_lumped_balance_eval(lumped, l_a, field, &balance) != DEA_OK ||
+        !(balance.slope_Pa > 0)) {
+      break;
+    }
+    double change = -balance.imbalance_Pa / balance.slope_Pa;
+    if (change < 0 && l_a + change < 1) {
+      break;
+    }
+    l_a += change < newton_longest ? change : newton_longest;
+    if (fabs(change) < newton_last) {
+      return l_a <= max_electrode_stretch ? l_a : NAN;
+    }
+  }
+  return field == 0 ? 1 : scan(lumped, field, max_electrode_stretch);
+}
+
+dea_status dea_lumped_batch_solve(const struct dea_material *material,
+                                  const struct dea_lumped_batch *batch)
+{
+  if (material->law == NULL || !(material->permittivity.at_rest > 0)) {
+    return DEA_E_ARGUMENT;
+  }
+  for (size_t i = 0; i < batch->count; i++) {
+    struct dea_lumped lumped = {
+        .film = {.material = material, .thickness_m = batch->thickness_m[i]},
+        .pre_stretch = batch->pre_stretch[i],
+        .coverage = batch->coverage[i],
+        .electrode_radius_m = 1};
+    double end = fmin(batch->max_stretch / lumped.pre_stretch, (1 - 1e-9) / lumped.coverage);
+    batch->electrode_stretch[i] =
+        solve_one(&lumped, batch->voltage_V[i] / batch->thickness_m[i], end);
+  }
+  return DEA_OK;
+}
