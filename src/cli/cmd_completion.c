@@ -1,27 +1,24 @@
-/* Completion for shells, and the manual page, out of the table of commands and their usage texts. */
-#include "base/text.h"
-#include "base/version.h"
+/* Completion for shells, out of the table of commands and their usage texts. */
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "cli/usage.h"
 #include "model/model.h"
 
-#include <ctype.h>
 #include <string.h>
 
 /* What may stand where a usage text has a word in capitals. */
 struct kind {
-  const char *words; // that mean it, each between spaces
-  const char *names; // argument of "dea completion names" that lists the candidates, or NULL
+  const char *words;  // that mean it, each between spaces
+  const char *names;  // argument of "dea completion names" that lists the candidates, or NULL
   const char *ending; // of files, or NULL for any file
   bool folder;
 };
 
 static const struct kind kinds[] = {
-    {" DESIGN ", NULL, "yaml", false},         {" CSV ", NULL, "csv", false},
-    {" DIR RUN FOLDER ", NULL, NULL, true},    {" MATERIAL ", "materials", NULL, false},
-    {" EXAMPLE ", "examples", NULL, false},    {" MODEL ", "models", NULL, false},
-    {" SHELL ", "shells", NULL, false},        {" COMMAND ", "commands", NULL, false},
+    {" DESIGN ", NULL, "yaml", false},           {" CSV ", NULL, "csv", false},
+    {" DIR RUN FOLDER ", NULL, NULL, true},      {" MATERIAL ", "materials", NULL, false},
+    {" EXAMPLE ", "examples", NULL, false},      {" MODEL ", "models", NULL, false},
+    {" SHELL ", "shells", NULL, false},          {" COMMAND ", "commands", NULL, false},
     {" KEY VALUE N X ", "nothing", NULL, false},
 };
 static const struct kind any_file = {"", NULL, NULL, false};
@@ -35,22 +32,6 @@ static const struct kind *kind_of(const char *word)
     }
   }
   return &any_file;
-}
-
-/* Options that main.c takes for every command. */
-static const struct cli_option common_options[] = {
-    {"-q", "--quiet", "", "no progress, no notes"},
-    {"-v", "--verbose", "", "say more about an error"},
-    {"-h", "--help", "", "say how the command is used"},
-};
-enum { COMMON_COUNT = sizeof common_options / sizeof common_options[0] };
-
-/* Prints text with a backslash before each of the characters of `special`. */
-static void print_escaped(const char *text, const char *special)
-{
-  for (; *text != '\0'; text++) {
-    printf(strchr(special, *text) != NULL ? "\\%c" : "%c", *text);
-  }
 }
 
 /* Text for inside single quotes of a shell: quotes become typographic ones. */
@@ -68,12 +49,9 @@ static void print_quoted(const char *text, const char *special)
 static void print_bash_candidates(const struct kind *kind)
 {
   if (kind->names != NULL) {
-    printf("COMPREPLY=($(compgen -W \"$(dea completion names %s 2>/dev/null)\" -- \"$word\"))",
-           kind->names);
-  } else if (kind->folder) {
-    fputs("compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- \"$word\")", stdout);
+    printf("_dea_take -W \"$(dea completion names %s 2>/dev/null)\"", kind->names);
   } else {
-    fputs("compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$word\")", stdout);
+    printf("compopt -o filenames; _dea_take %s", kind->folder ? "-d" : "-f");
   }
 }
 
@@ -85,8 +63,8 @@ static void print_bash_command(const struct dea_command *command)
   for (size_t i = 0; i < usage.option_count; i++) {
     printf("%s %s ", usage.options[i].letter, usage.options[i].name);
   }
-  for (size_t i = 0; i < COMMON_COUNT; i++) {
-    printf("%s%s", i > 0 ? " " : "", common_options[i].name);
+  for (size_t i = 0; i < CLI_COMMON_COUNT; i++) {
+    printf("%s%s", i > 0 ? " " : "", cli_common_options[i].name);
   }
   puts("'\n      case $before in");
   for (size_t i = 0; i < usage.option_count; i++) {
@@ -112,16 +90,18 @@ static void print_bash(void)
   size_t count;
   const struct dea_command *const *commands = cli_commands(&count);
   puts("# bash completion for dea; to use it now: source <(dea completion bash)\n"
+       "_dea_take()\n{\n  mapfile -t COMPREPLY < <(compgen \"$@\" -- "
+       "\"${COMP_WORDS[COMP_CWORD]}\")\n}\n"
        "_dea()\n{\n"
        "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} options=''\n"
        "  if ((COMP_CWORD == 1)); then\n"
-       "    COMPREPLY=($(compgen -W \"$(dea completion names commands 2>/dev/null)"
-       " --help --version\" -- \"$word\"))\n    return\n  fi\n"
+       "    _dea_take -W \"$(dea completion names commands 2>/dev/null) --help --version\"\n"
+       "    return\n  fi\n"
        "  case ${COMP_WORDS[1]} in");
   for (size_t i = 0; i < count; i++) {
     print_bash_command(commands[i]);
   }
-  puts("  esac\n  COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n}\ncomplete -F _dea dea");
+  puts("  esac\n  _dea_take -W \"$options\"\n}\ncomplete -F _dea dea");
 }
 
 /* Action of zsh's _arguments for one kind. */
@@ -177,8 +157,8 @@ static void print_zsh(void)
     for (size_t j = 0; j < usage.option_count; j++) {
       print_zsh_option(&usage.options[j]);
     }
-    for (size_t j = 0; j < COMMON_COUNT; j++) {
-      print_zsh_option(&common_options[j]);
+    for (size_t j = 0; j < CLI_COMMON_COUNT; j++) {
+      print_zsh_option(&cli_common_options[j]);
     }
     if (usage.argument_count > 0) {
       fputs(" \\\n        '*", stdout);
@@ -187,7 +167,8 @@ static void print_zsh(void)
     }
     puts(" ;;");
   }
-  puts("  esac\n}\nif [[ $funcstack[1] == _dea ]]; then\n  _dea \"$@\"\nelse\n  compdef _dea dea\nfi");
+  puts("  esac\n}\nif [[ $funcstack[1] == _dea ]]; then\n  _dea \"$@\"\nelse\n  compdef _dea "
+       "dea\nfi");
 }
 
 static void print_fish_kind(const char *word)
@@ -245,95 +226,9 @@ static void print_fish(void)
       puts("");
     }
   }
-  for (size_t j = 0; j < COMMON_COUNT; j++) {
-    print_fish_option("", &common_options[j]);
+  for (size_t j = 0; j < CLI_COMMON_COUNT; j++) {
+    print_fish_option("", &cli_common_options[j]);
   }
-}
-
-/* Text of a manual page; a line that starts with a dot or a quote would be a request. */
-static void print_roff(const char *text)
-{
-  bool line_start = true;
-  for (; *text != '\0'; text++) {
-    if (line_start && (*text == '.' || *text == '\'')) {
-      fputs("\\&", stdout);
-    }
-    if (*text == '\\') {
-      fputs("\\e", stdout);
-    } else if (*text == '-') {
-      fputs("\\-", stdout);
-    } else {
-      putchar(*text);
-    }
-    line_start = *text == '\n';
-  }
-}
-
-static void print_exit_codes(void)
-{
-  struct row {
-    int code;
-    const char *message;
-  };
-  static const struct row rows[] = {
-#define CODE_ROW(code, exit_code, message) {exit_code, message},
-      DEA_STATUS_LIST(CODE_ROW)
-#undef CODE_ROW
-  };
-  int last = -1;
-  puts(".Sh EXIT STATUS\n.Bl -tag -width Ds");
-  for (;;) {
-    int next = 256;
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-      next = rows[i].code > last && rows[i].code < next ? rows[i].code : next;
-    }
-    if (next == 256) {
-      break;
-    }
-    printf(".It %d\n", next);
-    const char *separator = "";
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-      if (rows[i].code == next && rows[i].message[0] != '\0') {
-        fputs(separator, stdout);
-        print_roff(rows[i].message);
-        separator = ";\n";
-      }
-    }
-    puts("");
-    last = next;
-  }
-  puts(".El");
-}
-
-static void print_manual(void)
-{
-  size_t count;
-  const struct dea_command *const *commands = cli_commands(&count);
-  puts(".Dd $Mdocdate$\n.Dt DEA 1\n.Os libdea " DEA_VERSION "\n.Sh NAME\n.Nm dea\n"
-       ".Nd design and simulation of dielectric elastomer actuators\n"
-       ".Sh SYNOPSIS\n.Nm\n.Ar command\n.Op Ar arguments\n.Nm\n.Fl \\-version | \\-help\n"
-       ".Sh DESCRIPTION\n.Nm\n"
-       "reads a design file of a dielectric elastomer actuator and computes stretch, field,\n"
-       "displacement and safety margins against voltage, as tables and figures.\n"
-       "Results go to standard output or to a folder, everything else to standard error.\n"
-       ".Pp\nEvery command also takes:\n.Bl -tag -width Ds");
-  for (size_t i = 0; i < COMMON_COUNT; i++) {
-    printf(".It Fl %s , \\-%s\n", common_options[i].letter + 1, common_options[i].name + 1);
-    print_roff(common_options[i].explanation);
-    puts("");
-  }
-  puts(".El\n.Sh COMMANDS");
-  for (size_t i = 0; i < count; i++) {
-    printf(".Ss %s\n", commands[i]->name);
-    print_roff(commands[i]->summary);
-    puts("\n.Bd -literal");
-    print_roff(commands[i]->usage);
-    puts(".Ed");
-  }
-  puts(".Sh ENVIRONMENT\n.Bl -tag -width NO_COLOR\n.It Ev NO_COLOR\nmessages have no colours\n.El");
-  print_exit_codes();
-  puts(".Sh EXAMPLES\nCompute the paper\\(aqs actuator with four fibres:\n.Bd -literal -offset indent\n"
-       "dea examples frdea\\-4 > my.yaml\ndea check my.yaml\ndea run my.yaml\n.Ed");
 }
 
 static void print_data_names(struct dea_context *ctx, enum dea_data_kind kind)
@@ -375,7 +270,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     const char *name;
     void (*print)(void);
   } outputs[] = {
-      {"bash", print_bash}, {"zsh", print_zsh}, {"fish", print_fish}, {"man", print_manual}};
+      {"bash", print_bash}, {"zsh", print_zsh}, {"fish", print_fish}, {"man", cli_print_manual}};
   if (argc == 3 && strcmp(argv[1], "names") == 0) { // for the completions themselves
     print_names(cli->ctx, argv[2]);
     return 0;
@@ -389,8 +284,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
       return 0;
     }
   }
-  return cli_usage_error(cli, &cmd_completion, "'%s' is not a shell that is known here (bash, zsh, fish)",
-                         argv[1]);
+  return cli_usage_error(cli, &cmd_completion,
+                         "'%s' is not a shell that is known here (bash, zsh, fish)", argv[1]);
 }
 
 const struct dea_command cmd_completion = {

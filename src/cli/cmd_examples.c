@@ -87,11 +87,10 @@ static dea_status unknown_example(struct dea_context *ctx, const struct cli_data
   }
   nearest = dea_nearest_name(name, names, list->count);
   dea_free(ctx, names);
-  return nearest != NULL
-             ? dea_fail(ctx, DEA_E_USAGE, "there is no example '%s'; did you mean '%s'?", name,
-                        nearest)
-             : dea_fail(ctx, DEA_E_USAGE, "there is no example '%s'; 'dea examples' lists them",
-                        name);
+  return nearest != NULL ? dea_fail(ctx, DEA_E_USAGE,
+                                    "there is no example '%s'; did you mean '%s'?", name, nearest)
+                         : dea_fail(ctx, DEA_E_USAGE,
+                                    "there is no example '%s'; 'dea examples' lists them", name);
 }
 
 /* Copies a file to an open stream; name: of the stream, for messages. */

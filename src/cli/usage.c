@@ -3,6 +3,12 @@
 #include <ctype.h>
 #include <string.h>
 
+const struct cli_option cli_common_options[CLI_COMMON_COUNT] = {
+    {"-q", "--quiet", "", "no progress, no notes"},
+    {"-v", "--verbose", "", "say more about an error"},
+    {"-h", "--help", "", "say how the command is used"},
+};
+
 const struct dea_command *const *cli_commands(size_t *count)
 {
   static const struct dea_command *const commands[] = {
@@ -14,7 +20,8 @@ const struct dea_command *const *cli_commands(size_t *count)
   return commands;
 }
 
-/* Copies the word at `text` (up to white space or one of "],|=[") into `word`; returns its length. */
+/* Copies the word at `text` (up to white space or one of "],|=[") into `word`; returns its length.
+ */
 static size_t take_word(const char *text, char word[CLI_WORD_SIZE])
 {
   size_t n = strcspn(text, " \t\n],|=[");
@@ -33,8 +40,8 @@ static bool is_value(const char *word)
 
 static bool is_option(const char *text)
 {
-  return text[0] == '-' && (isalpha((unsigned char)text[1]) ||
-                            (text[1] == '-' && isalpha((unsigned char)text[2])));
+  return text[0] == '-' &&
+         (isalpha((unsigned char)text[1]) || (text[1] == '-' && isalpha((unsigned char)text[2])));
 }
 
 /* Option that has one of these two names, or a new one; NULL when there is no more room. */
