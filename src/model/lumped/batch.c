@@ -5,35 +5,56 @@
 
 #include <math.h>
 
-enum { NEWTON_MAX = 30, SCAN_STEPS = 2000, BISECTIONS = 60 };
+enum { NEWTON_MAX = 30, ROOT_MAX = 100 };
 
 static const double newton_last = 1e-8; // an error e leaves one of order e^2
 static const double newton_longest = 0.1;
+static const double root_close = 1e-13;
+static const double scan_growth =
+    1.02; // of the stretch; a stable window narrower than that is missed
+
+/* Root of f in (low, high), f < 0 at low and f > 0 or outside the law's domain at high: Newton
+ * where it stays inside, bisection elsewhere. NAN when only the end of the domain is found. */
+static double root_between(const struct dea_lumped *lumped, double field, double low, double high)
+{
+  struct dea_lumped_balance balance;
+  double l_a = 0.5 * (low + high);
+  for (int i = 0; i < ROOT_MAX; i++) {
+    dea_status status = dea_lumped_balance_eval(lumped, l_a, field, &balance);
+    bool inside = status == DEA_OK && isfinite(balance.imbalance_Pa);
+    *(inside && balance.imbalance_Pa < 0 ? &low : &high) = l_a;
+    double next = inside ? l_a - balance.imbalance_Pa / balance.slope_Pa : NAN;
+    if (!(next > low && next < high)) {
+      next = 0.5 * (low + high);
+    }
+    if (inside && fabs(next - l_a) < root_close) {
+      return next;
+    }
+    if (high - low < root_close) {
+      break;
+    }
+    l_a = next;
+  }
+  return NAN;
+}
 
 /* First crossing of f from below to above 0 beyond l_a = 1. */
 static double scan(const struct dea_lumped *lumped, double field, double max_electrode_stretch)
 {
   struct dea_lumped_balance balance;
-  double step = (max_electrode_stretch - 1) / SCAN_STEPS, before = 1;
+  double before = 1;
   bool below = false;
-  for (int i = 0; i <= SCAN_STEPS; i++) {
-    double l_a = 1 + step * i;
-    if (dea_lumped_balance_eval(lumped, l_a, field, &balance) != DEA_OK) {
+  for (double l_a = 1; before < max_electrode_stretch; l_a *= scan_growth) {
+    double at = fmin(l_a, max_electrode_stretch);
+    bool inside = dea_lumped_balance_eval(lumped, at, field, &balance) == DEA_OK;
+    if (below && (!inside || balance.imbalance_Pa >= 0)) {
+      return root_between(lumped, field, before, at);
+    }
+    if (!inside) {
       return NAN;
     }
-    if (balance.imbalance_Pa >= 0 && below) {
-      double low = before, high = l_a;
-      for (int k = 0; k < BISECTIONS; k++) {
-        double middle = 0.5 * (low + high);
-        if (dea_lumped_balance_eval(lumped, middle, field, &balance) != DEA_OK) {
-          return NAN;
-        }
-        *(balance.imbalance_Pa < 0 ? &low : &high) = middle;
-      }
-      return 0.5 * (low + high);
-    }
     below = balance.imbalance_Pa < 0;
-    before = l_a;
+    before = at;
   }
   return NAN;
 }
