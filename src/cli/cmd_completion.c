@@ -110,8 +110,7 @@ static void print_zsh_action(const char *word)
   const struct kind *kind = kind_of(word);
   printf(":%s:", word);
   if (kind->names != NULL) {
-    printf("{_values %s ${(f)\"$(dea completion names %s 2>/dev/null)\"}}", kind->names,
-           kind->names);
+    printf("{compadd -- ${(f)\"$(dea completion names %s 2>/dev/null)\"}}", kind->names);
   } else if (kind->folder) {
     fputs("_files -/", stdout);
   } else if (kind->ending != NULL) {
