@@ -23,15 +23,25 @@ static const struct kind kinds[] = {
 };
 static const struct kind any_file = {"", NULL, NULL, false};
 
-static const struct kind *kind_of(const char *word)
+/* Kind that a word in capitals means. For "NAME" the hint says of what: the name of the option that
+ * it follows ("model") or of the command ("materials"). */
+static const struct kind *kind_of(const char *word, const char *hint)
 {
+  bool by_hint = strcmp(word, "NAME") == 0 && hint[0] != '\0';
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-    const char *at = strstr(kinds[i].words, word);
-    if (at != NULL && at > kinds[i].words && at[-1] == ' ' && at[strlen(word)] == ' ') {
-      return &kinds[i];
+    const struct kind *kind = &kinds[i];
+    const char *at = strstr(kind->words, word);
+    if (by_hint ? kind->names != NULL && strncmp(kind->names, hint, strlen(hint)) == 0
+                : at != NULL && at > kind->words && at[-1] == ' ' && at[strlen(word)] == ' ') {
+      return kind;
     }
   }
   return &any_file;
+}
+
+static const struct kind *kind_of_option(const struct cli_option *option)
+{
+  return kind_of(option->value, option->name[0] != '\0' ? option->name + 2 : "");
 }
 
 /* Text for inside single quotes of a shell: quotes become typographic ones. */
@@ -72,13 +82,13 @@ static void print_bash_command(const struct dea_command *command)
     if (option->value[0] != '\0') {
       bool both = option->letter[0] != '\0' && option->name[0] != '\0';
       printf("        %s%s%s) ", option->letter, both ? " | " : "", option->name);
-      print_bash_candidates(kind_of(option->value));
+      print_bash_candidates(kind_of_option(option));
       puts("; return ;;");
     }
   }
   fputs("      esac\n      [[ $word == -* ]] || { ", stdout);
   if (usage.argument_count > 0) {
-    print_bash_candidates(kind_of(usage.arguments[0]));
+    print_bash_candidates(kind_of(usage.arguments[0], command->name));
   } else {
     fputs("COMPREPLY=()", stdout);
   }
@@ -105,9 +115,8 @@ static void print_bash(void)
 }
 
 /* Action of zsh's _arguments for one kind. */
-static void print_zsh_action(const char *word)
+static void print_zsh_action(const char *word, const struct kind *kind)
 {
-  const struct kind *kind = kind_of(word);
   printf(":%s:", word);
   if (kind->names != NULL) {
     printf("{compadd -- ${(f)\"$(dea completion names %s 2>/dev/null)\"}}", kind->names);
@@ -129,7 +138,7 @@ static void print_zsh_option(const struct cli_option *option)
       print_quoted(option->explanation, "[]:\\");
       putchar(']');
       if (option->value[0] != '\0') {
-        print_zsh_action(option->value);
+        print_zsh_action(option->value, kind_of_option(option));
       }
       putchar('\'');
     }
@@ -161,7 +170,7 @@ static void print_zsh(void)
     }
     if (usage.argument_count > 0) {
       fputs(" \\\n        '*", stdout);
-      print_zsh_action(usage.arguments[0]);
+      print_zsh_action(usage.arguments[0], kind_of(usage.arguments[0], commands[i]->name));
       putchar('\'');
     }
     puts(" ;;");
@@ -170,9 +179,8 @@ static void print_zsh(void)
        "dea\nfi");
 }
 
-static void print_fish_kind(const char *word)
+static void print_fish_kind(const struct kind *kind)
 {
-  const struct kind *kind = kind_of(word);
   if (kind->names != NULL) {
     printf(" -x -a '(dea completion names %s 2>/dev/null)'", kind->names);
   } else if (kind->folder) {
@@ -194,7 +202,7 @@ static void print_fish_option(const char *condition, const struct cli_option *op
     printf(" -l %s", option->name + 2);
   }
   if (option->value[0] != '\0') {
-    print_fish_kind(option->value);
+    print_fish_kind(kind_of_option(option));
   }
   fputs(" -d '", stdout);
   print_quoted(option->explanation, "\\");
@@ -221,7 +229,7 @@ static void print_fish(void)
     }
     if (usage.argument_count > 0) {
       printf("complete -c dea%s", condition);
-      print_fish_kind(usage.arguments[0]);
+      print_fish_kind(kind_of(usage.arguments[0], commands[i]->name));
       puts("");
     }
   }
