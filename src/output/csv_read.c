@@ -288,8 +288,8 @@ static bool read_number(const struct reader *r, char *text, double *value)
   return end != text && *end == '\0' && !isinf(*value);
 }
 
-static void set_field(const struct field_meaning *field, double value,
-                      struct dea_load_point *point, struct dea_load_point *std)
+static void set_field(const struct field_meaning *field, double value, struct dea_load_point *point,
+                      struct dea_load_point *std)
 {
   switch (field->role) {
   case ROLE_VALUE:

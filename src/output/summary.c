@@ -24,8 +24,7 @@ void dea_json_put_text(json_t *object, const char *key, const char *text)
 dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
 {
   *out = NULL;
-  char *dumped =
-      root != NULL ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  char *dumped = root != NULL ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
   json_decref(root);
   if (dumped == NULL) {
     return dea_fail(ctx, DEA_E_MEMORY, "out of memory while writing JSON");

@@ -22,8 +22,8 @@ enum {
 };
 #undef DEA_COLUMN_ONE
 
-/* key: member name; display value = factor * SI value. Header in files: "header (unit)", without the
- * parentheses for the unit "1". */
+/* key: member name; display value = factor * SI value. Header in files: "header (unit)", without
+ * the parentheses for the unit "1". */
 struct dea_column {
   const char *key, *si_unit, *display_unit;
   double factor;

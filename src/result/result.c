@@ -97,8 +97,8 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_event *event)
 {
   void *events = curve->events;
-  DEA_TRY(ctx, make_room(ctx, &events, curve->event_count, &curve->event_room,
-                         sizeof *curve->events));
+  DEA_TRY(ctx,
+          make_room(ctx, &events, curve->event_count, &curve->event_room, sizeof *curve->events));
   curve->events = events;
   curve->events[curve->event_count++] = *event;
   return DEA_OK;
