@@ -174,8 +174,8 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  void *items = grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room,
-                     sizeof *ctx->findings);
+  void *items =
+      grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room, sizeof *ctx->findings);
   if (items == NULL) {
     return DEA_E_MEMORY;
   }

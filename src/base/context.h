@@ -42,7 +42,8 @@ struct dea_allocator {
   void *user;
 };
 
-/* done and total count the same thing; total is 0 when unknown. what: for example "lumped sweep". */
+/* done and total count the same thing; total is 0 when unknown. what: for example "lumped sweep".
+ */
 typedef void (*dea_progress_fn)(void *user, const char *what, size_t done, size_t total);
 
 struct dea_context;
@@ -54,21 +55,23 @@ void dea_context_destroy(struct dea_context *ctx);
 /* Memory from the context's allocator, zeroed. count * size is checked for overflow; both may be 0
  * (then a valid pointer comes back). NULL on failure, after dea_fail(DEA_E_MEMORY). */
 void *dea_alloc(struct dea_context *ctx, size_t count, size_t size);
-/* Grows or shrinks memory of dea_alloc; new bytes are not zeroed. NULL on failure: old one stays. */
+/* Grows or shrinks memory of dea_alloc; new bytes are not zeroed. NULL on failure: old one stays.
+ */
 void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size);
 /* Copies text (at most `length` bytes of it); NULL on failure. */
 char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length);
 /* NULL is fine. */
 void dea_free(struct dea_context *ctx, void *pointer);
 
-/* Records a failure: message (printf style, one sentence, no final full stop) and the code, which is
- * returned. Replaces what was recorded before. */
+/* Records a failure: message (printf style, one sentence, no final full stop) and the code, which
+ * is returned. Replaces what was recorded before. */
 dea_status dea_fail(struct dea_context *ctx, dea_status status, const char *format, ...)
     DEA_PRINTF(3, 4);
 /* Adds "function (file:line)" to the chain of calls of the recorded failure; returns status. */
 dea_status dea_fail_chain(struct dea_context *ctx, dea_status status, const char *function,
                           const char *file, int line);
-/* Last recorded message ("" if none) and chain of calls, innermost first; lent until the next call. */
+/* Last recorded message ("" if none) and chain of calls, innermost first; lent until the next call.
+ */
 const char *dea_context_message(const struct dea_context *ctx);
 const char *dea_context_chain(const struct dea_context *ctx);
 dea_status dea_context_status(const struct dea_context *ctx);

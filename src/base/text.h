@@ -18,8 +18,8 @@ void dea_text_add(struct dea_text *text, const char *format, ...) DEA_PRINTF(2, 
 const char *dea_text_get(const struct dea_text *text);
 void dea_text_free(struct dea_text *text);
 
-/* Candidate nearest to `word` by edit distance (case folded), or NULL when none is near enough to be
- * what was meant (distance above a third of the word's length, at least 1). */
+/* Candidate nearest to `word` by edit distance (case folded), or NULL when none is near enough to
+ * be what was meant (distance above a third of the word's length, at least 1). */
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);
 
 /* Number of a text in the C locale, whatever the program's locale; *end as in strtod. */

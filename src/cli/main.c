@@ -110,10 +110,11 @@ static void print_help(void)
   for (int i = 0; i < COMMAND_COUNT; i++) {
     printf("  %-12s %s\n", commands[i]->name, commands[i]->summary);
   }
-  puts("\nBefore or after the command: --quiet, --verbose. 'dea COMMAND --help' says more.\n"
-       "Exit codes: 0 ok, 1 comparison out of tolerance, 2 usage, 3 bad design, 4 not converged or\n"
-       "no equilibrium (partial results kept), 5 file or program, 130 interrupted.\n\n"
-       "Start with:  dea examples frdea-4 > my.yaml && dea run my.yaml");
+  puts(
+      "\nBefore or after the command: --quiet, --verbose. 'dea COMMAND --help' says more.\n"
+      "Exit codes: 0 ok, 1 comparison out of tolerance, 2 usage, 3 bad design, 4 not converged or\n"
+      "no equilibrium (partial results kept), 5 file or program, 130 interrupted.\n\n"
+      "Start with:  dea examples frdea-4 > my.yaml && dea run my.yaml");
 }
 
 static const struct dea_command *find_command(const char *name)

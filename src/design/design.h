@@ -1,8 +1,8 @@
 /* The design: what a user wrote, checked for form, in SI, each value with its place.
  *
- * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is what
- * the models see. The schema (one table, design/schema.c) says key, unit, range, default and meaning
- * of every member. */
+ * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is
+ * what the models see. The schema (one table, design/schema.c) says key, unit, range, default and
+ * meaning of every member. */
 #ifndef DEA_DESIGN_DESIGN_H
 #define DEA_DESIGN_DESIGN_H
 
@@ -59,17 +59,17 @@ struct dea_design {
   const char *file; // as given by the caller; interned in the context
   struct dea_label title;
 
-  struct { // film
+  struct {                                        // film
     struct dea_label material, law, permittivity; // catalogue or inline name; set ids, "" = default
     struct dea_quantity thickness_m;              // unstretched
   } film;
   struct dea_quantity pre_stretch; // equibiaxial, >= 1
 
-  struct { // frame: rigid, so its lengths are lengths of the stretched film
+  struct {                        // frame: rigid, so its lengths are lengths of the stretched film
     struct dea_quantity radius_m; // inner radius (given as radius or diameter)
   } frame;
 
-  struct { // electrodes: a disc on both faces
+  struct {                            // electrodes: a disc on both faces
     struct dea_inplane_length radius; // given as radius or diameter; length.si is the radius
     struct dea_label material;
     struct dea_quantity thickness_m; // of each; 0 = no stiffness
@@ -92,7 +92,7 @@ struct dea_design {
   struct dea_material materials[DEA_DESIGN_MATERIALS_MAX]; // inline ones of this file
   size_t material_count;
 
-  struct { // compute
+  struct {                                          // compute
     struct dea_label models[DEA_DESIGN_MODELS_MAX]; // names; which exist the model list knows
     size_t model_count;
     double *voltages_V; // [voltage_count], owned; in the order to be computed

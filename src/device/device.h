@@ -29,8 +29,9 @@ struct dea_device {
 };
 
 /* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:
- * electrode inside the frame, fibres that meet neither each other nor the centre, and so on. Findings
- * point at the value that is at fault; any error gives DEA_E_DESIGN. out: owned by the caller. */
+ * electrode inside the frame, fibres that meet neither each other nor the centre, and so on.
+ * Findings point at the value that is at fault; any error gives DEA_E_DESIGN. out: owned by the
+ * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);

@@ -19,7 +19,8 @@
 
 enum { DEA_LAW_PARAM_MAX = 8 };
 
-/* One parameter: key in the design file, unit as udunits2 reads it, admissible range (inclusive). */
+/* One parameter: key in the design file, unit as udunits2 reads it, admissible range (inclusive).
+ */
 struct dea_law_param {
   const char *key;
   const char *unit; // "Pa", "1", "radian"

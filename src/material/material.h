@@ -27,17 +27,18 @@ struct dea_breakdown {
 };
 
 struct dea_material {
-  char name[DEA_NAME_SIZE];       // catalogue name or the design's own
-  char law_id[DEA_NAME_SIZE];     // which parameter set ("yeoh-178"); "" for a single one
-  const struct dea_law *law;      // NULL for a material without a hyperelastic law (PET)
+  char name[DEA_NAME_SIZE];        // catalogue name or the design's own
+  char law_id[DEA_NAME_SIZE];      // which parameter set ("yeoh-178"); "" for a single one
+  const struct dea_law *law;       // NULL for a material without a hyperelastic law (PET)
   double param[DEA_LAW_PARAM_MAX]; // of the law, SI
-  double fibre_angle_rad;         // of an anisotropic law: angle of a0 to the radial direction
+  double fibre_angle_rad;          // of an anisotropic law: angle of a0 to the radial direction
   struct dea_permittivity permittivity; // at_rest = 0 when unknown
   struct dea_breakdown breakdown;
-  double density_kg_per_m3;       // 0 when unknown
-  double young_modulus_Pa;        // linear elastic materials; 0 when not given
+  double density_kg_per_m3; // 0 when unknown
+  double young_modulus_Pa;  // linear elastic materials; 0 when not given
   double poisson_ratio;
-  double stretch_min, stretch_max; // range of the law's data (uniaxial or biaxial stretch); 0 unknown
+  double stretch_min,
+      stretch_max; // range of the law's data (uniaxial or biaxial stretch); 0 unknown
 };
 
 #endif

@@ -19,7 +19,8 @@
   X(electrode_edge_u_m, "m", "um", 1e6, "u electrode edge",                                        \
     "radial displacement of the electrode edge between fibres")                                    \
   X(force_N, "N", "mN", 1e3, "force", "out-of-plane force (largest along the load line)")          \
-  X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field", "V over the unstretched thickness") \
+  X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field",                                   \
+    "V over the unstretched thickness")                                                            \
   X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \
   X(breakdown_margin, "1", "%", 100.0, "breakdown margin",                                         \
     "1 - true field / breakdown field: 1 without field, 0 at breakdown")                           \

@@ -10,8 +10,14 @@
 
 struct dea_model; // state of one solve: device, last equilibrium
 
-/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down. */
-enum dea_event_kind { DEA_EVENT_PULL_IN, DEA_EVENT_SNAP_BACK, DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN };
+/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down.
+ */
+enum dea_event_kind {
+  DEA_EVENT_PULL_IN,
+  DEA_EVENT_SNAP_BACK,
+  DEA_EVENT_SLACK,
+  DEA_EVENT_BREAKDOWN
+};
 
 struct dea_event {
   enum dea_event_kind kind;
@@ -31,8 +37,8 @@ struct dea_path_options {
 /* Values along the radius of an axisymmetric answer: arrays [count], lent until the next call. */
 struct dea_profile {
   size_t count;
-  const double *radius_m;       // in the stretched flat film
-  const double *displacement_m; // radial
+  const double *radius_m;              // in the stretched flat film
+  const double *displacement_m;        // radial
   const double *stretch_r, *stretch_t; // total, from the unstretched film
   const double *tension_r_N_per_m, *tension_t_N_per_m;
 };
@@ -44,13 +50,14 @@ struct dea_model_type {
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        struct dea_model **out);
   void (*destroy)(struct dea_context *ctx, struct dea_model *model);
-  /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film at
-   * 0 V). DEA_E_NO_EQUILIBRIUM beyond the last limit point: the model stays at its last point. */
+  /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film
+   * at 0 V). DEA_E_NO_EQUILIBRIUM beyond the last limit point: the model stays at its last point.
+   */
   dea_status (*solve)(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                       struct dea_load_point *out);
   /* The whole equilibrium path by arc-length from 0 V, through limit points; events (may be NULL)
-   * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the path
-   * itself ends, with DEA_OK. */
+   * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the
+   * path itself ends, with DEA_OK. */
   dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_path_options *options, dea_point_sink points,
                      dea_event_sink events, void *user);

@@ -15,9 +15,9 @@ struct dea_curve {
   size_t count, room;
   struct dea_event *events; // of a path
   size_t event_count, event_room;
-  bool complete;      // false: stopped early; `stopped` says why
-  dea_status status;  // DEA_OK or why it stopped
-  char stopped[256];  // one sentence; ""
+  bool complete;     // false: stopped early; `stopped` says why
+  dea_status status; // DEA_OK or why it stopped
+  char stopped[256]; // one sentence; ""
 };
 
 /* Copy of a profile (see struct dea_profile), arrays owned: columns in that order, [6][count]. */
@@ -35,10 +35,10 @@ struct dea_provenance {
   char libraries[256];           // "libyaml 0.2.5, HDF5 1.10.8, ..."
   char started[32];              // ISO 8601, UTC
   double wall_s;
-  char input_sha256[65];         // of the design file's bytes
-  char *input;                   // the design file itself; owned
-  char *overrides;               // "key=value" a line; owned, may be NULL
-  char *command;                 // command line; owned, may be NULL
+  char input_sha256[65]; // of the design file's bytes
+  char *input;           // the design file itself; owned
+  char *overrides;       // "key=value" a line; owned, may be NULL
+  char *command;         // command line; owned, may be NULL
 };
 
 struct dea_result {

@@ -1,0 +1,165 @@
+/* Model "lumped" behind the common interface. */
+#include "model/lumped/lumped.h"
+#include "model/path.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct dea_model {
+  const struct dea_device *device;
+  struct dea_lumped lumped;
+  struct dea_lift lift;
+  double modulus_Pa, rest_energy_Pa;
+  double max_stretch; // total; where a search for a snapped state gives up
+  struct dea_path *path;
+};
+
+static double disc_volume_m3(const struct dea_model *model)
+{
+  double r_a = model->device->electrode_radius_m;
+  return pi * r_a * r_a * model->device->film_thickness_m;
+}
+
+/* Pi/(mu times the electrode disc's volume): g = 2 l_pre (s_A - s_P)/mu. */
+static dea_status evaluate(void *self, const double *u, double voltage_V, double *g, double *K,
+                           double *gV)
+{
+  const struct dea_model *model = self;
+  struct dea_lumped_balance balance;
+  double H0 = model->lumped.film.thickness_m;
+  dea_status status = dea_lumped_balance_eval(&model->lumped, u[0], voltage_V / H0, &balance);
+  if (status == DEA_OK) {
+    double factor = 2 * model->lumped.pre_stretch / model->modulus_Pa;
+    g[0] = factor * balance.imbalance_Pa;
+    K[0] = factor * balance.slope_Pa;
+    gV[0] = factor * balance.slope_field_Pa_m_per_V / H0;
+  }
+  return status;
+}
+
+static double smallest_tension(const struct dea_film *film, const struct dea_plane *plane, double l)
+{
+  double t1, t2;
+  dea_film_tension(film, plane, l, l, &t1, &t2);
+  return fmin(t1, t2);
+}
+
+static dea_status add_lift(const struct dea_model *model, double field, struct dea_load_point *out)
+{
+  double z = dea_lift_height(&model->lift, out->electrode_stretch), where;
+  out->fibre_tip_z_m = out->centre_z_m = z;
+  if (z > 0) {
+    return dea_lift_force_max(&model->lumped, &model->lift, field, z, &out->force_N, &where);
+  }
+  out->force_N = isnan(z) ? NAN : 0;
+  return DEA_OK;
+}
+
+static dea_status point(void *self, const double *u, double voltage_V, struct dea_load_point *out)
+{
+  const struct dea_model *model = self;
+  const struct dea_film *film = &model->lumped.film;
+  double field = voltage_V / film->thickness_m, l_pre = model->lumped.pre_stretch;
+  struct dea_lumped_balance balance;
+  dea_status status = dea_lumped_balance_eval(&model->lumped, u[0], field, &balance);
+  if (status != DEA_OK) {
+    return status;
+  }
+  double l_A = u[0] * l_pre, l_P = balance.passive_stretch * l_pre;
+  *out = dea_load_point_empty();
+  out->voltage_V = voltage_V;
+  out->electrode_stretch = u[0];
+  out->passive_stretch = balance.passive_stretch;
+  out->electrode_edge_u_m = (u[0] - 1) * model->device->electrode_radius_m; // paper eq 18
+  out->nominal_field_V_per_m = field;
+  out->true_field_V_per_m = field * l_A * l_A; // paper eq 4
+  out->breakdown_margin = dea_film_breakdown_margin(film, field, l_A, l_A);
+  out->min_tension_N_per_m = fmin(smallest_tension(film, &balance.active, l_A),
+                                  smallest_tension(film, &balance.passive, l_P));
+  out->energy_J = (balance.energy_Pa - model->rest_energy_Pa) * disc_volume_m3(model);
+  out->capacitance_F = dea_film_capacitance(film, disc_volume_m3(model), l_A, l_A);
+  return model->device->fibre_count > 0 ? add_lift(model, field, out) : DEA_OK;
+}
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    dea_path_destroy(ctx, model->path);
+    dea_free(ctx, model);
+  }
+}
+
+static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_device *device = model->device;
+  DEA_TRY(ctx, dea_film_create(ctx, device, &model->lumped.film));
+  model->lumped.pre_stretch = device->pre_stretch;
+  model->lumped.coverage = device->coverage;
+  model->lumped.electrode_radius_m = device->electrode_radius_m;
+  model->lift = dea_lift_create(device);
+  model->modulus_Pa = dea_film_modulus(&model->lumped.film);
+  model->max_stretch = fmin(10 * device->pre_stretch, device->pre_stretch / device->coverage);
+  struct dea_lumped_balance rest;
+  dea_status status = dea_lumped_balance_eval(&model->lumped, 1, 0, &rest);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film's law ends before the pre-stretch of %g",
+                    device->pre_stretch);
+  }
+  model->rest_energy_Pa = rest.energy_Pa;
+  const struct dea_path_system system = {
+      .unknowns = 1,
+      .self = model,
+      .evaluate = evaluate,
+      .point = point,
+      .voltage_scale_V = dea_film_voltage_scale(&model->lumped.film),
+  };
+  static const double start = 1;
+  DEA_TRY(ctx, dea_path_create(ctx, &system, &start, &model->path));
+  return DEA_OK;
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         struct dea_model **out)
+{
+  *out = NULL;
+  struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
+  if (model == NULL) {
+    return DEA_E_MEMORY;
+  }
+  model->device = device;
+  dea_status status = prepare(ctx, model);
+  if (status != DEA_OK) {
+    destroy(ctx, model);
+    return status;
+  }
+  *out = model;
+  return DEA_OK;
+}
+
+static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  DEA_TRY(ctx, dea_path_seek(ctx, model->path, voltage_V,
+                             model->max_stretch / model->lumped.pre_stretch));
+  DEA_TRY(ctx, dea_path_point(ctx, model->path, out));
+  return DEA_OK;
+}
+
+static dea_status path(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_path_options *options, dea_point_sink points,
+                       dea_event_sink events, void *user)
+{
+  DEA_TRY(ctx, dea_path_trace(ctx, model->path, options, model->lumped.pre_stretch, points, events,
+                              user));
+  return DEA_OK;
+}
+
+const struct dea_model_type dea_model_lumped = {
+    .name = "lumped",
+    .long_name = "lumped (paper eqs 15-20)",
+    .create = create,
+    .destroy = destroy,
+    .solve = solve,
+    .path = path,
+};

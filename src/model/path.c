@@ -1,0 +1,492 @@
+#include "model/path.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { ROWS_MAX = DEA_PATH_UNKNOWNS_MAX + 1, NEWTON_MAX = 12, LOCATE_MAX = 60, STEPS_MAX = 100000 };
+
+static const double step_first = 0.01, step_largest = 0.05, step_smallest = 1e-9;
+static const double newton_small = 1e-11; // of a correction whose unknowns are of order one
+static const double turn_cosine = 0.98;   // between tangents of neighbouring points
+
+struct dea_path {
+  struct dea_context *ctx;
+  struct dea_path_system system;
+  struct dea_path_state state, rest;
+  double g[ROWS_MAX], gV[ROWS_MAX], K[ROWS_MAX * ROWS_MAX], bordered[ROWS_MAX * ROWS_MAX];
+};
+
+static double dot(const struct dea_path *path, const double *a, const double *b)
+{
+  double sum = 0;
+  for (size_t i = 0; i < path->system.unknowns; i++) {
+    sum += a[i] * b[i];
+  }
+  return sum / (double)path->system.unknowns;
+}
+
+/* Solves [K gV; a b] [x; y] = right (n + 1 rows, in place); y is in units of V_s. */
+static dea_status solve_bordered(struct dea_path *path, const double *a, double b, double *right)
+{
+  size_t n = path->system.unknowns, m = n + 1;
+  for (size_t j = 0; j < n; j++) {
+    memcpy(path->bordered + j * m, path->K + j * n, n * sizeof(double));
+    path->bordered[j * m + n] = a[j] / (double)n;
+    path->bordered[n * m + j] = path->gV[j] * path->system.voltage_scale_V;
+  }
+  path->bordered[n * m + n] = b;
+  lapack_int pivot[ROWS_MAX];
+  lapack_int info = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, (lapack_int)m, 1, path->bordered,
+                                       (lapack_int)m, pivot, right, (lapack_int)m);
+  return info == 0 ? DEA_OK : DEA_E_NOT_CONVERGED;
+}
+
+static dea_status evaluate(struct dea_path *path, const double *u, double voltage_V)
+{
+  return path->system.evaluate(path->system.self, u, voltage_V, path->g, path->K, path->gV);
+}
+
+/* Newton on g = 0 and a . (u - origin)/n + b (V - origin_V)/V_s = ds from the guess in *at. */
+static dea_status correct(struct dea_path *path, const struct dea_path_state *origin,
+                          const double *a, double b, double ds, struct dea_path_state *at,
+                          int *iterations)
+{
+  size_t n = path->system.unknowns;
+  double scale = path->system.voltage_scale_V, right[ROWS_MAX], away[DEA_PATH_UNKNOWNS_MAX];
+  for (*iterations = 1; *iterations <= NEWTON_MAX; ++*iterations) {
+    dea_status status = evaluate(path, at->u, at->voltage_V);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (size_t i = 0; i < n; i++) {
+      right[i] = -path->g[i];
+      away[i] = at->u[i] - origin->u[i];
+    }
+    right[n] = ds - dot(path, a, away) - b * (at->voltage_V - origin->voltage_V) / scale;
+    status = solve_bordered(path, a, b, right);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (size_t i = 0; i < n; i++) {
+      at->u[i] += right[i];
+    }
+    at->voltage_V += right[n] * scale;
+    double size = sqrt(dot(path, right, right) + right[n] * right[n]);
+    if (!(size < 1e3)) { // also when it is not a number
+      return DEA_E_NOT_CONVERGED;
+    }
+    if (size < newton_small) {
+      return DEA_OK;
+    }
+  }
+  return DEA_E_NOT_CONVERGED;
+}
+
+/* Negative eigenvalues of K, from its LDL^T: a 2 x 2 pivot has one of each sign. */
+static dea_status count_negative(struct dea_path *path, int *negative)
+{
+  lapack_int n = (lapack_int)path->system.unknowns, pivot[ROWS_MAX];
+  double work[64 * ROWS_MAX];
+  lapack_int info = LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, path->K, n, pivot, work,
+                                        (lapack_int)(sizeof work / sizeof work[0]));
+  if (info < 0) {
+    return DEA_E_NOT_CONVERGED;
+  }
+  *negative = 0;
+  for (lapack_int i = 0; i < n; i++) {
+    if (pivot[i] < 0) {
+      *negative += 1;
+      i++;
+    } else {
+      *negative += path->K[i * n + i] < 0;
+    }
+  }
+  return DEA_OK;
+}
+
+/* Tangent and inertia at a converged state; the tangent goes on in the direction of (u, V) given.
+ */
+static dea_status finish(struct dea_path *path, const double *along_u, double along_V,
+                         struct dea_path_state *at)
+{
+  size_t n = path->system.unknowns;
+  double scale = path->system.voltage_scale_V, right[ROWS_MAX] = {0};
+  dea_status status = evaluate(path, at->u, at->voltage_V);
+  if (status == DEA_OK) {
+    right[n] = 1;
+    status = solve_bordered(path, along_u, along_V / scale, right);
+  }
+  if (status != DEA_OK) {
+    return status;
+  }
+  double length = sqrt(dot(path, right, right) + right[n] * right[n]);
+  for (size_t i = 0; i < n; i++) {
+    at->tangent_u[i] = right[i] / length;
+  }
+  at->tangent_V = right[n] * scale / length;
+  return count_negative(path, &at->negative);
+}
+
+/* One step of arc length ds from `from` to `to`. */
+static dea_status step(struct dea_path *path, const struct dea_path_state *from, double ds,
+                       struct dea_path_state *to, int *iterations)
+{
+  double scale = path->system.voltage_scale_V;
+  *to = *from;
+  for (size_t i = 0; i < path->system.unknowns; i++) {
+    to->u[i] += ds * from->tangent_u[i];
+  }
+  to->voltage_V += ds * from->tangent_V;
+  dea_status status =
+      correct(path, from, from->tangent_u, from->tangent_V / scale, ds, to, iterations);
+  return status == DEA_OK ? finish(path, from->tangent_u, from->tangent_V, to) : status;
+}
+
+/* Steps from *from with *ds made smaller until the step converges and turns gently; proposes the
+ * next *ds. DEA_E_NOT_CONVERGED when the path cannot be continued. */
+static dea_status step_adaptively(struct dea_path *path, const struct dea_path_state *from,
+                                  double *ds, struct dea_path_state *to, double *taken)
+{
+  double scale2 = path->system.voltage_scale_V * path->system.voltage_scale_V;
+  while (*ds > step_smallest) {
+    int iterations = 0;
+    if (step(path, from, *ds, to, &iterations) == DEA_OK) {
+      double cosine =
+          dot(path, from->tangent_u, to->tangent_u) + from->tangent_V * to->tangent_V / scale2;
+      if (cosine > turn_cosine) {
+        *taken = *ds;
+        *ds = iterations <= 5 ? fmin(1.5 * *ds, step_largest) : *ds;
+        return DEA_OK;
+      }
+    }
+    *ds /= 2;
+  }
+  return DEA_E_NOT_CONVERGED;
+}
+
+static dea_status state_point(struct dea_path *path, const struct dea_path_state *state,
+                              struct dea_load_point *out)
+{
+  dea_status status = path->system.point(path->system.self, state->u, state->voltage_V, out);
+  out->stable = state->negative == 0;
+  out->unstable_modes = state->negative;
+  return status;
+}
+
+/* What is watched along a path; each changes sign at its event. */
+enum watched {
+  WATCH_LIMIT,
+  WATCH_TENSION,
+  WATCH_BREAKDOWN,
+  WATCH_STRETCH,
+  WATCH_VOLTAGE,
+  WATCH_COUNT
+};
+
+struct watch {
+  double stretch_end, voltage_end_V;
+};
+
+static double watch_value(enum watched what, const struct watch *watch,
+                          const struct dea_path_state *state, const struct dea_load_point *point)
+{
+  switch (what) {
+  case WATCH_LIMIT:
+    return state->tangent_V;
+  case WATCH_TENSION:
+    return point->min_tension_N_per_m;
+  case WATCH_BREAKDOWN:
+    return point->breakdown_margin;
+  case WATCH_STRETCH:
+    return watch->stretch_end - point->electrode_stretch;
+  case WATCH_VOLTAGE:
+    return watch->voltage_end_V - point->voltage_V;
+  default:
+    return NAN;
+  }
+}
+
+/* Arc length in (0, ds) where the watched value changes its sign (Illinois rule, which brackets);
+ * the state and point there. Values at the ends: at_0, at_1. */
+static dea_status locate(struct dea_path *path, const struct dea_path_state *from, double ds,
+                         enum watched what, const struct watch *watch, double at_0, double at_1,
+                         struct dea_path_state *state, struct dea_load_point *point)
+{
+  double s0 = 0, s1 = ds, f0 = at_0, f1 = at_1;
+  for (int i = 0; i < LOCATE_MAX; i++) {
+    double s = i % 4 == 3 ? 0.5 * (s0 + s1) : s0 - f0 * (s1 - s0) / (f1 - f0);
+    int iterations;
+    dea_status status = step(path, from, s, state, &iterations);
+    if (status == DEA_OK) {
+      status = state_point(path, state, point);
+    }
+    if (status != DEA_OK) {
+      return status;
+    }
+    double f = watch_value(what, watch, state, point);
+    if (f == 0 || s1 - s0 < 1e-13 || fabs(f) < 1e-13 * fabs(at_1 - at_0)) {
+      break;
+    }
+    if ((f < 0) == (f1 < 0)) { // the root is left of s; the end that stays counts half
+      s1 = s;
+      f1 = f;
+      f0 /= 2;
+    } else {
+      s0 = s;
+      f0 = f;
+      f1 /= 2;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system *system,
+                           const double *start, struct dea_path **out)
+{
+  *out = NULL;
+  if (system->unknowns < 1 || system->unknowns > DEA_PATH_UNKNOWNS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes 1 to %d unknowns, not %zu",
+                    DEA_PATH_UNKNOWNS_MAX, system->unknowns);
+  }
+  struct dea_path *path = dea_alloc(ctx, 1, sizeof *path);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  path->ctx = ctx;
+  path->system = *system;
+  memcpy(path->rest.u, start, system->unknowns * sizeof *start);
+  static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
+  struct dea_path_state origin = path->rest;
+  int iterations;
+  dea_status status = correct(path, &origin, nowhere, 1, 0, &path->rest, &iterations);
+  if (status == DEA_OK) {
+    status = finish(path, nowhere, system->voltage_scale_V, &path->rest);
+  }
+  if (status != DEA_OK) {
+    dea_free(ctx, path);
+    return dea_fail(ctx, status, "the film at rest has no equilibrium: %s",
+                    dea_status_message(status));
+  }
+  path->state = path->rest;
+  *out = path;
+  return DEA_OK;
+}
+
+void dea_path_destroy(struct dea_context *ctx, struct dea_path *path)
+{
+  dea_free(ctx, path);
+}
+
+void dea_path_rewind(struct dea_path *path)
+{
+  path->state = path->rest;
+}
+
+const struct dea_path_state *dea_path_state_get(const struct dea_path *path)
+{
+  return &path->state;
+}
+
+/* Newton at fixed voltage from the current tangent's guess. True when it stayed on a stable branch
+ * near by; otherwise the slower way along the path decides. */
+static bool seek_directly(struct dea_path *path, double voltage_V, struct dea_path_state *to)
+{
+  static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
+  struct dea_path_state from = path->state;
+  double rise = voltage_V - from.voltage_V, change = 0;
+  if (!(fabs(from.tangent_V) > 0.05 * path->system.voltage_scale_V)) {
+    return false;
+  }
+  *to = from;
+  for (size_t i = 0; i < path->system.unknowns; i++) {
+    double du = from.tangent_u[i] * rise / from.tangent_V;
+    to->u[i] += du;
+    change = fmax(change, fabs(du));
+  }
+  to->voltage_V = voltage_V;
+  from.voltage_V = voltage_V;
+  int iterations;
+  if (change > 0.1 || correct(path, &from, nowhere, 1, 0, to, &iterations) != DEA_OK) {
+    return false;
+  }
+  double sign = path->state.tangent_V > 0 ? 1 : -1;
+  if (finish(path, nowhere, sign * path->system.voltage_scale_V, to) != DEA_OK) {
+    return false;
+  }
+  for (size_t i = 0; i < path->system.unknowns; i++) {
+    change = fmax(change, fabs(to->u[i] - path->state.u[i]));
+  }
+  to->voltage_V = voltage_V; // to the bit
+  return change < 0.1 && to->negative == 0;
+}
+
+/* Settles a crossing of the wanted voltage in the segment from `from` of length ds: the state
+ * exactly there, when it is stable. */
+static bool settle(struct dea_path *path, const struct dea_path_state *from, double ds,
+                   const struct watch *watch, double at_0, double at_1, struct dea_path_state *out)
+{
+  struct dea_load_point point;
+  if (locate(path, from, ds, WATCH_VOLTAGE, watch, at_0, at_1, out, &point) != DEA_OK ||
+      out->negative != 0) {
+    return false;
+  }
+  struct dea_path_state near = path->state, exact;
+  path->state = *out;
+  bool done = seek_directly(path, watch->voltage_end_V, &exact);
+  path->state = near;
+  if (done) {
+    *out = exact;
+  }
+  return true;
+}
+
+dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
+                         double max_stretch)
+{
+  struct dea_path_state found;
+  if (seek_directly(path, voltage_V, &found)) {
+    path->state = found;
+    return DEA_OK;
+  }
+  struct watch watch = {.stretch_end = max_stretch, .voltage_end_V = voltage_V};
+  struct dea_path_state from = path->state, to;
+  if ((voltage_V - from.voltage_V) * from.tangent_V < 0) { // turn round
+    for (size_t i = 0; i < path->system.unknowns; i++) {
+      from.tangent_u[i] = -from.tangent_u[i];
+    }
+    from.tangent_V = -from.tangent_V;
+  }
+  double ds = step_first, taken;
+  for (int i = 0; i < STEPS_MAX; i++) {
+    struct dea_load_point point;
+    if (step_adaptively(path, &from, &ds, &to, &taken) != DEA_OK) {
+      break;
+    }
+    double at_0 = voltage_V - from.voltage_V, at_1 = voltage_V - to.voltage_V;
+    if (at_0 * at_1 <= 0 && settle(path, &from, taken, &watch, at_0, at_1, &found)) {
+      path->state = found;
+      return DEA_OK;
+    }
+    dea_status status = state_point(path, &to, &point);
+    if (status != DEA_OK || point.electrode_stretch > max_stretch || to.voltage_V < -1) {
+      break;
+    }
+    from = to;
+  }
+  return dea_fail(
+      ctx, DEA_E_NO_EQUILIBRIUM,
+      "no stable equilibrium at %.6g kV: the path from %.6g kV turns back (pull-in) and "
+      "does not return before %s; lower the voltage or look at the whole path",
+      1e-3 * voltage_V, 1e-3 * path->state.voltage_V, "the end of the path");
+}
+
+/* A path being traced, with what it reports to. */
+struct trace {
+  struct dea_path *path;
+  struct watch watch;
+  dea_event_sink events;
+  void *user;
+  struct dea_load_point before, now; // points at the ends of the last segment
+};
+
+static enum dea_event_kind event_kind(enum watched what, double before)
+{
+  switch (what) {
+  case WATCH_TENSION:
+    return DEA_EVENT_SLACK;
+  case WATCH_BREAKDOWN:
+    return DEA_EVENT_BREAKDOWN;
+  default:
+    return before > 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
+  }
+}
+
+/* Finds and reports the events inside one segment, in their order along it as far as kinds go. */
+static dea_status report_events(struct trace *trace, const struct dea_path_state *from, double ds,
+                                const struct dea_path_state *to)
+{
+  static const enum watched kinds[] = {WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN};
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && trace->events != NULL; k++) {
+    double at_0 = watch_value(kinds[k], &trace->watch, from, &trace->before);
+    double at_1 = watch_value(kinds[k], &trace->watch, to, &trace->now);
+    bool crossed = kinds[k] == WATCH_LIMIT ? at_0 * at_1 < 0 : at_0 > 0 && at_1 <= 0;
+    if (!crossed) { // also when the value is unknown
+      continue;
+    }
+    struct dea_path_state state;
+    struct dea_event event;
+    dea_status status =
+        locate(trace->path, from, ds, kinds[k], &trace->watch, at_0, at_1, &state, &event.point);
+    event.kind = event_kind(kinds[k], at_0);
+    if (status == DEA_OK) {
+      status = trace->events(trace->user, &event);
+    }
+    if (status != DEA_OK) {
+      return status;
+    }
+  }
+  return DEA_OK;
+}
+
+/* Cuts the segment at an end of the path that lies inside it; true when it did. */
+static bool cut_at_end(struct trace *trace, const struct dea_path_state *from, double *ds,
+                       struct dea_path_state *to)
+{
+  static const enum watched ends[] = {WATCH_STRETCH, WATCH_VOLTAGE};
+  bool cut = false;
+  for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++) {
+    double at_0 = watch_value(ends[k], &trace->watch, from, &trace->before);
+    double at_1 = watch_value(ends[k], &trace->watch, to, &trace->now);
+    struct dea_path_state state;
+    struct dea_load_point point;
+    if (isfinite(at_1) && at_0 > 0 && at_1 <= 0 &&
+        locate(trace->path, from, *ds, ends[k], &trace->watch, at_0, at_1, &state, &point) ==
+            DEA_OK) {
+      *to = state;
+      trace->now = point;
+      cut = true;
+    }
+  }
+  return cut;
+}
+
+dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
+                          const struct dea_path_options *options, double stretch_factor,
+                          dea_point_sink points, dea_event_sink events, void *user)
+{
+  struct trace trace = {.path = path,
+                        .events = events,
+                        .user = user,
+                        .watch = {.stretch_end = options->max_stretch / stretch_factor,
+                                  .voltage_end_V = options->max_voltage_V}};
+  struct dea_path_state from = path->rest, to;
+  double ds = step_first, taken;
+  DEA_TRY(ctx, state_point(path, &from, &trace.before));
+  DEA_TRY(ctx, points(user, &trace.before));
+  for (size_t i = 1; i < options->max_points; i++) {
+    if (dea_interrupted(ctx)) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted after %zu points of the path", i);
+    }
+    if (step_adaptively(path, &from, &ds, &to, &taken) != DEA_OK ||
+        state_point(path, &to, &trace.now) != DEA_OK || to.voltage_V <= 0) {
+      break; // the law's domain or the path's own end
+    }
+    DEA_TRY(ctx, report_events(&trace, &from, taken, &to));
+    bool last = cut_at_end(&trace, &from, &taken, &to);
+    DEA_TRY(ctx, points(user, &trace.now));
+    if (last) {
+      break;
+    }
+    trace.before = trace.now;
+    from = to;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_path_point(struct dea_context *ctx, struct dea_path *path,
+                          struct dea_load_point *out)
+{
+  DEA_TRY(ctx, state_point(path, &path->state, out));
+  return DEA_OK;
+}

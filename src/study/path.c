@@ -1,0 +1,64 @@
+/* Study "path": the whole equilibrium path with its events. */
+#include "study/study.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { POINTS_MAX = 20000 };
+
+struct target {
+  struct dea_context *ctx;
+  struct dea_curve *curve;
+};
+
+static dea_status take_point(void *user, const struct dea_load_point *point)
+{
+  struct target *target = user;
+  return dea_curve_add_point(target->ctx, target->curve, point);
+}
+
+static dea_status take_event(void *user, const struct dea_event *event)
+{
+  struct target *target = user;
+  return dea_curve_add_event(target->ctx, target->curve, event);
+}
+
+/* Distance to the next limit point of each point's own branch: points come in path order, and
+ * events carry the stretch at which they stand. */
+static void fill_distances(struct dea_curve *curve)
+{
+  for (size_t i = 0; i < curve->count; i++) {
+    struct dea_load_point *point = &curve->points[i];
+    for (size_t k = 0; k < curve->event_count && point->stable; k++) {
+      const struct dea_event *event = &curve->events[k];
+      if (event->kind == DEA_EVENT_PULL_IN &&
+          event->point.electrode_stretch >= point->electrode_stretch) {
+        point->pull_in_distance_V = event->point.voltage_V - point->voltage_V;
+        break;
+      }
+    }
+  }
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  struct target target = {.ctx = ctx};
+  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
+  const struct dea_path_options options = {
+      .max_stretch = result->design->compute.path_max_stretch.si,
+      .max_voltage_V = INFINITY,
+      .max_points = POINTS_MAX,
+  };
+  dea_status status = type->path(ctx, model, &options, take_point, take_event, &target);
+  target.curve->complete = status == DEA_OK;
+  target.curve->status = status;
+  if (status != DEA_OK) {
+    snprintf(target.curve->stopped, sizeof target.curve->stopped, "%s", dea_context_message(ctx));
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  fill_distances(target.curve);
+  return DEA_OK;
+}
+
+const struct dea_study dea_study_path = {.name = "path", .run = run};

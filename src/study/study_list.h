@@ -1,0 +1,6 @@
+/* All studies in the order in which they run: the path first, since the sweep reads its limit
+ * points. A new one is a file and a line here. */
+// X(name of the `const struct dea_study`)
+#define DEA_STUDY_LIST(X)                                                                          \
+  X(dea_study_path)                                                                                \
+  X(dea_study_sweep)
