@@ -1,0 +1,39 @@
+/* Tables as CSV: comma, decimal point, display units in the header. */
+#ifndef DEA_OUTPUT_CSV_H
+#define DEA_OUTPUT_CSV_H
+
+#include "result/columns.h"
+
+/* "V (kV)": the header of a column, without unit when that is 1. */
+void dea_column_title(const struct dea_column *column, char *out, size_t size);
+
+/* Writes directory/MODEL_KIND.csv. Columns without any number are left out, a missing number is an
+ * empty field. Digits: 12 significant. */
+dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
+                               const char *directory);
+/* Writes directory/MODEL_KIND_events.csv for a curve with events; nothing without any. */
+dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
+                                const char *directory);
+/* Writes directory/MODEL_profiles.csv: all profiles of one model, one below the other, with the
+ * voltage as first column. Nothing when the model has none. */
+dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                  const char *model, const char *directory);
+
+/* Measurements: a curve, and the standard uncertainty of each value where given. */
+struct dea_measurement {
+  struct dea_curve curve;     // model "measurement", kind "sweep"
+  struct dea_load_point *std; // [curve.count] uncertainty (1 sigma) of each, NAN: not given
+  const char *file;           // interned
+};
+
+/* Reads a CSV of measurements. The first line that is neither empty nor a comment (#) is the
+ * header: a header or key of DEA_LOAD_POINT_LIST (or a common name of it, "voltage", "stretch")
+ * with its unit in parentheses or brackets; a key with unit ("centre_z_m") needs none. " std" after
+ * the name marks the standard uncertainty. Separator comma, semicolon or tab; with the latter two a
+ * decimal comma is understood. An empty field is a missing value. A voltage column is needed. All
+ * errors become findings with file:line:column; DEA_E_IO then. out: owned by the caller. */
+dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
+                                struct dea_measurement **out);
+void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement);
+
+#endif

@@ -1,0 +1,453 @@
+/* Reader of measurements (see dea_measurement_read in csv.h). */
+#include "output/csv.h"
+
+#include "output/file.h"
+#include "output/unit.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { FIELD_MAX = 200, FIELDS_MAX = 64, FILE_MAX = 100000000, FINDINGS_MAX = 20 };
+
+enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES };
+
+struct field_meaning {
+  enum role role;
+  int column;    // of dea_point_columns
+  double factor; // number in the file -> SI
+};
+
+struct reader {
+  struct dea_context *ctx;
+  const char *file;
+  const struct dea_unit_table *units;
+  char separator;
+  size_t line;
+  struct field_meaning fields[FIELDS_MAX];
+  size_t field_count;
+  size_t errors;
+};
+
+/* Names that people use beside the headers and keys of the list; folded (see fold). */
+static const struct {
+  const char *name, *key;
+} other_names[] = {
+    {"voltage", "voltage_V"},         {"stretch", "electrode_stretch"},
+    {"z center", "centre_z_m"},       {"centre z", "centre_z_m"},
+    {"center z", "centre_z_m"},       {"fibre tip z", "fibre_tip_z_m"},
+    {"z tip", "fibre_tip_z_m"},       {"z fiber tip", "fibre_tip_z_m"},
+    {"field", "true_field_V_per_m"},  {"electrode edge u", "electrode_edge_u_m"},
+    {"u edge", "electrode_edge_u_m"}, {"tension", "min_tension_N_per_m"},
+};
+enum { OTHER_NAMES = sizeof other_names / sizeof other_names[0] };
+
+static struct dea_place place_of(const struct reader *r, size_t column)
+{
+  return (struct dea_place){r->file, r->line, column};
+}
+
+/* Counts an error; false when its finding should no longer be added (too many, or no memory). */
+static bool one_more_error(struct reader *r)
+{
+  return ++r->errors <= FINDINGS_MAX;
+}
+
+/* Takes the field at *cursor (trimmed, quotes off) and moves to the next; false at the line's end.
+ * column: where the field's text starts, from 1. */
+static bool next_field(const char *line, const char **cursor, char separator, char *out,
+                       size_t *column)
+{
+  const char *c = *cursor;
+  if (c == NULL) {
+    return false;
+  }
+  while ((*c == ' ' || *c == '\t') && *c != separator) {
+    c++;
+  }
+  *column = (size_t)(c - line) + 1;
+  bool quoted = *c == '"';
+  c += quoted;
+  size_t n = 0;
+  for (; *c != '\0' && (quoted || *c != separator); c++) {
+    if (quoted && *c == '"') {
+      if (c[1] != '"') {
+        quoted = false;
+        continue;
+      }
+      c++;
+    }
+    if (n < FIELD_MAX - 1) {
+      out[n++] = *c;
+    }
+  }
+  while (n > 0 && isspace((unsigned char)out[n - 1])) {
+    n--;
+  }
+  out[n] = '\0';
+  *cursor = *c == '\0' ? NULL : c + 1;
+  return true;
+}
+
+/* Lower case, '_' and '-' as blanks, no blanks at the ends or twice. */
+static void fold(const char *text, char *out)
+{
+  size_t n = 0;
+  for (; *text != '\0' && n < FIELD_MAX - 1; text++) {
+    unsigned char c = (unsigned char)*text;
+    c = c == '_' || c == '-' || isspace(c) ? ' ' : (unsigned char)tolower(c);
+    if (c != ' ' || (n > 0 && out[n - 1] != ' ')) {
+      out[n++] = (char)c;
+    }
+  }
+  while (n > 0 && out[n - 1] == ' ') {
+    n--;
+  }
+  out[n] = '\0';
+}
+
+/* Parts "z centre std (um)" into "z centre", "um", true. */
+static void split_title(const char *title, char *name, char *unit, bool *is_std)
+{
+  char bare[FIELD_MAX];
+  size_t open = strcspn(title, "([");
+  size_t close = open + strcspn(title + open, ")]");
+  unit[0] = '\0';
+  if (title[open] != '\0' && title[close] != '\0') {
+    snprintf(unit, FIELD_MAX, "%.*s", (int)(close - open - 1), title + open + 1);
+    snprintf(bare, sizeof bare, "%.*s %s", (int)open, title, title + close + 1);
+  } else {
+    snprintf(bare, sizeof bare, "%s", title);
+  }
+  fold(bare, name);
+  size_t n = strlen(name);
+  *is_std = n > 4 && strcmp(name + n - 4, " std") == 0;
+  if (*is_std) {
+    name[n - 4] = '\0';
+  }
+}
+
+/* Column of a folded name, or -1; by_key: it is the key, whose name carries the SI unit. */
+static int find_column(const char *name, bool *by_key)
+{
+  char folded[FIELD_MAX];
+  *by_key = false;
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    fold(dea_point_columns[c].header, folded);
+    if (strcmp(folded, name) == 0) {
+      return c;
+    }
+    fold(dea_point_columns[c].key, folded);
+    if (strcmp(folded, name) == 0) {
+      *by_key = true;
+      return c;
+    }
+  }
+  for (int i = 0; i < OTHER_NAMES; i++) {
+    if (strcmp(other_names[i].name, name) == 0) {
+      return dea_point_column_find(other_names[i].key);
+    }
+  }
+  return -1;
+}
+
+static void unknown_title(struct reader *r, const char *title, const char *name, size_t column)
+{
+  char store[2 * DEA_LOAD_POINT_COLUMNS][FIELD_MAX];
+  const char *candidates[2 * DEA_LOAD_POINT_COLUMNS + OTHER_NAMES];
+  int count = 0;
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++, count += 2) {
+    fold(dea_point_columns[c].header, store[count]);
+    fold(dea_point_columns[c].key, store[count + 1]);
+    candidates[count] = store[count];
+    candidates[count + 1] = store[count + 1];
+  }
+  for (int i = 0; i < OTHER_NAMES; i++) {
+    candidates[count++] = other_names[i].name;
+  }
+  const char *nearest = dea_nearest_name(name, candidates, (size_t)count);
+  if (!one_more_error(r)) {
+    return;
+  }
+  if (nearest == NULL) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                    "'%s' is not a known quantity; known are, for example, 'V (kV)', 'z centre "
+                    "(um)', 'electrode stretch', 'force (mN)'",
+                    title);
+    return;
+  }
+  bool by_key;
+  char proper[96];
+  dea_column_title(&dea_point_columns[find_column(nearest, &by_key)], proper, sizeof proper);
+  dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                  "'%s' is not a known quantity; did you mean '%s'?", title, proper);
+}
+
+/* Sets field->factor from the unit in a title. */
+static void read_unit(struct reader *r, const char *title, const char *unit, bool by_key,
+                      size_t column, struct field_meaning *field)
+{
+  const struct dea_column *c = &dea_point_columns[field->column];
+  char proper[96];
+  dea_column_title(c, proper, sizeof proper);
+  field->factor = 1.0;
+  if (unit[0] == '\0') {
+    if (!by_key && strcmp(c->si_unit, "1") != 0 && one_more_error(r)) {
+      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                      "'%s' needs a unit in parentheses, for example '%s'", title, proper);
+    }
+    return;
+  }
+  switch (dea_unit_factor(r->units, unit, c->si_unit, &field->factor)) {
+  case DEA_UNIT_FITS:
+    break;
+  case DEA_UNIT_UNKNOWN:
+    if (one_more_error(r)) {
+      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                      "'%s' in '%s' is not a unit; '%s' would be right", unit, title, proper);
+    }
+    break;
+  case DEA_UNIT_OTHER_DIMENSION:
+    if (one_more_error(r)) {
+      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                      "'%s' does not measure %s; '%s' would be right", unit, c->header, proper);
+    }
+    break;
+  }
+}
+
+static void read_title(struct reader *r, const char *title, size_t column,
+                       struct field_meaning *field)
+{
+  char name[FIELD_MAX], unit[FIELD_MAX];
+  bool is_std, by_key;
+  split_title(title, name, unit, &is_std);
+  *field = (struct field_meaning){.role = is_std ? ROLE_STD : ROLE_VALUE, .factor = 1.0};
+  if (strcmp(name, "stable") == 0 || strcmp(name, "unstable modes") == 0) {
+    field->role = name[0] == 's' ? ROLE_STABLE : ROLE_MODES;
+    field->column = -1;
+  } else {
+    field->column = find_column(name, &by_key);
+    if (field->column < 0) {
+      unknown_title(r, title, name, column);
+      return;
+    }
+    read_unit(r, title, unit, by_key, column, field);
+  }
+  for (size_t i = 0; i < r->field_count; i++) {
+    if (r->fields[i].role == field->role && r->fields[i].column == field->column &&
+        one_more_error(r)) {
+      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "'%s' is there twice", title);
+    }
+  }
+}
+
+static void choose_separator(struct reader *r, const char *line)
+{
+  r->separator = strchr(line, ';') != NULL ? ';' : strchr(line, '\t') != NULL ? '\t' : ',';
+}
+
+static void read_header(struct reader *r, const char *line)
+{
+  const char *cursor = line;
+  char title[FIELD_MAX];
+  size_t column;
+  bool has_voltage = false;
+  choose_separator(r, line);
+  while (next_field(line, &cursor, r->separator, title, &column)) {
+    if (r->field_count == FIELDS_MAX) {
+      if (one_more_error(r)) {
+        dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "more than %d columns", FIELDS_MAX);
+      }
+      return;
+    }
+    struct field_meaning field;
+    read_title(r, title, column, &field);
+    r->fields[r->field_count++] = field;
+    has_voltage = has_voltage || (field.role == ROLE_VALUE && field.column == 0);
+  }
+  if (!has_voltage && one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "no column of voltages such as 'V (kV)'");
+  }
+}
+
+/* Number of a whole field; NAN for an empty one. */
+static bool read_number(const struct reader *r, char *text, double *value)
+{
+  *value = NAN;
+  if (text[0] == '\0') {
+    return true;
+  }
+  char *comma = strchr(text, ',');
+  if (comma != NULL && r->separator != ',' && strchr(text, '.') == NULL) {
+    *comma = '.';
+  }
+  const char *end;
+  *value = dea_text_to_double(text, &end);
+  return end != text && *end == '\0' && !isinf(*value);
+}
+
+static void set_field(const struct field_meaning *field, double value, struct dea_load_point *point,
+                      struct dea_load_point *std)
+{
+  switch (field->role) {
+  case ROLE_VALUE:
+    dea_point_set(point, field->column, value * field->factor);
+    break;
+  case ROLE_STD:
+    dea_point_set(std, field->column, value * field->factor);
+    break;
+  case ROLE_STABLE:
+    point->stable = value != 0.0;
+    break;
+  case ROLE_MODES:
+    point->unstable_modes = value > 0.0 && value < 1e9 ? (int)value : 0;
+    break;
+  }
+}
+
+/* Reads a line of numbers; false when it has errors (then counted). */
+static bool read_row(struct reader *r, const char *line, struct dea_load_point *point,
+                     struct dea_load_point *std)
+{
+  const char *cursor = line;
+  char text[FIELD_MAX];
+  size_t column = 1, i = 0, before = r->errors;
+  *point = *std = dea_load_point_empty();
+  for (; next_field(line, &cursor, r->separator, text, &column); i++) {
+    double value;
+    if (i >= r->field_count) {
+      break;
+    }
+    char shown[FIELD_MAX];
+    memcpy(shown, text, sizeof shown);
+    if (!read_number(r, text, &value)) {
+      if (one_more_error(r)) {
+        dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "'%s' is not a number", shown);
+      }
+    } else {
+      set_field(&r->fields[i], value, point, std);
+    }
+  }
+  if ((i != r->field_count || cursor != NULL) && one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
+                    "%s fields than the header, which has %zu",
+                    i < r->field_count ? "fewer" : "more", r->field_count);
+  } else if (r->errors == before && isnan(point->voltage_V) && one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "a row without a voltage");
+  }
+  return r->errors == before;
+}
+
+static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *std_room,
+                          const struct dea_load_point *point, const struct dea_load_point *std)
+{
+  if (m->curve.count == *std_room) {
+    size_t room = *std_room > 0 ? 2 * *std_room : 64;
+    void *moved = dea_resize(r->ctx, m->std, room, sizeof *m->std);
+    if (moved == NULL) {
+      return DEA_E_MEMORY;
+    }
+    m->std = moved;
+    *std_room = room;
+  }
+  m->std[m->curve.count] = *std;
+  return dea_curve_add_point(r->ctx, &m->curve, point);
+}
+
+/* Takes the lines of text one by one (they are cut in place). */
+static dea_status read_lines(struct reader *r, char *text, struct dea_measurement *m)
+{
+  size_t std_room = 0;
+  bool has_header = false;
+  char *next = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; // byte order mark
+  while (next != NULL && *next != '\0') {
+    char *line = next;
+    next = strchr(line, '\n');
+    if (next != NULL) {
+      *next++ = '\0';
+    }
+    line[strcspn(line, "\r")] = '\0';
+    r->line++;
+    size_t blank = strspn(line, " \t,;\"");
+    if (line[blank] == '\0' || line[strspn(line, " \t")] == '#') {
+      continue;
+    }
+    if (!has_header) {
+      has_header = true;
+      read_header(r, line);
+      if (r->errors > 0) {
+        break; // without a header the rows say nothing
+      }
+      continue;
+    }
+    struct dea_load_point point, std;
+    if (read_row(r, line, &point, &std)) {
+      DEA_TRY(r->ctx, add_row(r, m, &std_room, &point, &std));
+    }
+  }
+  if (m->curve.count == 0 && r->errors == 0 && one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "no rows of numbers");
+  }
+  return DEA_OK;
+}
+
+static dea_status read_text(struct dea_context *ctx, const char *file, char *text, size_t length,
+                            struct dea_measurement *m)
+{
+  struct reader r = {.ctx = ctx, .file = file};
+  if (memchr(text, '\0', length) != NULL) {
+    return dea_fail(ctx, DEA_E_IO, "%s is not a text file", file);
+  }
+  struct dea_unit_table *units;
+  DEA_TRY(ctx, dea_unit_table_create(ctx, &units));
+  r.units = units;
+  dea_context_clear(ctx); // so that the status below can only be of a finding
+  dea_status status = read_lines(&r, text, m);
+  dea_unit_table_destroy(ctx, units);
+  if (status == DEA_OK && dea_context_status(ctx) == DEA_E_MEMORY) {
+    return DEA_E_MEMORY; // a finding could not be kept
+  }
+  if (status == DEA_OK && r.errors > 0) {
+    status = dea_fail(ctx, DEA_E_IO, "%s cannot be used: %zu error%s", file, r.errors,
+                      r.errors == 1 ? "" : "s");
+  }
+  return status;
+}
+
+dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
+                                struct dea_measurement **out)
+{
+  *out = NULL;
+  const char *name = dea_intern(ctx, file);
+  if (name == NULL) {
+    return DEA_E_MEMORY;
+  }
+  char *text;
+  size_t length;
+  DEA_TRY(ctx, dea_file_read(ctx, file, FILE_MAX, &text, &length));
+  struct dea_measurement *m = dea_alloc(ctx, 1, sizeof *m);
+  dea_status status = DEA_E_MEMORY;
+  if (m != NULL) {
+    m->file = name;
+    m->curve = (struct dea_curve){.model = "measurement", .kind = "sweep", .complete = true};
+    status = read_text(ctx, name, text, length, m);
+  }
+  dea_free(ctx, text);
+  if (status != DEA_OK) {
+    dea_measurement_destroy(ctx, m);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = m;
+  return DEA_OK;
+}
+
+void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement)
+{
+  if (measurement != NULL) {
+    dea_free(ctx, measurement->curve.points);
+    dea_free(ctx, measurement->std);
+    dea_free(ctx, measurement);
+  }
+}

@@ -1,0 +1,103 @@
+#include "output/figure.h"
+
+#include "output/figure_list.h"
+#include "output/file.h"
+#include "output/gnuplot.h"
+
+#include <string.h>
+
+#define FIGURE_DECLARE(name) extern const struct dea_figure dea_figure_##name;
+DEA_FIGURE_LIST(FIGURE_DECLARE)
+#undef FIGURE_DECLARE
+
+static const struct dea_figure *const figures[] = {
+#define FIGURE_ROW(name) &dea_figure_##name,
+    DEA_FIGURE_LIST(FIGURE_ROW)
+#undef FIGURE_ROW
+};
+enum { FIGURE_COUNT = sizeof figures / sizeof figures[0] };
+
+const struct dea_figure *const *dea_figure_all(size_t *count)
+{
+  *count = FIGURE_COUNT;
+  return figures;
+}
+
+static dea_status check_names(struct dea_context *ctx, const struct dea_figure_options *options)
+{
+  const char *names[FIGURE_COUNT];
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    names[f] = figures[f]->name;
+  }
+  for (size_t i = 0; options->names != NULL && i < options->name_count; i++) {
+    bool known = false;
+    for (int f = 0; f < FIGURE_COUNT; f++) {
+      known = known || strcmp(names[f], options->names[i]) == 0;
+    }
+    if (!known) {
+      const char *nearest = dea_nearest_name(options->names[i], names, FIGURE_COUNT);
+      struct dea_text all = {.ctx = ctx};
+      for (int f = 0; nearest == NULL && f < FIGURE_COUNT; f++) {
+        dea_text_add(&all, "%s%s", f > 0 ? ", " : "", names[f]);
+      }
+      dea_status status =
+          dea_fail(ctx, DEA_E_ARGUMENT, "there is no figure '%s'; %s%s%s", options->names[i],
+                   nearest != NULL ? "did you mean '" : "there are ",
+                   nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
+      dea_text_free(&all);
+      return status;
+    }
+  }
+  return DEA_OK;
+}
+
+static bool is_wanted(const struct dea_figure_options *options, const char *name)
+{
+  for (size_t i = 0; options->names != NULL && i < options->name_count; i++) {
+    if (strcmp(options->names[i], name) == 0) {
+      return true;
+    }
+  }
+  return options->names == NULL;
+}
+
+/* Writes script and data of one figure; *drawn tells whether there was something to show. */
+static dea_status write_one(struct dea_context *ctx, const struct dea_result *result,
+                            const char *directory, const struct dea_figure_options *options,
+                            const struct dea_figure *figure, bool *drawn)
+{
+  struct dea_plot *plot;
+  DEA_TRY(ctx, dea_plot_create(ctx, figure->name, figure->caption, &plot));
+  dea_status status = figure->build(ctx, result, plot);
+  *drawn = status == DEA_OK && dea_plot_shows(plot);
+  if (*drawn) {
+    status = dea_plot_write(ctx, plot, &options->format, directory);
+  } else if (status == DEA_OK && options->names != NULL) {
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
+                             "the result has nothing to show in figure '%s'", figure->name);
+  }
+  dea_plot_destroy(ctx, plot);
+  return status;
+}
+
+dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
+                             const char *directory, const struct dea_figure_options *options)
+{
+  const char *names[FIGURE_COUNT];
+  size_t count = 0;
+  DEA_TRY(ctx, check_names(ctx, options));
+  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    bool drawn = false;
+    if (is_wanted(options, figures[f]->name)) {
+      DEA_TRY(ctx, write_one(ctx, result, directory, options, figures[f], &drawn));
+    }
+    if (drawn) {
+      names[count++] = figures[f]->name;
+    }
+  }
+  if (options->format.svg || options->format.pdf || options->format.png) {
+    DEA_TRY(ctx, dea_gnuplot_draw(ctx, directory, names, count));
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,55 @@
+/* The figures of a run. A figure is one file figure_<name>.c that defines one
+ * `const struct dea_figure`, and one line in figure_list.h. */
+#ifndef DEA_OUTPUT_FIGURE_H
+#define DEA_OUTPUT_FIGURE_H
+
+#include "output/plot.h"
+#include "result/columns.h"
+
+struct dea_figure {
+  const char *name; // of its files: "displacement"
+  const char *caption;
+  /* Fills the plot; leaves it without series when the result has nothing to show. */
+  dea_status (*build)(struct dea_context *ctx, const struct dea_result *result,
+                      struct dea_plot *plot);
+};
+
+/* All figures in the order of the list; static storage. */
+const struct dea_figure *const *dea_figure_all(size_t *count);
+
+/* names: figures wanted (NULL for all); one that does not exist is DEA_E_ARGUMENT with the nearest
+ * name. Without any format only the scripts and data are written. */
+struct dea_figure_options {
+  const char *const *names;
+  size_t name_count;
+  struct dea_plot_format format;
+};
+
+/* Writes NAME.gp, NAME.dat and the pictures of every figure that has something to show. A figure
+ * asked for by name that has nothing to show gives a note. */
+dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
+                             const char *directory, const struct dea_figure_options *options);
+
+// Parts for the figures --------------------------------------------------------------------------
+
+/* Curve to draw against voltage: the model's sweep, or its path when it has none (or the other way
+ * round with prefer_path); NULL when neither has points. */
+const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
+                                         bool prefer_path);
+/* Models of a result in the order of their first curve; names lent. Returns the number. */
+size_t dea_figure_models(const struct dea_result *result, const char *models[], size_t max);
+/* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
+ * right); stable parts so, unstable ones dashed. Adds nothing when the curve has no such number. */
+dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
+                          const struct dea_curve *curve, int column, double factor, double shift,
+                          const struct dea_series *look);
+/* Look of the m-th model. */
+struct dea_series dea_figure_look(const char *model, size_t m);
+/* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
+void dea_figure_voltage_axis(struct dea_panel *panel);
+/* Marks the events of all paths within the voltage axis (call after it). */
+void dea_figure_mark_events(struct dea_panel *panel, const struct dea_result *result);
+/* "true field (V/\302\265m)": header and unit of a column as a label. */
+void dea_figure_label(const struct dea_column *column, char *out, size_t size);
+
+#endif

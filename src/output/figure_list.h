@@ -1,0 +1,8 @@
+// X(name): every figure is figure_<name>.c with `const struct dea_figure dea_figure_<name>`.
+#define DEA_FIGURE_LIST(X)                                                                         \
+  X(displacement)                                                                                  \
+  X(stretch)                                                                                       \
+  X(field)                                                                                         \
+  X(tension)                                                                                       \
+  X(force)                                                                                         \
+  X(profile)

@@ -1,0 +1,157 @@
+/* What the figures share (see figure.h). */
+#include "output/figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
+                                         bool prefer_path)
+{
+  const struct dea_curve *first = dea_result_find(result, model, prefer_path ? "path" : "sweep");
+  const struct dea_curve *other = dea_result_find(result, model, prefer_path ? "sweep" : "path");
+  if (first != NULL && first->count > 0) {
+    return first;
+  }
+  return other != NULL && other->count > 0 ? other : NULL;
+}
+
+size_t dea_figure_models(const struct dea_result *result, const char *models[], size_t max)
+{
+  size_t count = 0;
+  for (size_t i = 0; i < result->curve_count && count < max; i++) {
+    bool known = false;
+    for (size_t m = 0; m < count; m++) {
+      known = known || strcmp(models[m], result->curves[i].model) == 0;
+    }
+    if (!known) {
+      models[count++] = result->curves[i].model;
+    }
+  }
+  return count;
+}
+
+struct dea_series dea_figure_look(const char *model, size_t m)
+{
+  static const enum dea_colour order[] = {DEA_BLUE, DEA_VERMILLION, DEA_GREEN, DEA_PURPLE};
+  struct dea_series look = {
+      .style = m == 0 ? DEA_LINE : DEA_LINE_MARKED,
+      .colour = order[m % 4],
+      .marker = m > 0 ? (int)m - 1 : 0,
+  };
+  dea_label_escape(model, look.title, sizeof look.title);
+  return look;
+}
+
+/* Series of the points with that stability; where the two meet both have the point of the dashed
+ * side's start, so that no gap opens. */
+static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct dea_curve *curve, int column, double factor, double shift,
+                           const struct dea_series *look, bool stable)
+{
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &series));
+  double *values = series->values;
+  *series = *look;
+  series->count = curve->count;
+  series->values = values;
+  if (!stable) {
+    series->style = DEA_DASHED;
+    series->title[0] = '\0';
+  }
+  const struct dea_load_point *p = curve->points;
+  for (size_t i = 0; i < curve->count; i++) {
+    bool shown = stable ? p[i].stable
+                        : !p[i].stable || (i > 0 && !p[i - 1].stable) ||
+                              (i + 1 < curve->count && !p[i + 1].stable);
+    values[i] = 1e-3 * p[i].voltage_V;
+    if (shown) {
+      values[curve->count + i] = factor * (dea_point_get(&p[i], column) + shift);
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
+                          const struct dea_curve *curve, int column, double factor, double shift,
+                          const struct dea_series *look)
+{
+  if (curve == NULL || !dea_points_have(curve->points, curve->count, column)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, look, true));
+  for (size_t i = 0; i < curve->count; i++) {
+    if (!curve->points[i].stable) {
+      panel->says_unstable = true;
+      return add_part(ctx, panel, curve, column, factor, shift, look, false);
+    }
+  }
+  return DEA_OK;
+}
+
+void dea_figure_voltage_axis(struct dea_panel *panel)
+{
+  double largest = 0.0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    for (size_t i = 0; i < series->count; i++) {
+      bool counts = isfinite(series->values[series->count + i]);
+      largest = counts ? fmax(largest, series->values[i]) : largest;
+    }
+  }
+  panel->x_min = 0.0;
+  panel->x_max = largest > 0.0 ? 1.02 * largest : NAN;
+  snprintf(panel->x_label, sizeof panel->x_label, "Voltage {/:Italic V} (kV)");
+}
+
+void dea_figure_mark_events(struct dea_panel *panel, const struct dea_result *result)
+{
+  static const char *const words[] = {
+      [DEA_EVENT_PULL_IN] = "pull-in",
+      [DEA_EVENT_SNAP_BACK] = "snap-back",
+      [DEA_EVENT_SLACK] = "loss of tension",
+      [DEA_EVENT_BREAKDOWN] = "breakdown",
+  };
+  size_t paths = 0;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    paths += result->curves[i].event_count > 0;
+  }
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    for (size_t e = 0; e < curve->event_count; e++) {
+      double at = 1e-3 * curve->events[e].point.voltage_V;
+      char text[DEA_LABEL_SIZE];
+      snprintf(text, sizeof text, "%s%s%s", words[curve->events[e].kind], paths > 1 ? ", " : "",
+               paths > 1 ? curve->model : "");
+      if (at >= panel->x_min && at <= panel->x_max) {
+        dea_panel_mark(panel, true, at, text);
+      }
+    }
+  }
+}
+
+/* Display unit with its proper signs: "um" -> "µm". */
+static void typeset_unit(const char *unit, char *out, size_t size)
+{
+  const char *u = strcmp(unit, "V/um") == 0 ? unit + 2 : unit[0] == 'u' ? unit : NULL;
+  if (u != NULL) {
+    snprintf(out, size, "%.*s\302\265%s", (int)(u - unit), unit, u + 1);
+  } else {
+    snprintf(out, size, "%s", unit);
+  }
+}
+
+void dea_figure_label(const struct dea_column *column, char *out, size_t size)
+{
+  char unit[32], header[64];
+  snprintf(header, sizeof header, "%s", column->header);
+  if (header[0] >= 'a' && header[0] <= 'z' && header[1] != ' ') {
+    header[0] = (char)(header[0] - 'a' + 'A');
+  }
+  typeset_unit(column->display_unit, unit, sizeof unit);
+  if (strcmp(unit, "1") == 0) {
+    snprintf(out, size, "%s", header);
+  } else {
+    snprintf(out, size, "%s (%s)", header, unit);
+  }
+}

@@ -1,0 +1,91 @@
+/* Stretch and tension along the radius at up to four voltages: full lines radial, dashed hoop. */
+#include "output/figure.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { SHOWN_MAX = 4 };
+
+static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
+                      const struct dea_profile_record *record, int column, enum dea_colour colour,
+                      enum dea_series_style style, const char *title)
+{
+  struct dea_series *series;
+  size_t n = record->count;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &series));
+  series->style = style;
+  series->colour = colour;
+  snprintf(series->title, sizeof series->title, "%s", title);
+  for (size_t i = 0; i < n; i++) {
+    series->values[i] = dea_profile_columns[0].factor * record->columns[i];
+    series->values[n + i] =
+        dea_profile_columns[column].factor * record->columns[(size_t)column * n + i];
+  }
+  return DEA_OK;
+}
+
+static dea_status add_record(struct dea_context *ctx, struct dea_plot *plot,
+                             const struct dea_profile_record *record, size_t shown)
+{
+  static const enum dea_colour order[SHOWN_MAX] = {DEA_BLACK, DEA_SKY, DEA_ORANGE, DEA_VERMILLION};
+  char title[64];
+  snprintf(title, sizeof title, "%.3g kV", 1e-3 * record->voltage_V);
+  for (int p = 0; p < 2; p++) {
+    struct dea_panel *panel = &plot->panels[p];
+    DEA_TRY(ctx, add(ctx, panel, record, 2 + 2 * p, order[shown], DEA_LINE, p == 0 ? title : ""));
+    DEA_TRY(ctx, add(ctx, panel, record, 3 + 2 * p, order[shown], DEA_DASHED, ""));
+  }
+  return DEA_OK;
+}
+
+static void set_labels(struct dea_plot *plot, const struct dea_profile_record *last)
+{
+  plot->panel_count = 2;
+  for (int p = 0; p < 2; p++) {
+    struct dea_panel *panel = &plot->panels[p];
+    snprintf(panel->x_label, sizeof panel->x_label,
+             "Radius in the stretched flat film {/:Italic R} (mm)");
+    panel->x_min = 0.0;
+    panel->x_max = last->count > 0 ? 1e3 * last->columns[last->count - 1] : panel->x_max;
+    panel->key = "top right";
+  }
+  snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Total stretch {/:Italic \316\273}");
+  snprintf(plot->panels[1].y_label, DEA_LABEL_SIZE, "Tension {/:Italic T} (N/m)");
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  const struct dea_profile_record *records = result->profiles;
+  size_t count = 0, index[SHOWN_MAX], seen = 0;
+  for (size_t i = 0; i < result->profile_count; i++) {
+    count += strcmp(records[i].model, records[0].model) == 0;
+  }
+  size_t shown = count < SHOWN_MAX ? count : SHOWN_MAX;
+  for (size_t k = 0; k < shown; k++) {
+    index[k] = shown > 1 ? k * (count - 1) / (shown - 1) : 0; // first to last, evenly
+  }
+  size_t next = 0;
+  for (size_t i = 0; i < result->profile_count && next < shown; i++) {
+    if (strcmp(records[i].model, records[0].model) == 0 && seen++ == index[next]) {
+      DEA_TRY(ctx, add_record(ctx, plot, &records[i], next++));
+    }
+  }
+  if (shown > 0) {
+    set_labels(plot, &records[0]);
+    struct dea_series *hoop; // only for the key
+    DEA_TRY(ctx, dea_panel_add(ctx, &plot->panels[0], 1, &hoop));
+    hoop->style = DEA_DASHED;
+    hoop->colour = DEA_GREY;
+    snprintf(hoop->title, sizeof hoop->title, "dashed: hoop direction");
+    hoop->values[0] = 0.0;
+    hoop->values[1] = records[0].columns[2 * records[0].count];
+  }
+  return DEA_OK;
+}
+
+const struct dea_figure dea_figure_profile = {
+    .name = "profile",
+    .caption = "stretch and tension along the radius (full: radial, dashed: hoop)",
+    .build = build,
+};

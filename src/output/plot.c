@@ -1,0 +1,424 @@
+#include "output/plot.h"
+
+#include "base/version.h"
+#include "output/file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char *caption,
+                           struct dea_plot **out)
+{
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  snprintf((*out)->name, sizeof(*out)->name, "%s", name);
+  snprintf((*out)->caption, sizeof(*out)->caption, "%s", caption);
+  (*out)->panel_count = 1;
+  (*out)->second_height = 1.0;
+  for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
+    struct dea_panel *panel = &(*out)->panels[i];
+    panel->x_min = panel->x_max = panel->y_min = panel->y_max = NAN;
+    panel->key = "top left";
+    panel->y2_colour = DEA_BLACK;
+  }
+  return DEA_OK;
+}
+
+void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot)
+{
+  if (plot == NULL) {
+    return;
+  }
+  for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
+    for (size_t s = 0; s < plot->panels[i].series_count; s++) {
+      dea_free(ctx, plot->panels[i].series[s].values);
+    }
+  }
+  dea_free(ctx, plot);
+}
+
+dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                         struct dea_series **out)
+{
+  *out = NULL;
+  if (panel->series_count == DEA_PANEL_SERIES_MAX) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a figure holds at most %d series",
+                    DEA_PANEL_SERIES_MAX);
+  }
+  double *values = dea_alloc(ctx, 3 * count, sizeof *values);
+  if (values == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < 3 * count; i++) {
+    values[i] = NAN;
+  }
+  *out = &panel->series[panel->series_count++];
+  **out = (struct dea_series){.count = count, .values = values};
+  return DEA_OK;
+}
+
+void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text)
+{
+  if (panel->mark_count < DEA_PANEL_MARKS_MAX && isfinite(at)) {
+    struct dea_mark *mark = &panel->marks[panel->mark_count++];
+    *mark = (struct dea_mark){.vertical = vertical, .at = at};
+    dea_label_escape(text, mark->text, sizeof mark->text);
+  }
+}
+
+static bool series_shows(const struct dea_series *series)
+{
+  for (size_t i = 0; i < series->count; i++) {
+    if (isfinite(series->values[i]) && isfinite(series->values[series->count + i])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool dea_plot_shows(const struct dea_plot *plot)
+{
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    for (size_t s = 0; s < plot->panels[p].series_count; s++) {
+      if (series_shows(&plot->panels[p].series[s])) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void dea_label_escape(const char *text, char *out, size_t size)
+{
+  size_t n = 0;
+  for (; *text != '\0' && n + 4 < size; text++) {
+    unsigned char c = (unsigned char)*text;
+    if (c < ' ') {
+      c = ' ';
+    }
+    if (strchr("_^{}@&~", c) != NULL) {
+      out[n++] = '\\'; // twice: once for the string in double quotes, once for enhanced text
+      out[n++] = '\\';
+    } else if (c == '"' || c == '\\' || c == '`' || c == '$') {
+      c = '\'';
+    }
+    out[n++] = (char)c;
+  }
+  out[n] = '\0';
+}
+
+// Data -------------------------------------------------------------------------------------------
+
+static void add_value(struct dea_text *dat, double value)
+{
+  if (isfinite(value)) {
+    dea_text_add(dat, "%.10g", value);
+  } else {
+    dea_text_add(dat, "NaN");
+  }
+}
+
+static bool has_error(const struct dea_series *series)
+{
+  return series->style == DEA_ERROR_BARS || series->style == DEA_BAND;
+}
+
+static void add_block(struct dea_text *dat, size_t index, const struct dea_panel *panel,
+                      const struct dea_series *series)
+{
+  dea_text_add(dat, "%s# index %zu: %s\n# %s | %s\n", index > 0 ? "\n\n" : "", index, series->title,
+               panel->x_label, series->right ? panel->y2_label : panel->y_label);
+  for (size_t i = 0; i < series->count; i++) {
+    for (size_t k = 0; k < (has_error(series) ? 3U : 2U); k++) {
+      dea_text_add(dat, "%s", k > 0 ? " " : "");
+      add_value(dat, series->values[k * series->count + i]);
+    }
+    dea_text_add(dat, "\n");
+  }
+}
+
+static void add_data(struct dea_text *dat, const struct dea_plot *plot)
+{
+  size_t index = 0;
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    for (size_t s = 0; s < plot->panels[p].series_count; s++) {
+      if (series_shows(&plot->panels[p].series[s])) {
+        add_block(dat, index++, &plot->panels[p], &plot->panels[p].series[s]);
+      }
+    }
+  }
+}
+
+// Script -----------------------------------------------------------------------------------------
+
+static const char *const colours[] = {
+    [DEA_BLUE] = "#0072B2",   [DEA_VERMILLION] = "#D55E00", [DEA_GREEN] = "#009E73",
+    [DEA_PURPLE] = "#CC79A7", [DEA_ORANGE] = "#E69F00",     [DEA_SKY] = "#56B4E9",
+    [DEA_BLACK] = "#000000",  [DEA_GREY] = "#707070",
+};
+
+/* Point types of gnuplot that look the same on all of its terminals: circle, square, triangles,
+ * diamond; the first ones open, so that two curves that lie on each other both show. */
+static const int markers[] = {6, 4, 8, 10, 12, 7, 5, 9, 11, 13};
+enum { MARKER_COUNT = sizeof markers / sizeof markers[0] };
+
+static void add_style(struct dea_text *gp, const struct dea_series *series)
+{
+  const char *colour = colours[series->colour];
+  int marker = markers[series->marker % MARKER_COUNT];
+  size_t interval = series->count / 10 > 1 ? series->count / 10 : 1;
+  switch (series->style) {
+  case DEA_LINE:
+    dea_text_add(gp, "with lines lw 1.5 lc rgb \"%s\"", colour);
+    break;
+  case DEA_LINE_MARKED:
+    dea_text_add(gp, "with linespoints lw 1.2 pt %d ps 0.6 pi %zu lc rgb \"%s\"", marker, interval,
+                 colour);
+    break;
+  case DEA_DASHED:
+    dea_text_add(gp, "with lines lw 1.2 dt (8,5) lc rgb \"%s\"", colour);
+    break;
+  case DEA_DOTTED:
+    dea_text_add(gp, "with lines lw 1 dt (2,3) lc rgb \"%s\"", colour);
+    break;
+  case DEA_MARKERS:
+    dea_text_add(gp, "with points lw 1.2 pt %d ps 0.7 lc rgb \"%s\"", marker, colour);
+    break;
+  case DEA_ERROR_BARS:
+    dea_text_add(gp, "with yerrorbars lw 1 pt %d ps 0.6 lc rgb \"%s\"", marker, colour);
+    break;
+  case DEA_BAND:
+    dea_text_add(gp, "with filledcurves fillstyle solid noborder lc rgb \"#F3DCD0\"");
+    break;
+  }
+}
+
+/* A title for a string in double quotes: it is escaped enhanced text already. */
+static void add_series(struct dea_text *gp, const struct dea_series *series, size_t index,
+                       bool first)
+{
+  // Without a given uncertainty the third column is NaN and only the point is drawn.
+  const char *use = series->style == DEA_ERROR_BARS ? "1:2:(valid(3) ? $3 : 0)"
+                    : series->style == DEA_BAND     ? "1:2:3"
+                                                    : "1:2";
+  dea_text_add(gp, "%s data index %zu using %s axes x1y%d ", first ? "  plot" : ", \\\n      ",
+               index, use, series->right ? 2 : 1);
+  add_style(gp, series);
+  if (series->title[0] != '\0') {
+    dea_text_add(gp, " title \"%s\"", series->title);
+  } else {
+    dea_text_add(gp, " notitle");
+  }
+}
+
+static void add_limit(struct dea_text *gp, double limit)
+{
+  if (isfinite(limit)) {
+    dea_text_add(gp, "%.10g", limit);
+  } else {
+    dea_text_add(gp, "*");
+  }
+}
+
+static void add_range(struct dea_text *gp, const char *axis, double from, double to)
+{
+  dea_text_add(gp, "  set %srange [", axis);
+  add_limit(gp, from);
+  dea_text_add(gp, ":");
+  add_limit(gp, to);
+  dea_text_add(gp, "]\n");
+}
+
+/* Marks; words of neighbours that would touch are put at different heights. */
+static void add_marks(struct dea_text *gp, const struct dea_panel *panel)
+{
+  double span = panel->x_max - panel->x_min;
+  for (size_t i = 0; i < panel->mark_count; i++) {
+    const struct dea_mark *mark = &panel->marks[i];
+    double height = 0.97;
+    for (size_t k = 0; k < i && mark->vertical; k++) {
+      if (panel->marks[k].vertical && fabs(panel->marks[k].at - mark->at) < 0.06 * span) {
+        height -= 0.3;
+      }
+    }
+    if (mark->vertical) {
+      dea_text_add(gp,
+                   "  set arrow from first %.10g, graph 0 to first %.10g, graph 1 nohead back "
+                   "lw 0.8 dt (4,3) lc rgb \"%s\"\n"
+                   "  set label \"%s\" at first %.10g, graph %.2f right rotate by 90 "
+                   "offset char -0.55,0 font small front\n",
+                   mark->at, mark->at, colours[DEA_GREY], mark->text, mark->at, height);
+    } else {
+      dea_text_add(gp,
+                   "  set arrow from graph 0, first %.10g to graph 1, first %.10g nohead back "
+                   "lw 0.8 dt (4,3) lc rgb \"%s\"\n"
+                   "  set label \"%s\" at graph 0.02, first %.10g left offset char 0,0.5 "
+                   "font small front\n",
+                   mark->at, mark->at, colours[DEA_GREY], mark->text, mark->at);
+    }
+  }
+}
+
+/* Lower and upper edge of a panel in mm above the figure's lower edge. */
+struct layout {
+  double width_mm, height_mm, left_mm, right_mm, bottom_mm[DEA_PLOT_PANELS_MAX],
+      top_mm[DEA_PLOT_PANELS_MAX];
+};
+
+static struct layout lay_out(const struct dea_plot *plot, double width_m)
+{
+  bool right_axis = false;
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    right_axis = right_axis || plot->panels[p].y2_label[0] != '\0';
+  }
+  struct layout l = {.width_mm = 1e3 * width_m, .left_mm = 13.5};
+  double panel = l.width_mm > 120.0 ? 0.50 * l.width_mm : 0.60 * l.width_mm;
+  l.right_mm = l.width_mm - (right_axis ? 13.5 : 3.5);
+  l.bottom_mm[0] = 10.0;
+  if (plot->panel_count == 2) {
+    l.bottom_mm[1] = 10.0;
+    l.top_mm[1] = l.bottom_mm[1] + panel * plot->second_height;
+    l.bottom_mm[0] = l.top_mm[1] + 3.0;
+  }
+  l.top_mm[0] = l.bottom_mm[0] + panel;
+  l.height_mm = l.top_mm[0] + 3.0;
+  return l;
+}
+
+static void add_head(struct dea_text *gp, const struct dea_plot *plot, const struct layout *l,
+                     const struct dea_plot_format *format)
+{
+  dea_text_add(gp,
+               "# %s: %s\n# Written by dea %s. Change it and run in this folder: gnuplot %s.gp\n"
+               "reset\nname = \"%s\"\nformats = \"%s%s%s\"\nwidth_mm = %.6g\nheight_mm = %.6g\n"
+               "font_pt = 8\n\n",
+               plot->name, plot->caption, DEA_VERSION, plot->name, plot->name,
+               format->svg ? "svg " : "", format->pdf ? "pdf " : "", format->png ? "png" : "",
+               l->width_mm, l->height_mm);
+  dea_text_add(gp, "data = name.\".dat\"\n"
+                   "out = exists(\"dea_folder\") ? dea_folder : \"\"\n"
+                   "small = sprintf(\",%%g\", 0.85 * font_pt)\n"
+                   "set encoding utf8\nset minussign\n"
+                   "set datafile missing \"?\"\n"
+                   "set border lw 0.8\nset tics scale 0.6 nomirror\nset bars 0.5\n"
+                   "set key Left reverse samplen 2.2 spacing 1.05 font small\n");
+  dea_text_add(gp, "set lmargin at screen %.4f\nset rmargin at screen %.4f\n\n",
+               l->left_mm / l->width_mm, l->right_mm / l->width_mm);
+}
+
+static void add_terminals(struct dea_text *gp)
+{
+  dea_text_add(
+      gp, "do for [format in formats] {\n"
+          "  if (format eq \"svg\") {\n"
+          "    px = 96 / 25.4 # of an SVG, per mm\n"
+          "    small = sprintf(\",%%g\", 0.85 * font_pt * 96 / 72.0)\n"
+          "    set terminal svg size width_mm * px, height_mm * px enhanced \\\n"
+          "      font sprintf(\"Arial,%%g\", font_pt * 96 / 72.0) linewidth 1\n"
+          "  }\n"
+          "  if (format eq \"pdf\") {\n"
+          "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
+          "    set terminal pdfcairo size width_mm / 10.0 cm, height_mm / 10.0 cm enhanced \\\n"
+          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 1 linewidth 1\n"
+          "  }\n"
+          "  if (format eq \"png\") {\n"
+          "    px = 300 / 25.4 # 300 dots an inch\n"
+          "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
+          "    set terminal pngcairo size width_mm * px, height_mm * px enhanced \\\n"
+          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 300 / 72.0 linewidth 4 "
+          "pointscale 4\n"
+          "  }\n"
+          "  set key font small\n"
+          "  set output out.name.\".\".format\n");
+}
+
+static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool has_x_label)
+{
+  add_range(gp, "x", panel->x_min, panel->x_max);
+  add_range(gp, "y", panel->y_min, panel->y_max);
+  if (has_x_label) {
+    dea_text_add(gp, "  set xlabel \"%s\" offset 0,0.4\n  set format x \"%%g\"\n", panel->x_label);
+  } else {
+    dea_text_add(gp, "  unset xlabel\n  set format x \"\"\n");
+  }
+  dea_text_add(gp, "  set ylabel \"%s\" offset 1.2,0\n", panel->y_label);
+  if (panel->y2_label[0] != '\0') {
+    dea_text_add(gp,
+                 "  set y2label \"%s\" offset -1.2,0 textcolor rgb \"%s\"\n"
+                 "  set y2tics textcolor rgb \"%s\"\n",
+                 panel->y2_label, colours[panel->y2_colour], colours[panel->y2_colour]);
+  } else {
+    dea_text_add(gp, "  unset y2label\n  unset y2tics\n");
+  }
+  dea_text_add(gp, "  set key %s\n", panel->key);
+}
+
+static void add_panel(struct dea_text *gp, const struct dea_plot *plot, size_t p,
+                      const struct layout *l, size_t *index)
+{
+  const struct dea_panel *panel = &plot->panels[p];
+  dea_text_add(gp, "  set bmargin at screen %.4f\n  set tmargin at screen %.4f\n",
+               l->bottom_mm[p] / l->height_mm, l->top_mm[p] / l->height_mm);
+  add_axes(gp, panel, p + 1 == plot->panel_count);
+  dea_text_add(gp, "  unset arrow\n  unset label\n");
+  add_marks(gp, panel);
+  bool first = true;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    if (series_shows(&panel->series[s])) {
+      add_series(gp, &panel->series[s], (*index)++, first);
+      first = false;
+    }
+  }
+  if (first) {
+    dea_text_add(gp, "  plot NaN notitle"); // an empty panel keeps its axes
+  }
+  if (panel->says_unstable) {
+    dea_text_add(gp,
+                 ", \\\n       keyentry with lines lw 1.2 dt (8,5) lc rgb \"%s\" "
+                 "title \"unstable\"",
+                 colours[DEA_GREY]);
+  }
+  dea_text_add(gp, "\n");
+}
+
+static void add_script(struct dea_text *gp, const struct dea_plot *plot,
+                       const struct dea_plot_format *format)
+{
+  struct layout l = lay_out(plot, format->width_m);
+  add_head(gp, plot, &l, format);
+  add_terminals(gp);
+  if (plot->panel_count > 1) {
+    dea_text_add(gp, "  set multiplot\n");
+  }
+  size_t index = 0;
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    add_panel(gp, plot, p, &l, &index);
+  }
+  if (plot->panel_count > 1) {
+    dea_text_add(gp, "  unset multiplot\n");
+  }
+  dea_text_add(gp, "  unset output\n}\n");
+}
+
+dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
+                          const struct dea_plot_format *format, const char *directory)
+{
+  char gp_name[80], dat_name[80];
+  snprintf(gp_name, sizeof gp_name, "%s.gp", plot->name);
+  snprintf(dat_name, sizeof dat_name, "%s.dat", plot->name);
+  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  add_script(&gp, plot, format);
+  add_data(&dat, plot);
+  dea_c_locale_leave(before);
+  dea_status status = dea_text_write(ctx, &dat, directory, dat_name);
+  if (status == DEA_OK) {
+    status = dea_text_write(ctx, &gp, directory, gp_name);
+  }
+  dea_text_free(&gp);
+  dea_text_free(&dat);
+  return status;
+}

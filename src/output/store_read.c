@@ -1,0 +1,330 @@
+/* Reader of results.h5. */
+#include "output/store.h"
+
+#include "output/file.h"
+#include "output/h5.h"
+#include "result/columns.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COUNT_MAX = 10000000, KIND_SIZE = 16 };
+
+static size_t get_count(struct h5 *h, hid_t group)
+{
+  long long count = h5_get_int(h, group, "count");
+  if (h->status == DEA_OK && (count < 0 || count > COUNT_MAX)) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a curve of %lld points", h->path, count);
+  }
+  return h->status == DEA_OK ? (size_t)count : 0;
+}
+
+/* Points of a group; *points owned by the caller, NULL for none. */
+static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points, size_t *count)
+{
+  *points = NULL;
+  *count = get_count(h, group);
+  if (*count == 0) {
+    return;
+  }
+  size_t n = *count;
+  *points = dea_alloc(h->ctx, n, sizeof **points);
+  double *buffer = dea_alloc(h->ctx, n, sizeof *buffer);
+  int *whole = dea_alloc(h->ctx, n, sizeof *whole);
+  if (*points == NULL || buffer == NULL || whole == NULL) {
+    h->status = DEA_E_MEMORY;
+  }
+  for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
+    (*points)[i] = dea_load_point_empty();
+  }
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    if (h5_has(h, group, dea_point_columns[c].key)) {
+      h5_get_array(h, group, dea_point_columns[c].key, H5T_NATIVE_DOUBLE, n, buffer);
+      for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
+        dea_point_set(&(*points)[i], c, buffer[i]);
+      }
+    }
+  }
+  h5_get_array(h, group, "stable", H5T_NATIVE_INT, n, whole);
+  for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
+    (*points)[i].stable = whole[i] != 0;
+  }
+  h5_get_array(h, group, "unstable_modes", H5T_NATIVE_INT, n, whole);
+  for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
+    (*points)[i].unstable_modes = whole[i];
+  }
+  dea_free(h->ctx, whole);
+  dea_free(h->ctx, buffer);
+}
+
+static void get_events(struct h5 *h, hid_t parent, struct dea_curve *curve)
+{
+  hid_t group = h5_group_open(h, parent, "events");
+  struct dea_load_point *points;
+  size_t count;
+  get_points(h, group, &points, &count);
+  char *names = count > 0 ? dea_alloc(h->ctx, count + 1, KIND_SIZE) : NULL;
+  if (count > 0 && names == NULL) {
+    h->status = DEA_E_MEMORY;
+  } else if (count > 0) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, KIND_SIZE);
+    h5_get_array(h, group, "kind", type, count, names);
+    h5_close(type);
+  }
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    struct dea_event event = {.point = points[i]};
+    names[i * KIND_SIZE + KIND_SIZE - 1] = '\0';
+    if (!dea_event_find(names + i * KIND_SIZE, &event.kind)) {
+      h->status = dea_fail(h->ctx, DEA_E_IO, "%s has an event of unknown kind '%s'", h->path,
+                           names + i * KIND_SIZE);
+    } else {
+      h->status = dea_curve_add_event(h->ctx, curve, &event);
+    }
+  }
+  dea_free(h->ctx, names);
+  dea_free(h->ctx, points);
+  h5_close(group);
+}
+
+static dea_status status_of_name(const char *name)
+{
+  for (int s = DEA_OK; s <= (int)DEA_E_INTERRUPTED; s++) {
+    if (strcmp(dea_status_name((dea_status)s), name) == 0) {
+      return (dea_status)s;
+    }
+  }
+  return DEA_E_NOT_CONVERGED; // of a later version: it did stop
+}
+
+/* One thing to be read in the order of its index, whatever the order of the names. */
+struct entry {
+  char model[DEA_NAME_SIZE], name[DEA_NAME_SIZE];
+  long long index;
+};
+
+static int entry_compare(const void *a, const void *b)
+{
+  const struct entry *x = a, *y = b;
+  return (x->index > y->index) - (x->index < y->index);
+}
+
+/* Lists parent/<model>/<name> by index; entries owned by the caller. */
+static struct entry *list_entries(struct h5 *h, hid_t parent, size_t *count)
+{
+  struct entry *entries = NULL;
+  *count = 0;
+  size_t models = h5_link_count(h, parent);
+  for (size_t m = 0; m < models && h->status == DEA_OK; m++) {
+    struct entry entry;
+    h5_link_name(h, parent, m, entry.model, sizeof entry.model);
+    hid_t model = h5_group_open(h, parent, entry.model);
+    size_t names = h5_link_count(h, model);
+    struct entry *moved =
+        h->status == DEA_OK ? dea_resize(h->ctx, entries, *count + names, sizeof *entries) : NULL;
+    if (moved != NULL) {
+      entries = moved;
+    } else if (h->status == DEA_OK) {
+      h->status = DEA_E_MEMORY;
+    }
+    for (size_t i = 0; i < names && h->status == DEA_OK; i++) {
+      h5_link_name(h, model, i, entry.name, sizeof entry.name);
+      hid_t group = h5_group_open(h, model, entry.name);
+      entry.index = h5_get_int(h, group, "index");
+      h5_close(group);
+      entries[(*count)++] = entry;
+    }
+    h5_close(model);
+  }
+  if (h->status == DEA_OK && *count > 1) {
+    qsort(entries, *count, sizeof *entries, entry_compare);
+  }
+  return entries;
+}
+
+/* parent/<model>/<name> of an entry. */
+static hid_t open_entry(struct h5 *h, hid_t parent, const struct entry *entry)
+{
+  hid_t model = h5_group_open(h, parent, entry->model);
+  hid_t group = h5_group_open(h, model, entry->name);
+  h5_close(model);
+  return group;
+}
+
+static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
+                      struct dea_result *result)
+{
+  struct dea_curve *curve = NULL;
+  if (h->status == DEA_OK) {
+    h->status = dea_result_add_curve(h->ctx, result, entry->model, entry->name, &curve);
+  }
+  if (h->status != DEA_OK) {
+    return;
+  }
+  char name[DEA_NAME_SIZE];
+  curve->complete = h5_get_int(h, group, "complete") != 0;
+  h5_get_text(h, group, "status", name, sizeof name);
+  curve->status = status_of_name(name);
+  h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
+  get_points(h, group, &curve->points, &curve->count);
+  curve->room = curve->count;
+  get_events(h, group, curve);
+}
+
+static void get_curves(struct h5 *h, hid_t file, struct dea_result *result)
+{
+  hid_t parent = h5_group_open(h, file, "curves");
+  size_t count;
+  struct entry *entries = list_entries(h, parent, &count);
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    hid_t group = open_entry(h, parent, &entries[i]);
+    get_curve(h, group, &entries[i], result);
+    h5_close(group);
+  }
+  dea_free(h->ctx, entries);
+  h5_close(parent);
+}
+
+static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea_result *result)
+{
+  size_t n = get_count(h, group);
+  double voltage_V = h5_get_real(h, group, "voltage_V");
+  double *columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof *columns);
+  if (columns == NULL) {
+    h->status = DEA_E_MEMORY;
+    return;
+  }
+  for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
+    h5_get_array(h, group, dea_profile_columns[c].key, H5T_NATIVE_DOUBLE, n, columns + c * n);
+  }
+  if (h->status == DEA_OK) {
+    struct dea_profile profile = {n,
+                                  columns,
+                                  columns + n,
+                                  columns + 2 * n,
+                                  columns + 3 * n,
+                                  columns + 4 * n,
+                                  columns + 5 * n};
+    h->status = dea_result_add_profile(h->ctx, result, model, voltage_V, &profile);
+  }
+  dea_free(h->ctx, columns);
+}
+
+static void get_profiles(struct h5 *h, hid_t file, struct dea_result *result)
+{
+  hid_t parent = h5_group_open(h, file, "profiles");
+  size_t count;
+  struct entry *entries = list_entries(h, parent, &count);
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    hid_t group = open_entry(h, parent, &entries[i]);
+    get_profile(h, group, entries[i].model, result);
+    h5_close(group);
+  }
+  dea_free(h->ctx, entries);
+  h5_close(parent);
+}
+
+static void get_rest(struct h5 *h, hid_t file, struct dea_run *run)
+{
+  struct dea_provenance *p = &run->result->provenance;
+  hid_t design = h5_group_open(h, file, "design");
+  h5_get_text(h, design, "title", run->title, sizeof run->title);
+  h5_get_text(h, design, "file", run->design_file, sizeof run->design_file);
+  h5_get_text(h, design, "sha256", p->input_sha256, sizeof p->input_sha256);
+  run->width_m = h5_get_real(h, design, "report_width_m");
+  run->svg = h5_get_int(h, design, "report_svg") != 0;
+  run->pdf = h5_get_int(h, design, "report_pdf") != 0;
+  run->png = h5_get_int(h, design, "report_png") != 0;
+  p->input = h5_get_long_text(h, design, "text");
+  p->overrides = h5_get_long_text(h, design, "overrides");
+  h5_close(design);
+  hid_t group = h5_group_open(h, file, "provenance");
+  h5_get_text(h, group, "program", p->program, sizeof p->program);
+  h5_get_text(h, group, "compiler", p->compiler, sizeof p->compiler);
+  h5_get_text(h, group, "build", p->build, sizeof p->build);
+  h5_get_text(h, group, "libraries", p->libraries, sizeof p->libraries);
+  h5_get_text(h, group, "started", p->started, sizeof p->started);
+  p->wall_s = h5_get_real(h, group, "wall_s");
+  p->command = h5_get_long_text(h, group, "command");
+  h5_close(group);
+}
+
+static void check_schema(struct h5 *h, hid_t file)
+{
+  long long schema = h5_get_int(h, file, "schema");
+  if (h->status == DEA_OK && schema != DEA_STORE_SCHEMA) {
+    h->status = dea_fail(h->ctx, DEA_E_UNSUPPORTED,
+                         "%s has schema %lld of results; this version reads schema %d", h->path,
+                         schema, DEA_STORE_SCHEMA);
+  }
+}
+
+static dea_status read_file(struct dea_context *ctx, const char *path, struct dea_run *run)
+{
+  struct h5 h;
+  h5_begin(&h, ctx, path);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) {
+    h5_fail(&h, "cannot read");
+  }
+  check_schema(&h, file);
+  get_curves(&h, file, run->result);
+  get_profiles(&h, file, run->result);
+  get_rest(&h, file, run);
+  h5_close(file);
+  h5_end(&h);
+  return h.status;
+}
+
+static dea_status run_create(struct dea_context *ctx, struct dea_run **out)
+{
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_result_create(ctx, NULL, NULL, &(*out)->result);
+  if (status != DEA_OK) {
+    dea_free(ctx, *out);
+    *out = NULL;
+  }
+  return status;
+}
+
+dea_status dea_run_read(struct dea_context *ctx, const char *path, struct dea_run **out)
+{
+  *out = NULL;
+  if (!dea_path_exists(path)) {
+    return dea_fail(ctx, DEA_E_IO, "%s does not exist", path);
+  }
+  bool folder = dea_path_is_folder(path);
+  char *file = folder ? dea_path_join(ctx, path, "results.h5") : NULL;
+  if (folder && file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status;
+  struct dea_run *run = NULL;
+  if (folder && !dea_path_exists(file)) {
+    status = dea_fail(ctx, DEA_E_IO, "%s is not a run folder: it has no results.h5", path);
+  } else {
+    status = run_create(ctx, &run);
+  }
+  if (status == DEA_OK) {
+    status = read_file(ctx, folder ? file : path, run);
+  }
+  dea_free(ctx, file);
+  if (status != DEA_OK) {
+    dea_run_destroy(ctx, run);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = run;
+  return DEA_OK;
+}
+
+void dea_run_destroy(struct dea_context *ctx, struct dea_run *run)
+{
+  if (run != NULL) {
+    dea_result_destroy(ctx, run->result);
+    dea_free(ctx, run);
+  }
+}

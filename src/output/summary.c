@@ -1,0 +1,158 @@
+#include "output/summary.h"
+
+#include "output/file.h"
+#include "output/json.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <string.h>
+
+void dea_json_put(json_t *object, const char *key, double value)
+{
+  if (isfinite(value)) {
+    json_object_set_new(object, key, json_real(value));
+  }
+}
+
+void dea_json_put_text(json_t *object, const char *key, const char *text)
+{
+  json_t *value = json_string(text != NULL ? text : "");
+  // Text that is not UTF-8 is not JSON; a file name may be any bytes.
+  json_object_set_new(object, key, value != NULL ? value : json_string("(not UTF-8)"));
+}
+
+dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
+{
+  *out = NULL;
+  char *dumped = root != NULL ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  json_decref(root);
+  if (dumped == NULL) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory while writing JSON");
+  }
+  size_t length = strlen(dumped);
+  char *text = dea_alloc(ctx, length + 2, 1);
+  if (text != NULL) {
+    memcpy(text, dumped, length);
+    text[length] = '\n';
+  }
+  free(dumped);
+  *out = text;
+  return text != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+static json_t *point_json(const struct dea_load_point *point)
+{
+  json_t *object = json_object();
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    dea_json_put(object, dea_point_columns[c].key, dea_point_get(point, c));
+  }
+  json_object_set_new(object, "stable", json_boolean(point->stable));
+  json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
+  return object;
+}
+
+/* First event of each kind along the path. */
+static json_t *limits_json(const struct dea_curve *path)
+{
+  static const enum dea_event_kind kinds[] = {DEA_EVENT_PULL_IN, DEA_EVENT_SNAP_BACK,
+                                              DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN};
+  json_t *object = json_object();
+  for (size_t k = 0; path != NULL && k < sizeof kinds / sizeof kinds[0]; k++) {
+    for (size_t i = 0; i < path->event_count; i++) {
+      if (path->events[i].kind == kinds[k]) {
+        char key[64];
+        snprintf(key, sizeof key, "%s_voltage_V", dea_event_name(kinds[k]));
+        dea_json_put(object, key, path->events[i].point.voltage_V);
+        snprintf(key, sizeof key, "%s_stretch", dea_event_name(kinds[k]));
+        dea_json_put(object, key, path->events[i].point.electrode_stretch);
+        break;
+      }
+    }
+  }
+  return object;
+}
+
+/* Puts what is known of one model into an object. */
+static void put_model(json_t *object, const struct dea_result *result, const char *model)
+{
+  const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
+  json_object_set_new(object, "model", json_string(model));
+  json_t *points = json_array();
+  for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
+    json_array_append_new(points, point_json(&sweep->points[i]));
+  }
+  json_object_set_new(object, "points", points);
+  bool complete = true;
+  const char *stopped = "", *status = dea_status_name(DEA_OK);
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    if (strcmp(curve->model, model) == 0 && !curve->complete && complete) {
+      complete = false;
+      stopped = curve->stopped;
+      status = dea_status_name(curve->status);
+    }
+  }
+  json_object_set_new(object, "complete", json_boolean(complete));
+  dea_json_put_text(object, "stopped", stopped);
+  json_object_set_new(object, "status", json_string(status));
+  json_object_set_new(object, "limits", limits_json(dea_result_find(result, model, "path")));
+}
+
+static bool first_of_model(const struct dea_result *result, size_t index)
+{
+  for (size_t i = 0; i < index; i++) {
+    if (strcmp(result->curves[i].model, result->curves[index].model) == 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static json_t *design_json(const struct dea_result *result)
+{
+  json_t *object = json_object();
+  const struct dea_design *design = result->design;
+  dea_json_put_text(object, "title", design != NULL ? design->title.text : "");
+  dea_json_put_text(object, "file", design != NULL ? design->file : "");
+  dea_json_put_text(object, "sha256", result->provenance.input_sha256);
+  return object;
+}
+
+static json_t *provenance_json(const struct dea_provenance *p)
+{
+  json_t *object = json_object();
+  dea_json_put_text(object, "program", p->program);
+  dea_json_put_text(object, "compiler", p->compiler);
+  dea_json_put_text(object, "build", p->build);
+  dea_json_put_text(object, "libraries", p->libraries);
+  dea_json_put_text(object, "started", p->started);
+  dea_json_put(object, "wall_s", p->wall_s);
+  dea_json_put_text(object, "input_sha256", p->input_sha256);
+  dea_json_put_text(object, "overrides", p->overrides);
+  dea_json_put_text(object, "command", p->command);
+  return object;
+}
+
+dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *result, char **out)
+{
+  json_t *root = json_object();
+  json_object_set_new(root, "schema", json_integer(DEA_SUMMARY_SCHEMA));
+  dea_json_put_text(root, "program", result->provenance.program);
+  json_object_set_new(root, "design", design_json(result));
+  json_t *more = json_array();
+  for (size_t i = 0; i < result->curve_count; i++) {
+    if (i == 0) {
+      put_model(root, result, result->curves[0].model);
+    } else if (first_of_model(result, i)) {
+      json_t *object = json_object();
+      put_model(object, result, result->curves[i].model);
+      json_array_append_new(more, object);
+    }
+  }
+  if (result->curve_count == 0) {
+    json_object_set_new(root, "points", json_array());
+  }
+  json_object_set_new(root, "more_models", more);
+  json_object_set_new(root, "provenance", provenance_json(&result->provenance));
+  return dea_json_text(ctx, root, out);
+}

@@ -1,0 +1,50 @@
+/* Tables of the quantities of load points and profiles: the same key, unit, factor and header for
+ * CSV, JSON, HDF5, figures and comparisons. */
+#ifndef DEA_RESULT_COLUMNS_H
+#define DEA_RESULT_COLUMNS_H
+
+#include "result/result.h"
+
+// X(member of struct dea_profile, SI unit, display unit, factor SI -> display, header, meaning)
+#define DEA_PROFILE_LIST(X)                                                                        \
+  X(radius_m, "m", "mm", 1e3, "radius", "radius in the stretched flat film")                       \
+  X(displacement_m, "m", "um", 1e6, "radial displacement", "radial displacement")                  \
+  X(stretch_r, "1", "1", 1.0, "radial stretch", "radial stretch from the unstretched film")        \
+  X(stretch_t, "1", "1", 1.0, "hoop stretch", "hoop stretch from the unstretched film")            \
+  X(tension_r_N_per_m, "N/m", "N/m", 1.0, "radial tension",                                        \
+    "radial true stress x current thickness")                                                      \
+  X(tension_t_N_per_m, "N/m", "N/m", 1.0, "hoop tension", "hoop true stress x current thickness")
+
+#define DEA_COLUMN_ONE(member, si, display, factor, header, meaning) +1
+enum {
+  DEA_PROFILE_COLUMNS = 0 DEA_PROFILE_LIST(DEA_COLUMN_ONE),
+  DEA_LOAD_POINT_COLUMNS = 0 DEA_LOAD_POINT_LIST(DEA_COLUMN_ONE),
+};
+#undef DEA_COLUMN_ONE
+
+/* key: member name; display value = factor * SI value. Header in files: "header (unit)", without
+ * the parentheses for the unit "1". */
+struct dea_column {
+  const char *key, *si_unit, *display_unit;
+  double factor;
+  const char *header, *meaning;
+};
+
+/* Tables in the order of the lists; static storage. */
+extern const struct dea_column dea_point_columns[DEA_LOAD_POINT_COLUMNS];
+extern const struct dea_column dea_profile_columns[DEA_PROFILE_COLUMNS];
+
+/* Number of the column whose key that is, or -1. */
+int dea_point_column_find(const char *key);
+/* Value of a column at a point [SI]; column < DEA_LOAD_POINT_COLUMNS. */
+double dea_point_get(const struct dea_load_point *point, int column);
+void dea_point_set(struct dea_load_point *point, int column, double value_si);
+/* True when at least one of the points has a number in that column. */
+bool dea_points_have(const struct dea_load_point *points, size_t count, int column);
+
+/* Names of the kinds of events in files: "pull_in", "snap_back", "slack", "breakdown". */
+const char *dea_event_name(enum dea_event_kind kind);
+/* Kind of that name; false when there is none. */
+bool dea_event_find(const char *name, enum dea_event_kind *kind);
+
+#endif
