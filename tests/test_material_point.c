@@ -149,7 +149,7 @@ static double mean_curvature(const struct dea_law *law, const double *param, dou
   return sum;
 }
 
-/* Tangent of a principal law in its principal frame (Ogden 1984, section 6.1.4, for F diagonal):
+/* Tangent of a principal law in its principal frame (Ogden 1984, chapter 6, for F diagonal):
  * A_iiii = w''(l_i); A_ijij +- A_ijji = (P_i -+ P_j)/(l_i -+ l_j), P_i = w'(l_i). */
 static void principal_tangent(const struct dea_law *law, const double *param, const double l[3],
                               double A[81])
