@@ -428,7 +428,7 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
-  struct dea_node *section, *node = NULL;
+  struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, place, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &place, &node));
   struct dea_node **link = link_of(section, path, strlen(path)), *old = *link;

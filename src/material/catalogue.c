@@ -216,7 +216,7 @@ static int find_set(struct dea_context *ctx, const char *what, const struct dea_
                     const char *wanted, struct dea_place place, const struct dea_label *ids,
                     size_t count, size_t stride)
 {
-  const char *names[DEA_MATERIAL_SETS_MAX];
+  const char *names[DEA_MATERIAL_SETS_MAX] = {NULL};
   char list[DEA_MATERIAL_SETS_MAX * (DEA_NAME_SIZE + 2)] = "";
   if (wanted == NULL || wanted[0] == '\0') {
     return 0;
