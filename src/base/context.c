@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_MAX = 1024, CHAIN_MAX = 2048 };
+enum { MESSAGE_MAX = 1024, CHAIN_MAX = 2048, KEPT_MAX = 4 };
+
+struct kept_object {
+  void *object;
+  void (*release)(void *object);
+};
 
 struct dea_context {
   struct dea_allocator allocator;
@@ -17,6 +22,8 @@ struct dea_context {
   size_t finding_count, finding_room;
   char **names;
   size_t name_count, name_room;
+  struct kept_object kept[KEPT_MAX];
+  size_t kept_count;
   dea_progress_fn progress;
   void *progress_user;
   const volatile sig_atomic_t *interrupt;
@@ -51,6 +58,9 @@ void dea_context_destroy(struct dea_context *ctx)
 {
   if (ctx == NULL) {
     return;
+  }
+  for (size_t i = 0; i < ctx->kept_count; i++) {
+    ctx->kept[i].release(ctx->kept[i].object);
   }
   dea_finding_clear(ctx);
   dea_free(ctx, ctx->findings);
@@ -228,6 +238,26 @@ const char *dea_intern(struct dea_context *ctx, const char *text)
     ctx->names[ctx->name_count++] = copy;
   }
   return copy;
+}
+
+dea_status dea_context_keep(struct dea_context *ctx, void *object, void (*release)(void *object))
+{
+  if (ctx->kept_count == KEPT_MAX) {
+    release(object);
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a context keeps at most %d objects", KEPT_MAX);
+  }
+  ctx->kept[ctx->kept_count++] = (struct kept_object){object, release};
+  return DEA_OK;
+}
+
+void *dea_context_kept(const struct dea_context *ctx, void (*release)(void *object))
+{
+  for (size_t i = 0; i < ctx->kept_count; i++) {
+    if (ctx->kept[i].release == release) {
+      return ctx->kept[i].object;
+    }
+  }
+  return NULL;
 }
 
 void dea_context_set_progress(struct dea_context *ctx, dea_progress_fn fn, void *user)

@@ -99,6 +99,12 @@ void dea_finding_clear(struct dea_context *ctx);
  * pointer. NULL on failure. */
 const char *dea_intern(struct dea_context *ctx, const char *text);
 
+/* Keeps an object of another library (the table of units) until the context dies, when release is
+ * called with it. At most four, each with its own release function. On failure it is released. */
+dea_status dea_context_keep(struct dea_context *ctx, void *object, void (*release)(void *object));
+/* The object kept with that release function, or NULL; lent. */
+void *dea_context_kept(const struct dea_context *ctx, void (*release)(void *object));
+
 void dea_context_set_progress(struct dea_context *ctx, dea_progress_fn fn, void *user);
 void dea_progress(struct dea_context *ctx, const char *what, size_t done, size_t total);
 /* flag: lent; a non-zero value (set by a signal handler) stops long work between points. */

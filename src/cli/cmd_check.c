@@ -1,15 +1,238 @@
 #include "cli/cli.h"
 
+#include "base/text.h"
+#include "device/device.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OVERRIDES_MAX = 100, DERIVED_MAX = 16 };
+
+struct arguments {
+  const char *file;
+  struct dea_override overrides[OVERRIDES_MAX];
+  size_t override_count;
+  bool json;
+};
+
+/* A number that follows from the design. */
+struct derived {
+  const char *key, *meaning;
+  double si;
+  const char *unit;
+  double factor; // SI -> unit
+};
+
+static const char *const origin_names[] = {"absent", "default", "given", "override"};
+static const char *const severity_names[] = {"note", "warning", "error"};
+
+static size_t derive(const struct dea_device *device, struct derived rows[DERIVED_MAX])
+{
+  size_t n = 0;
+  rows[n++] = (struct derived){"film_thickness_m", "film thickness (stretched)",
+                               device->film_thickness_m, "um", 1e6};
+  rows[n++] = (struct derived){"frame_radius_m", "frame radius", device->frame_radius_m, "mm", 1e3};
+  rows[n++] = (struct derived){"electrode_radius_m", "electrode radius (stretched)",
+                               device->electrode_radius_m, "mm", 1e3};
+  rows[n++] = (struct derived){"coverage", "coverage (paper eq 17)", device->coverage, "", 1};
+  if (device->fibre_count > 0) {
+    rows[n++] = (struct derived){"fibre_tip_radius_m", "fibre tip from the centre",
+                                 device->fibre_tip_radius_m, "mm", 1e3};
+    rows[n++] =
+        (struct derived){"fibre_length_m", "fibre length", device->fibre_length_m, "mm", 1e3};
+    rows[n++] = (struct derived){"fibre_overlap_m", "fibre overlap with the electrode",
+                                 device->fibre_overlap_m, "mm", 1e3};
+  }
+  return n;
+}
+
+static void print_values(const struct dea_design *design)
+{
+  int width = 0;
+  for (size_t i = 0; i < design->values.count; i++) {
+    int length = (int)strlen(design->values.items[i].path);
+    width = length > width && length < 40 ? length : width;
+  }
+  for (size_t i = 0; i < design->values.count; i++) {
+    const struct dea_listed *value = &design->values.items[i];
+    printf("  %-*s  %-24s  ", width, value->path, value->text);
+    if (value->origin == DEA_GIVEN) {
+      printf("line %zu\n", value->place.line);
+    } else if (value->origin == DEA_OVERRIDE) {
+      puts("--set");
+    } else {
+      puts(value->origin == DEA_DEFAULT ? "default" : "not given");
+    }
+  }
+}
+
+static void print_material(const char *what, const struct dea_material *material)
+{
+  if (material->name[0] == '\0') {
+    return;
+  }
+  printf("  %-32s  %s", what, material->name);
+  if (material->law != NULL) {
+    printf(", %s (%s)", material->law->name, material->law_id);
+  }
+  if (material->permittivity.at_rest > 0) {
+    printf(", eps_r %g", material->permittivity.at_rest);
+  }
+  if (material->permittivity.slope != 0) {
+    printf(" %+g (s - 1)", material->permittivity.slope);
+  }
+  if (material->young_modulus_Pa > 0) {
+    printf(", E %g MPa", 1e-6 * material->young_modulus_Pa);
+  }
+  putchar('\n');
+}
+
+static void print_text(const struct dea_design *design, const struct dea_device *device)
+{
+  struct derived rows[DERIVED_MAX];
+  size_t count = derive(device, rows), last = design->compute.voltage_count - 1;
+  printf("%s\n\nValues\n", design->file);
+  print_values(design);
+  puts("\nDerived");
+  for (size_t i = 0; i < count; i++) {
+    printf("  %-32s  %.6g%s%s\n", rows[i].meaning, rows[i].factor * rows[i].si,
+           rows[i].unit[0] != '\0' ? " " : "", rows[i].unit);
+  }
+  printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
+         1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
+  printf("  %-32s  %g\n", "end of the path (total stretch)", design->compute.path_max_stretch.si);
+  print_material("film", &device->film);
+  print_material("electrodes", &device->electrode);
+  print_material("fibres", &device->fibre);
+}
+
+static json_t *findings_json(const struct dea_context *ctx)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  json_t *array = json_array();
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_place *place = &findings[i].place;
+    json_array_append_new(array, json_pack("{s:s, s:s, s:I, s:I, s:s}", "severity",
+                                           severity_names[findings[i].severity], "file",
+                                           place->file != NULL ? place->file : "", "line",
+                                           (json_int_t)place->line, "column",
+                                           (json_int_t)place->column, "text", findings[i].text));
+  }
+  return array;
+}
+
+static json_t *values_json(const struct dea_design *design)
+{
+  json_t *array = json_array();
+  for (size_t i = 0; i < design->values.count; i++) {
+    const struct dea_listed *value = &design->values.items[i];
+    json_t *row =
+        json_pack("{s:s, s:s, s:s, s:I, s:I}", "key", value->path, "text", value->text, "origin",
+                  origin_names[value->origin], "line", (json_int_t)value->place.line, "column",
+                  (json_int_t)value->place.column);
+    if (value->unit != NULL && !isnan(value->si)) {
+      json_object_set_new(row, "si", json_real(value->si));
+      json_object_set_new(row, "unit", json_string(value->unit));
+    }
+    json_array_append_new(array, row);
+  }
+  return array;
+}
+
+/* design and device may be NULL after an error. */
+static void print_json(const struct dea_cli *cli, const char *file, const struct dea_design *design,
+                       const struct dea_device *device)
+{
+  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good", device != NULL, "findings",
+                           findings_json(cli->ctx));
+  if (design != NULL) {
+    json_object_set_new(json, "values", values_json(design));
+  }
+  if (device != NULL) {
+    struct derived rows[DERIVED_MAX];
+    size_t count = derive(device, rows);
+    json_t *derived = json_object();
+    for (size_t i = 0; i < count; i++) {
+      json_object_set_new(derived, rows[i].key, json_real(rows[i].si));
+    }
+    json_object_set_new(json, "derived", derived);
+  }
+  json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+  putchar('\n');
+  json_decref(json);
+}
+
+/* Takes "KEY=VALUE" apart in place. */
+static bool take_override(struct arguments *arguments, char *text)
+{
+  char *equals = strchr(text, '=');
+  if (equals == NULL || equals == text || arguments->override_count == OVERRIDES_MAX) {
+    return false;
+  }
+  *equals = '\0';
+  arguments->overrides[arguments->override_count++] = (struct dea_override){text, equals + 1};
+  return true;
+}
+
+/* -1, or the exit code after a usage error. */
+static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *out)
+{
+  for (int i = 1; i < argc; i++) {
+    if (strcmp(argv[i], "--json") == 0) {
+      out->json = true;
+    } else if (strcmp(argv[i], "--set") == 0 || strncmp(argv[i], "--set=", 6) == 0) {
+      char *text = argv[i][5] == '=' ? argv[i] + 6 : i + 1 < argc ? argv[++i] : NULL;
+      if (text == NULL || !take_override(out, text)) {
+        return cli_usage_error(cli, &cmd_check,
+                               "--set wants KEY=VALUE, such as "
+                               "--set film.thickness=200um");
+      }
+    } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
+      return cli_usage_error(cli, &cmd_check, "unknown option '%s'", argv[i]);
+    } else if (out->file != NULL) {
+      return cli_usage_error(cli, &cmd_check, "one design at a time; '%s' is a second", argv[i]);
+    } else {
+      out->file = argv[i];
+    }
+  }
+  return out->file != NULL ? -1 : cli_usage_error(cli, &cmd_check, "which design file?");
+}
+
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  (void)argc;
-  (void)argv;
-  return cli_usage_error(cli, &cmd_check, "not built yet");
+  struct arguments arguments = {0};
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  int wrong = parse(cli, argc, argv, &arguments);
+  if (wrong >= 0) {
+    return wrong;
+  }
+  dea_status status = dea_design_read(cli->ctx, arguments.file, arguments.overrides,
+                                      arguments.override_count, &design);
+  if (status == DEA_OK) {
+    status = dea_device_build(cli->ctx, design, &device);
+  }
+  if (arguments.json) {
+    print_json(cli, arguments.file, design, device);
+  } else if (status == DEA_OK) {
+    print_text(design, device);
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_device_destroy(cli->ctx, device);
+  dea_design_destroy(cli->ctx, design);
+  return code;
 }
 
 const struct dea_command cmd_check = {
     .name = "check",
-    .summary = "",
-    .usage = "dea check\n",
+    .summary = "Check a design file and list every value with its origin",
+    .usage = "dea check DESIGN [--set KEY=VALUE]... [--json]\n\n"
+             "  --set KEY=VALUE  take VALUE in place of the file's, for example\n"
+             "                   --set film.thickness=200um; 'null' takes a key away\n"
+             "  --json           values, derived numbers and findings as JSON\n",
     .run = run,
 };

@@ -1,15 +1,194 @@
 #include "cli/cli.h"
 
+#include "base/text.h"
+#include "material/catalogue.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const kind_names[] = {"elastomer", "plastic", "electrode"};
+
+static const char *kind_of(const struct dea_material_data *data)
+{
+  return data->kind.value >= 0 ? kind_names[data->kind.value] : "";
+}
+
+/* One line of the list of all materials. */
+static void print_line(const struct dea_material_data *data)
+{
+  printf("%-28s %-10s %s\n", data->name.text, kind_of(data), data->title.text);
+  for (size_t i = 0; i < data->law_count; i++) {
+    printf("%-28s   law %s (%s)%s\n", "", data->laws[i].id.text, data->laws[i].law_name.text,
+           i == 0 && data->law_count > 1 ? ", default" : "");
+  }
+  for (size_t i = 0; i < data->permittivity_count; i++) {
+    printf("%-28s   permittivity %s%s\n", "", data->permittivity[i].id.text,
+           i == 0 && data->permittivity_count > 1 ? ", default" : "");
+  }
+}
+
+/* Last key of a path: "laws[0].parameters.c1" -> "c1". */
+static const char *leaf(const char *path)
+{
+  const char *dot = strrchr(path, '.');
+  return dot != NULL ? dot + 1 : path;
+}
+
+/* Text broken into lines of at most 76 columns below a heading. */
+static void print_wrapped(const char *heading, const char *text)
+{
+  int column = printf("    %-14s ", heading);
+  const int margin = column;
+  while (*text != '\0') {
+    size_t length = strcspn(text, " \n");
+    if (column > margin && column + (int)length > 96) {
+      printf("\n%*s", margin, "");
+      column = margin;
+    }
+    column += printf("%.*s ", (int)length, text);
+    text += length;
+    text += strspn(text, " \n");
+  }
+  putchar('\n');
+}
+
+/* Heading of the section that a path belongs to: everything before its last key. */
+static size_t section_length(const char *path)
+{
+  const char *dot = strrchr(path, '.');
+  size_t length = dot != NULL ? (size_t)(dot - path) : 0;
+  const char parameters[] = ".parameters";
+  size_t tail = sizeof parameters - 1;
+  return length > tail && strncmp(path + length - tail, parameters, tail) == 0 ? length - tail
+                                                                               : length;
+}
+
+/* All values of a material, in the words of its file. Prose comes after the numbers of a section.
+ */
+static void print_section(const struct dea_listing *listing, size_t first, size_t end)
+{
+  static const char *const prose[] = {"uncertainty", "range", "source", "note"};
+  const size_t prose_count = sizeof prose / sizeof prose[0];
+  for (size_t pass = 0; pass <= prose_count; pass++) {
+    for (size_t i = first; i < end; i++) {
+      const char *key = leaf(listing->items[i].path);
+      size_t which = 0;
+      while (which < prose_count && strcmp(prose[which], key) != 0) {
+        which++;
+      }
+      if ((pass == 0 && which == prose_count) || (pass > 0 && which == pass - 1)) {
+        print_wrapped(key, listing->items[i].text);
+      }
+    }
+  }
+}
+
+static void print_material(const struct dea_catalogue_entry *entry)
+{
+  const struct dea_listing *listing = &entry->listing;
+  const struct dea_material_data *data = &entry->data;
+  printf("%s (%s)\n%s\n%s\n", data->name.text, kind_of(data), data->title.text, entry->file);
+  for (size_t i = 0; i < listing->count;) {
+    const char *path = listing->items[i].path;
+    size_t length = section_length(path), end = i + 1;
+    while (end < listing->count && section_length(listing->items[end].path) == length &&
+           strncmp(listing->items[end].path, path, length) == 0) {
+      end++;
+    }
+    if (length > 0) {
+      printf("\n  %.*s\n", (int)length, path);
+      print_section(listing, i, end);
+    } else {
+      for (size_t j = i; j < end; j++) {
+        if (listing->items[j].origin == DEA_ABSENT) {
+          printf("\n  %s: %s\n", listing->items[j].path, listing->items[j].text);
+        }
+      }
+    }
+    i = end;
+  }
+}
+
+static json_t *material_json(const struct dea_catalogue_entry *entry)
+{
+  const struct dea_listing *listing = &entry->listing;
+  json_t *values = json_array();
+  for (size_t i = 0; i < listing->count; i++) {
+    const struct dea_listed *value = &listing->items[i];
+    json_t *row = json_pack("{s:s, s:s}", "key", value->path, "text", value->text);
+    if (value->unit != NULL && !isnan(value->si)) {
+      json_object_set_new(row, "si", json_real(value->si));
+      json_object_set_new(row, "unit", json_string(value->unit));
+    }
+    json_array_append_new(values, row);
+  }
+  return json_pack("{s:s, s:s, s:s, s:s, s:o}", "name", entry->data.name.text, "title",
+                   entry->data.title.text, "kind", kind_of(&entry->data), "file", entry->file,
+                   "values", values);
+}
+
+/* Prints one material or adds it to an array. */
+static dea_status show(struct dea_cli *cli, const char *name, bool whole, json_t *array)
+{
+  struct dea_catalogue_entry *entry;
+  DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_place){0}, &entry));
+  if (array != NULL) {
+    json_array_append_new(array, material_json(entry));
+  } else if (whole) {
+    print_material(entry);
+  } else {
+    print_line(&entry->data);
+  }
+  dea_catalogue_destroy(cli->ctx, entry);
+  return DEA_OK;
+}
+
+/* Shows all; one file with errors does not hide the others. */
+static dea_status show_all(struct dea_cli *cli, json_t *array)
+{
+  const char **names;
+  size_t count;
+  dea_status worst = DEA_OK;
+  DEA_TRY(cli->ctx, dea_catalogue_names(cli->ctx, &names, &count));
+  for (size_t i = 0; i < count; i++) {
+    dea_status status = show(cli, names[i], false, array);
+    worst = status != DEA_OK ? status : worst;
+  }
+  dea_free(cli->ctx, names);
+  return worst;
+}
+
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  (void)argc;
-  (void)argv;
-  return cli_usage_error(cli, &cmd_materials, "not built yet");
+  const char *name = NULL;
+  bool json = false;
+  for (int i = 1; i < argc; i++) {
+    if (strcmp(argv[i], "--json") == 0) {
+      json = true;
+    } else if (argv[i][0] == '-' || name != NULL) {
+      return cli_usage_error(cli, &cmd_materials, "unknown argument '%s'", argv[i]);
+    } else {
+      name = argv[i];
+    }
+  }
+  json_t *array = json ? json_array() : NULL;
+  dea_status status = name != NULL ? show(cli, name, true, array) : show_all(cli, array);
+  if (json) {
+    json_dumpf(array, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    putchar('\n');
+    json_decref(array);
+  }
+  fflush(stdout);
+  return cli_report(cli, status);
 }
 
 const struct dea_command cmd_materials = {
     .name = "materials",
-    .summary = "",
-    .usage = "dea materials\n",
+    .summary = "List the materials of the catalogue, or show one with all its numbers and sources",
+    .usage = "dea materials [NAME] [--json]\n\n"
+             "Own materials: put NAME.yaml into a directory that the environment variable\n"
+             "DEA_MATERIALS names (several, separated by colons); 'dea schema --material'\n"
+             "says what such a file holds.\n",
     .run = run,
 };

@@ -6,50 +6,14 @@
 #ifndef DEA_DESIGN_DESIGN_H
 #define DEA_DESIGN_DESIGN_H
 
-#include "base/context.h"
-#include "material/material.h"
+#include "base/value.h"
+#include "material/catalogue.h"
 
 enum {
   DEA_DESIGN_VERSION = 1,
-  DEA_TITLE_SIZE = 256,
   DEA_DESIGN_MODELS_MAX = 4,
   DEA_DESIGN_MATERIALS_MAX = 16,
   DEA_DESIGN_VOLTAGES_MAX = 10000,
-};
-
-enum dea_origin {
-  DEA_ABSENT,   // not given and no default: the value is NAN (or -1)
-  DEA_DEFAULT,  // from the schema; listed by `dea check`
-  DEA_GIVEN,    // in the file
-  DEA_OVERRIDE, // from --set
-};
-
-/* A number in SI. place: of the value; for a default the place of the section it belongs to. */
-struct dea_quantity {
-  double si;
-  enum dea_origin origin;
-  struct dea_place place;
-};
-
-/* Which film a length lies in. */
-enum dea_film_state { DEA_STRETCHED, DEA_UNSTRETCHED };
-
-/* A length in the plane of the film, always with the film state it was measured in. */
-struct dea_inplane_length {
-  struct dea_quantity length; // [m] as written
-  enum dea_film_state state;
-};
-
-struct dea_choice {
-  int value; // an enumerator; -1 when absent
-  enum dea_origin origin;
-  struct dea_place place;
-};
-
-struct dea_label {
-  char text[DEA_TITLE_SIZE];
-  enum dea_origin origin;
-  struct dea_place place;
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
@@ -89,7 +53,7 @@ struct dea_design {
     struct dea_choice outer_end;          // enum dea_outer_end
   } fibres;
 
-  struct dea_material materials[DEA_DESIGN_MATERIALS_MAX]; // inline ones of this file
+  struct dea_material_data *materials; // [material_count] inline ones of this file, owned
   size_t material_count;
 
   struct {                                          // compute
@@ -107,6 +71,9 @@ struct dea_design {
     bool svg, pdf, png;
     struct dea_quantity width_m; // of a figure
   } report;
+
+  struct dea_listing values; // every value as written or by default, in the order of the schema
+  struct dea_yaml *document; // the file; texts of materials and values live in it
 };
 
 /* One override of --set: key is the dotted path in the file ("film.thickness"), value as it would

@@ -56,13 +56,8 @@ struct dea_law {
 };
 
 /* Law of that name, or NULL. Static storage. */
-const struct dea_law *dea_law_find(const char *name);
+const struct dea_law *DEA_NAME(dea_law_find)(const char *name);
 /* All laws in the order of law_list.h; *count is set. Static storage. */
-const struct dea_law *const *dea_law_all(size_t *count);
-
-#ifdef DEA_COMPLEX
-#define dea_law_find dea_law_find_complex
-#define dea_law_all dea_law_all_complex
-#endif
+const struct dea_law *const *DEA_NAME(dea_law_all)(size_t *count);
 
 #endif

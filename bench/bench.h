@@ -1,0 +1,53 @@
+/* Timing for the benchmark programs: wall time, and one JSON line a figure. */
+#ifndef DEA_BENCH_BENCH_H
+#define DEA_BENCH_BENCH_H
+
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+/* Time since some fixed moment [s]; needs _POSIX_C_SOURCE 199309L or later before any include. */
+static inline double bench_now_s(void)
+{
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Shortest time [s] of `repeats` calls of work(user), after one call that is not counted: the
+ * shortest is the one that other work on the machine disturbed least. */
+static inline double bench_best_s(void (*work)(void *user), void *user, int repeats)
+{
+  double best = 1e300;
+  work(user);
+  for (int i = 0; i < repeats; i++) {
+    double start = bench_now_s();
+    work(user);
+    double time = bench_now_s() - start;
+    best = time < best ? time : best;
+  }
+  return best;
+}
+
+static inline int bench_compare(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Median of values[count]; sorts them. */
+static inline double bench_median(double *values, size_t count)
+{
+  qsort(values, count, sizeof *values, bench_compare);
+  return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+/* One figure; name and unit: plain text without quotes. */
+static inline void bench_print(const char *name, double value, const char *unit)
+{
+  printf("{\"name\": \"%s\", \"value\": %.6g, \"unit\": \"%s\"}\n", name, value, unit);
+  fflush(stdout);
+}
+
+#endif

@@ -1,0 +1,62 @@
+/* An 80-point sweep and the whole path of the axisymmetric disc of benchmark 4. */
+#include "../tests/devices.h"
+#define _POSIX_C_SOURCE 200809L // clock_gettime
+#include "bench.h"
+#include "model/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct dea_context *ctx;
+
+static dea_status ignore(void *user, const struct dea_load_point *point)
+{
+  (void)user;
+  (void)point;
+  return DEA_OK;
+}
+
+static struct dea_model *make(const struct dea_device *device)
+{
+  struct dea_model *model;
+  if (dea_model_find("axisymmetric")->create(ctx, device, &model) != DEA_OK) {
+    abort();
+  }
+  return model;
+}
+
+static void sweep(void *user)
+{
+  const struct dea_model_type *type = dea_model_find("axisymmetric");
+  struct dea_model *model = make(user);
+  for (int i = 0; i < 80; i++) {
+    struct dea_load_point p;
+    if (type->solve(ctx, model, 100.0 * i, &p) != DEA_OK) {
+      abort();
+    }
+  }
+  type->destroy(ctx, model);
+}
+
+static void path(void *user)
+{
+  const struct dea_model_type *type = dea_model_find("axisymmetric");
+  struct dea_model *model = make(user);
+  const struct dea_path_options options = {3, INFINITY, 1000};
+  if (type->path(ctx, model, &options, ignore, NULL, NULL) != DEA_OK) {
+    abort();
+  }
+  type->destroy(ctx, model);
+}
+
+int main(void)
+{
+  if (dea_context_create(NULL, &ctx) != DEA_OK) {
+    return 1;
+  }
+  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
+  bench_print("axisymmetric.sweep_80", 1e3 * bench_best_s(sweep, &device, 20), "ms");
+  bench_print("axisymmetric.path", 1e3 * bench_best_s(path, &device, 20), "ms");
+  dea_context_destroy(ctx);
+  return 0;
+}

@@ -1,0 +1,63 @@
+# Install rules: library, command, headers, data, examples, manual page, completions, libdea.pc.
+
+install(TARGETS libdea dea
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+# The public headers are those that dea.h names; base/version.h is made at configuration.
+set(headers ${PROJECT_SOURCE_DIR}/src/dea.h)
+install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dea)
+file(STRINGS ${PROJECT_SOURCE_DIR}/src/dea.h included REGEX "^#include \"")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/dea.h)
+foreach(line IN LISTS included)
+  string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" header ${line})
+  get_filename_component(folder ${header} DIRECTORY)
+  if(header STREQUAL "base/version.h")
+    set(from ${PROJECT_BINARY_DIR}/src)
+  else()
+    set(from ${PROJECT_SOURCE_DIR}/src)
+  endif()
+  install(FILES ${from}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dea/${folder})
+endforeach()
+
+foreach(folder IN ITEMS materials)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
+    PATTERN ".gitkeep" EXCLUDE)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
+  PATTERN ".gitkeep" EXCLUDE PATTERN "*.run" EXCLUDE)
+
+install(FILES ${PROJECT_BINARY_DIR}/src/dea.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${PROJECT_BINARY_DIR}/src/completion.bash RENAME dea
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${PROJECT_BINARY_DIR}/src/completion.zsh RENAME _dea
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${PROJECT_BINARY_DIR}/src/completion.fish RENAME dea.fish
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# A program that links the static library needs its dependencies too; one that links the shared
+# library does not. udunits and HDF5 are given by path: their packages name their .pc files
+# differently from one distribution to the next.
+set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd lapacke lapack")
+set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${HDF5_C_LIBRARIES} ${HDF5_C_HL_LIBRARIES})
+list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits")
+list(REMOVE_DUPLICATES DEA_PC_LIBRARIES)
+list(JOIN DEA_PC_LIBRARIES " " DEA_PC_LIBRARIES)
+if(BUILD_SHARED_LIBS)
+  set(DEA_PC_DEPENDENCIES "Requires.private: ${DEA_PC_PACKAGES}\nLibs: -L\${libdir} -ldea\n\
+Libs.private: ${DEA_PC_LIBRARIES} -lm")
+else()
+  set(DEA_PC_DEPENDENCIES "Requires: ${DEA_PC_PACKAGES}\n\
+Libs: -L\${libdir} -ldea ${DEA_PC_LIBRARIES} -lm")
+endif()
+foreach(kind IN ITEMS LIB INCLUDE)
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
+    set(DEA_PC_${kind}DIR "${CMAKE_INSTALL_${kind}DIR}")
+  else()
+    set(DEA_PC_${kind}DIR "\${prefix}/${CMAKE_INSTALL_${kind}DIR}")
+  endif()
+endforeach()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/libdea.pc.in ${PROJECT_BINARY_DIR}/libdea.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/libdea.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

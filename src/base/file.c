@@ -1,0 +1,98 @@
+#define _POSIX_C_SOURCE 200809L // open, fstat
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* What a path is when it is no regular file. */
+static const char *kind_name(mode_t mode)
+{
+  if (S_ISDIR(mode)) {
+    return "a directory";
+  }
+  if (S_ISFIFO(mode)) {
+    return "a pipe";
+  }
+  if (S_ISSOCK(mode)) {
+    return "a socket";
+  }
+  return "a device";
+}
+
+static dea_status too_large(struct dea_context *ctx, const char *file, size_t max)
+{
+  struct dea_place place = {.file = dea_intern(ctx, file)};
+  if (place.file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+                               "the file is larger than %zu MB; that is no "
+                               "design or material file",
+                               max / 1000000));
+  return dea_fail(ctx, DEA_E_DESIGN, "'%s' is larger than %zu MB", file, max / 1000000);
+}
+
+/* Reads up to max + 1 bytes, so that a file that grew meanwhile is noticed. */
+static dea_status read_all(struct dea_context *ctx, int fd, const char *file, size_t max,
+                           char **bytes, size_t *length)
+{
+  size_t room = 0, used = 0;
+  for (;;) {
+    if (used + 1 >= room) {
+      room = 2 * room + 16384;
+      char *moved = dea_resize(ctx, *bytes, room, 1);
+      if (moved == NULL) {
+        return DEA_E_MEMORY;
+      }
+      *bytes = moved;
+    }
+    ssize_t got = read(fd, *bytes + used, room - used - 1);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      return dea_fail(ctx, DEA_E_IO, "cannot read '%s': %s", file, strerror(errno));
+    }
+    used += (size_t)got;
+    if (used > max) {
+      return too_large(ctx, file, max);
+    }
+    if (got == 0) {
+      (*bytes)[used] = '\0';
+      *length = used;
+      return DEA_OK;
+    }
+  }
+}
+
+dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
+                         size_t *length)
+{
+  *bytes = NULL;
+  *length = 0;
+  // O_NONBLOCK: opening a pipe that nobody writes to must not hang.
+  int fd = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) {
+    return dea_fail(ctx, DEA_E_IO, "cannot open '%s': %s", file, strerror(errno));
+  }
+  struct stat info;
+  dea_status status = DEA_OK;
+  if (fstat(fd, &info) != 0) {
+    status = dea_fail(ctx, DEA_E_IO, "cannot read '%s': %s", file, strerror(errno));
+  } else if (!S_ISREG(info.st_mode)) {
+    status = dea_fail(ctx, DEA_E_IO, "'%s' is %s, not a file", file, kind_name(info.st_mode));
+  } else if (info.st_size > 0 && (size_t)info.st_size > max) {
+    status = too_large(ctx, file, max);
+  } else {
+    status = read_all(ctx, fd, file, max, bytes, length);
+  }
+  close(fd);
+  if (status != DEA_OK) {
+    dea_free(ctx, *bytes);
+    *bytes = NULL;
+  }
+  return status;
+}

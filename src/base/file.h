@@ -1,0 +1,13 @@
+/* Files read whole. */
+#ifndef DEA_BASE_FILE_H
+#define DEA_BASE_FILE_H
+
+#include "base/context.h"
+
+/* Reads a regular file of at most max bytes. bytes: owned by the caller (dea_free), NUL-terminated.
+ * Missing, unreadable, a directory, a pipe or a device: DEA_E_IO, without ever waiting. Larger than
+ * max: DEA_E_DESIGN after a finding, without reading it. */
+dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
+                         size_t *length);
+
+#endif

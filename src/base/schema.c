@@ -1,0 +1,313 @@
+#include "base/schema.h"
+
+#include "base/schema_value.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 800, KEYS_MAX = 32 };
+
+/* A section being read: node is NULL when it is absent and only defaults apply. */
+struct section {
+  const struct dea_record *record;
+  const struct dea_node *node;
+  const char *path; // "" for the file
+  char *base;
+  struct dea_place place;
+};
+
+static dea_status read_section(const struct dea_reader *reader, const struct section *section);
+
+/* Sets every member of a section that is not there. */
+static void absent_section(const struct dea_record *record, char *base, struct dea_place place)
+{
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *field = &record->fields[i];
+    if (field->list_max > 0) {
+      continue;
+    }
+    if (field->kind == DEA_FIELD_RECORD) {
+      absent_section(field->record, base + field->offset, place);
+    } else {
+      dea_schema_value_absent(field, base + field->offset, place);
+    }
+  }
+}
+
+/* false after an error: the node is not of the form that the field wants. */
+static dea_status check_form(const struct dea_reader *reader, const struct dea_field *field,
+                             const struct dea_node *node, bool element, bool *good)
+{
+  bool list = field->list_max > 0 && !element;
+  bool section = field->kind == DEA_FIELD_RECORD || field->kind == DEA_FIELD_SECTION;
+  enum dea_node_kind due = list ? DEA_NODE_LIST : section ? DEA_NODE_SECTION : DEA_NODE_VALUE;
+  *good = node->kind == due && !(due == DEA_NODE_VALUE && node->empty);
+  if (*good) {
+    return DEA_OK;
+  }
+  if (node->kind == DEA_NODE_VALUE && node->empty) {
+    return dea_schema_error(reader, node->place, "%s has no value%s%s%s", field->key,
+                            field->example != NULL ? "; write for example '" : "",
+                            field->example != NULL ? field->example : "",
+                            field->example != NULL ? "'" : "");
+  }
+  static const char *const forms[] = {"a single value", "a list", "a section with keys of its own"};
+  return dea_schema_error(
+      reader, node->place, "%s must be %s, not %s%s%s%s", field->key, forms[due], forms[node->kind],
+      field->example != NULL ? "; write for example '" : "",
+      field->example != NULL ? field->example : "", field->example != NULL ? "'" : "");
+}
+
+/* One given value, or one element of a given list. */
+static dea_status read_node(const struct dea_reader *reader, const struct dea_field *field,
+                            const struct dea_node *node, const char *path, enum dea_origin origin,
+                            char *target)
+{
+  if (field->kind == DEA_FIELD_RECORD) {
+    struct section inner = {field->record, node, path, target, node->key_place};
+    inner.place = node->key != NULL ? node->key_place : node->place;
+    return read_section(reader, &inner);
+  }
+  if (field->kind == DEA_FIELD_SECTION) {
+    *(const struct dea_node **)target = node;
+    return DEA_OK;
+  }
+  struct dea_schema_value value = {field, node->text, node->place, origin, path};
+  return dea_schema_value_read(reader, &value, target);
+}
+
+static dea_status read_list(const struct dea_reader *reader, const struct dea_field *field,
+                            const struct dea_node *node, const char *path, enum dea_origin origin,
+                            char *base)
+{
+  size_t *count = (size_t *)(void *)(base + field->count_offset);
+  if (node->child_count < field->list_min || node->child_count > field->list_max) {
+    return dea_schema_error(reader, node->place, "%s must have %zu to %zu items, not %zu",
+                            field->key, field->list_min, field->list_max, node->child_count);
+  }
+  *count = 0;
+  for (const struct dea_node *item = node->child; item != NULL; item = item->next) {
+    char item_path[DEA_PATH_SIZE];
+    bool good;
+    snprintf(item_path, sizeof item_path, "%s[%zu]", path, *count);
+    DEA_TRY(reader->ctx, check_form(reader, field, item, true, &good));
+    char *target = base + field->offset + *count * field->element_size;
+    if (good) {
+      DEA_TRY(reader->ctx, read_node(reader, field, item, item_path, origin, target));
+    } else {
+      dea_schema_value_absent(field, target, item->place);
+    }
+    ++*count;
+  }
+  return DEA_OK;
+}
+
+static dea_status read_given(const struct dea_reader *reader, const struct section *section,
+                             const struct dea_field *field, const struct dea_node *node,
+                             const char *path)
+{
+  bool good;
+  DEA_TRY(reader->ctx, check_form(reader, field, node, false, &good));
+  if (!good) {
+    return DEA_OK;
+  }
+  enum dea_origin origin = node->overridden ? DEA_OVERRIDE : DEA_GIVEN;
+  if (field->present_offset > 0) {
+    *(bool *)(section->base + field->present_offset) = true;
+  }
+  if (field->list_max > 0) {
+    return read_list(reader, field, node, path, origin, section->base);
+  }
+  return read_node(reader, field, node, path, origin, section->base + field->offset);
+}
+
+static dea_status read_default(const struct dea_reader *reader, const struct section *section,
+                               const struct dea_field *field, const char *path)
+{
+  if (field->list_max > 0) {
+    const struct dea_node *node;
+    DEA_TRY(reader->ctx, dea_yaml_fragment(reader->ctx, reader->yaml, section->place,
+                                           field->default_text, &node));
+    return read_list(reader, field, node, path, DEA_DEFAULT, section->base);
+  }
+  struct dea_schema_value value = {field, field->default_text, section->place, DEA_DEFAULT, path};
+  return dea_schema_value_read(reader, &value, section->base + field->offset);
+}
+
+static dea_status missing_field(const struct dea_reader *reader, const struct section *section,
+                                const struct dea_field *field)
+{
+  char where[80];
+  snprintf(where, sizeof where, section->path[0] != '\0' ? "section '%.60s'" : "the file",
+           section->path);
+  if (field->group > 0) {
+    return dea_schema_error(reader, section->place, "%s lacks its '%s' (%s), for example '%s: %s'",
+                            where, field->key, field->doc, field->key, field->example);
+  }
+  return dea_schema_error(
+      reader, section->place, "%s lacks '%s' (%s)%s%s%s%s%s", where, field->key, field->doc,
+      field->example != NULL ? ", for example '" : "", field->example != NULL ? field->key : "",
+      field->example != NULL ? ": " : "", field->example != NULL ? field->example : "",
+      field->example != NULL ? "'" : "");
+}
+
+/* A field that is not given: its default, nothing, or an error. */
+static dea_status read_absent(const struct dea_reader *reader, const struct section *section,
+                              const struct dea_field *field, const char *path)
+{
+  char *target = section->base + field->offset;
+  if (field->kind == DEA_FIELD_RECORD && field->list_max == 0) {
+    if (!field->required && field->present_offset == 0) {
+      struct section inner = {field->record, NULL, path, target, section->place};
+      return read_section(reader, &inner);
+    }
+    absent_section(field->record, target, section->place);
+  } else if (field->default_text != NULL) {
+    return read_default(reader, section, field, path);
+  } else if (field->list_max == 0) {
+    dea_schema_value_absent(field, target, section->place);
+  }
+  if (field->required) {
+    return missing_field(reader, section, field);
+  }
+  if (field->absent_text != NULL) {
+    return dea_schema_list(reader, path, field->absent_text, NULL, NAN, DEA_ABSENT, section->place);
+  }
+  return DEA_OK;
+}
+
+static const struct dea_node *child_of(const struct section *section, const char *key)
+{
+  return section->node != NULL ? dea_node_find(section->node, key) : NULL;
+}
+
+/* Option of a group that counts; 0: none is given and none has a default. Errors (two options
+ * given) are added when the group's first field asks. */
+static dea_status choose_option(const struct dea_reader *reader, const struct section *section,
+                                const struct dea_field *asking, int *option)
+{
+  const struct dea_record *record = section->record;
+  const struct dea_node *first = NULL;
+  bool is_first = true;
+  int by_default = 0;
+  *option = 0;
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *field = &record->fields[i];
+    if (field->group != asking->group) {
+      continue;
+    }
+    is_first = is_first && field >= asking;
+    by_default = by_default == 0 && field->default_text != NULL ? field->option : by_default;
+    const struct dea_node *node = child_of(section, field->key);
+    if (node == NULL || field->option == *option) {
+      continue;
+    }
+    if (first == NULL || (node->overridden && !first->overridden)) {
+      first = node;
+      *option = field->option;
+    } else if (is_first && field >= asking && node->overridden == first->overridden) {
+      DEA_TRY(reader->ctx, dea_schema_error(reader, node->key_place,
+                                            "'%s' and '%s' say the same thing; write one of them",
+                                            first->key, field->key));
+    }
+  }
+  *option = *option == 0 ? by_default : *option;
+  return DEA_OK;
+}
+
+/* All ways to write what a group wants, for the message that none is there. */
+static dea_status missing_group(const struct dea_reader *reader, const struct section *section,
+                                const struct dea_field *asking)
+{
+  char ways[MESSAGE_SIZE / 2] = "";
+  size_t used = 0;
+  for (size_t i = 0; i < section->record->field_count; i++) {
+    const struct dea_field *field = &section->record->fields[i];
+    if (field->group == asking->group && used < sizeof ways) {
+      used += (size_t)snprintf(ways + used, sizeof ways - used, "%s'%s: %s'",
+                               used > 0 ? " or " : "", field->key, field->example);
+    }
+  }
+  return dea_schema_error(reader, section->place,
+                          "section '%.60s' lacks the %s; write for example %s", section->path,
+                          asking->doc, ways);
+}
+
+static dea_status read_field(const struct dea_reader *reader, const struct section *section,
+                             const struct dea_field *field)
+{
+  char path[DEA_PATH_SIZE];
+  snprintf(path, sizeof path, "%s%s%s", section->path, section->path[0] != '\0' ? "." : "",
+           field->key);
+  const struct dea_node *node = child_of(section, field->key);
+  if (field->group > 0) {
+    int option;
+    DEA_TRY(reader->ctx, choose_option(reader, section, field, &option));
+    if (option == 0 && field->required) {
+      dea_schema_value_absent(field, section->base + field->offset, section->place);
+      return missing_group(reader, section, field);
+    }
+    if (option != field->option) {
+      return DEA_OK; // members of other options were set absent at the start
+    }
+  }
+  return node != NULL ? read_given(reader, section, field, node, path)
+                      : read_absent(reader, section, field, path);
+}
+
+static dea_status check_unknown_keys(const struct dea_reader *reader, const struct section *section)
+{
+  const struct dea_record *record = section->record;
+  const char *keys[KEYS_MAX];
+  char list[MESSAGE_SIZE / 2] = "";
+  size_t count = 0, used = 0;
+  for (; count < record->field_count && count < KEYS_MAX; count++) {
+    keys[count] = record->fields[count].key;
+    if (used < sizeof list) {
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? ", " : "",
+                               keys[count]);
+    }
+  }
+  for (const struct dea_node *node = section->node->child; node != NULL; node = node->next) {
+    size_t i = 0;
+    while (i < count && strcmp(keys[i], node->key) != 0) {
+      i++;
+    }
+    if (i < count) {
+      continue;
+    }
+    const char *nearest = dea_nearest_name(node->key, keys, count);
+    DEA_TRY(reader->ctx,
+            nearest != NULL
+                ? dea_schema_error(reader, node->key_place,
+                                   "unknown key '%.60s'; did you mean '%s'?", node->key, nearest)
+                : dea_schema_error(reader, node->key_place,
+                                   "unknown key '%.60s'; known here are: %s", node->key, list));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_section(const struct dea_reader *reader, const struct section *section)
+{
+  absent_section(section->record, section->base, section->place);
+  if (section->node != NULL) {
+    DEA_TRY(reader->ctx, check_unknown_keys(reader, section));
+  }
+  for (size_t i = 0; i < section->record->field_count; i++) {
+    DEA_TRY(reader->ctx, read_field(reader, section, &section->record->fields[i]));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_record *record,
+                           const struct dea_node *node, const char *path, void *base)
+{
+  struct section section = {record, node, path, base,
+                            node->key != NULL ? node->key_place : node->place};
+  if (node->kind != DEA_NODE_SECTION) {
+    return dea_schema_error(reader, node->place, "this is not a %s: it must be 'key: value' lines",
+                            record->name);
+  }
+  return read_section(reader, &section);
+}

@@ -1,0 +1,88 @@
+/* A schema: one table of fields that reads a file, lists its values and prints itself.
+ *
+ * A record is a section of the file and a struct in C; a field is one key of it and one member.
+ * From the same table come the reader (all errors at once, each at its place), the list of values
+ * for `dea check`, the tables of `dea schema` and a JSON Schema for editors. */
+#ifndef DEA_BASE_SCHEMA_H
+#define DEA_BASE_SCHEMA_H
+
+#include "base/text.h"
+#include "base/value.h"
+#include "base/yaml.h"
+
+enum dea_field_kind {
+  DEA_FIELD_LABEL,     // struct dea_label: a text of at most DEA_TITLE_SIZE - 1 bytes
+  DEA_FIELD_TEXT,      // const char *: a text of any length, lent by the document; NULL when absent
+  DEA_FIELD_NUMBER,    // struct dea_quantity: a number in `unit`
+  DEA_FIELD_INTEGER,   // struct dea_quantity: a whole number
+  DEA_FIELD_INPLANE,   // struct dea_inplane_length: "5 mm stretched" or "5 mm unstretched"
+  DEA_FIELD_STRETCHED, // struct dea_quantity: the same, where only the stretched film makes sense
+  DEA_FIELD_CHOICE,    // struct dea_choice: one of `choices`, value is its index
+  DEA_FIELD_RECORD,    // a section; its fields' offsets count from this record's offset
+  DEA_FIELD_SECTION,   // const struct dea_node *: a section whose keys another table knows
+};
+
+struct dea_record;
+
+struct dea_field {
+  const char *key;
+  enum dea_field_kind kind;
+  size_t offset;       // of the member in the record's struct
+  const char *doc;     // meaning, one clause
+  const char *example; // "100 um"; with the unit that suggestions use
+  bool required;
+  const char *default_text; // as it would be written; NULL: none
+  const char *absent_text;  // what an optional field without default then means, for the listing
+  /* Alternatives: fields of one group (> 0) with different options exclude each other; at least one
+   * option must be there when a field of the group is required. When none is given the defaults of
+   * the first option that has any apply. */
+  int group, option;
+
+  const char *unit;           // of numbers: SI unit, "1" for a bare number
+  double min, max;            // SI, inclusive unless said otherwise; both 0: no limits
+  bool above_min, below_max;  // exclusive
+  double scale;               // factor on the SI value (0.5: a diameter kept as radius); 0 means 1
+  const char *const *choices; // NULL-terminated
+
+  const struct dea_record *record; // of a section
+  size_t present_offset;           // bool member set when the section is there; 0: defaults apply
+
+  /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
+   * count_offset. */
+  size_t list_min, list_max, element_size, count_offset;
+};
+
+struct dea_record {
+  const char *name; // "film"; for messages
+  const char *doc;
+  const struct dea_field *fields;
+  size_t field_count;
+};
+
+/* One reading of a document. listing: NULL if no list of values is wanted. */
+struct dea_reader {
+  struct dea_context *ctx;
+  struct dea_yaml *yaml;
+  struct dea_listing *listing;
+};
+
+/* Reads a section into the struct at base, which is zeroed memory. path: its dotted path, "" for
+ * the file itself. Errors are findings (at most DEA_SCHEMA_ERRORS_MAX are kept); the status is
+ * DEA_OK also then, and only other failures (memory, unit database) come back. */
+dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_record *record,
+                           const struct dea_node *node, const char *path, void *base);
+enum { DEA_SCHEMA_ERRORS_MAX = 100 };
+
+/* Adds a value to the reader's list. text: lent for as long as the list. */
+dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,
+                           const char *unit, double si, enum dea_origin origin,
+                           struct dea_place place);
+
+/* JSON Schema (draft 2020-12) of a record as text, ended by a newline. */
+dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,
+                                 const char *title, struct dea_text *out);
+/* The same as a table for people: plain text for a terminal, or Markdown. */
+void dea_schema_print_text(const struct dea_record *record, struct dea_text *out);
+void dea_schema_print_markdown(const struct dea_record *record, struct dea_text *out);
+
+#endif

@@ -1,0 +1,271 @@
+/* A schema's tables printed: for people, as Markdown and as JSON Schema. */
+#include "base/schema.h"
+
+#include "base/units.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 256 };
+
+static bool is_number(const struct dea_field *field)
+{
+  return field->kind == DEA_FIELD_NUMBER || field->kind == DEA_FIELD_INTEGER ||
+         field->kind == DEA_FIELD_INPLANE || field->kind == DEA_FIELD_STRETCHED;
+}
+
+/* "length, stretched or unstretched, > 0" and the like: what may be written. */
+static void describe_form(const struct dea_field *field, char *text, size_t size)
+{
+  static const char *const forms[] = {"text",   "text",    "number",  "whole number", "length",
+                                      "length", "one of:", "section", "section"};
+  size_t used = (size_t)snprintf(text, size, "%s%s", field->list_max > 0 ? "list of " : "",
+                                 forms[field->kind]);
+  if (field->kind == DEA_FIELD_CHOICE) {
+    for (size_t i = 0; field->choices[i] != NULL && used < size; i++) {
+      used +=
+          (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : " ", field->choices[i]);
+    }
+  }
+  if (field->kind == DEA_FIELD_NUMBER && strcmp(field->unit, "1") != 0 && used < size) {
+    used += (size_t)snprintf(text + used, size - used, " in %s", field->unit);
+  }
+  if (field->kind == DEA_FIELD_INPLANE && used < size) {
+    used += (size_t)snprintf(text + used, size - used, ", stretched or unstretched");
+  }
+  bool limited = is_number(field) && (field->min != 0 || field->max != 0 || field->above_min);
+  if (limited && used < size) {
+    used += (size_t)snprintf(text + used, size - used, ", %s %g",
+                             field->above_min ? ">" : ">=", field->min);
+  }
+  bool upper = field->max > field->min || (field->max == field->min && field->max != 0);
+  if (limited && upper && used < size) {
+    snprintf(text + used, size - used, ", %s %g", field->below_max ? "<" : "<=", field->max);
+  }
+}
+
+static const char *describe_need(const struct dea_record *record, const struct dea_field *field)
+{
+  bool required = field->required;
+  for (size_t i = 0; i < record->field_count && field->group > 0; i++) {
+    required |= record->fields[i].group == field->group && record->fields[i].required;
+  }
+  if (required) {
+    return field->group > 0 ? "required, one way" : "required";
+  }
+  if (field->default_text != NULL) {
+    return field->default_text;
+  }
+  return field->absent_text != NULL ? field->absent_text : "";
+}
+
+typedef void (*print_fn)(const struct dea_record *record, const struct dea_field *field,
+                         const char *path, struct dea_text *out);
+
+static void walk(const struct dea_record *record, const char *path, print_fn print,
+                 struct dea_text *out)
+{
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *field = &record->fields[i];
+    char inner[PATH_SIZE];
+    snprintf(inner, sizeof inner, "%s%s%s%s", path, path[0] != '\0' ? "." : "", field->key,
+             field->list_max > 0 && field->kind == DEA_FIELD_RECORD ? "[]" : "");
+    print(record, field, inner, out);
+    if (field->kind == DEA_FIELD_RECORD) {
+      walk(field->record, inner, print, out);
+    }
+  }
+}
+
+static void print_plain(const struct dea_record *record, const struct dea_field *field,
+                        const char *path, struct dea_text *out)
+{
+  char form[200];
+  const char *need = describe_need(record, field);
+  describe_form(field, form, sizeof form);
+  if (field->kind == DEA_FIELD_RECORD) {
+    dea_text_add(out, "\n%s: %s%s%s%s\n", path, field->doc, need[0] != '\0' ? " [" : "", need,
+                 need[0] != '\0' ? "]" : "");
+    return;
+  }
+  dea_text_add(out, "  %s\n      %s\n      %s", path, field->doc, form);
+  dea_text_add(out, "%s%s%s", need[0] != '\0' ? "; " : "",
+               field->required || need[0] == '\0' || strcmp(need, "required, one way") == 0
+                   ? ""
+                   : "by default ",
+               need);
+  dea_text_add(out, "; for example  %s: %s\n", field->key, field->example);
+}
+
+void dea_schema_print_text(const struct dea_record *record, struct dea_text *out)
+{
+  walk(record, "", print_plain, out);
+}
+
+/* Text in a cell of a Markdown table: a bar would end the cell. */
+static void add_cell(struct dea_text *out, const char *text)
+{
+  for (; *text != '\0'; text++) {
+    dea_text_add(out, *text == '|' ? "\\%c" : "%c", *text);
+  }
+}
+
+static void print_row(const struct dea_record *record, const struct dea_field *field,
+                      const char *path, struct dea_text *out)
+{
+  char form[200];
+  describe_form(field, form, sizeof form);
+  dea_text_add(out, "| `%s` | %s | ", path, form);
+  add_cell(out, describe_need(record, field));
+  dea_text_add(out, " | ");
+  add_cell(out, field->doc);
+  dea_text_add(out, field->example != NULL ? " | `%s` |\n" : " |%s |\n",
+               field->example != NULL ? field->example : "");
+}
+
+void dea_schema_print_markdown(const struct dea_record *record, struct dea_text *out)
+{
+  dea_text_add(out, "| key | form (limits in SI) | without it | meaning | example |\n"
+                    "|---|---|---|---|---|\n");
+  walk(record, "", print_row, out);
+}
+
+static json_t *record_json(const struct dea_record *record);
+
+/* A number: bare where the unit is 1, otherwise text; what exactly is right only the reader knows.
+ */
+static json_t *number_json(const struct dea_field *field)
+{
+  bool bare = strcmp(field->unit, "1") == 0;
+  if (!bare) {
+    return json_pack("{s:s, s:s}", "type", "string", "pattern",
+                     field->kind == DEA_FIELD_INPLANE
+                         ? "^[-+]?[0-9.][0-9.eE+-]* *\\S.* (stretched|unstretched)$"
+                         : "^[-+]?[0-9.][0-9.eE+-]* *\\S.*$");
+  }
+  json_t *json =
+      json_pack("{s:s}", "type", field->kind == DEA_FIELD_INTEGER ? "integer" : "number");
+  bool upper = field->max > field->min || (field->max == field->min && field->max != 0);
+  if (json != NULL && (field->min != 0 || upper || field->above_min) && isfinite(field->min)) {
+    json_object_set_new(json, field->above_min ? "exclusiveMinimum" : "minimum",
+                        json_real(field->min));
+  }
+  if (json != NULL && upper && isfinite(field->max)) {
+    json_object_set_new(json, field->below_max ? "exclusiveMaximum" : "maximum",
+                        json_real(field->max));
+  }
+  return json;
+}
+
+static json_t *choice_json(const struct dea_field *field)
+{
+  json_t *values = json_array();
+  for (size_t i = 0; field->choices[i] != NULL; i++) {
+    json_array_append_new(values, json_string(field->choices[i]));
+  }
+  return json_pack("{s:o}", "enum", values);
+}
+
+static json_t *value_json(const struct dea_field *field)
+{
+  switch (field->kind) {
+  case DEA_FIELD_RECORD:
+    return record_json(field->record);
+  case DEA_FIELD_SECTION:
+    return json_pack("{s:s}", "type", "object");
+  case DEA_FIELD_CHOICE:
+    return choice_json(field);
+  case DEA_FIELD_LABEL:
+    return json_pack("{s:s, s:i}", "type", "string", "maxLength", DEA_TITLE_SIZE - 1);
+  case DEA_FIELD_TEXT:
+    return json_pack("{s:s}", "type", "string");
+  case DEA_FIELD_NUMBER:
+  case DEA_FIELD_INTEGER:
+  case DEA_FIELD_INPLANE:
+  case DEA_FIELD_STRETCHED:
+    return number_json(field);
+  }
+  return NULL;
+}
+
+static json_t *field_json(const struct dea_field *field)
+{
+  json_t *json = value_json(field);
+  if (field->list_max > 0) {
+    json = json_pack("{s:s, s:o, s:I, s:I}", "type", "array", "items", json, "minItems",
+                     (json_int_t)field->list_min, "maxItems", (json_int_t)field->list_max);
+  }
+  json_object_set_new(json, "description", json_string(field->doc));
+  if (field->default_text != NULL) {
+    char text[PATH_SIZE];
+    snprintf(text, sizeof text, "%s; default: %s", field->doc, field->default_text);
+    json_object_set_new(json, "description", json_string(text));
+  }
+  return json;
+}
+
+/* Pairs of keys that exclude each other, as {"not": {"required": [a, b]}}, and the groups of which
+ * one key must be there, as {"anyOf": [{"required": [a]}, ...]}. */
+static json_t *groups_json(const struct dea_record *record)
+{
+  json_t *all = json_array();
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *a = &record->fields[i];
+    json_t *any = a->group > 0 && a->required ? json_array() : NULL;
+    for (size_t j = 0; j < record->field_count && a->group > 0; j++) {
+      const struct dea_field *b = &record->fields[j];
+      if (b->group == a->group && any != NULL) {
+        json_array_append_new(any, json_pack("{s:[s]}", "required", b->key));
+      }
+      if (b->group == a->group && b->option != a->option && j > i) {
+        json_array_append_new(all, json_pack("{s:{s:[ss]}}", "not", "required", a->key, b->key));
+      }
+    }
+    if (any != NULL) {
+      json_array_append_new(all, json_pack("{s:o}", "anyOf", any));
+    }
+  }
+  return all;
+}
+
+static json_t *record_json(const struct dea_record *record)
+{
+  json_t *properties = json_object(), *required = json_array(), *groups = groups_json(record);
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *field = &record->fields[i];
+    json_object_set_new(properties, field->key, field_json(field));
+    if (field->required && field->group == 0) {
+      json_array_append_new(required, json_string(field->key));
+    }
+  }
+  json_t *json = json_pack("{s:s, s:o, s:o, s:b}", "type", "object", "properties", properties,
+                           "required", required, "additionalProperties", 0);
+  if (json_array_size(groups) > 0) {
+    json_object_set(json, "allOf", groups);
+  }
+  json_decref(groups);
+  return json;
+}
+
+dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,
+                                 const char *title, struct dea_text *out)
+{
+  json_t *json = json_pack("{s:s, s:s}", "$schema", "https://json-schema.org/draft/2020-12/schema",
+                           "title", title);
+  json_t *body = record_json(record);
+  char *text = NULL;
+  if (json != NULL && json_object_update(json, body) == 0) {
+    text = json_dumps(json, JSON_INDENT(2));
+  }
+  json_decref(body);
+  json_decref(json);
+  if (text == NULL) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in jansson");
+  }
+  dea_text_add(out, "%s\n", text);
+  free(text);
+  return out->failed ? DEA_E_MEMORY : DEA_OK;
+}

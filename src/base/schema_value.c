@@ -1,0 +1,305 @@
+#include "base/schema_value.h"
+
+#include "base/units.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 800 };
+
+dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place place,
+                            const char *format, ...)
+{
+  size_t count = dea_finding_count(reader->ctx, DEA_ERROR);
+  if (count >= DEA_SCHEMA_ERRORS_MAX) {
+    return DEA_OK;
+  }
+  char text[MESSAGE_SIZE];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, place, "%s", text));
+  if (count + 1 == DEA_SCHEMA_ERRORS_MAX) {
+    DEA_TRY(reader->ctx,
+            dea_finding_add(reader->ctx, DEA_NOTE, place, "errors after the first %d are not shown",
+                            DEA_SCHEMA_ERRORS_MAX));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,
+                           const char *unit, double si, enum dea_origin origin,
+                           struct dea_place place)
+{
+  struct dea_listing *listing = reader->listing;
+  if (listing == NULL) {
+    return DEA_OK;
+  }
+  if (listing->count == listing->room) {
+    size_t room = 2 * listing->room + 32;
+    void *moved = dea_resize(reader->ctx, listing->items, room, sizeof *listing->items);
+    if (moved == NULL) {
+      return DEA_E_MEMORY;
+    }
+    listing->items = moved;
+    listing->room = room;
+  }
+  char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
+  if (copy == NULL) {
+    return DEA_E_MEMORY;
+  }
+  listing->items[listing->count++] =
+      (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, place};
+  return DEA_OK;
+}
+
+void dea_listing_free(struct dea_context *ctx, struct dea_listing *listing)
+{
+  for (size_t i = 0; i < listing->count; i++) {
+    dea_free(ctx, listing->items[i].path);
+  }
+  dea_free(ctx, listing->items);
+  *listing = (struct dea_listing){0};
+}
+
+/* What is due, where the unit of suggestions is that of the example. */
+static struct dea_measure measure_of(const struct dea_field *field)
+{
+  return (struct dea_measure){field->unit != NULL ? field->unit : "1",
+                              field->example != NULL ? field->example : "1"};
+}
+
+void dea_schema_value_absent(const struct dea_field *field, char *target, struct dea_place place)
+{
+  struct dea_quantity nothing = {NAN, DEA_ABSENT, place};
+  switch (field->kind) {
+  case DEA_FIELD_LABEL:
+    *(struct dea_label *)target = (struct dea_label){.place = place};
+    break;
+  case DEA_FIELD_NUMBER:
+  case DEA_FIELD_INTEGER:
+  case DEA_FIELD_STRETCHED:
+    *(struct dea_quantity *)target = nothing;
+    break;
+  case DEA_FIELD_INPLANE:
+    *(struct dea_inplane_length *)target = (struct dea_inplane_length){nothing, DEA_STRETCHED};
+    break;
+  case DEA_FIELD_CHOICE:
+    *(struct dea_choice *)target = (struct dea_choice){-1, DEA_ABSENT, place};
+    break;
+  case DEA_FIELD_TEXT:
+  case DEA_FIELD_RECORD:
+  case DEA_FIELD_SECTION:
+    break; // zeroed memory says it
+  }
+}
+
+static void format_limit(const struct dea_field *field, double limit, char text[32])
+{
+  bool bare = limit == 0 || strcmp(field->unit, "1") == 0;
+  snprintf(text, 32, "%g%s%s", limit, bare ? "" : " ", bare ? "" : field->unit);
+}
+
+/* false after an error: si is out of the field's range. */
+static dea_status check_range(const struct dea_reader *reader, const struct dea_schema_value *value,
+                              double si, bool *good)
+{
+  const struct dea_field *field = value->field;
+  char limit[32];
+  *good = true;
+  if (field->min == 0 && field->max == 0 && !field->above_min) {
+    return DEA_OK;
+  }
+  bool low = field->above_min ? si <= field->min : si < field->min;
+  bool limited = field->max > field->min || (field->max == field->min && field->max != 0);
+  bool high = limited && (field->below_max ? si >= field->max : si > field->max);
+  if (!low && !high) {
+    return DEA_OK;
+  }
+  *good = false;
+  format_limit(field, low ? field->min : field->max, limit);
+  const char *word =
+      low ? (field->above_min ? "above" : "at least") : (field->below_max ? "below" : "at most");
+  return dea_schema_error(reader, value->place, "%s must be %s %s, not '%.60s'", field->key, word,
+                          limit, value->text);
+}
+
+/* The number in text (that of the value, or what is left of it without its qualifier). */
+static dea_status read_number(const struct dea_reader *reader, const struct dea_schema_value *value,
+                              const char *text, struct dea_quantity *out)
+{
+  char why[DEA_WHY_SIZE];
+  double si;
+  *out = (struct dea_quantity){NAN, value->origin, value->place};
+  if (!dea_units_read(reader->ctx, text, measure_of(value->field), &si, why)) {
+    if (why[0] == '\0') {
+      return dea_context_status(reader->ctx);
+    }
+    return dea_schema_error(reader, value->place, "%s: %s", value->field->key, why);
+  }
+  bool good;
+  DEA_TRY(reader->ctx, check_range(reader, value, si, &good));
+  if (good && value->field->kind == DEA_FIELD_INTEGER && floor(si) != si) {
+    return dea_schema_error(reader, value->place, "%s must be a whole number, not '%.60s'",
+                            value->field->key, value->text);
+  }
+  if (good) {
+    out->si = value->field->scale != 0 ? si * value->field->scale : si;
+  }
+  return DEA_OK;
+}
+
+static const char *const film_states[] = {"stretched", "unstretched"};
+
+/* Splits "5 mm stretched" into "5 mm" and its last word. */
+static void split_qualifier(const char *text, char number[DEA_TITLE_SIZE], const char **word)
+{
+  size_t end = strlen(text);
+  while (end > 0 && text[end - 1] != ' ' && text[end - 1] != '\t') {
+    end--;
+  }
+  *word = text + end;
+  while (end > 0 && (text[end - 1] == ' ' || text[end - 1] == '\t')) {
+    end--;
+  }
+  snprintf(number, DEA_TITLE_SIZE, "%.*s", (int)(end < DEA_TITLE_SIZE ? end : DEA_TITLE_SIZE - 1),
+           text);
+}
+
+static int film_state_of(const char *word)
+{
+  return strcmp(word, film_states[DEA_STRETCHED]) == 0     ? DEA_STRETCHED
+         : strcmp(word, film_states[DEA_UNSTRETCHED]) == 0 ? DEA_UNSTRETCHED
+                                                           : -1;
+}
+
+static dea_status read_inplane(const struct dea_reader *reader,
+                               const struct dea_schema_value *value, struct dea_inplane_length *out)
+{
+  char number[DEA_TITLE_SIZE], why[DEA_WHY_SIZE];
+  const char *word;
+  double si;
+  *out = (struct dea_inplane_length){{NAN, value->origin, value->place}, DEA_STRETCHED};
+  split_qualifier(value->text, number, &word);
+  int state = film_state_of(word);
+  if (state >= 0) {
+    out->state = (enum dea_film_state)state;
+    return read_number(reader, value, number, &out->length);
+  }
+  const char *nearest = strlen(word) > 4 ? dea_nearest_name(word, film_states, 2) : NULL;
+  if (nearest != NULL) {
+    return dea_schema_error(reader, value->place,
+                            "%s: '%.60s' is not a film state; did you mean '%s'?",
+                            value->field->key, word, nearest);
+  }
+  if (!dea_units_read(reader->ctx, value->text, measure_of(value->field), &si, why)) {
+    return why[0] == '\0'
+               ? dea_context_status(reader->ctx)
+               : dea_schema_error(reader, value->place, "%s: %s", value->field->key, why);
+  }
+  return dea_schema_error(
+      reader, value->place,
+      "%s: '%.40s' does not say in which film it is measured; write '%.40s stretched' "
+      "(as built) or '%.40s unstretched' (before the pre-stretch)",
+      value->field->key, value->text, value->text, value->text);
+}
+
+/* Numbers that are no lengths of either film: the word 'stretched' may only be where it is true. */
+static dea_status read_plain_number(const struct dea_reader *reader,
+                                    const struct dea_schema_value *value, struct dea_quantity *out)
+{
+  char number[DEA_TITLE_SIZE];
+  const char *word;
+  split_qualifier(value->text, number, &word);
+  int state = film_state_of(word);
+  *out = (struct dea_quantity){NAN, value->origin, value->place};
+  if (state < 0) {
+    return read_number(reader, value, value->text, out);
+  }
+  if (value->field->kind != DEA_FIELD_STRETCHED) {
+    return dea_schema_error(reader, value->place, "%s: the word '%s' does not belong here (%s)",
+                            value->field->key, word, value->field->doc);
+  }
+  if (state == DEA_UNSTRETCHED) {
+    return dea_schema_error(
+        reader, value->place,
+        "%s: this part is rigid and holds the stretched film, so its lengths are "
+        "lengths of the stretched film; write '%.60s'",
+        value->field->key, number);
+  }
+  return read_number(reader, value, number, out);
+}
+
+static dea_status read_choice(const struct dea_reader *reader, const struct dea_schema_value *value,
+                              struct dea_choice *out)
+{
+  const char *const *choices = value->field->choices;
+  char list[MESSAGE_SIZE / 2] = "";
+  size_t count = 0, used = 0;
+  *out = (struct dea_choice){-1, value->origin, value->place};
+  for (; choices[count] != NULL; count++) {
+    if (strcmp(choices[count], value->text) == 0) {
+      out->value = (int)count;
+      return DEA_OK;
+    }
+    if (used < sizeof list) {
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? ", " : "",
+                               choices[count]);
+    }
+  }
+  const char *nearest = dea_nearest_name(value->text, choices, count);
+  return dea_schema_error(reader, value->place, "%s: '%.60s' is none of: %s%s%s%s",
+                          value->field->key, value->text, list,
+                          nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                          nearest != NULL ? "'?" : "");
+}
+
+static dea_status read_label(const struct dea_reader *reader, const struct dea_schema_value *value,
+                             struct dea_label *out)
+{
+  *out = (struct dea_label){.origin = value->origin, .place = value->place};
+  if (strlen(value->text) >= sizeof out->text) {
+    return dea_schema_error(reader, value->place, "%s is longer than %zu bytes", value->field->key,
+                            sizeof out->text - 1);
+  }
+  snprintf(out->text, sizeof out->text, "%s", value->text);
+  return DEA_OK;
+}
+
+dea_status dea_schema_value_read(const struct dea_reader *reader,
+                                 const struct dea_schema_value *value, char *target)
+{
+  const struct dea_field *field = value->field;
+  double si = NAN;
+  dea_schema_value_absent(field, target, value->place);
+  switch (field->kind) {
+  case DEA_FIELD_LABEL:
+    DEA_TRY(reader->ctx, read_label(reader, value, (struct dea_label *)target));
+    break;
+  case DEA_FIELD_TEXT:
+    *(const char **)target = value->text;
+    break;
+  case DEA_FIELD_NUMBER:
+  case DEA_FIELD_INTEGER:
+  case DEA_FIELD_STRETCHED:
+    DEA_TRY(reader->ctx, read_plain_number(reader, value, (struct dea_quantity *)target));
+    si = ((struct dea_quantity *)target)->si;
+    break;
+  case DEA_FIELD_INPLANE:
+    DEA_TRY(reader->ctx, read_inplane(reader, value, (struct dea_inplane_length *)target));
+    si = ((struct dea_inplane_length *)target)->length.si;
+    break;
+  case DEA_FIELD_CHOICE:
+    DEA_TRY(reader->ctx, read_choice(reader, value, (struct dea_choice *)target));
+    break;
+  case DEA_FIELD_RECORD:
+  case DEA_FIELD_SECTION:
+    return DEA_OK; // read_field has done these
+  }
+  // The list holds what was written, so a diameter stays one although the struct keeps the radius.
+  return dea_schema_list(reader, value->path, value->text, field->unit,
+                         field->scale != 0 ? si / field->scale : si, value->origin, value->place);
+}

@@ -1,0 +1,27 @@
+/* Single values of a schema: what schema.c reads sections with. Not for others. */
+#ifndef DEA_BASE_SCHEMA_VALUE_H
+#define DEA_BASE_SCHEMA_VALUE_H
+
+#include "base/schema.h"
+
+enum { DEA_PATH_SIZE = 256 };
+
+/* A value being read. text: as written, or the default. */
+struct dea_schema_value {
+  const struct dea_field *field;
+  const char *text;
+  struct dea_place place;
+  enum dea_origin origin;
+  const char *path;
+};
+
+/* Adds an error as a finding, up to DEA_SCHEMA_ERRORS_MAX of them. */
+dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place place,
+                            const char *format, ...) DEA_PRINTF(3, 4);
+/* Reads one value into the member at target and lists it. */
+dea_status dea_schema_value_read(const struct dea_reader *reader,
+                                 const struct dea_schema_value *value, char *target);
+/* Sets the member at target to what says "absent". */
+void dea_schema_value_absent(const struct dea_field *field, char *target, struct dea_place place);
+
+#endif

@@ -1,0 +1,240 @@
+#define _POSIX_C_SOURCE 200809L // pthread_mutex_t
+#include "base/units.h"
+
+#include "base/text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <udunits2.h>
+
+enum { UNIT_TEXT_MAX = 40 };
+
+/* udunits2 keeps its error handler, its status and its parser in global variables; this lock lets
+ * contexts of several threads read at the same time. */
+static pthread_mutex_t udunits_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static ut_error_message_handler lock_udunits(void)
+{
+  pthread_mutex_lock(&udunits_lock);
+  return ut_set_error_message_handler(ut_ignore);
+}
+
+static void unlock_udunits(ut_error_message_handler handler)
+{
+  ut_set_error_message_handler(handler);
+  pthread_mutex_unlock(&udunits_lock);
+}
+
+static void release_system(void *system)
+{
+  ut_free_system(system);
+}
+
+/* The unit table of the context, read on first use (5 ms). */
+static ut_system *system_get(struct dea_context *ctx)
+{
+  ut_system *system = dea_context_kept(ctx, release_system);
+  if (system != NULL) {
+    return system;
+  }
+  ut_error_message_handler handler = lock_udunits();
+  system = ut_read_xml(NULL);
+  unlock_udunits(handler);
+  if (system == NULL) {
+    dea_fail(ctx, DEA_E_TOOL, "the unit database of udunits2 cannot be read");
+    return NULL;
+  }
+  return dea_context_keep(ctx, system, release_system) == DEA_OK ? system : NULL;
+}
+
+/* Names of the dimensions that designs use, for messages. */
+static const struct {
+  const char *unit, *name;
+} dimensions[] = {
+    {"m", "a length"},
+    {"V", "a voltage"},
+    {"V/m", "an electric field"},
+    {"Pa", "a pressure"},
+    {"kg/m^3", "a density"},
+    {"radian", "an angle"},
+    {"s", "a time"},
+    {"Hz", "a frequency"},
+    {"N", "a force"},
+    {"N/m", "a force per length"},
+    {"kg", "a mass"},
+    {"A", "a current"},
+    {"K", "a temperature"},
+    {"m^2", "an area"},
+    {"m^3", "a volume"},
+    {"J", "an energy"},
+    {"F", "a capacitance"},
+    {"ohm", "a resistance"},
+};
+
+static const char *dimension_name(const char *unit)
+{
+  for (size_t i = 0; i < sizeof dimensions / sizeof dimensions[0]; i++) {
+    if (strcmp(dimensions[i].unit, unit) == 0) {
+      return dimensions[i].name;
+    }
+  }
+  return "a value";
+}
+
+/* Name of the dimension of a parsed unit, or NULL. */
+static const char *dimension_of(const ut_system *system, const ut_unit *unit)
+{
+  const char *name = NULL;
+  for (size_t i = 0; name == NULL && i < sizeof dimensions / sizeof dimensions[0]; i++) {
+    ut_unit *other = ut_parse(system, dimensions[i].unit, UT_UTF8);
+    if (other != NULL && ut_are_convertible(unit, other) != 0) {
+      name = dimensions[i].name;
+    }
+    ut_free(other);
+  }
+  return name;
+}
+
+/* udunits2 also reads "5 um", "s since 2000", "lg(re mW)" and the like as units. Only products and
+ * quotients of named units with small powers are units here. */
+static bool is_plain_unit(const char *text)
+{
+  bool after_name = false;
+  if (strlen(text) > UNIT_TEXT_MAX) {
+    return false;
+  }
+  for (const char *c = text; *c != '\0'; c++) {
+    unsigned char byte = (unsigned char)*c;
+    if (isalpha(byte) || byte >= 0x80 || byte == '%') {
+      after_name = true;
+    } else if (isdigit(byte) || byte == '^' || byte == '-') {
+      if (!after_name || (isdigit(byte) && isdigit((unsigned char)c[1]))) {
+        return false;
+      }
+    } else if (byte == '/' || byte == '*' || byte == '.' || byte == ' ') {
+      after_name = false;
+    } else {
+      return false;
+    }
+  }
+  return text[0] != '\0' && strstr(text, "since") == NULL && strstr(text, "ref") == NULL &&
+         strstr(text, "from") == NULL && strstr(text, "after") == NULL;
+}
+
+/* Unit of an example such as "100 um"; "" for a bare number. */
+static const char *example_unit(const struct dea_measure *due)
+{
+  const char *end;
+  dea_text_to_double(due->example, &end);
+  while (*end == ' ') {
+    end++;
+  }
+  return end;
+}
+
+/* The number at the head of text; *unit is what follows it, trimmed at the front. */
+static bool read_number(const char *text, const struct dea_measure *due, double *value,
+                        const char **unit, char why[DEA_WHY_SIZE])
+{
+  const char *c = text + (*text == '-' || *text == '+');
+  bool digits = isdigit((unsigned char)c[0]) || (c[0] == '.' && isdigit((unsigned char)c[1]));
+  bool hexadecimal = c[0] == '0' && (c[1] == 'x' || c[1] == 'X');
+  if (!digits || hexadecimal) {
+    char word[4] = {0};
+    for (size_t i = 0; i < 3 && c[i] != '\0'; i++) {
+      word[i] = (char)tolower((unsigned char)c[c[0] == '.' ? i + 1 : i]);
+    }
+    bool special = strcmp(word, "nan") == 0 || strcmp(word, "inf") == 0;
+    snprintf(why, DEA_WHY_SIZE,
+             special ? "'%.60s' is not a finite number; write for example '%s'"
+                     : "'%.60s' is not a number; write for example '%s'",
+             text, due->example);
+    return false;
+  }
+  *value = dea_text_to_double(text, unit);
+  if (!isfinite(*value)) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is too large for a number", text);
+    return false;
+  }
+  if (**unit == ',') {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' has a comma; write the decimal sign as a point", text);
+    return false;
+  }
+  while (**unit == ' ' || **unit == '\t') {
+    ++*unit;
+  }
+  return true;
+}
+
+/* Compares the unit with the one due and converts. */
+static bool convert(const ut_system *system, const char *text, const char *unit, double value,
+                    const struct dea_measure *due, double *si, char why[DEA_WHY_SIZE])
+{
+  ut_unit *from = ut_parse(system, unit, UT_UTF8), *to = ut_parse(system, due->unit, UT_UTF8);
+  bool number_due = strcmp(due->unit, "1") == 0, known = false;
+  const char *name = from != NULL ? dimension_of(system, from) : NULL;
+  if (from == NULL) {
+    snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
+             unit, text, due->example);
+  } else if (number_due && (strcmp(unit, "%") != 0 || to == NULL)) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
+             text, name != NULL ? name : "a value with a unit", due->example);
+  } else if (to == NULL || ut_are_convertible(from, to) == 0 ||
+             (strcmp(due->unit, "radian") == 0 && unit[0] == '%')) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but %s is due, such as '%s'", text,
+             name != NULL ? name : "of another dimension", dimension_name(due->unit), due->example);
+  } else {
+    known = true;
+  }
+  cv_converter *converter = known ? ut_get_converter(from, to) : NULL;
+  if (converter != NULL) {
+    *si = cv_convert_double(converter, value);
+    cv_free(converter);
+  }
+  ut_free(from);
+  ut_free(to);
+  return converter != NULL;
+}
+
+bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measure due, double *si,
+                    char why[DEA_WHY_SIZE])
+{
+  double value;
+  const char *unit;
+  why[0] = '\0';
+  if (!read_number(text, &due, &value, &unit, why)) {
+    return false;
+  }
+  if (*unit == '\0') {
+    if (strcmp(due.unit, "1") == 0) {
+      *si = value;
+      return true;
+    }
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %s'",
+             text, dimension_name(due.unit), text, example_unit(&due));
+    return false;
+  }
+  if (!is_plain_unit(unit)) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is not a number with a unit; write for example '%s'", text,
+             due.example);
+    return false;
+  }
+  ut_system *system = system_get(ctx);
+  if (system == NULL) {
+    return false;
+  }
+  ut_error_message_handler handler = lock_udunits();
+  bool read = convert(system, text, unit, value, &due, si, why);
+  unlock_udunits(handler);
+  if (read && !isfinite(*si)) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is too large for a number", text);
+    return false;
+  }
+  if (!read && why[0] == '\0') {
+    dea_fail(ctx, DEA_E_MEMORY, "out of memory in udunits2");
+  }
+  return read;
+}

@@ -1,0 +1,22 @@
+/* Numbers with a unit, read through udunits2 and converted to SI. */
+#ifndef DEA_BASE_UNITS_H
+#define DEA_BASE_UNITS_H
+
+#include "base/context.h"
+
+/* What is due: a number in a unit. */
+struct dea_measure {
+  const char *unit;    // SI unit the value is converted to: "m", "Pa", "1" for a bare number
+  const char *example; // how a value is written, for messages: "100 um"
+};
+
+enum { DEA_WHY_SIZE = 400 };
+
+/* Reads "100 um", "2.5 kV", "80 V/um" (or "0.2", "20 %" where the unit due is "1"), numbers in the
+ * C locale. true: *si is finite and in SI. false: why holds a clause that says what is wrong and
+ * what to write instead, or the context holds DEA_E_MEMORY or DEA_E_TOOL (no unit database) and why
+ * is "". */
+bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measure due, double *si,
+                    char why[DEA_WHY_SIZE]);
+
+#endif

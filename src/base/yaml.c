@@ -1,0 +1,449 @@
+#include "base/yaml.h"
+
+#include "base/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+enum { REPEATED_MAX = 100 };
+
+/* Blocks of memory that live as long as the document. */
+struct block {
+  struct block *next;
+};
+
+struct dea_yaml {
+  struct block *blocks;
+  struct dea_node *root;
+  const char *name;
+};
+
+/* One conversion of a libyaml document into nodes. */
+struct reading {
+  struct dea_context *ctx;
+  struct dea_yaml *yaml;
+  yaml_document_t *document;
+  unsigned char *seen;           // [node of the document]: used once already
+  const struct dea_place *fixed; // all places are this one, or NULL
+  size_t depth;
+  size_t repeated; // keys that stand twice
+};
+
+static void *keep_memory(struct dea_context *ctx, struct dea_yaml *yaml, size_t size)
+{
+  struct block *block = dea_alloc(ctx, 1, sizeof *block + size);
+  if (block == NULL) {
+    return NULL;
+  }
+  block->next = yaml->blocks;
+  yaml->blocks = block;
+  return block + 1;
+}
+
+static char *keep_text(struct dea_context *ctx, struct dea_yaml *yaml, const char *text,
+                       size_t length)
+{
+  char *copy = keep_memory(ctx, yaml, length + 1);
+  if (copy != NULL) {
+    memcpy(copy, text, length);
+  }
+  return copy;
+}
+
+static dea_status found(struct dea_context *ctx, struct dea_place place, const char *text)
+{
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "%s", text));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s", text);
+}
+
+static struct dea_place place_of(const struct reading *r, yaml_mark_t mark)
+{
+  if (r->fixed != NULL) {
+    return *r->fixed;
+  }
+  return (struct dea_place){r->yaml->name, mark.line + 1, mark.column + 1};
+}
+
+static bool is_null(const yaml_node_t *node)
+{
+  const char *text = (const char *)node->data.scalar.value;
+  return node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
+         (text[0] == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
+}
+
+static const char *default_tag(yaml_node_type_t type)
+{
+  return type == YAML_SCALAR_NODE     ? YAML_DEFAULT_SCALAR_TAG
+         : type == YAML_SEQUENCE_NODE ? YAML_DEFAULT_SEQUENCE_TAG
+                                      : YAML_DEFAULT_MAPPING_TAG;
+}
+
+static dea_status take_node(struct reading *r, int index, struct dea_place from,
+                            struct dea_node **out);
+
+static dea_status take_value(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+{
+  const char *text = (const char *)source->data.scalar.value;
+  size_t length = source->data.scalar.length;
+  if (strlen(text) != length) {
+    return found(r->ctx, node->place, "the value holds a zero byte");
+  }
+  node->empty = is_null(source);
+  node->text = keep_text(r->ctx, r->yaml, text, length);
+  return node->text != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+static dea_status take_list(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+{
+  struct dea_node **last = &node->child;
+  for (const yaml_node_item_t *item = source->data.sequence.items.start;
+       item < source->data.sequence.items.top; item++) {
+    DEA_TRY(r->ctx, take_node(r, *item, node->place, last));
+    last = &(*last)->next;
+    node->child_count++;
+  }
+  return DEA_OK;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+  const struct dea_node *x = *(struct dea_node *const *)a, *y = *(struct dea_node *const *)b;
+  int order = strcmp(x->key, y->key);
+  if (order != 0) {
+    return order;
+  }
+  size_t i = x->key_place.line, j = y->key_place.line;
+  size_t k = x->key_place.column, l = y->key_place.column;
+  return i != j ? (i > j) - (i < j) : (k > l) - (k < l);
+}
+
+/* A finding for each key that stands twice; reading goes on. Sorted, so that a hostile file costs n
+ * log n. */
+static dea_status check_keys(struct reading *r, const struct dea_node *section)
+{
+  struct dea_node **sorted = dea_alloc(r->ctx, section->child_count, sizeof *sorted);
+  if (sorted == NULL) {
+    return DEA_E_MEMORY;
+  }
+  size_t count = 0;
+  for (struct dea_node *child = section->child; child != NULL; child = child->next) {
+    sorted[count++] = child;
+  }
+  qsort(sorted, count, sizeof *sorted, compare_keys);
+  dea_status status = DEA_OK;
+  for (size_t i = 1; i < count && status == DEA_OK; i++) {
+    if (strcmp(sorted[i]->key, sorted[i - 1]->key) == 0) {
+      status = dea_finding_add(r->ctx, DEA_ERROR, sorted[i]->key_place,
+                               "the key '%.60s' stands twice in this section, first in line %zu",
+                               sorted[i]->key, sorted[i - 1]->key_place.line);
+      if (status == DEA_OK && ++r->repeated == REPEATED_MAX) {
+        status = dea_fail(r->ctx, DEA_E_DESIGN, "too many keys stand twice");
+      }
+    }
+  }
+  dea_free(r->ctx, sorted);
+  return status;
+}
+
+static dea_status take_section(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+{
+  struct dea_node **last = &node->child;
+  for (const yaml_node_pair_t *pair = source->data.mapping.pairs.start;
+       pair < source->data.mapping.pairs.top; pair++) {
+    const yaml_node_t *key = yaml_document_get_node(r->document, pair->key);
+    struct dea_place place = place_of(r, key->start_mark);
+    if (key->type != YAML_SCALAR_NODE) {
+      return found(r->ctx, place, "a key must be a word");
+    }
+    struct dea_node *key_node = NULL;
+    DEA_TRY(r->ctx, take_node(r, pair->key, node->place, &key_node));
+    DEA_TRY(r->ctx, take_node(r, pair->value, place, last));
+    (*last)->key = key_node->text;
+    (*last)->key_place = place;
+    last = &(*last)->next;
+    node->child_count++;
+  }
+  return check_keys(r, node);
+}
+
+/* from: where to point when the node is an alias, whose own place libyaml does not keep. */
+static dea_status take_node(struct reading *r, int index, struct dea_place from,
+                            struct dea_node **out)
+{
+  const yaml_node_t *source = yaml_document_get_node(r->document, index);
+  if (r->seen[index - 1] != 0) {
+    return found(r->ctx, from, "aliases (*name) are not supported; write the value out");
+  }
+  r->seen[index - 1] = 1;
+  struct dea_place place = place_of(r, source->start_mark);
+  if (source->tag != NULL && strcmp((const char *)source->tag, default_tag(source->type)) != 0) {
+    return found(r->ctx, place, "tags (!name) are not supported; write the plain value");
+  }
+  if (r->depth >= DEA_YAML_DEPTH_MAX) {
+    return found(r->ctx, place, "sections and lists are nested too deeply");
+  }
+  struct dea_node *node = keep_memory(r->ctx, r->yaml, sizeof *node);
+  if (node == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *node = (struct dea_node){.text = "", .place = place, .overridden = r->fixed != NULL};
+  *out = node;
+  r->depth++;
+  dea_status status;
+  if (source->type == YAML_SCALAR_NODE) {
+    node->kind = DEA_NODE_VALUE;
+    status = take_value(r, source, node);
+  } else if (source->type == YAML_SEQUENCE_NODE) {
+    node->kind = DEA_NODE_LIST;
+    status = take_list(r, source, node);
+  } else {
+    node->kind = DEA_NODE_SECTION;
+    status = take_section(r, source, node);
+  }
+  r->depth--;
+  return status;
+}
+
+static dea_status take_document(struct reading *r, struct dea_node **out)
+{
+  size_t count = (size_t)(r->document->nodes.top - r->document->nodes.start);
+  struct dea_place start = r->fixed != NULL ? *r->fixed : (struct dea_place){r->yaml->name, 1, 1};
+  if (count > DEA_YAML_NODES_MAX) {
+    return found(r->ctx, start, "the file holds too many values to be a design");
+  }
+  r->seen = dea_alloc(r->ctx, count, 1);
+  if (r->seen == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = take_node(r, 1, start, out);
+  dea_free(r->ctx, r->seen);
+  return status;
+}
+
+/* Line and column of a byte, which libyaml does not know for text that it cannot decode. */
+static struct dea_place place_of_byte(const char *name, const char *bytes, size_t length,
+                                      size_t offset)
+{
+  struct dea_place place = {name, 1, 1};
+  for (size_t i = 0; i < offset && i < length; i++) {
+    if (bytes[i] == '\n') {
+      place.line++;
+      place.column = 1;
+    } else {
+      place.column++;
+    }
+  }
+  return place;
+}
+
+static dea_status parser_failed(struct dea_context *ctx, const yaml_parser_t *parser,
+                                const char *name, const char *bytes, size_t length,
+                                const struct dea_place *fixed)
+{
+  const char *problem = parser->problem != NULL ? parser->problem : "unknown";
+  struct dea_place place = {name, parser->problem_mark.line + 1, parser->problem_mark.column + 1};
+  if (parser->error == YAML_MEMORY_ERROR) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
+  }
+  if (parser->error == YAML_READER_ERROR) {
+    place = place_of_byte(name, bytes, length, parser->problem_offset);
+  }
+  place = fixed != NULL ? *fixed : place;
+  if (parser->error == YAML_READER_ERROR) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "this is not a text file in UTF-8: %s",
+                                 problem));
+  } else if (strstr(problem, "found undefined alias") != NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+                                 "aliases (*name) are not supported; write the value out"));
+  } else {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "this is not YAML: %s%s%s", problem,
+                                 parser->context != NULL ? " " : "",
+                                 parser->context != NULL ? parser->context : ""));
+  }
+  return dea_fail(ctx, DEA_E_DESIGN, "'%s' is not YAML: %s", name, problem);
+}
+
+/* A second document after the first is an error: silently ignoring it would lose values. */
+static dea_status check_end(struct dea_context *ctx, yaml_parser_t *parser, const char *name,
+                            const char *bytes, size_t length, const struct dea_place *fixed)
+{
+  yaml_document_t second;
+  if (yaml_parser_load(parser, &second) == 0) {
+    return parser_failed(ctx, parser, name, bytes, length, fixed);
+  }
+  const yaml_node_t *root = yaml_document_get_root_node(&second);
+  dea_status status = DEA_OK;
+  if (root != NULL) {
+    struct dea_place place = {name, root->start_mark.line + 1, root->start_mark.column + 1};
+    status = found(ctx, fixed != NULL ? *fixed : place,
+                   "a second document starts here; a file holds one");
+  }
+  yaml_document_delete(&second);
+  return status;
+}
+
+/* Parses text into nodes of yaml. fixed: place of all nodes, or NULL. */
+static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, const char *bytes,
+                             size_t length, const struct dea_place *fixed, struct dea_node **out)
+{
+  yaml_parser_t parser;
+  yaml_document_t document;
+  if (yaml_parser_initialize(&parser) == 0) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
+  }
+  yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
+  yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, length);
+  dea_status status;
+  if (yaml_parser_load(&parser, &document) == 0) {
+    status = parser_failed(ctx, &parser, yaml->name, bytes, length, fixed);
+  } else {
+    if (yaml_document_get_root_node(&document) == NULL) {
+      struct dea_place place = {yaml->name, 1, 1};
+      status = found(ctx, fixed != NULL ? *fixed : place, "there is nothing in it");
+    } else {
+      struct reading r = {.ctx = ctx, .yaml = yaml, .document = &document, .fixed = fixed};
+      status = take_document(&r, out);
+      if (status == DEA_OK) {
+        status = check_end(ctx, &parser, yaml->name, bytes, length, fixed);
+      }
+    }
+    yaml_document_delete(&document);
+  }
+  yaml_parser_delete(&parser);
+  return status;
+}
+
+dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char *bytes,
+                          size_t length, struct dea_yaml **out)
+{
+  *out = NULL;
+  struct dea_yaml *yaml = dea_alloc(ctx, 1, sizeof *yaml);
+  if (yaml == NULL) {
+    return DEA_E_MEMORY;
+  }
+  yaml->name = dea_intern(ctx, name);
+  dea_status status = DEA_E_MEMORY;
+  if (yaml->name != NULL) {
+    status = parse_into(ctx, yaml, bytes, length, NULL, &yaml->root);
+  }
+  if (status != DEA_OK) {
+    dea_yaml_destroy(ctx, yaml);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = yaml;
+  return DEA_OK;
+}
+
+void dea_yaml_destroy(struct dea_context *ctx, struct dea_yaml *yaml)
+{
+  if (yaml == NULL) {
+    return;
+  }
+  for (struct block *block = yaml->blocks; block != NULL;) {
+    struct block *next = block->next;
+    dea_free(ctx, block);
+    block = next;
+  }
+  dea_free(ctx, yaml);
+}
+
+const struct dea_node *dea_yaml_root(const struct dea_yaml *yaml)
+{
+  return yaml->root;
+}
+
+const struct dea_node *dea_node_find(const struct dea_node *section, const char *key)
+{
+  for (const struct dea_node *child = section->child; child != NULL; child = child->next) {
+    if (child->key != NULL && strcmp(child->key, key) == 0) {
+      return child;
+    }
+  }
+  return NULL;
+}
+
+dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
+                             const char *text, const struct dea_node **out)
+{
+  struct dea_node *node = NULL;
+  DEA_TRY(ctx, parse_into(ctx, yaml, text, strlen(text), &place, &node));
+  *out = node;
+  return DEA_OK;
+}
+
+/* Where the link to the member `key` of a section is, or the link at its end. */
+static struct dea_node **link_of(struct dea_node *section, const char *key, size_t length)
+{
+  struct dea_node **link = &section->child;
+  while (*link != NULL &&
+         !(strlen((*link)->key) == length && memcmp((*link)->key, key, length) == 0)) {
+    link = &(*link)->next;
+  }
+  return link;
+}
+
+/* Walks to the section that holds the last key of the path, making sections on the way. */
+static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
+                       const char **path, struct dea_node **section)
+{
+  struct dea_node *at = yaml->root;
+  for (const char *dot = strchr(*path, '.'); dot != NULL; dot = strchr(*path, '.')) {
+    size_t length = (size_t)(dot - *path);
+    struct dea_node **link = link_of(at, *path, length);
+    if (*link == NULL) {
+      struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
+      char *key = keep_text(ctx, yaml, *path, length);
+      if (made == NULL || key == NULL) {
+        return DEA_E_MEMORY;
+      }
+      *made =
+          (struct dea_node){DEA_NODE_SECTION, "", false, true, key, place, place, NULL, NULL, 0};
+      *link = made;
+      at->child_count++;
+    }
+    at = *link;
+    if (at->kind != DEA_NODE_SECTION) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "'%.60s' is %s, not a section", at->key,
+                                   at->kind == DEA_NODE_LIST ? "a list" : "a value"));
+      return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is not a section", at->key);
+    }
+    at->overridden = true;
+    *path = dot + 1;
+  }
+  *section = at;
+  return DEA_OK;
+}
+
+dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, const char *path,
+                             const char *value)
+{
+  struct dea_text name = {.ctx = ctx};
+  dea_text_add(&name, "--set %s", path);
+  struct dea_place place = {.file = name.failed ? NULL : dea_intern(ctx, dea_text_get(&name))};
+  dea_text_free(&name);
+  if (place.file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  if (yaml->root->kind != DEA_NODE_SECTION) {
+    return DEA_OK; // the reader of the schema says so
+  }
+  struct dea_node *section = NULL, *node = NULL;
+  DEA_TRY(ctx, walk(ctx, yaml, place, &path, &section));
+  DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &place, &node));
+  struct dea_node **link = link_of(section, path, strlen(path)), *old = *link;
+  if (node->kind == DEA_NODE_VALUE && node->empty) {
+    *link = old != NULL ? old->next : NULL;
+    section->child_count -= old != NULL;
+    return DEA_OK;
+  }
+  node->key = keep_text(ctx, yaml, path, strlen(path));
+  if (node->key == NULL) {
+    return DEA_E_MEMORY;
+  }
+  node->key_place = place;
+  node->next = old != NULL ? old->next : NULL;
+  section->child_count += old == NULL;
+  *link = node;
+  return DEA_OK;
+}

@@ -1,0 +1,54 @@
+/* YAML text as a tree of nodes with places, read through libyaml's document API.
+ *
+ * Only what a design needs is taken: one document of sections, lists and values. Anchors with
+ * aliases, tags, several documents and repeated keys are errors, each with its place. */
+#ifndef DEA_BASE_YAML_H
+#define DEA_BASE_YAML_H
+
+#include "base/context.h"
+
+enum {
+  DEA_YAML_SIZE_MAX = 4 * 1024 * 1024, // bytes of a file
+  DEA_YAML_NODES_MAX = 100000,
+  DEA_YAML_DEPTH_MAX = 32,
+};
+
+enum dea_node_kind { DEA_NODE_VALUE, DEA_NODE_LIST, DEA_NODE_SECTION };
+
+/* A node; all of it belongs to its document. */
+struct dea_node {
+  enum dea_node_kind kind;
+  const char *text;              // of a value, never NULL; "" of lists and sections
+  bool empty;                    // nothing was written: "key:", "~" or "null"
+  bool overridden;               // comes from an override, or holds a node that does
+  const char *key;               // in a section; NULL otherwise
+  struct dea_place place;        // of the value
+  struct dea_place key_place;    // of the key
+  struct dea_node *child, *next; // first member of a list or section; next sibling
+  size_t child_count;
+};
+
+struct dea_yaml;
+
+/* name stands for the file in places and is interned. DEA_E_DESIGN after at least one finding.
+ * A key that stands twice is a finding too, but the tree is made, so that the rest can be checked:
+ * count the errors before and after. out: owned by the caller, NULL on failure. */
+dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char *bytes,
+                          size_t length, struct dea_yaml **out);
+/* NULL is fine. */
+void dea_yaml_destroy(struct dea_context *ctx, struct dea_yaml *yaml);
+/* The outermost node; lent. Its place is the first line. */
+const struct dea_node *dea_yaml_root(const struct dea_yaml *yaml);
+/* Puts value, YAML text such as "200 um" or "[1 kV, 2 kV]", at a dotted path of sections; sections
+ * that are missing are made, "null" takes the key away. Places of new nodes are "--set PATH", line
+ * 0. DEA_E_DESIGN after a finding. */
+dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, const char *path,
+                             const char *value);
+/* A node of its own from YAML text (the default of a list), kept by the document; places = place.
+ */
+dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
+                             const char *text, const struct dea_node **out);
+/* Member of a section with that key, or NULL. */
+const struct dea_node *dea_node_find(const struct dea_node *section, const char *key);
+
+#endif

@@ -1,0 +1,107 @@
+#define _POSIX_C_SOURCE 200809L // stat
+#include "cli/data_files.h"
+
+#include "base/text.h"
+
+#include <glob.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *const installed[] = {DEA_INSTALL_DATA_DIR "/examples",
+                                        DEA_INSTALL_DATA_DIR "/materials"};
+static const char *const source[] = {DEA_SOURCE_DIR "/examples", DEA_SOURCE_DIR "/data/materials"};
+
+static bool is_regular(const char *path)
+{
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+static bool ends_in(const char *text, const char *ending)
+{
+  size_t n = strlen(text), m = strlen(ending);
+  return n >= m && strcmp(text + n - m, ending) == 0;
+}
+
+/* Adds what is in `folder` to *found; the folder's own name is taken literally. */
+static dea_status glob_folder(struct dea_context *ctx, const char *folder, const char *pattern,
+                              int flags, glob_t *found)
+{
+  struct dea_text text = {.ctx = ctx};
+  for (const char *p = folder; *p != '\0'; p++) {
+    dea_text_add(&text, "%s%c", strchr("*?[\\", *p) != NULL ? "\\" : "", *p);
+  }
+  dea_text_add(&text, "%s", pattern);
+  int code = text.failed ? GLOB_NOSPACE : glob(dea_text_get(&text), flags, NULL, found);
+  dea_text_free(&text);
+  return code == GLOB_NOSPACE ? dea_fail(ctx, DEA_E_MEMORY, "out of memory") : DEA_OK;
+}
+
+static dea_status take_files(struct dea_context *ctx, const char *folder, const char *ending,
+                             const glob_t *found, struct cli_data_list *list)
+{
+  list->folder = dea_copy_text(ctx, folder, strlen(folder));
+  list->files = dea_alloc(ctx, found->gl_pathc, sizeof *list->files);
+  if (list->folder == NULL || list->files == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < found->gl_pathc; i++) {
+    const char *path = found->gl_pathv[i];
+    if (!ends_in(path, ending) || !is_regular(path)) {
+      continue;
+    }
+    struct cli_data_file *file = &list->files[list->count];
+    const char *name = path + strlen(folder) + 1;
+    file->path = dea_copy_text(ctx, path, strlen(path));
+    file->name = dea_copy_text(ctx, name, strlen(name));
+    list->count++;
+    if (file->path == NULL || file->name == NULL) {
+      return DEA_E_MEMORY;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status find_in(struct dea_context *ctx, const char *folder, const char *ending,
+                          struct cli_data_list *list)
+{
+  glob_t found = {.gl_pathc = 0};
+  dea_status status = glob_folder(ctx, folder, "/*", 0, &found);
+  if (status == DEA_OK) {
+    status = glob_folder(ctx, folder, "/*/*", GLOB_APPEND, &found);
+  }
+  if (status == DEA_OK) {
+    status = take_files(ctx, folder, ending, &found, list);
+  }
+  globfree(&found);
+  return status;
+}
+
+dea_status cli_data_find(struct dea_context *ctx, enum dea_data_kind kind, const char *ending,
+                         struct cli_data_list *list)
+{
+  const char *const places[] = {installed[kind], source[kind]};
+  *list = (struct cli_data_list){.count = 0};
+  for (size_t i = 0; i < 2 && list->count == 0; i++) {
+    cli_data_free(ctx, list);
+    DEA_TRY(ctx, find_in(ctx, places[i], ending, list));
+  }
+  return DEA_OK;
+}
+
+void cli_data_free(struct dea_context *ctx, struct cli_data_list *list)
+{
+  for (size_t i = 0; i < list->count; i++) {
+    dea_free(ctx, list->files[i].path);
+    dea_free(ctx, list->files[i].name);
+  }
+  dea_free(ctx, list->files);
+  dea_free(ctx, list->folder);
+  *list = (struct cli_data_list){.count = 0};
+}
+
+size_t cli_data_stem(const char *name)
+{
+  const char *dot = strrchr(name, '.');
+  return dot != NULL ? (size_t)(dot - name) : strlen(name);
+}

@@ -1,0 +1,210 @@
+#include "base/file.h"
+#include "design/schema.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Points of a sweep from `from` to `to`; 0 when the step does not fit or there are too many. */
+static size_t sweep_count(double from, double to, double step)
+{
+  double steps = floor(fabs(to - from) / step * (1 + 1e-12) + 1e-9);
+  return steps < DEA_DESIGN_VOLTAGES_MAX ? (size_t)steps + 1 : 0;
+}
+
+static dea_status make_sweep(struct dea_context *ctx, struct dea_design_raw *raw)
+{
+  struct dea_design *design = &raw->design;
+  double from = raw->from_V.si, to = raw->to_V.si, step = raw->step_V.si;
+  if (isnan(from) || isnan(to) || isnan(step)) {
+    return DEA_OK; // already an error
+  }
+  size_t count = sweep_count(from, to, step);
+  if (count == 0) {
+    return dea_finding_add(ctx, DEA_ERROR, raw->step_V.place,
+                           "step: from %g V to %g V in steps of %g V are more than %d voltages",
+                           from, to, step, DEA_DESIGN_VOLTAGES_MAX);
+  }
+  double span = step * (double)(count - 1), whole = fabs(to - from);
+  bool reaches = fabs(span - whole) <= 1e-6 * step;
+  if (!reaches) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, raw->step_V.place,
+                                 "step: steps of %g V from %g V do not meet %g V; the last voltage "
+                                 "is %g V",
+                                 step, from, to, from + copysign(span, to - from)));
+  }
+  double end = reaches ? to : from + copysign(span, to - from);
+  design->compute.voltages_V = dea_alloc(ctx, count, sizeof *design->compute.voltages_V);
+  if (design->compute.voltages_V == NULL) {
+    return DEA_E_MEMORY;
+  }
+  design->compute.voltage_count = count;
+  for (size_t i = 0; i < count; i++) {
+    design->compute.voltages_V[i] =
+        count > 1 ? from + (end - from) * (double)i / (double)(count - 1) : from;
+  }
+  return DEA_OK;
+}
+
+static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
+{
+  struct dea_design *design = &raw->design;
+  if (raw->voltage_count == 0) {
+    design->compute.voltages_place = raw->to_V.place;
+    return make_sweep(ctx, raw);
+  }
+  design->compute.voltages_place = raw->voltages_V[0].place;
+  design->compute.voltages_V =
+      dea_alloc(ctx, raw->voltage_count, sizeof *design->compute.voltages_V);
+  if (design->compute.voltages_V == NULL) {
+    return DEA_E_MEMORY;
+  }
+  design->compute.voltage_count = raw->voltage_count;
+  for (size_t i = 0; i < raw->voltage_count; i++) {
+    design->compute.voltages_V[i] = raw->voltages_V[i].si;
+  }
+  return DEA_OK;
+}
+
+/* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films.
+ */
+static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
+{
+  struct dea_quantity *end = &design->compute.path_max_stretch;
+  double pre_stretch = design->pre_stretch.si;
+  if (end->origin == DEA_ABSENT) {
+    end->si = 1.5 * pre_stretch;
+    end->origin = DEA_DEFAULT;
+    return DEA_OK;
+  }
+  if (end->si <= pre_stretch) {
+    return dea_finding_add(ctx, DEA_ERROR, end->place,
+                           "max_stretch %g is the total stretch and must be above the pre-stretch "
+                           "%g",
+                           end->si, pre_stretch);
+  }
+  return DEA_OK;
+}
+
+static void take_figures(struct dea_design_raw *raw)
+{
+  for (size_t i = 0; i < raw->figure_count; i++) {
+    raw->design.report.svg |= raw->figures[i].value == DEA_FIGURE_SVG;
+    raw->design.report.pdf |= raw->figures[i].value == DEA_FIGURE_PDF;
+    raw->design.report.png |= raw->figures[i].value == DEA_FIGURE_PNG;
+  }
+}
+
+static dea_status take_materials(const struct dea_reader *reader, struct dea_design_raw *raw)
+{
+  struct dea_context *ctx = reader->ctx;
+  struct dea_design *design = &raw->design;
+  for (size_t i = 0; i < design->material_count; i++) {
+    char path[32];
+    snprintf(path, sizeof path, "materials[%zu]", i);
+    DEA_TRY(ctx, dea_material_data_finish(reader, path, &raw->materials[i]));
+    const struct dea_label *name = &raw->materials[i].name;
+    for (size_t j = 0; j < i && name->text[0] != '\0'; j++) {
+      if (strcmp(name->text, raw->materials[j].name.text) == 0) {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+                                     "the name '%.60s' is taken by the material in line %zu",
+                                     name->text, raw->materials[j].name.place.line));
+      }
+    }
+  }
+  design->materials = dea_alloc(ctx, design->material_count, sizeof *design->materials);
+  if (design->materials == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(design->materials, raw->materials, design->material_count * sizeof *design->materials);
+  return DEA_OK;
+}
+
+/* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
+static dea_status read_raw(struct dea_context *ctx, const char *name, const char *bytes,
+                           size_t length, const struct dea_override *overrides,
+                           size_t override_count, struct dea_design_raw *raw)
+{
+  struct dea_design *design = &raw->design;
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  design->file = dea_intern(ctx, name);
+  if (design->file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, dea_yaml_parse(ctx, name, bytes, length, &design->document));
+  for (size_t i = 0; i < override_count; i++) {
+    dea_status status =
+        dea_yaml_override(ctx, design->document, overrides[i].key, overrides[i].value);
+    if (status != DEA_OK && status != DEA_E_DESIGN) {
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+  }
+  struct dea_reader reader = {ctx, design->document, &design->values};
+  DEA_TRY(ctx,
+          dea_schema_read(&reader, &dea_design_record, dea_yaml_root(design->document), "", raw));
+  if (dea_yaml_root(design->document)->kind == DEA_NODE_SECTION) {
+    DEA_TRY(ctx, take_materials(&reader, raw));
+    DEA_TRY(ctx, take_voltages(ctx, raw));
+    DEA_TRY(ctx, take_path(ctx, design));
+    take_figures(raw);
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", name, found, found > 1 ? "s" : "");
+  }
+  return DEA_OK;
+}
+
+/* Frees what a design owns, not the design. */
+static void clear_design(struct dea_context *ctx, struct dea_design *design)
+{
+  dea_free(ctx, design->compute.voltages_V);
+  dea_free(ctx, design->materials);
+  dea_listing_free(ctx, &design->values);
+  dea_yaml_destroy(ctx, design->document);
+}
+
+dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
+                                  size_t length, const struct dea_override *overrides,
+                                  size_t override_count, struct dea_design **out)
+{
+  *out = NULL;
+  struct dea_design_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
+  if (raw == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = read_raw(ctx, name, bytes, length, overrides, override_count, raw);
+  if (status == DEA_OK) {
+    *out = dea_alloc(ctx, 1, sizeof **out);
+    status = *out != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  if (status == DEA_OK) {
+    **out = raw->design;
+  } else {
+    clear_design(ctx, &raw->design);
+  }
+  dea_free(ctx, raw);
+  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_design_read(struct dea_context *ctx, const char *file,
+                           const struct dea_override *overrides, size_t override_count,
+                           struct dea_design **out)
+{
+  char *bytes;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status =
+      dea_design_read_memory(ctx, file, bytes, length, overrides, override_count, out);
+  dea_free(ctx, bytes);
+  return status;
+}
+
+void dea_design_destroy(struct dea_context *ctx, struct dea_design *design)
+{
+  if (design != NULL) {
+    clear_design(ctx, design);
+    dea_free(ctx, design);
+  }
+}

@@ -1,0 +1,24 @@
+/* The schema of a design file: the table, and the struct that it fills. */
+#ifndef DEA_DESIGN_SCHEMA_H
+#define DEA_DESIGN_SCHEMA_H
+
+#include "design/design.h"
+
+enum { DEA_FIGURE_SVG, DEA_FIGURE_PDF, DEA_FIGURE_PNG, DEA_FIGURE_COUNT };
+
+/* A design as the table reads it, before what is derived from several values. */
+struct dea_design_raw {
+  struct dea_design design;
+  struct dea_quantity version;
+  struct dea_quantity from_V, to_V, step_V;
+  struct dea_quantity voltages_V[DEA_DESIGN_VOLTAGES_MAX];
+  size_t voltage_count;
+  struct dea_choice figures[DEA_FIGURE_COUNT];
+  size_t figure_count;
+  struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
+};
+
+/* Table of a design file; base: a struct dea_design_raw. */
+extern const struct dea_record dea_design_record;
+
+#endif

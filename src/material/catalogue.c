@@ -1,0 +1,291 @@
+#define _POSIX_C_SOURCE 200809L // opendir
+#include "material/catalogue.h"
+
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIRECTORIES_MAX = 16, DIRECTORY_SIZE = 1024, NAMES_MAX = 4096 };
+
+/* Directories that are searched, in this order. */
+struct directories {
+  char path[DIRECTORIES_MAX][DIRECTORY_SIZE];
+  size_t count;
+};
+
+static void add_directory(struct directories *list, const char *path, size_t length,
+                          const char *below)
+{
+  if (length > 0 && length + strlen(below) < DIRECTORY_SIZE && list->count < DIRECTORIES_MAX) {
+    snprintf(list->path[list->count++], DIRECTORY_SIZE, "%.*s%s", (int)length, path, below);
+  }
+}
+
+static void find_directories(struct directories *list)
+{
+  list->count = 0;
+  const char *own = getenv("DEA_MATERIALS");
+  while (own != NULL && *own != '\0') {
+    size_t length = strcspn(own, ":");
+    add_directory(list, own, length, "");
+    own += length + (own[length] == ':');
+  }
+  add_directory(list, DEA_INSTALL_DATA_DIR, strlen(DEA_INSTALL_DATA_DIR), "/materials");
+  add_directory(list, DEA_SOURCE_DATA_DIR, strlen(DEA_SOURCE_DATA_DIR), "/materials");
+}
+
+/* Length of the name in "NAME.yaml", or 0. */
+static size_t stem_length(const char *file)
+{
+  const char *dot = strrchr(file, '.');
+  return dot != NULL && dot != file && file[0] != '.' && strcmp(dot, ".yaml") == 0
+             ? (size_t)(dot - file)
+             : 0;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static dea_status add_name(struct dea_context *ctx, const char **names, size_t *count,
+                           const char *file)
+{
+  size_t length = stem_length(file);
+  if (length == 0 || length >= DEA_NAME_SIZE || *count == NAMES_MAX) {
+    return DEA_OK;
+  }
+  char name[DEA_NAME_SIZE];
+  snprintf(name, sizeof name, "%.*s", (int)length, file);
+  const char *kept = dea_intern(ctx, name);
+  if (kept == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < *count; i++) {
+    if (names[i] == kept) {
+      return DEA_OK;
+    }
+  }
+  names[(*count)++] = kept;
+  return DEA_OK;
+}
+
+dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, size_t *count)
+{
+  struct directories list;
+  find_directories(&list);
+  *count = 0;
+  *names = dea_alloc(ctx, NAMES_MAX, sizeof **names);
+  if (*names == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
+    DIR *directory = opendir(list.path[i]);
+    if (directory == NULL) {
+      continue; // one that does not exist holds no materials
+    }
+    for (struct dirent *entry; status == DEA_OK && (entry = readdir(directory)) != NULL;) {
+      status = add_name(ctx, *names, count, entry->d_name);
+    }
+    closedir(directory);
+  }
+  if (status != DEA_OK) {
+    dea_free(ctx, *names);
+    *names = NULL;
+    return status;
+  }
+  qsort(*names, *count, sizeof **names, compare_names);
+  return DEA_OK;
+}
+
+/* Adds the finding that there is no such material, with the nearest name and all names. */
+static dea_status unknown_material(struct dea_context *ctx, const char *name,
+                                   struct dea_place place)
+{
+  const char **names;
+  size_t count;
+  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
+  struct dea_text list = {.ctx = ctx};
+  for (size_t i = 0; i < count; i++) {
+    dea_text_add(&list, "%s%s", i > 0 ? ", " : "", names[i]);
+  }
+  const char *nearest = dea_nearest_name(name, names, count);
+  dea_status status =
+      list.failed
+          ? DEA_E_MEMORY
+          : dea_finding_add(ctx, DEA_ERROR, place,
+                            "there is no material '%.60s'%s%s%s; there %s: %s", name,
+                            nearest != NULL ? "; did you mean '" : "",
+                            nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "",
+                            count > 0 ? "are" : "is", count > 0 ? dea_text_get(&list) : "none");
+  dea_text_free(&list);
+  dea_free(ctx, names);
+  DEA_TRY(ctx, status);
+  return dea_fail(ctx, DEA_E_DESIGN, "there is no material '%.60s'", name);
+}
+
+/* Text of NAME.yaml from the first directory that has it; *file is interned. */
+static dea_status load(struct dea_context *ctx, const char *name, struct dea_place place,
+                       const char **file, char **bytes, size_t *length)
+{
+  struct directories list;
+  find_directories(&list);
+  bool plain = name[0] != '\0' && name[0] != '.' && strchr(name, '/') == NULL &&
+               strlen(name) < DEA_NAME_SIZE;
+  for (size_t i = 0; plain && i < list.count; i++) {
+    char path[DIRECTORY_SIZE + DEA_NAME_SIZE + 8];
+    snprintf(path, sizeof path, "%s/%s.yaml", list.path[i], name);
+    FILE *probe = fopen(path, "r");
+    if (probe == NULL && errno == ENOENT) {
+      continue;
+    }
+    if (probe != NULL) {
+      fclose(probe);
+    }
+    *file = dea_intern(ctx, path);
+    if (*file == NULL) {
+      return DEA_E_MEMORY;
+    }
+    return dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, bytes, length);
+  }
+  return unknown_material(ctx, name, place);
+}
+
+static dea_status read_entry(struct dea_context *ctx, const char *name, const char *bytes,
+                             size_t length, struct dea_catalogue_entry *entry)
+{
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  DEA_TRY(ctx, dea_yaml_parse(ctx, entry->file, bytes, length, &entry->yaml));
+  struct dea_reader reader = {ctx, entry->yaml, &entry->listing};
+  DEA_TRY(ctx, dea_schema_read(&reader, &dea_material_file_record, dea_yaml_root(entry->yaml), "",
+                               &entry->data));
+  DEA_TRY(ctx, dea_material_data_finish(&reader, "", &entry->data));
+  if (entry->data.name.text[0] != '\0' && strcmp(entry->data.name.text, name) != 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, entry->data.name.place,
+                                 "the material '%.60s' must stand in a file '%.60s.yaml'",
+                                 entry->data.name.text, entry->data.name.text));
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) > errors) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the material file '%s' has errors", entry->file);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct dea_place place,
+                              struct dea_catalogue_entry **out)
+{
+  char *bytes = NULL;
+  size_t length = 0;
+  *out = NULL;
+  struct dea_catalogue_entry *entry = dea_alloc(ctx, 1, sizeof *entry);
+  if (entry == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = load(ctx, name, place, &entry->file, &bytes, &length);
+  if (status == DEA_OK) {
+    status = read_entry(ctx, name, bytes, length, entry);
+  }
+  dea_free(ctx, bytes);
+  if (status != DEA_OK) {
+    dea_catalogue_destroy(ctx, entry);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = entry;
+  return DEA_OK;
+}
+
+void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry)
+{
+  if (entry == NULL) {
+    return;
+  }
+  dea_listing_free(ctx, &entry->listing);
+  dea_yaml_destroy(ctx, entry->yaml);
+  dea_free(ctx, entry);
+}
+
+/* Index of the set with that id (the first for ""); -1 after adding a finding. ids: a label every
+ * `stride` bytes. */
+static int find_set(struct dea_context *ctx, const char *what, const struct dea_material_data *data,
+                    const char *wanted, struct dea_place place, const struct dea_label *ids,
+                    size_t count, size_t stride)
+{
+  const char *names[DEA_MATERIAL_SETS_MAX] = {NULL};
+  char list[DEA_MATERIAL_SETS_MAX * (DEA_NAME_SIZE + 2)] = "";
+  if (wanted == NULL || wanted[0] == '\0') {
+    return 0;
+  }
+  for (size_t i = 0; i < count; i++) {
+    names[i] = ((const struct dea_label *)(const void *)((const char *)ids + i * stride))->text;
+    if (strcmp(names[i], wanted) == 0) {
+      return (int)i;
+    }
+    size_t used = strlen(list);
+    snprintf(list + used, sizeof list - used, "%s%.63s", i > 0 ? ", " : "", names[i]);
+  }
+  const char *nearest = dea_nearest_name(wanted, names, count);
+  dea_status status = dea_finding_add(
+      ctx, DEA_ERROR, place, "material '%s' has no %s '%.60s'%s%s%s; there %s: %s", data->name.text,
+      what, wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+      nearest != NULL ? "'?" : "", count == 1 ? "is" : "are", count > 0 ? list : "none");
+  if (status == DEA_OK) {
+    dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
+  }
+  return -1;
+}
+
+static void take_law(const struct dea_law_set *set, struct dea_material *out)
+{
+  snprintf(out->law_id, sizeof out->law_id, "%.63s", set->id.text);
+  out->law = set->law;
+  for (size_t i = 0; i < set->law->param_count; i++) {
+    out->param[i] = isnan(set->param[i].si) ? 0 : set->param[i].si; // optional, not given
+  }
+  out->fibre_angle_rad = set->fibre_angle_rad.si;
+  if (set->range.count == 2) {
+    out->stretch_min = set->range.limits[0].si;
+    out->stretch_max = set->range.limits[1].si;
+  }
+}
+
+dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
+                               const struct dea_material_choice *choice, struct dea_material *out)
+{
+  *out = (struct dea_material){0};
+  snprintf(out->name, sizeof out->name, "%.63s", data->name.text);
+  int law = find_set(ctx, "law set", data, choice->law, choice->law_place, &data->laws[0].id,
+                     data->law_count, sizeof data->laws[0]);
+  int permittivity =
+      find_set(ctx, "permittivity", data, choice->permittivity, choice->permittivity_place,
+               &data->permittivity[0].id, data->permittivity_count, sizeof data->permittivity[0]);
+  if (law < 0 || permittivity < 0) {
+    return dea_context_status(ctx);
+  }
+  if (data->law_count > 0) {
+    take_law(&data->laws[law], out);
+  }
+  if (data->permittivity_count > 0) {
+    const struct dea_permittivity_set *set = &data->permittivity[permittivity];
+    out->permittivity = (struct dea_permittivity){set->at_rest.si, set->slope.si};
+  }
+  if (data->breakdown_count > 0) {
+    const struct dea_breakdown_set *set = &data->breakdown[0];
+    bool known = !isnan(set->exponent.si);
+    out->breakdown =
+        (struct dea_breakdown){true, set->at_rest_V_per_m.si, known ? set->exponent.si : 0, known};
+  }
+  if (data->has_density) {
+    out->density_kg_per_m3 = data->density.value_kg_per_m3.si;
+  }
+  if (data->has_elastic) {
+    out->young_modulus_Pa = data->elastic.young_modulus_Pa.si;
+    out->poisson_ratio = data->elastic.poisson_ratio.si;
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,110 @@
+/* The catalogue: data files of materials, and the same data inline in a design.
+ *
+ * A material has one or more parameter sets for its law, its permittivity and its breakdown field;
+ * the first of each is the default. Numbers are SI and keep their place; texts are lent by the
+ * document that they were read from. */
+#ifndef DEA_MATERIAL_CATALOGUE_H
+#define DEA_MATERIAL_CATALOGUE_H
+
+#include "base/schema.h"
+#include "material/material.h"
+
+enum { DEA_MATERIAL_VERSION = 1, DEA_MATERIAL_SETS_MAX = 8 };
+
+/* What every set of numbers says about itself; NULL where nothing is said. */
+struct dea_data_notes {
+  const char *uncertainty, *range, *source, *note;
+};
+
+/* Range of stretch that the data cover. count is 0 when it is not known, else 2. */
+struct dea_stretch_range {
+  struct dea_quantity limits[2];
+  size_t count;
+};
+
+/* Parameters of one law. */
+struct dea_law_set {
+  struct dea_label id, law_name;
+  const struct dea_law *law;         // NULL after an error in law_name
+  const struct dea_node *parameters; // section as written; lent
+  struct dea_quantity param[DEA_LAW_PARAM_MAX];
+  struct dea_quantity fibre_angle_rad;
+  struct dea_stretch_range range;
+  struct dea_data_notes notes;
+};
+
+struct dea_permittivity_set {
+  struct dea_label id;
+  struct dea_quantity at_rest, slope;
+  struct dea_stretch_range range;
+  struct dea_data_notes notes;
+};
+
+struct dea_breakdown_set {
+  struct dea_label id;
+  struct dea_quantity at_rest_V_per_m, exponent; // exponent: NAN when unknown
+  struct dea_stretch_range range;
+  struct dea_data_notes notes;
+};
+
+enum dea_material_kind { DEA_ELASTOMER, DEA_PLASTIC, DEA_ELECTRODE_MATERIAL };
+
+struct dea_material_data {
+  struct dea_quantity version;
+  struct dea_label name, title;
+  struct dea_choice kind; // enum dea_material_kind
+  bool has_density;
+  struct {
+    struct dea_quantity value_kg_per_m3;
+    struct dea_data_notes notes;
+  } density;
+  bool has_elastic;
+  struct {
+    struct dea_quantity young_modulus_Pa, poisson_ratio;
+    struct dea_data_notes notes;
+  } elastic;
+  struct dea_law_set laws[DEA_MATERIAL_SETS_MAX];
+  struct dea_permittivity_set permittivity[DEA_MATERIAL_SETS_MAX];
+  struct dea_breakdown_set breakdown[DEA_MATERIAL_SETS_MAX];
+  size_t law_count, permittivity_count, breakdown_count;
+};
+
+/* Schema of a data file, and of a material in a design (the same without the version). */
+extern const struct dea_record dea_material_file_record, dea_material_inline_record;
+
+/* Second half of reading: finds the laws, reads their parameters and checks what no table can. data
+ * was read with one of the two records; path as for dea_schema_read. */
+dea_status dea_material_data_finish(const struct dea_reader *reader, const char *path,
+                                    struct dea_material_data *data);
+
+/* One material of the catalogue with the document that its texts live in. */
+struct dea_catalogue_entry {
+  const char *file; // where it was found; interned
+  struct dea_material_data data;
+  struct dea_listing listing; // every value as written
+  struct dea_yaml *yaml;
+};
+
+/* Names of all materials, sorted, each once: those of the directories of the environment variable
+ * DEA_MATERIALS (separated by colons), of the installed data and of the source tree. names: owned
+ * by the caller (dea_free), the texts are interned. */
+dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, size_t *count);
+/* Reads one material. place: where the name stands in an input, for the finding when there is no
+ * such material (DEA_E_DESIGN). out: owned by the caller, NULL on failure. */
+dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct dea_place place,
+                              struct dea_catalogue_entry **out);
+/* NULL is fine. */
+void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
+
+/* Which sets of a material are wanted; "" or NULL for the first. place: of what named it. */
+struct dea_material_choice {
+  const char *law, *permittivity;
+  struct dea_place law_place, permittivity_place;
+};
+
+/* The material as the models use it. A set that does not exist gives DEA_E_DESIGN after a finding
+ * that names those that do. */
+dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
+                               const struct dea_material_choice *choice, struct dea_material *out);
+
+#endif

@@ -1,0 +1,358 @@
+/* The table of a material's data, and what is checked beyond it. */
+#include "base/schema_value.h"
+#include "material/catalogue.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* Fields that every set of numbers has: uncertainty, range in words, source (required), note. */
+#define NOTE_FIELDS(type, member)                                                                  \
+  {.key = "source",                                                                                \
+   .kind = DEA_FIELD_TEXT,                                                                         \
+   .offset = offsetof(type, member.source),                                                        \
+   .required = true,                                                                               \
+   .doc = "where the numbers come from",                                                           \
+   .example = "\"data sheet, maker, year\""},                                                      \
+      {.key = "uncertainty",                                                                       \
+       .kind = DEA_FIELD_TEXT,                                                                     \
+       .offset = offsetof(type, member.uncertainty),                                               \
+       .doc = "uncertainty, in words or as +- value",                                              \
+       .example = "\"+- 5 %\""},                                                                   \
+      {.key = "range",                                                                             \
+       .kind = DEA_FIELD_TEXT,                                                                     \
+       .offset = offsetof(type, member.range),                                                     \
+       .doc = "range in which the numbers hold, in words",                                         \
+       .example = "\"23 degC, below 1 Hz\""},                                                      \
+  {                                                                                                \
+    .key = "note", .kind = DEA_FIELD_TEXT, .offset = offsetof(type, member.note),                  \
+    .doc = "anything else a user should know", .example = "\"as bought, before curing\""           \
+  }
+
+#define STRETCH_RANGE_FIELD(type)                                                                  \
+  {                                                                                                \
+    .key = "stretch_range", .kind = DEA_FIELD_NUMBER, .offset = offsetof(type, range.limits),      \
+    .unit = "1", .above_min = true, .max = 100, .list_min = 2, .list_max = 2,                      \
+    .element_size = sizeof(struct dea_quantity), .count_offset = offsetof(type, range.count),      \
+    .doc = "smallest and largest stretch that the data cover", .example = "[1, 2]"                 \
+  }
+
+#define ID_FIELD(type, what)                                                                       \
+  {                                                                                                \
+    .key = "id", .kind = DEA_FIELD_LABEL, .offset = offsetof(type, id), .required = true,          \
+    .doc = "name by which a design chooses this " what, .example = "supplier-2020"                 \
+  }
+
+static const struct dea_field law_fields[] = {
+    ID_FIELD(struct dea_law_set, "set"),
+    {.key = "law",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_law_set, law_name),
+     .required = true,
+     .doc = "hyperelastic law",
+     .example = "yeoh"},
+    {.key = "parameters",
+     .kind = DEA_FIELD_SECTION,
+     .offset = offsetof(struct dea_law_set, parameters),
+     .required = true,
+     .doc = "parameters of the law, each with its unit",
+     .example = "{c1: 178.4 kPa, c2: -6.0 kPa, c3: 4.2 kPa}"},
+    {.key = "fibre_angle",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_law_set, fibre_angle_rad),
+     .unit = "radian",
+     .default_text = "0 degree",
+     .doc = "angle of an anisotropic law's fibres to the radial direction",
+     .example = "30 degree"},
+    STRETCH_RANGE_FIELD(struct dea_law_set),
+    NOTE_FIELDS(struct dea_law_set, notes),
+};
+
+static const struct dea_field permittivity_fields[] = {
+    ID_FIELD(struct dea_permittivity_set, "set"),
+    {.key = "at_rest",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_permittivity_set, at_rest),
+     .unit = "1",
+     .min = 1,
+     .max = 1e5,
+     .required = true,
+     .doc = "relative permittivity of the unstretched film",
+     .example = "2.8"},
+    {.key = "slope",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_permittivity_set, slope),
+     .unit = "1",
+     .default_text = "0",
+     .doc = "change of the relative permittivity by unit of mean in-plane stretch",
+     .example = "-0.28"},
+    STRETCH_RANGE_FIELD(struct dea_permittivity_set),
+    NOTE_FIELDS(struct dea_permittivity_set, notes),
+};
+
+static const struct dea_field breakdown_fields[] = {
+    ID_FIELD(struct dea_breakdown_set, "set"),
+    {.key = "at_rest",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, at_rest_V_per_m),
+     .unit = "V/m",
+     .above_min = true,
+     .max = 1e10,
+     .required = true,
+     .doc = "breakdown field of the unstretched film",
+     .example = "80 V/um"},
+    {.key = "exponent",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, exponent),
+     .unit = "1",
+     .min = -10,
+     .max = 10,
+     .absent_text = "unknown",
+     .doc = "power of the mean in-plane stretch with which the field grows",
+     .example = "1.13"},
+    STRETCH_RANGE_FIELD(struct dea_breakdown_set),
+    NOTE_FIELDS(struct dea_breakdown_set, notes),
+};
+
+static const struct dea_field density_fields[] = {
+    {.key = "value",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_material_data, density.value_kg_per_m3),
+     .unit = "kg/m^3",
+     .above_min = true,
+     .max = 1e5,
+     .required = true,
+     .doc = "mass density",
+     .example = "970 kg/m^3"},
+    NOTE_FIELDS(struct dea_material_data, density.notes),
+};
+
+static const struct dea_field elastic_fields[] = {
+    {.key = "young_modulus",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_material_data, elastic.young_modulus_Pa),
+     .unit = "Pa",
+     .above_min = true,
+     .max = 1e13,
+     .required = true,
+     .doc = "Young's modulus",
+     .example = "2950 MPa"},
+    {.key = "poisson_ratio",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_material_data, elastic.poisson_ratio),
+     .unit = "1",
+     .min = -1,
+     .above_min = true,
+     .max = 0.5,
+     .required = true,
+     .doc = "Poisson's ratio",
+     .example = "0.38"},
+    NOTE_FIELDS(struct dea_material_data, elastic.notes),
+};
+
+static const struct dea_record law_record = {"set of a law", "parameters of a hyperelastic law",
+                                             law_fields, COUNT(law_fields)};
+static const struct dea_record permittivity_record = {
+    "permittivity", "eps_r = at_rest + slope (s - 1), s the mean in-plane stretch",
+    permittivity_fields, COUNT(permittivity_fields)};
+static const struct dea_record breakdown_record = {
+    "breakdown field", "E_b = at_rest s^exponent, s the mean in-plane stretch", breakdown_fields,
+    COUNT(breakdown_fields)};
+static const struct dea_record density_record = {"density", "mass density", density_fields,
+                                                 COUNT(density_fields)};
+static const struct dea_record elastic_record = {"linear elasticity", "linear elastic constants",
+                                                 elastic_fields, COUNT(elastic_fields)};
+
+static const char *const kinds[] = {"elastomer", "plastic", "electrode", NULL};
+
+#define SET_LIST_FIELD(name, member, counter, about, text)                                         \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_RECORD, .offset = offsetof(struct dea_material_data, member),   \
+    .record = &about, .list_min = 1, .list_max = DEA_MATERIAL_SETS_MAX,                            \
+    .element_size = sizeof((struct dea_material_data *)0)->member[0],                              \
+    .count_offset = offsetof(struct dea_material_data, counter), .absent_text = "none",            \
+    .doc = text                                                                                    \
+  }
+
+static const struct dea_field material_fields[] = {
+    {.key = "dea_material",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = offsetof(struct dea_material_data, version),
+     .unit = "1",
+     .min = DEA_MATERIAL_VERSION,
+     .max = DEA_MATERIAL_VERSION,
+     .required = true,
+     .doc = "version of the format",
+     .example = "1"},
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_material_data, name),
+     .required = true,
+     .doc = "name by which a design chooses the material",
+     .example = "elastosil-2030"},
+    {.key = "title",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_material_data, title),
+     .absent_text = "none",
+     .doc = "what the material is",
+     .example = "ELASTOSIL Film 2030 (Wacker)"},
+    {.key = "kind",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = offsetof(struct dea_material_data, kind),
+     .required = true,
+     .choices = kinds,
+     .doc = "kind of material",
+     .example = "elastomer"},
+    {.key = "density",
+     .kind = DEA_FIELD_RECORD,
+     .record = &density_record,
+     .present_offset = offsetof(struct dea_material_data, has_density),
+     .absent_text = "unknown",
+     .doc = "mass density"},
+    SET_LIST_FIELD("laws", laws, law_count, law_record,
+                   "sets of parameters of hyperelastic laws; the first is the default"),
+    {.key = "elastic",
+     .kind = DEA_FIELD_RECORD,
+     .record = &elastic_record,
+     .present_offset = offsetof(struct dea_material_data, has_elastic),
+     .absent_text = "none",
+     .doc = "linear elastic constants"},
+    SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_record,
+                   "relative permittivity; the first is the default"),
+    SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record,
+                   "breakdown field; the first is the default; left out when unknown"),
+};
+
+const struct dea_record dea_material_file_record = {"material file", "data file of a material",
+                                                    material_fields, COUNT(material_fields)};
+const struct dea_record dea_material_inline_record = {
+    "material", "a material of this design", material_fields + 1, COUNT(material_fields) - 1};
+
+/* Finds the law of a set; an unknown one is a finding with the nearest name and all names. */
+static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *set)
+{
+  if (set->law_name.text[0] == '\0') {
+    return DEA_OK; // already an error
+  }
+  set->law = dea_law_find(set->law_name.text);
+  if (set->law != NULL) {
+    return DEA_OK;
+  }
+  size_t count;
+  const struct dea_law *const *laws = dea_law_all(&count);
+  const char *names[32];
+  struct dea_text list = {.ctx = reader->ctx};
+  count = count < COUNT(names) ? count : COUNT(names);
+  for (size_t i = 0; i < count; i++) {
+    names[i] = laws[i]->name;
+    dea_text_add(&list, "%s%s", i > 0 ? ", " : "", names[i]);
+  }
+  const char *nearest = dea_nearest_name(set->law_name.text, names, count);
+  dea_status status = dea_schema_error(
+      reader, set->law_name.place, "'%.60s' is not a law%s%s%s; there are: %s", set->law_name.text,
+      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+      nearest != NULL ? "'?" : "", dea_text_get(&list));
+  bool failed = list.failed;
+  dea_text_free(&list);
+  return failed ? DEA_E_MEMORY : status;
+}
+
+static const char *example_of(const char *unit)
+{
+  return strcmp(unit, "Pa") == 0 ? "100 kPa" : strcmp(unit, "radian") == 0 ? "30 degree" : "1.5";
+}
+
+/* Reads the parameters with a table made from those of the law. */
+static dea_status read_parameters(const struct dea_reader *reader, const char *path,
+                                  struct dea_law_set *set)
+{
+  struct dea_field fields[DEA_LAW_PARAM_MAX];
+  memset(fields, 0, sizeof fields);
+  for (size_t i = 0; i < set->law->param_count; i++) {
+    const struct dea_law_param *param = &set->law->params[i];
+    fields[i].key = param->key;
+    fields[i].kind = DEA_FIELD_NUMBER;
+    fields[i].offset = i * sizeof set->param[0];
+    fields[i].unit = param->unit;
+    fields[i].min = param->min;
+    fields[i].max = param->max;
+    fields[i].required = param->required;
+    fields[i].absent_text = "0";
+    fields[i].doc = param->meaning;
+    fields[i].example = example_of(param->unit);
+  }
+  struct dea_record record = {set->law->name, set->law->long_name, fields, set->law->param_count};
+  return dea_schema_read(reader, &record, set->parameters, path, set->param);
+}
+
+/* Two sets of one name: a design could never choose the second. */
+static dea_status check_id(const struct dea_reader *reader, const struct dea_label *id,
+                           const struct dea_label *other)
+{
+  if (id->text[0] == '\0' || strcmp(id->text, other->text) != 0) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, id->place, "the id '%.60s' is taken by the set in line %zu",
+                          id->text, other->place.line);
+}
+
+static dea_status check_length(const struct dea_reader *reader, const struct dea_label *label)
+{
+  if (strlen(label->text) < DEA_NAME_SIZE) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, label->place, "'%.60s...' is longer than %d bytes", label->text,
+                          DEA_NAME_SIZE - 1);
+}
+
+static dea_status check_range(const struct dea_reader *reader,
+                              const struct dea_stretch_range *range)
+{
+  if (range->count != 2 || !(range->limits[0].si >= range->limits[1].si)) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, range->limits[1].place,
+                          "stretch_range must rise; %g is not above %g", range->limits[1].si,
+                          range->limits[0].si);
+}
+
+static dea_status check_sets(const struct dea_reader *reader, const struct dea_material_data *data)
+{
+  struct dea_context *ctx = reader->ctx;
+  DEA_TRY(ctx, check_length(reader, &data->name));
+  for (size_t i = 0; i < data->law_count; i++) {
+    DEA_TRY(ctx, check_length(reader, &data->laws[i].id));
+    DEA_TRY(ctx, check_range(reader, &data->laws[i].range));
+    for (size_t j = 0; j < i; j++) {
+      DEA_TRY(ctx, check_id(reader, &data->laws[i].id, &data->laws[j].id));
+    }
+  }
+  for (size_t i = 0; i < data->permittivity_count; i++) {
+    DEA_TRY(ctx, check_range(reader, &data->permittivity[i].range));
+    for (size_t j = 0; j < i; j++) {
+      DEA_TRY(ctx, check_id(reader, &data->permittivity[i].id, &data->permittivity[j].id));
+    }
+  }
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    DEA_TRY(ctx, check_range(reader, &data->breakdown[i].range));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_material_data_finish(const struct dea_reader *reader, const char *path,
+                                    struct dea_material_data *data)
+{
+  for (size_t i = 0; i < data->law_count; i++) {
+    struct dea_law_set *set = &data->laws[i];
+    DEA_TRY(reader->ctx, find_law(reader, set));
+    if (set->law != NULL && set->parameters != NULL) {
+      char inner[DEA_PATH_SIZE];
+      snprintf(inner, sizeof inner, "%s%slaws[%zu].parameters", path, path[0] != '\0' ? "." : "",
+               i);
+      DEA_TRY(reader->ctx, read_parameters(reader, inner, set));
+    }
+  }
+  return check_sets(reader, data);
+}

@@ -1,0 +1,15 @@
+/* The registered laws, in the order in which they are listed. A new law is one file law_<name>.c
+ * that defines dea_law_<name>, and one line here. */
+#ifndef DEA_MATERIAL_LAW_LIST_H
+#define DEA_MATERIAL_LAW_LIST_H
+
+#define DEA_LAW_LIST(X)                                                                            \
+  X(neo_hookean)                                                                                   \
+  X(mooney_rivlin)                                                                                 \
+  X(yeoh)                                                                                          \
+  X(gent)                                                                                          \
+  X(ogden)                                                                                         \
+  X(arruda_boyce)                                                                                  \
+  X(hgo)
+
+#endif

@@ -1,0 +1,12 @@
+#!/bin/sh
+# Builds the project in a folder of its own and runs its tests of some labels, without the house
+# checks (they do not depend on the compiler).
+#   build_nested.sh SOURCE BUILD LABELS CMAKE_OPTION...
+set -eu
+source=$1 build=$2 labels=$3
+shift 3
+cmake -G Ninja -S "$source" -B "$build" -DDEA_LONG_TESTS=OFF -DDEA_BUILD_BENCH=OFF "$@"
+cmake --build "$build"
+# Every allocation is failed in turn by some tests, so a failed one must come back as NULL.
+ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
+  ctest --test-dir "$build" -L "$labels" -LE house --output-on-failure -j "$(nproc)"

@@ -1,0 +1,32 @@
+#!/bin/sh
+# A file of src/X includes headers of X and of the folders before X only; one model knows nothing of
+# another. See ARCHITECTURE.md.
+set -eu
+cd "$1/src"
+# shellcheck disable=SC2016 # awk's own
+find . -name '*.[ch]' ! -name dea.h | sed 's|^\./||' | xargs awk '
+  BEGIN {
+    n = split("base material design device model result study output lab cli", order, " ")
+    for (i = 1; i <= n; i++) { rank[order[i]] = i }
+  }
+  function part(path, i, parts) { split(path, parts, "/"); return parts[i] }
+  FNR == 1 {
+    mine = part(FILENAME, 1)
+    if (!(mine in rank)) { print FILENAME ": folder " mine " has no place in the order"; bad = 1 }
+  }
+  /^[ \t]*#[ \t]*include[ \t]*"/ {
+    split($0, quoted, "\""); header = quoted[2]; its = part(header, 1)
+    if (!(its in rank)) {
+      print FILENAME ":" FNR ": \"" header "\" should name its folder"; bad = 1
+    } else if (rank[its] > rank[mine]) {
+      print FILENAME ":" FNR ": " mine " must not depend on " its; bad = 1
+    } else if (mine == "model" && its == "model" && header ~ /^model\/.*\// &&
+               part(FILENAME, 2) != part(header, 2)) {
+      print FILENAME ":" FNR ": must not depend on the model " part(header, 2); bad = 1
+    }
+    checked++
+  }
+  END {
+    if (checked == 0) { print "no include was found: the check is broken"; bad = 1 }
+    exit bad
+  }'

@@ -1,0 +1,24 @@
+#!/bin/sh
+# The shell scripts are clean to shellcheck, the manual page to mandoc, and the completions load.
+set -eu
+cd "$1"
+build=$2
+bad=0
+if command -v shellcheck >/dev/null 2>&1; then
+  shellcheck -x -P SCRIPTDIR scripts/demo scripts/test scripts/bench scripts/lib.sh .ci/run tests/*.sh || bad=1
+else
+  echo "shellcheck is missing"
+  exit 77
+fi
+"$DEA_COMMAND" completion bash | shellcheck -s bash -e SC2034 - || bad=1
+if command -v mandoc >/dev/null 2>&1; then
+  "$DEA_COMMAND" completion man >"$build/dea.1.checked"
+  mandoc -Tlint -W warning "$build/dea.1.checked" || bad=1
+fi
+for shell in zsh fish; do # where at hand
+  if command -v $shell >/dev/null 2>&1; then
+    "$DEA_COMMAND" completion $shell >"$build/completion.checked"
+    $shell -n "$build/completion.checked" || bad=1
+  fi
+done
+exit $bad

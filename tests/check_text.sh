@@ -1,0 +1,33 @@
+#!/bin/sh
+# No file of the project names a folder of somebody's machine, ends lines in white space or with a
+# carriage return, or lacks its last line end.
+set -eu
+cd "$1"
+if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+  list="git ls-files"
+else
+  list="find . -type f ! -path ./build* ! -path ./runs/*"
+fi
+texts=$($list | grep -vE '\.(png|pdf|h5)$|(^|/)corpus/' | while read -r file; do
+  [ ! -f "$file" ] || echo "$file"
+done)
+[ -n "$texts" ] || { echo "no file found: the check is broken"; exit 1; }
+bad=0
+# A temporary file by mkstemp or mkdtemp (XXXXXX) is meant to lie in the machine's folder for them.
+# shellcheck disable=SC2086 # one argument a file
+if grep -nE '(^|[^A-Za-z0-9_.$}/])/(wor[k]|roo[t]|hom[e]|tm[p]|mn[t]|Users)(/|"|$)' $texts | grep -v XXXXXX; then
+  echo "^ folders of a machine"
+  bad=1
+fi
+# shellcheck disable=SC2046,SC2086
+if grep -nE "[ 	]+\$|$(printf '\r')\$" $(printf '%s\n' $texts | grep -v '\.svg$'); then
+  echo "^ white space at line ends"
+  bad=1
+fi
+for file in $texts; do
+  if [ -s "$file" ] && [ -n "$(tail -c 1 "$file")" ]; then
+    echo "$file: no line end at its end"
+    bad=1
+  fi
+done
+exit $bad

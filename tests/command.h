@@ -1,0 +1,88 @@
+/* Runs the command `dea` in a shell and reads what it says. */
+#ifndef DEA_TESTS_COMMAND_H
+#define DEA_TESTS_COMMAND_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "testing.h"
+
+enum { COMMAND_TEXT_MAX = 1 << 20 };
+
+/* Folder of the test program, made by command_set_up and removed by command_tear_down. */
+static char command_folder[64];
+static char command_out[COMMAND_TEXT_MAX]; // standard output of the last run
+static char command_err[COMMAND_TEXT_MAX]; // standard error of the last run
+
+static inline int command_set_up(void **state)
+{
+  (void)state;
+  const char *tmp = getenv("TMPDIR");
+  snprintf(command_folder, sizeof command_folder, "%.40s/dea-test-XXXXXX",
+           tmp != NULL ? tmp : "/tmp");
+  return mkdtemp(command_folder) != NULL ? 0 : -1;
+}
+
+static inline int command_tear_down(void **state)
+{
+  (void)state;
+  char text[128];
+  snprintf(text, sizeof text, "rm -rf '%s'", command_folder);
+  return system(text);
+}
+
+static inline void command_read(const char *name, char *out)
+{
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  size_t length = fread(out, 1, COMMAND_TEXT_MAX - 1, file);
+  out[length] = '\0';
+  fclose(file);
+}
+
+/* Runs "dea <arguments>" in command_folder; returns its exit code. "@" stands for the source tree.
+ */
+static inline int command_run(const char *arguments)
+{
+  static char text[8192];
+  size_t used =
+      (size_t)snprintf(text, sizeof text, "cd '%s' && '%s' ", command_folder, DEA_COMMAND);
+  for (const char *c = arguments; *c != '\0' && used + 300 < sizeof text; c++) {
+    if (*c == '@') {
+      used += (size_t)snprintf(text + used, sizeof text - used, "%s", DEA_SOURCE_DIR);
+    } else {
+      text[used++] = *c;
+    }
+  }
+  snprintf(text + used, sizeof text - used, " >out.txt 2>err.txt </dev/null");
+  int status = system(text);
+  command_read("out.txt", command_out);
+  command_read("err.txt", command_err);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+/* Writes a file into command_folder. */
+static inline void command_write(const char *name, const char *text)
+{
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
+  fclose(file);
+}
+
+#define assert_contains(text, part)                                                                \
+  do {                                                                                             \
+    if (strstr((text), (part)) == NULL) {                                                          \
+      fail_msg("'%s' is not in:\n%s", (part), (text));                                             \
+    }                                                                                              \
+  } while (0)
+
+#endif

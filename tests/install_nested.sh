@@ -1,0 +1,68 @@
+#!/bin/sh
+# Installs into a folder and uses what is there as a user would: a program built through pkg-config,
+# the command, its data, its manual page.
+#   install_nested.sh SOURCE BUILD - CMAKE_OPTION...
+set -eu
+source=$1 build=$2
+shift 3
+prefix=$build/prefix
+rm -rf "$prefix"
+cmake -G Ninja -S "$source" -B "$build" -DDEA_LONG_TESTS=OFF -DDEA_BUILD_BENCH=OFF \
+  -DDEA_BUILD_TESTS=OFF -DCMAKE_INSTALL_PREFIX="$prefix" "$@"
+cmake --build "$build"
+cmake --install "$build" >/dev/null
+
+library=$(dirname "$(find "$prefix" -name 'libdea.*' ! -name '*.pc' | head -n 1)")
+PKG_CONFIG_PATH=$library/pkgconfig
+LD_LIBRARY_PATH=$library
+export PKG_CONFIG_PATH LD_LIBRARY_PATH
+
+cat >"$build/user.c" <<'END'
+#include <dea.h>
+#include <stdio.h>
+int main(void)
+{
+  struct dea_context *ctx;
+  size_t models;
+  if (dea_context_create(NULL, &ctx) != DEA_OK || dea_model_all(&models) == NULL) {
+    return 1;
+  }
+  printf("libdea %s, %zu models, %s\n", DEA_VERSION, models, dea_status_message(DEA_OK));
+  dea_context_destroy(ctx);
+  return 0;
+}
+END
+# shellcheck disable=SC2046 # one argument a flag
+cc -std=c17 -Wall -Wextra -Wpedantic -Werror "$build/user.c" -o "$build/user" \
+  $(pkg-config --cflags --libs libdea)
+"$build/user"
+# shellcheck disable=SC2046
+cc -std=c17 "$build/user.c" -o "$build/user-static" $(pkg-config --cflags --libs --static libdea)
+"$build/user-static"
+if command -v clang-14 >/dev/null 2>&1; then
+  # shellcheck disable=SC2046
+  clang-14 -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only \
+    $(pkg-config --cflags libdea) "$prefix/include/dea/dea.h" -Wno-pragma-once-outside-header
+fi
+
+dea=$prefix/bin/dea
+"$dea" --version
+"$dea" materials >"$build/materials.txt"
+[ -s "$build/materials.txt" ] || { echo "dea materials printed nothing"; exit 1; }
+"$dea" examples >"$build/examples.txt" 2>/dev/null
+grep -q '^frdea-4 ' "$build/examples.txt" || { echo "the example frdea-4 is missing"; exit 1; }
+"$dea" doctor >"$build/doctor.txt"
+cat "$build/doctor.txt"
+for what in materials examples; do
+  grep -q "^ok  *$what .* in $prefix/" "$build/doctor.txt" || {
+    echo "dea takes its $what from elsewhere than the installed place"
+    exit 1
+  }
+done
+"$dea" examples frdea-4 >"$build/my.yaml"
+"$dea" check "$build/my.yaml" >/dev/null
+for file in share/man/man1/dea.1 share/bash-completion/completions/dea \
+  share/zsh/site-functions/_dea share/fish/vendor_completions.d/dea.fish; do
+  [ -s "$prefix/$file" ] || { echo "$file was not installed"; exit 1; }
+done
+echo installed and used

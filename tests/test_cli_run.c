@@ -1,0 +1,203 @@
+/* dea run: what scripts and people get. */
+#define _GNU_SOURCE // mkdtemp, usleep
+#include "command.h"
+
+#include <jansson.h>
+#include <signal.h>
+
+static json_t *summary(const char *arguments)
+{
+  assert_int_equal(command_run(arguments), 0);
+  json_error_t error;
+  json_t *root = json_loads(command_out, 0, &error);
+  if (root == NULL) {
+    fail_msg("not JSON: %s\n%.400s", error.text, command_out);
+  }
+  return root;
+}
+
+static double number(const json_t *point, const char *key)
+{
+  const json_t *value = json_object_get(point, key);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* Point at a voltage [V]. */
+static const json_t *point_at(const json_t *root, double voltage_V)
+{
+  const json_t *points = json_object_get(root, "points");
+  for (size_t i = 0; i < json_array_size(points); i++) {
+    if (fabs(number(json_array_get(points, i), "voltage_V") - voltage_V) < 1e-6) {
+      return json_array_get(points, i);
+    }
+  }
+  fail_msg("no point at %g V", voltage_V);
+  return NULL;
+}
+
+static void test_plain_disc_json(void **state)
+{
+  (void)state;
+  static const double kV[] = {1, 3, 5, 7}, strain[] = {0.365, 3.434, 10.297, 21.607};
+  json_t *root = summary("run @/examples/plain-disc.yaml --model axisymmetric --json");
+  assert_string_equal(json_string_value(json_object_get(root, "model")), "axisymmetric");
+  for (size_t i = 0; i < 4; i++) {
+    const json_t *p = point_at(root, 1e3 * kV[i]);
+    assert_close(100 * (number(p, "electrode_stretch") - 1), strain[i], 0, 6e-4);
+    assert_close(number(p, "electrode_edge_u_m"), 3.75e-3 * (number(p, "electrode_stretch") - 1),
+                 1e-9, 0);
+    assert_true(number(p, "true_field_V_per_m") > 1e7);
+    assert_true(number(p, "min_tension_N_per_m") > 0);
+    assert_true(json_is_true(json_object_get(p, "stable")));
+    assert_int_equal(json_integer_value(json_object_get(p, "unstable_modes")), 0);
+    assert_null(json_object_get(p, "centre_z_m")); // the model has no such thing
+  }
+  json_decref(root);
+}
+
+static void test_figure_2_json(void **state)
+{
+  (void)state;
+  json_t *root = summary("run @/examples/paper/fig02.yaml --model lumped --json");
+  assert_close(number(point_at(root, 4e3), "electrode_stretch"), 1.07611, 0, 5e-6);
+  assert_close(number(point_at(root, 8e3), "electrode_stretch"), 1.32266, 0, 5e-6);
+  assert_close(number(point_at(root, 6e3), "fibre_tip_z_m"), 4.15e-3, 0, 5e-6);
+  assert_close(number(point_at(root, 6e3), "centre_z_m"), 4.15e-3, 0, 5e-6);
+  assert_true(number(point_at(root, 6e3), "force_N") > 0);
+  json_decref(root);
+}
+
+static void test_set_overrides_the_design(void **state)
+{
+  (void)state;
+  json_t *a = summary("run @/examples/plain-disc.yaml --model lumped --json");
+  json_t *b = summary("run @/examples/plain-disc.yaml --model lumped --json "
+                      "--set film.thickness='200 um' --set 'compute.voltage={values: [10 kV]}'");
+  assert_int_equal(json_array_size(json_object_get(b, "points")), 1);
+  assert_close(number(point_at(a, 5e3), "electrode_stretch"),
+               number(point_at(b, 1e4), "electrode_stretch"), 1e-9, 0);
+  json_decref(a);
+  json_decref(b);
+}
+
+static void test_run_folder(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures"), 0);
+  assert_contains(command_out, "frdea-4.run");
+  static const char *const files[] = {"summary.json", "results.h5", "lumped_sweep.csv",
+                                      "lumped_path.csv", "axisymmetric_sweep.csv"};
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/frdea-4.run/%s", command_folder, files[i]);
+    assert_int_equal(access(path, R_OK), 0);
+  }
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures"), 5);
+  assert_contains(command_err, "--force");
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --force"), 0);
+}
+
+static const char soft_disc[] = "dea: 1\n"
+                                "title: soft\n"
+                                "film: {material: soft, thickness: 100 um}\n"
+                                "pre_stretch: 1.01\n"
+                                "frame: {inner_diameter: 300 mm}\n"
+                                "electrodes: {radius: 2 mm stretched}\n"
+                                "materials:\n"
+                                "  - name: soft\n"
+                                "    title: soft rubber\n"
+                                "    kind: elastomer\n"
+                                "    laws:\n"
+                                "      - {id: a, law: neo-hookean, parameters: {mu: 50 kPa},"
+                                " source: test}\n"
+                                "    permittivity:\n"
+                                "      - {id: a, at_rest: 3, slope: 0, source: test}\n"
+                                "compute:\n"
+                                "  models: [lumped]\n"
+                                "  voltage: {from: 0 kV, to: 8 kV, step: 0.5 kV}\n";
+
+static void test_pull_in_keeps_what_was_computed(void **state)
+{
+  (void)state;
+  command_write("soft.yaml", soft_disc);
+  assert_int_equal(command_run("run soft.yaml --json"), 4);
+  assert_contains(command_err, "pull-in");
+  json_t *root = json_loads(command_out, 0, NULL);
+  assert_non_null(root);
+  size_t count = json_array_size(json_object_get(root, "points"));
+  assert_true(count > 2 && count < 17);
+  assert_true(json_is_false(json_object_get(root, "complete")));
+  const json_t *last = json_array_get(json_object_get(root, "points"), count - 1);
+  double pull_in_V = number(json_object_get(root, "limits"), "pull_in_voltage_V");
+  assert_true(pull_in_V > number(last, "voltage_V") && pull_in_V < number(last, "voltage_V") + 500);
+  assert_close(number(last, "pull_in_distance_V"), pull_in_V - number(last, "voltage_V"), 1e-9, 0);
+  json_decref(root);
+}
+
+static void test_unknown_model(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml --model lumpd --json"), 2);
+  assert_contains(command_err, "lumped, axisymmetric");
+}
+
+static void test_usage_errors(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run(""), 2);
+  assert_int_equal(command_run("rnu x"), 2);
+  assert_contains(command_err, "did you mean 'run'");
+  assert_int_equal(command_run("run"), 2);
+  assert_contains(command_err, "design file");
+  assert_int_equal(command_run("run a.yaml b.yaml"), 2);
+  assert_int_equal(command_run("run a.yaml --modle x"), 2);
+  assert_contains(command_err, "--modle");
+  assert_int_equal(command_run("run a.yaml --set thickness"), 2);
+  assert_contains(command_err, "key=value");
+}
+
+static void test_missing_file(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run nowhere.yaml"), 5);
+  assert_contains(command_err, "nowhere.yaml");
+}
+
+/* Interrupted in a long sweep: exit code 130, and what was computed is there. */
+static void test_interrupt_keeps_points(void **state)
+{
+  (void)state;
+  char text[1024];
+  snprintf(text, sizeof text,
+           "cd '%s' && '%s' run '%s/examples/plain-disc.yaml' --model axisymmetric --no-figures "
+           "-o stopped --set 'compute.voltage={from: 0 kV, to: 9.9 kV, step: 1 V}' "
+           ">out.txt 2>err.txt & pid=$!; sleep 0.1; kill -INT $pid; wait $pid",
+           command_folder, DEA_COMMAND, DEA_SOURCE_DIR);
+  int status = system(text);
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), 130);
+  command_read("stopped/axisymmetric_sweep.csv", command_out);
+  size_t lines = 0;
+  for (const char *c = command_out; *c != '\0'; c++) {
+    lines += *c == '\n';
+  }
+  assert_true(lines > 3 && lines < 9000);
+  command_read("stopped/summary.json", command_out);
+  assert_contains(command_out, "interrupted");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_plain_disc_json),
+      cmocka_unit_test(test_figure_2_json),
+      cmocka_unit_test(test_set_overrides_the_design),
+      cmocka_unit_test(test_run_folder),
+      cmocka_unit_test(test_pull_in_keeps_what_was_computed),
+      cmocka_unit_test(test_unknown_model),
+      cmocka_unit_test(test_usage_errors),
+      cmocka_unit_test(test_missing_file),
+      cmocka_unit_test(test_interrupt_keeps_points),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}

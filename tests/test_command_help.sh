@@ -1,0 +1,89 @@
+#!/bin/sh
+# examples, doctor, completion and the manual page, used as a user would.
+set -u
+source=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+PATH=$(dirname "$DEA_COMMAND"):$PATH
+failed=0
+# expect CODE WHAT COMMAND...: its exit code; output is left in $folder/out and $folder/err.
+expect() {
+  wanted=$1 what=$2
+  shift 2
+  "$@" >"$folder/out" 2>"$folder/err" </dev/null
+  code=$?
+  if [ "$code" -ne "$wanted" ]; then
+    echo "$what: exit code $code, wanted $wanted"
+    cat "$folder/err"
+    failed=1
+  fi
+}
+# has FILE TEXT: the output has this text.
+has() {
+  grep -qF -- "$2" "$folder/$1" || {
+    echo "'$2' is missing in: $(head -c 2000 "$folder/$1")"
+    failed=1
+  }
+}
+
+# examples
+expect 0 "list of examples" dea examples
+has out frdea-4
+expect 0 "one example" dea examples frdea-4
+cmp -s "$folder/out" "$source/examples/frdea-4.yaml" || { echo "frdea-4 differs"; failed=1; }
+expect 0 "an example in a folder, by its last name" dea examples fig02.yaml
+cmp -s "$folder/out" "$source/examples/paper/fig02.yaml" || { echo "fig02 differs"; failed=1; }
+expect 2 "unknown example" dea examples frdea-5
+has err "did you mean 'frdea-4'?"
+expect 2 "unknown option" dea examples --all
+expect 2 "--copy without a folder" dea examples --copy
+expect 2 "two names" dea examples frdea-4 frdea-8
+expect 0 "copy" dea examples --copy "$folder/new/deep"
+cmp -s "$folder/new/deep/paper/fig02.yaml" "$source/examples/paper/fig02.yaml" ||
+  { echo "the copy differs"; failed=1; }
+expect 5 "copy over what is there" dea examples --copy "$folder/new/deep"
+has err "--force"
+expect 0 "copy by force" dea examples --force --copy "$folder/new/deep"
+echo x >"$folder/file"
+expect 5 "copy into a file" dea examples --copy "$folder/file"
+
+# doctor
+expect 0 "doctor" dea doctor
+has out "HDF5"
+has out "materials"
+expect 2 "doctor with an argument" dea doctor now
+
+# completion: what bash offers for a command line that ends in the word to be completed
+offer() {
+  bash -c 'source <(dea completion bash); COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+    compopt() { :; }; _dea; printf "%s\n" "${COMPREPLY[@]}"' bash "$@" >"$folder/out" 2>"$folder/err"
+}
+offers() { # TEXT WORD...: among the offers
+  text=$1
+  shift
+  offer "$@"
+  grep -qxF -- "$text" "$folder/out" || {
+    echo "completion of '$*' lacks '$text': $(tr '\n' ' ' <"$folder/out") $(cat "$folder/err")"
+    failed=1
+  }
+}
+offers examples dea exa
+offers --copy dea examples --c
+offers frdea-4 dea examples fr
+offers fish dea completion f
+cd "$folder" || exit 1
+offers new dea examples --copy ne
+for command in $(dea completion names commands); do
+  offers "$command" dea "$command"
+  # Each long option of the help text is offered.
+  for option in $(dea "$command" --help | grep -oE '(^|[ [,|])--[a-z][a-z-]*' | tr -d ' [,|' | sort -u); do
+    offers "$option" dea "$command" "$option"
+  done
+  dea completion man | grep -qx "\.Ss $command" || { echo "the manual lacks $command"; failed=1; }
+  for shell in zsh fish; do
+    dea completion $shell | grep -q "$command" || { echo "$shell: $command is missing"; failed=1; }
+  done
+done
+expect 2 "completion for an unknown shell" dea completion tcsh
+expect 2 "completion without a shell" dea completion
+exit $failed

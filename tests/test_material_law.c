@@ -1,0 +1,191 @@
+/* material/law: the registry, and the derivatives of every law by complex step. */
+#include "complex_material.h"
+#include "material_samples.h"
+
+#include <math.h>
+
+/* Far below rounding of the real part, so that the step has no error of its own. */
+static const double step = 1e-30;
+static const double tolerance = 1e-12;
+
+static void test_registry(void **state)
+{
+  (void)state;
+  size_t count;
+  const struct dea_law *const *laws = dea_law_all(&count);
+  assert_true(count >= 7);
+  for (size_t i = 0; i < count; i++) {
+    assert_ptr_equal(dea_law_find(laws[i]->name), laws[i]);
+    assert_true((laws[i]->invariants != NULL) != (laws[i]->principal != NULL));
+    assert_true(laws[i]->param_count >= 1 && laws[i]->param_count <= DEA_LAW_PARAM_MAX);
+    assert_non_null(laws[i]->long_name);
+    assert_non_null(laws[i]->source);
+    for (size_t k = 0; k < laws[i]->param_count; k++) {
+      const struct dea_law_param *param = &laws[i]->params[k];
+      assert_true(param->key != NULL && param->unit != NULL && param->meaning != NULL);
+      assert_true(param->min < param->max);
+      assert_true(param->required || (param->min <= 0.0 && param->max >= 0.0));
+      for (size_t m = 0; m < k; m++) {
+        assert_string_not_equal(param->key, laws[i]->params[m].key);
+      }
+    }
+  }
+  assert_null(dea_law_find("Yeoh"));
+  assert_null(dea_law_find(""));
+}
+
+static void check_sample(const struct dea_law *law, const double *param)
+{
+  for (size_t k = 0; k < law->param_count; k++) {
+    assert_true(param[k] >= law->params[k].min && param[k] <= law->params[k].max);
+  }
+  assert_true(law->shear_modulus(param) > 0.0);
+}
+
+static void test_samples_are_admissible(void **state)
+{
+  (void)state;
+  for_each_law(check_sample);
+}
+
+/* Where in {W1 W2 W4} and {W11 W12 W22 W14 W24 W44} the derivative by each invariant stands. */
+static const size_t second_of[3][3] = {{4, 5, 7}, {5, 6, 8}, {7, 8, 9}};
+
+static void check_invariant_step(const struct dea_law *law, const double *param)
+{
+  if (law->invariants == NULL) {
+    return;
+  }
+  static const double at[][3] = {
+      {3.2, 3.1, 1.0}, {3.4, 3.3, 1.3}, {5.0, 4.5, 1.9}, {3.5, 3.4, 0.7}, {3.01, 3.009, 1.06}};
+  for (size_t n = 0; n < sizeof at / sizeof at[0]; n++) {
+    struct dea_law_energy e;
+    assert_int_equal(law->invariants(param, at[n][0], at[n][1], at[n][2], &e), DEA_OK);
+    const double real[10] = {e.W, e.W1, e.W2, e.W4, e.W11, e.W12, e.W22, e.W14, e.W24, e.W44};
+    for (size_t k = 0; k < 3; k++) {
+      double complex invariant[3] = {at[n][0], at[n][1], at[n][2]}, out[10];
+      invariant[k] += step * _Complex_I;
+      assert_int_equal(complex_invariants(law->name, param, invariant, out), DEA_OK);
+      double derivative[10];
+      for (size_t m = 0; m < 10; m++) {
+        derivative[m] = cimag(out[m]) / step;
+        assert_close(creal(out[m]), real[m], tolerance, tolerance * fabs(e.W1));
+      }
+      assert_all_close(law->name, &derivative[0], &real[1 + k], 1, tolerance, largest(&real[1], 3));
+      for (size_t m = 0; m < 3; m++) {
+        assert_all_close(law->name, &derivative[1 + m], &real[second_of[m][k]], 1, tolerance,
+                         largest(&real[1], 9));
+      }
+    }
+    if (!law->anisotropic) {
+      assert_true(e.W4 == 0.0 && e.W14 == 0.0 && e.W24 == 0.0 && e.W44 == 0.0);
+    }
+  }
+}
+
+static void test_invariant_form_by_complex_step(void **state)
+{
+  (void)state;
+  for_each_law(check_invariant_step);
+}
+
+static void check_principal_step(const struct dea_law *law, const double *param)
+{
+  if (law->principal == NULL) {
+    return;
+  }
+  static const double at[] = {0.3, 0.8, 1.0, 1.00001, 1.5, 2.7};
+  for (size_t n = 0; n < sizeof at / sizeof at[0]; n++) {
+    double w, w1, w2;
+    double complex out[3];
+    assert_int_equal(law->principal(param, at[n], &w, &w1, &w2), DEA_OK);
+    assert_int_equal(complex_principal(law->name, param, at[n] + step * _Complex_I, out), DEA_OK);
+    assert_close(creal(out[0]), w, tolerance, tolerance * fabs(w1));
+    assert_close(cimag(out[0]) / step, w1, tolerance, 0.0);
+    assert_close(cimag(out[1]) / step, w2, tolerance, tolerance * fabs(w1));
+  }
+}
+
+static void test_principal_form_by_complex_step(void **state)
+{
+  (void)state;
+  for_each_law(check_principal_step);
+}
+
+/* An Ogden term with alpha = 0 does no work, and an absent term is one with mu = 0. */
+static void test_ogden_term_with_zero_exponent(void **state)
+{
+  (void)state;
+  const struct dea_law *ogden = dea_law_find("ogden");
+  const double one[DEA_LAW_PARAM_MAX] = {40e3, 2.0};
+  const double two[DEA_LAW_PARAM_MAX] = {40e3, 2.0, 7e3, 0.0, 0.0, 3.0};
+  double w, w1, w2, v, v1, v2;
+  assert_int_equal(ogden->principal(one, 1.7, &w, &w1, &w2), DEA_OK);
+  assert_int_equal(ogden->principal(two, 1.7, &v, &v1, &v2), DEA_OK);
+  assert_true(w == v && w1 == v1 && w2 == v2);
+}
+
+/* The published expansion of the ground-state modulus, in a form that the code does not use. */
+static void test_arruda_boyce_ground_state(void **state)
+{
+  (void)state;
+  const double param[DEA_LAW_PARAM_MAX] = {1e5, 2.8}, y = 1.0 / (2.8 * 2.8);
+  const double wanted = 1e5 * (1.0 + 3.0 / 5.0 * y + 99.0 / 175.0 * y * y +
+                               513.0 / 875.0 * pow(y, 3) + 42039.0 / 67375.0 * pow(y, 4));
+  assert_close(dea_law_find("arruda-boyce")->shear_modulus(param), wanted, 1e-14, 0.0);
+}
+
+/* A small k2 must join k2 = 0 without a jump, and fibres must not push. */
+static void test_fibre_law(void **state)
+{
+  (void)state;
+  const struct dea_law *law = dea_law_find("holzapfel-gasser-ogden");
+  const double quadratic[DEA_LAW_PARAM_MAX] = {1e5, 4e5, 0.0, 0.0};
+  const double nearly[DEA_LAW_PARAM_MAX] = {1e5, 4e5, 1e-14, 0.0};
+  struct dea_law_energy e, f;
+  assert_int_equal(law->invariants(quadratic, 3.5, 3.4, 1.4, &e), DEA_OK);
+  assert_int_equal(law->invariants(nearly, 3.5, 3.4, 1.4, &f), DEA_OK);
+  assert_close(e.W, 0.5 * 1e5 * 0.5 + 0.5 * 4e5 * 0.4 * 0.4, 1e-14, 0.0);
+  assert_close(f.W, e.W, 1e-13, 0.0);
+  assert_close(f.W44, e.W44, 1e-13, 0.0);
+  assert_int_equal(law->invariants(quadratic, 3.5, 3.4, 0.9, &e), DEA_OK);
+  assert_close(e.W, 0.5 * 1e5 * 0.5, 1e-15, 0.0);
+  assert_true(e.W4 == 0.0 && e.W44 == 0.0);
+}
+
+static void test_law_domain(void **state)
+{
+  (void)state;
+  struct dea_law_energy e;
+  double w, w1, w2;
+  const double gent[DEA_LAW_PARAM_MAX] = {43e3, 7.0};
+  const struct dea_law *law = dea_law_find("gent");
+  assert_int_equal(law->invariants(gent, 9.999, 9.0, 1.0, &e), DEA_OK);
+  assert_int_equal(law->invariants(gent, 10.0, 9.0, 1.0, &e), DEA_E_DOMAIN);
+  assert_int_equal(law->invariants(gent, 1e9, 9.0, 1.0, &e), DEA_E_DOMAIN);
+  assert_int_equal(law->invariants(gent, (double)NAN, 9.0, 1.0, &e), DEA_E_DOMAIN);
+  const double fibre[DEA_LAW_PARAM_MAX] = {1e5, 4e5, 1.0, 0.0};
+  law = dea_law_find("holzapfel-gasser-ogden");
+  assert_int_equal(law->invariants(fibre, 900.0, 9.0, 800.0, &e), DEA_E_DOMAIN);
+  assert_int_equal(law->invariants(fibre, 3.0, 3.0, (double)NAN, &e), DEA_E_DOMAIN);
+  const double ogden[DEA_LAW_PARAM_MAX] = {40e3, 2.5};
+  law = dea_law_find("ogden");
+  assert_int_equal(law->principal(ogden, 0.0, &w, &w1, &w2), DEA_E_DOMAIN);
+  assert_int_equal(law->principal(ogden, -1.0, &w, &w1, &w2), DEA_E_DOMAIN);
+  assert_int_equal(law->principal(ogden, (double)NAN, &w, &w1, &w2), DEA_E_DOMAIN);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_registry),
+      cmocka_unit_test(test_samples_are_admissible),
+      cmocka_unit_test(test_invariant_form_by_complex_step),
+      cmocka_unit_test(test_principal_form_by_complex_step),
+      cmocka_unit_test(test_ogden_term_with_zero_exponent),
+      cmocka_unit_test(test_arruda_boyce_ground_state),
+      cmocka_unit_test(test_fibre_law),
+      cmocka_unit_test(test_law_domain),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,253 @@
+/* Arc-length paths: the homogeneous ideal dielectric elastomer (benchmark 2), free and under a dead
+ * load, against its closed form. */
+#include "devices.h"
+#include "model/film.h"
+#include "model/path.h"
+#include "testing.h"
+
+/* A free film under an equibiaxial nominal stress; the unknown is the stretch. */
+struct free_film {
+  struct dea_film film;
+  double load_Pa, scale_Pa;
+};
+
+static dea_status free_evaluate(void *self, const double *u, double voltage_V, double *g, double *K,
+                                double *gV)
+{
+  const struct free_film *free = self;
+  double H0 = free->film.thickness_m;
+  struct dea_plane plane, unit;
+  dea_status status = dea_film_eval(&free->film, true, voltage_V / H0, u[0], u[0], &plane);
+  if (status == DEA_OK) {
+    dea_plane_electric(free->film.material, 1, u[0], u[0], &unit);
+    g[0] = (plane.s1 - free->load_Pa) / free->scale_Pa;
+    K[0] = (plane.k11 + plane.k12) / free->scale_Pa;
+    gV[0] = unit.s1 * 2 * voltage_V / (H0 * H0) / free->scale_Pa;
+  }
+  return status;
+}
+
+static dea_status free_point(void *self, const double *u, double voltage_V,
+                             struct dea_load_point *out)
+{
+  const struct free_film *free = self;
+  *out = dea_load_point_empty();
+  out->voltage_V = voltage_V;
+  out->electrode_stretch = u[0];
+  out->nominal_field_V_per_m = voltage_V / free->film.thickness_m;
+  return DEA_OK;
+}
+
+struct record {
+  struct dea_event events[8];
+  size_t event_count, point_count;
+  int mode_changes, last_modes;
+  double last_stretch, stable_after_limit;
+};
+
+static dea_status take_event(void *user, const struct dea_event *event)
+{
+  struct record *record = user;
+  assert_true(record->event_count < 8);
+  record->events[record->event_count++] = *event;
+  return DEA_OK;
+}
+
+static dea_status take_point(void *user, const struct dea_load_point *point)
+{
+  struct record *record = user;
+  record->mode_changes += record->point_count > 0 && point->unstable_modes != record->last_modes;
+  record->last_modes = point->unstable_modes;
+  record->last_stretch = point->electrode_stretch;
+  record->point_count++;
+  return DEA_OK;
+}
+
+/* Path of a free film of 100 um to total stretch `end`, at dead load of pre-stretch `pre`. */
+static struct record trace(const struct dea_material *material, double pre, double end)
+{
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct free_film free = {.film = {.material = material, .thickness_m = 100e-6}};
+  struct dea_plane plane;
+  assert_int_equal(dea_film_eval(&free.film, false, 0, pre, pre, &plane), DEA_OK);
+  free.load_Pa = plane.s1;
+  free.scale_Pa = dea_film_modulus(&free.film);
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point,
+                                         dea_film_voltage_scale(&free.film)};
+  const struct dea_path_options options = {end, INFINITY, 5000};
+  struct dea_path *path;
+  struct record record = {0};
+  assert_int_equal(dea_path_create(ctx, &system, &pre, &path), DEA_OK);
+  assert_int_equal(dea_path_trace(ctx, path, &options, 1, take_point, take_event, &record), DEA_OK);
+  dea_path_destroy(ctx, path);
+  dea_context_destroy(ctx);
+  return record;
+}
+
+/* E~ sqrt(eps/mu) of an event. */
+static double field_of(const struct dea_event *event, const struct dea_material *material,
+                       double mu)
+{
+  double eps = DEA_EPSILON_0 * material->permittivity.at_rest;
+  return event->point.nominal_field_V_per_m * sqrt(eps / mu);
+}
+
+static void test_neo_hookean_pull_in(void **state)
+{
+  (void)state;
+  static const struct {
+    double pre, field, stretch;
+  } wanted[] = {{1, 0.687365, 1.259921}, {1.2, 0.41535, 1.59036}, {2, 0.19507, 2.97042}};
+  struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
+  for (size_t i = 0; i < 3; i++) {
+    struct record r = trace(&m, wanted[i].pre, 4);
+    assert_int_equal(r.event_count, 1);
+    assert_int_equal(r.events[0].kind, DEA_EVENT_PULL_IN);
+    assert_close(field_of(&r.events[0], &m, 1e5), wanted[i].field, 0, i == 0 ? 5e-7 : 5e-6);
+    assert_close(r.events[0].point.electrode_stretch, wanted[i].stretch, 0, i == 0 ? 1e-6 : 5e-6);
+    assert_int_equal(r.mode_changes, 1);
+    assert_int_equal(r.last_modes, 1);
+    assert_close(r.last_stretch, 4, 1e-9, 0);
+  }
+  // closed form of the first: stretch 2^(1/3), field^2 = l^-2 - l^-8
+  struct record r = trace(&m, 1, 4);
+  double l = cbrt(2);
+  assert_close(r.events[0].point.electrode_stretch, l, 1e-6, 0);
+  assert_close(field_of(&r.events[0], &m, 1e5), sqrt(pow(l, -2) - pow(l, -8)), 1e-11, 0);
+}
+
+static void test_gent_snaps_through(void **state)
+{
+  (void)state;
+  struct dea_material m = test_material("gent", 1e5, 90, 0);
+  struct record r = trace(&m, 1, 6.5);
+  assert_int_equal(r.event_count, 2);
+  assert_int_equal(r.events[0].kind, DEA_EVENT_PULL_IN);
+  assert_close(field_of(&r.events[0], &m, 1e5), 0.68959, 0, 5e-6);
+  assert_close(r.events[0].point.electrode_stretch, 1.2643, 0, 5e-5);
+  assert_int_equal(r.events[1].kind, DEA_EVENT_SNAP_BACK);
+  assert_close(field_of(&r.events[1], &m, 1e5), 0.28852, 0, 5e-6);
+  assert_close(r.events[1].point.electrode_stretch, 4.8216, 0, 5e-5);
+  assert_int_equal(r.mode_changes, 2);
+  assert_int_equal(r.last_modes, 0);
+}
+
+static void test_stiff_gent_has_no_limit_and_ends_at_lock_up(void **state)
+{
+  (void)state;
+  struct dea_material m = test_material("gent", 1e5, 7, 0);
+  struct record r = trace(&m, 1, 10); // lock-up: 2 l^2 + l^-4 = 10
+  assert_int_equal(r.event_count, 0);
+  assert_int_equal(r.mode_changes, 0);
+  assert_true(r.last_stretch > 2.2 && r.last_stretch < sqrt(5));
+}
+
+static void test_table_1_pull_in(void **state)
+{
+  (void)state;
+  struct dea_material m = test_yeoh();
+  struct record r = trace(&m, 1, 2);
+  assert_true(r.event_count >= 1);
+  assert_int_equal(r.events[0].kind, DEA_EVENT_PULL_IN);
+  assert_close(r.events[0].point.voltage_V, 8183, 0, 0.5);
+  assert_close(r.events[0].point.electrode_stretch, 1.2668, 0, 5e-5);
+}
+
+/* Every point of the traced path lies on the closed form E~^2 = s(l)/(eps l^3). */
+static dea_status check_on_curve(void *user, const struct dea_load_point *point)
+{
+  const struct dea_material *m = user;
+  struct dea_plane plane;
+  double l = point->electrode_stretch;
+  assert_int_equal(dea_plane_elastic(m, l, l, &plane), DEA_OK);
+  double eps = DEA_EPSILON_0 * m->permittivity.at_rest;
+  double wanted = 100e-6 * sqrt(plane.s1 / (eps * l * l * l));
+  assert_close(point->voltage_V, wanted, 1e-9, 1e-3);
+  return DEA_OK;
+}
+
+static void test_points_lie_on_the_closed_form(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct dea_material m = test_yeoh();
+  struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 3e5};
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point,
+                                         dea_film_voltage_scale(&free.film)};
+  const struct dea_path_options options = {2.5, INFINITY, 5000};
+  const double start = 1;
+  struct dea_path *path;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  assert_int_equal(dea_path_trace(ctx, path, &options, 1, check_on_curve, NULL, &m), DEA_OK);
+  dea_path_destroy(ctx, path);
+  dea_context_destroy(ctx);
+}
+
+/* Up to beyond pull-in the film snaps to the far branch, and it comes back only below the valley.
+ */
+static void test_seek_snaps_and_shows_hysteresis(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct dea_material m = test_material("gent", 1e5, 90, 0);
+  struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
+  double unit_V = dea_film_voltage_scale(&free.film);
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V};
+  const double start = 1;
+  struct dea_path *path;
+  struct dea_load_point p;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  static const struct {
+    double field;
+    bool far;
+  } steps[] = {{0.4, false}, {0.68, false}, {0.70, true}, {0.5, true}, {0.30, true}, {0.28, false}};
+  for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+    assert_int_equal(dea_path_seek(ctx, path, steps[i].field * unit_V, 10), DEA_OK);
+    assert_int_equal(dea_path_point(ctx, path, &p), DEA_OK);
+    assert_close(p.voltage_V, steps[i].field * unit_V, 1e-12, 0);
+    assert_true(p.stable);
+    assert_int_equal(p.electrode_stretch > 3, steps[i].far);
+  }
+  dea_path_destroy(ctx, path);
+  dea_context_destroy(ctx);
+}
+
+static void test_seek_beyond_pull_in_keeps_the_last_point(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
+  struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
+  double unit_V = dea_film_voltage_scale(&free.film);
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V};
+  const double start = 1;
+  struct dea_path *path;
+  struct dea_load_point before, after;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  assert_int_equal(dea_path_seek(ctx, path, 0.68 * unit_V, 10), DEA_OK);
+  assert_int_equal(dea_path_point(ctx, path, &before), DEA_OK);
+  assert_int_equal(dea_path_seek(ctx, path, 0.69 * unit_V, 10), DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(dea_path_point(ctx, path, &after), DEA_OK);
+  assert_close(after.electrode_stretch, before.electrode_stretch, 0, 0);
+  assert_close(after.voltage_V, before.voltage_V, 0, 0);
+  dea_path_destroy(ctx, path);
+  dea_context_destroy(ctx);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_neo_hookean_pull_in),
+      cmocka_unit_test(test_gent_snaps_through),
+      cmocka_unit_test(test_stiff_gent_has_no_limit_and_ends_at_lock_up),
+      cmocka_unit_test(test_table_1_pull_in),
+      cmocka_unit_test(test_points_lie_on_the_closed_form),
+      cmocka_unit_test(test_seek_snaps_and_shows_hysteresis),
+      cmocka_unit_test(test_seek_beyond_pull_in_keeps_the_last_point),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
