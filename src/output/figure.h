@@ -47,8 +47,14 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
 struct dea_series dea_figure_look(const char *model, size_t m);
 /* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
 void dea_figure_voltage_axis(struct dea_panel *panel);
-/* Marks the events of all paths within the voltage axis (call after it). */
-void dea_figure_mark_events(struct dea_panel *panel, const struct dea_result *result);
+/* Marks the events of all paths on their curves, with a key entry a kind. column, factor, shift: as
+ * in dea_figure_add. whole_path: also those beyond the voltage axis as it is and on unstable
+ * branches. */
+dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, double factor,
+                                 double shift, bool whole_path);
+/* A tic format with the same number of decimals on all tics of the left axis. */
+void dea_figure_even_tics(struct dea_panel *panel);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
 

@@ -58,8 +58,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Radial strain of the electrode (%%)");
   dea_figure_voltage_axis(panel);
-  dea_figure_mark_events(panel, result);
-  return DEA_OK;
+  return dea_figure_add_events(ctx, panel, result, dea_point_column_find("electrode_stretch"),
+                               100.0, -1.0, false);
 }
 
 const struct dea_figure dea_figure_displacement = {

@@ -56,6 +56,27 @@ static double largest_breakdown(const struct dea_curve *curve)
   return largest;
 }
 
+/* Curve with a breakdown margin that reaches the largest voltage, or NULL: its breakdown field
+ * spans the figure (those of the models differ only by their stretch). */
+static const struct dea_curve *furthest_curve(const struct dea_result *result,
+                                              const char *const models[], size_t count)
+{
+  const struct dea_curve *furthest = NULL;
+  double reached = -1.0;
+  for (size_t m = 0; m < count; m++) {
+    const struct dea_curve *curve = dea_figure_curve(result, models[m], false);
+    if (curve == NULL || largest_breakdown(curve) <= 0.0) {
+      continue;
+    }
+    double last = curve->points[curve->count - 1].voltage_V;
+    if (last > reached) {
+      reached = last;
+      furthest = curve;
+    }
+  }
+  return furthest;
+}
+
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
@@ -70,10 +91,9 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
       top = fmax(top, 1.1e-6 * fmax(largest_field(curve), largest_breakdown(curve)));
     }
   }
-  const struct dea_curve *first = count > 0 ? dea_figure_curve(result, models[0], false) : NULL;
-  if (first != NULL && dea_points_have(first->points, first->count, column) &&
-      dea_points_have(first->points, first->count, dea_point_column_find("breakdown_margin"))) {
-    DEA_TRY(ctx, add_breakdown(ctx, panel, first, top));
+  const struct dea_curve *furthest = furthest_curve(result, models, count);
+  if (furthest != NULL) {
+    DEA_TRY(ctx, add_breakdown(ctx, panel, furthest, top));
   }
   for (size_t m = 0; m < count; m++) {
     struct dea_series look = dea_figure_look(models[m], m);
@@ -82,9 +102,10 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->y_label, sizeof panel->y_label, "True field {/:Italic E} (V/\302\265m)");
   panel->y_min = 0.0;
+  panel->key = "at graph 0.03, 0.66 top left";
   dea_figure_voltage_axis(panel);
-  dea_figure_mark_events(panel, result);
-  return DEA_OK;
+  return dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor, 0.0,
+                               false);
 }
 
 const struct dea_figure dea_figure_field = {

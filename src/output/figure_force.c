@@ -17,8 +17,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Out-of-plane force {/:Italic F} (mN)");
   dea_figure_voltage_axis(panel);
-  dea_figure_mark_events(panel, result);
-  return DEA_OK;
+  return dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor, 0.0,
+                               false);
 }
 
 const struct dea_figure dea_figure_force = {

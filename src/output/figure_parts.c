@@ -100,11 +100,20 @@ void dea_figure_voltage_axis(struct dea_panel *panel)
     }
   }
   panel->x_min = 0.0;
-  panel->x_max = largest > 0.0 ? 1.02 * largest : NAN;
+  panel->x_max = largest > 0.0 ? largest : NAN;
   snprintf(panel->x_label, sizeof panel->x_label, "Voltage {/:Italic V} (kV)");
 }
 
-void dea_figure_mark_events(struct dea_panel *panel, const struct dea_result *result)
+/* What is drawn: factor * (member + shift). */
+struct quantity {
+  int column;
+  double factor, shift;
+};
+
+/* Adds the events of one kind as markers; left out are those that fall outside a sweep. */
+static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel,
+                                const struct dea_result *result, enum dea_event_kind kind,
+                                const struct quantity *q, bool whole_path)
 {
   static const char *const words[] = {
       [DEA_EVENT_PULL_IN] = "pull-in",
@@ -112,22 +121,58 @@ void dea_figure_mark_events(struct dea_panel *panel, const struct dea_result *re
       [DEA_EVENT_SLACK] = "loss of tension",
       [DEA_EVENT_BREAKDOWN] = "breakdown",
   };
-  size_t paths = 0;
+  size_t count = 0, n = 0;
   for (size_t i = 0; i < result->curve_count; i++) {
-    paths += result->curves[i].event_count > 0;
+    count += result->curves[i].event_count;
   }
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->style = DEA_MARKERS;
+  series->colour = DEA_BLACK;
+  series->marker = 5 + (int)kind;
+  snprintf(series->title, sizeof series->title, "%s", words[kind]);
   for (size_t i = 0; i < result->curve_count; i++) {
-    const struct dea_curve *curve = &result->curves[i];
-    for (size_t e = 0; e < curve->event_count; e++) {
-      double at = 1e-3 * curve->events[e].point.voltage_V;
-      char text[DEA_LABEL_SIZE];
-      snprintf(text, sizeof text, "%s%s%s", words[curve->events[e].kind], paths > 1 ? ", " : "",
-               paths > 1 ? curve->model : "");
-      if (at >= panel->x_min && at <= panel->x_max) {
-        dea_panel_mark(panel, true, at, text);
+    for (size_t e = 0; e < result->curves[i].event_count; e++, n++) {
+      const struct dea_event *event = &result->curves[i].events[e];
+      const struct dea_load_point *p = &event->point;
+      bool on_sweep =
+          1e-3 * p->voltage_V <= panel->x_max && (p->stable || kind == DEA_EVENT_PULL_IN);
+      if (event->kind == kind && (whole_path || on_sweep)) {
+        series->values[n] = 1e-3 * p->voltage_V;
+        series->values[count + n] = q->factor * (dea_point_get(p, q->column) + q->shift);
       }
     }
   }
+  return DEA_OK;
+}
+
+dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, double factor,
+                                 double shift, bool whole_path)
+{
+  const struct quantity q = {column, factor, shift};
+  if (panel->series_count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, add_events_of(ctx, panel, result, DEA_EVENT_PULL_IN, &q, whole_path));
+  DEA_TRY(ctx, add_events_of(ctx, panel, result, DEA_EVENT_SNAP_BACK, &q, whole_path));
+  DEA_TRY(ctx, add_events_of(ctx, panel, result, DEA_EVENT_SLACK, &q, whole_path));
+  return add_events_of(ctx, panel, result, DEA_EVENT_BREAKDOWN, &q, whole_path);
+}
+
+void dea_figure_even_tics(struct dea_panel *panel)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    for (size_t i = 0; i < series->count && !series->right; i++) {
+      double y = series->values[series->count + i];
+      low = isfinite(y) ? fmin(low, y) : low;
+      high = isfinite(y) ? fmax(high, y) : high;
+    }
+  }
+  double span = high - low; // gnuplot makes five to ten tics of it
+  panel->y_format = span >= 5.0 ? NULL : span >= 0.5 ? "%.1f" : span >= 0.05 ? "%.2f" : "%.3f";
 }
 
 /* Display unit with its proper signs: "um" -> "µm". */

@@ -47,7 +47,7 @@ static void set_labels(struct dea_plot *plot, const struct dea_profile_record *l
              "Radius in the stretched flat film {/:Italic R} (mm)");
     panel->x_min = 0.0;
     panel->x_max = last->count > 0 ? 1e3 * last->columns[last->count - 1] : panel->x_max;
-    panel->key = "top right";
+    panel->key = "above horizontal maxrows 1 samplen 1 width -1";
   }
   snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Total stretch {/:Italic \316\273}");
   snprintf(plot->panels[1].y_label, DEA_LABEL_SIZE, "Tension {/:Italic T} (N/m)");
@@ -77,7 +77,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     DEA_TRY(ctx, dea_panel_add(ctx, &plot->panels[0], 1, &hoop));
     hoop->style = DEA_DASHED;
     hoop->colour = DEA_GREY;
-    snprintf(hoop->title, sizeof hoop->title, "dashed: hoop direction");
+    snprintf(hoop->title, sizeof hoop->title, "hoop");
     hoop->values[0] = 0.0;
     hoop->values[1] = records[0].columns[2 * records[0].count];
   }

@@ -21,8 +21,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   panel->key = "bottom left";
   dea_figure_voltage_axis(panel);
   dea_panel_mark(panel, false, 0.0, "slack below");
-  dea_figure_mark_events(panel, result);
-  return DEA_OK;
+  return dea_figure_add_events(ctx, panel, result, dea_point_column_find("min_tension_N_per_m"),
+                               1.0, 0.0, false);
 }
 
 const struct dea_figure dea_figure_tension = {

@@ -196,7 +196,20 @@ static void add_style(struct dea_text *gp, const struct dea_series *series)
   }
 }
 
-/* A title for a string in double quotes: it is escaped enhanced text already. */
+/* Adds ` what "text"` for enhanced text that is escaped already. Some readers of SVG drop blanks at
+ * the ends of a span, so a blank beside a change of font is kept from the end by one of no width.
+ */
+static void add_label(struct dea_text *gp, const char *what, const char *text)
+{
+  static const char guard[] = "\342\200\213"; // U+200B
+  dea_text_add(gp, "%s \"", what);
+  for (const char *c = text; *c != '\0'; c++) {
+    bool after = *c == ' ' && c > text && c[-1] == '}', before = *c == ' ' && c[1] == '{';
+    dea_text_add(gp, "%s%c%s", after ? guard : "", *c, before ? guard : "");
+  }
+  dea_text_add(gp, "\"");
+}
+
 static void add_series(struct dea_text *gp, const struct dea_series *series, size_t index,
                        bool first)
 {
@@ -208,7 +221,7 @@ static void add_series(struct dea_text *gp, const struct dea_series *series, siz
                index, use, series->right ? 2 : 1);
   add_style(gp, series);
   if (series->title[0] != '\0') {
-    dea_text_add(gp, " title \"%s\"", series->title);
+    add_label(gp, " title", series->title);
   } else {
     dea_text_add(gp, " notitle");
   }
@@ -274,17 +287,17 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
   for (size_t p = 0; p < plot->panel_count; p++) {
     right_axis = right_axis || plot->panels[p].y2_label[0] != '\0';
   }
-  struct layout l = {.width_mm = 1e3 * width_m, .left_mm = 13.5};
+  struct layout l = {.width_mm = 1e3 * width_m, .left_mm = 14.0};
   double panel = l.width_mm > 120.0 ? 0.50 * l.width_mm : 0.60 * l.width_mm;
   l.right_mm = l.width_mm - (right_axis ? 13.5 : 3.5);
   l.bottom_mm[0] = 10.0;
   if (plot->panel_count == 2) {
     l.bottom_mm[1] = 10.0;
     l.top_mm[1] = l.bottom_mm[1] + panel * plot->second_height;
-    l.bottom_mm[0] = l.top_mm[1] + 3.0;
+    l.bottom_mm[0] = l.top_mm[1] + 4.0; // so that the tic labels of the two do not meet
   }
   l.top_mm[0] = l.bottom_mm[0] + panel;
-  l.height_mm = l.top_mm[0] + 3.0;
+  l.height_mm = l.top_mm[0] + (strncmp(plot->panels[0].key, "above", 5) == 0 ? 7.0 : 3.0);
   return l;
 }
 
@@ -315,21 +328,24 @@ static void add_terminals(struct dea_text *gp)
       gp, "do for [format in formats] {\n"
           "  if (format eq \"svg\") {\n"
           "    px = 96 / 25.4 # of an SVG, per mm\n"
+          "    x_shift = 0.6; y_shift = 1.0\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt * 96 / 72.0)\n"
           "    set terminal svg size width_mm * px, height_mm * px enhanced \\\n"
           "      font sprintf(\"Arial,%%g\", font_pt * 96 / 72.0) linewidth 1\n"
           "  }\n"
           "  if (format eq \"pdf\") {\n"
+          "    x_shift = 0.2; y_shift = 0.3\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
           "    set terminal pdfcairo size width_mm / 10.0 cm, height_mm / 10.0 cm enhanced \\\n"
-          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 1 linewidth 1\n"
+          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 0.75 linewidth 1.5\n"
           "  }\n"
           "  if (format eq \"png\") {\n"
           "    px = 300 / 25.4 # 300 dots an inch\n"
+          "    x_shift = 0.2; y_shift = 0.3\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
           "    set terminal pngcairo size width_mm * px, height_mm * px enhanced \\\n"
-          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 300 / 72.0 linewidth 4 "
-          "pointscale 4\n"
+          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 300 / 96.0 linewidth 3.1 "
+          "pointscale 3.1\n"
           "  }\n"
           "  set key font small\n"
           "  set output out.name.\".\".format\n");
@@ -340,16 +356,18 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
   add_range(gp, "x", panel->x_min, panel->x_max);
   add_range(gp, "y", panel->y_min, panel->y_max);
   if (has_x_label) {
-    dea_text_add(gp, "  set xlabel \"%s\" offset 0,0.4\n  set format x \"%%g\"\n", panel->x_label);
+    add_label(gp, "  set xlabel", panel->x_label);
+    dea_text_add(gp, " offset 0,x_shift\n  set format x \"%%g\"\n");
   } else {
     dea_text_add(gp, "  unset xlabel\n  set format x \"\"\n");
   }
-  dea_text_add(gp, "  set ylabel \"%s\" offset 1.2,0\n", panel->y_label);
+  dea_text_add(gp, "  set format y \"%s\"\n", panel->y_format != NULL ? panel->y_format : "%h");
+  add_label(gp, "  set ylabel", panel->y_label);
+  dea_text_add(gp, " offset y_shift,0\n");
   if (panel->y2_label[0] != '\0') {
-    dea_text_add(gp,
-                 "  set y2label \"%s\" offset -1.2,0 textcolor rgb \"%s\"\n"
-                 "  set y2tics textcolor rgb \"%s\"\n",
-                 panel->y2_label, colours[panel->y2_colour], colours[panel->y2_colour]);
+    add_label(gp, "  set y2label", panel->y2_label);
+    dea_text_add(gp, " offset -y_shift,0 textcolor rgb \"%s\"\n  set y2tics textcolor rgb \"%s\"\n",
+                 colours[panel->y2_colour], colours[panel->y2_colour]);
   } else {
     dea_text_add(gp, "  unset y2label\n  unset y2tics\n");
   }

@@ -56,7 +56,8 @@ struct dea_mark {
 struct dea_panel {
   char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE], y2_label[DEA_LABEL_SIZE];
   double x_min, x_max, y_min, y_max;
-  const char *key; // "top left"; static storage
+  const char *key;      // "top left", "above ..."; static storage
+  const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage
   enum dea_colour y2_colour;
   bool says_unstable; // key entry: dashed = unstable
   size_t series_count, mark_count;

@@ -29,7 +29,7 @@ void dea_libraries_text(char *out, size_t size)
   unsigned h5_major = 0, h5_minor = 0, h5_release = 0;
   H5get_libversion(&h5_major, &h5_minor, &h5_release);
   lapack_int la_major = 0, la_minor = 0, la_patch = 0;
-  LAPACK_ilaver(&la_major, &la_minor, &la_patch);
+  LAPACKE_ilaver(&la_major, &la_minor, &la_patch);
   snprintf(out, size, "libyaml %d.%d.%d, jansson %s, HDF5 %u.%u.%u, LAPACK %d.%d.%d", major, minor,
            patch, jansson_version_str(), h5_major, h5_minor, h5_release, (int)la_major,
            (int)la_minor, (int)la_patch);
