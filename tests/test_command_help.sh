@@ -76,7 +76,9 @@ offers new dea examples --copy ne
 for command in $(dea completion names commands); do
   offers "$command" dea "$command"
   # Each long option of the help text is offered.
-  for option in $(dea "$command" --help | grep -oE '(^|[ [,|])--[a-z][a-z-]*' | tr -d ' [,|' | sort -u); do
+  for option in $(dea "$command" --help | sed '1,2d' |
+    awk '/^$/ { prose = 1 } !prose || /^ +-/' | sed 's/  [A-Za-z].*//' |
+    grep -oE -- '--[a-z][a-z-]*' | sort -u); do
     offers "$option" dea "$command" "$option"
   done
   dea completion man | grep -qx "\.Ss $command" || { echo "the manual lacks $command"; failed=1; }
