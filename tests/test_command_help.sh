@@ -47,6 +47,10 @@ expect 0 "copy by force" dea examples --force --copy "$folder/new/deep"
 echo x >"$folder/file"
 expect 5 "copy into a file" dea examples --copy "$folder/file"
 
+# the design in the README is a valid one
+sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | grep -v '^```' >"$folder/readme.yaml"
+expect 0 "design of the README" dea check "$folder/readme.yaml"
+
 # doctor
 expect 0 "doctor" dea doctor
 has out "HDF5"
