@@ -48,7 +48,7 @@ echo x >"$folder/file"
 expect 5 "copy into a file" dea examples --copy "$folder/file"
 
 # the design in the README is a valid one
-sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | grep -v '^```' >"$folder/readme.yaml"
+awk '/^```/ { inside = /yaml/; next } inside' "$source/README.md" >"$folder/readme.yaml"
 expect 0 "design of the README" dea check "$folder/readme.yaml"
 
 # doctor

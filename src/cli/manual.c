@@ -78,7 +78,7 @@ void cli_print_manual(void)
   for (size_t i = 0; i < count; i++) {
     printf(".Ss %s\n", commands[i]->name);
     print_roff(commands[i]->summary);
-    puts("\n.Bd -literal");
+    puts(commands[i]->summary[0] != '\0' ? "\n.Bd -literal" : ".Bd -literal");
     fputs("Usage: ", stdout);
     print_roff(commands[i]->usage);
     puts(".Ed");
