@@ -1,0 +1,27 @@
+/* The run folder: results.h5, summary.json, CSV tables, design.yaml, figures/. */
+#ifndef DEA_OUTPUT_RUN_FOLDER_H
+#define DEA_OUTPUT_RUN_FOLDER_H
+
+#include "result/result.h"
+
+struct dea_run_folder_options {
+  bool force;      // replace results that are there
+  bool no_figures; // neither scripts nor pictures
+};
+
+/* To be asked before a long run: DEA_E_IO when the folder holds results and force is not set, or
+ * when it cannot be made. Makes the folder. */
+dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force);
+
+/* Writes everything of a result, each file as a whole; with force the files of the run that was
+ * there go first (other files stay). options: NULL for none. The tables are written before the
+ * figures, so that a missing gnuplot (DEA_E_TOOL) costs the pictures only. Pictures are drawn in
+ * the formats and the width of the design's report section. */
+dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result *result,
+                                const char *directory,
+                                const struct dea_run_folder_options *options);
+
+/* The name of the folder of figures within a run folder. */
+#define DEA_FIGURE_FOLDER "figures"
+
+#endif
