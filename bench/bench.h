@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* Time since some fixed moment [s]; needs _POSIX_C_SOURCE 199309L or later before any include. */
+/* Time since some fixed moment [s]. */
 static inline double bench_now_s(void)
 {
   struct timespec t;

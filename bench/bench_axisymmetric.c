@@ -1,6 +1,5 @@
 /* An 80-point sweep and the whole path of the axisymmetric disc of benchmark 4. */
 #include "../tests/devices.h"
-#define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "bench.h"
 #include "model/model.h"
 

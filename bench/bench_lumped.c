@@ -1,5 +1,4 @@
 /* How many lumped equilibria a second, on one core, through the batch interface. */
-#define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "bench.h"
 #include "model/lumped/lumped.h"
 

@@ -1,5 +1,4 @@
 /* How long the command takes to answer: median wall time of 20 runs, process start included. */
-#define _POSIX_C_SOURCE 200809L // posix_spawn
 #include "bench.h"
 
 #include <fcntl.h>

@@ -13,30 +13,32 @@
 enum { COMMAND_TEXT_MAX = 1 << 20 };
 
 /* Folder of the test program, made by command_set_up and removed by command_tear_down. */
-static char command_folder[64];
+static char command_folder[512];
 static char command_out[COMMAND_TEXT_MAX]; // standard output of the last run
 static char command_err[COMMAND_TEXT_MAX]; // standard error of the last run
 
 static inline int command_set_up(void **state)
 {
   (void)state;
-  const char *tmp = getenv("TMPDIR");
-  snprintf(command_folder, sizeof command_folder, "%.40s/dea-test-XXXXXX",
-           tmp != NULL ? tmp : "/tmp");
+  char here[400];
+  if (getcwd(here, sizeof here) == NULL) { // where ctest runs: the build
+    return -1;
+  }
+  snprintf(command_folder, sizeof command_folder, "%s/dea-test-XXXXXX", here);
   return mkdtemp(command_folder) != NULL ? 0 : -1;
 }
 
 static inline int command_tear_down(void **state)
 {
   (void)state;
-  char text[128];
+  char text[600];
   snprintf(text, sizeof text, "rm -rf '%s'", command_folder);
   return system(text);
 }
 
 static inline void command_read(const char *name, char *out)
 {
-  char path[128];
+  char path[600];
   snprintf(path, sizeof path, "%s/%s", command_folder, name);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
@@ -52,7 +54,7 @@ static inline int command_run(const char *arguments)
   static char text[8192];
   size_t used =
       (size_t)snprintf(text, sizeof text, "cd '%s' && '%s' ", command_folder, DEA_COMMAND);
-  for (const char *c = arguments; *c != '\0' && used + 300 < sizeof text; c++) {
+  for (const char *c = arguments; *c != '\0' && used + 600 < sizeof text; c++) {
     if (*c == '@') {
       used += (size_t)snprintf(text + used, sizeof text - used, "%s", DEA_SOURCE_DIR);
     } else {
@@ -70,7 +72,7 @@ static inline int command_run(const char *arguments)
 /* Writes a file into command_folder. */
 static inline void command_write(const char *name, const char *text)
 {
-  char path[128];
+  char path[600];
   snprintf(path, sizeof path, "%s/%s", command_folder, name);
   FILE *file = fopen(path, "wb");
   assert_non_null(file);

@@ -88,7 +88,7 @@ static void test_run_folder(void **state)
   static const char *const files[] = {"summary.json", "results.h5", "lumped_sweep.csv",
                                       "lumped_path.csv", "axisymmetric_sweep.csv"};
   for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-    char path[200];
+    char path[600];
     snprintf(path, sizeof path, "%s/frdea-4.run/%s", command_folder, files[i]);
     assert_int_equal(access(path, R_OK), 0);
   }
@@ -167,7 +167,7 @@ static void test_missing_file(void **state)
 static void test_interrupt_keeps_points(void **state)
 {
   (void)state;
-  char text[1024];
+  char text[4096];
   snprintf(text, sizeof text,
            "cd '%s' && '%s' run '%s/examples/plain-disc.yaml' --model axisymmetric --no-figures "
            "-o stopped --set 'compute.voltage={from: 0 kV, to: 9.9 kV, step: 1 V}' "

@@ -29,9 +29,7 @@ static dea_status too_large(struct dea_context *ctx, const char *file, size_t ma
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
-                               "the file is larger than %zu MB; that is no "
-                               "design or material file",
-                               max / 1000000));
+                               "the file is larger than %zu MB, which is too much", max / 1000000));
   return dea_fail(ctx, DEA_E_DESIGN, "'%s' is larger than %zu MB", file, max / 1000000);
 }
 

@@ -2,7 +2,7 @@
 #ifndef DEA_CLI_CLI_H
 #define DEA_CLI_CLI_H
 
-#include "base/context.h"
+#include "design/design.h"
 
 #include <stdio.h>
 
@@ -46,6 +46,12 @@ int cli_report(struct dea_cli *cli, dea_status status);
 /* Prints "dea COMMAND: text" and a hint to --help; returns the exit code of a usage error. */
 int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
     DEA_PRINTF(3, 4);
+/* Takes "key=value" of --set (text is cut at the '='); false when it is not of that form or there
+ * is no room. Keys and values lend from text. */
+bool cli_parse_override(char *text, struct dea_override *overrides, size_t room, size_t *count);
+/* Usage error for what getopt_long answered: ':' or '?'. */
+int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
+                     char **argv);
 /* Prints a command's usage to stdout. */
 void cli_print_usage(const struct dea_command *command);
 /* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */

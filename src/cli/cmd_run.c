@@ -1,15 +1,312 @@
+/* dea run: design -> models -> studies -> run folder, or JSON on stdout. */
+#define _POSIX_C_SOURCE 200809L // clock_gettime
+#include "base/file.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "cli/cli.h"
+#include "output/run_folder.h"
+#include "output/summary.h"
+#include "result/provenance.h"
+#include "study/study.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { OVERRIDES_MAX = 64, TABLE_ROWS = 9 };
+
+struct run_options {
+  const char *file, *directory, *models[DEA_DESIGN_MODELS_MAX];
+  size_t model_count;
+  struct dea_override overrides[OVERRIDES_MAX];
+  size_t override_count;
+  bool json, force, no_figures;
+};
+
+/* Everything of one run that has to be given back. */
+struct run {
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  struct dea_text directory;
+};
+
+static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_options *out)
+{
+  static const struct option longs[] = {{"model", required_argument, NULL, 'm'},
+                                        {"set", required_argument, NULL, 's'},
+                                        {"output", required_argument, NULL, 'o'},
+                                        {"json", no_argument, NULL, 'j'},
+                                        {"force", no_argument, NULL, 'f'},
+                                        {"no-figures", no_argument, NULL, 'n'},
+                                        {NULL, 0, NULL, 0}};
+  opterr = 0;
+  int option;
+  while ((option = getopt_long(argc, argv, ":m:s:o:f", longs, NULL)) != -1) {
+    switch (option) {
+    case 'm':
+      if (out->model_count == DEA_DESIGN_MODELS_MAX) {
+        return cli_usage_error(cli, &cmd_run, "too many models");
+      }
+      out->models[out->model_count++] = optarg;
+      break;
+    case 's':
+      if (!cli_parse_override(optarg, out->overrides, OVERRIDES_MAX, &out->override_count)) {
+        return cli_usage_error(cli, &cmd_run, "--set takes key=value, not '%s'", optarg);
+      }
+      break;
+    case 'o':
+      out->directory = optarg;
+      break;
+    case 'j':
+      out->json = true;
+      break;
+    case 'f':
+      out->force = true;
+      break;
+    case 'n':
+      out->no_figures = true;
+      break;
+    default:
+      return cli_option_error(cli, &cmd_run, option, argv);
+    }
+  }
+  if (argc - optind != 1) {
+    return cli_usage_error(
+        cli, &cmd_run, argc == optind ? "a design file is needed" : "one design file at a time");
+  }
+  out->file = argv[optind];
+  return 0;
+}
+
+/* Run folder: the one given, or the design's file name without ending, plus ".run", in the current
+ * folder; empty when the summary goes to stdout alone. */
+static void choose_directory(const struct run_options *options, struct dea_text *out)
+{
+  const char *file = options->file;
+  if (options->directory != NULL) {
+    dea_text_add(out, "%s", options->directory);
+    return;
+  }
+  if (options->json) {
+    return;
+  }
+  const char *slash = strrchr(file, '/'), *name = slash != NULL ? slash + 1 : file;
+  const char *dot = strrchr(name, '.');
+  size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+  dea_text_add(out, "%.*s.run", (int)length, name);
+}
+
+static const struct dea_model_type *find_model(struct dea_cli *cli, const char *name,
+                                               struct dea_place place)
+{
+  const struct dea_model_type *type = dea_model_find(name);
+  if (type == NULL) {
+    size_t count;
+    const struct dea_model_type *const *all = dea_model_all(&count);
+    struct dea_text known = {.ctx = cli->ctx};
+    for (size_t i = 0; i < count; i++) {
+      dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
+    }
+    dea_finding_add(cli->ctx, DEA_ERROR, place,
+                    "there is no model '%s' in this version; there is %s", name,
+                    dea_text_get(&known));
+    dea_text_free(&known);
+  }
+  return type;
+}
+
+/* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown ones.
+ */
+static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
+                                const struct dea_design *design,
+                                const struct dea_model_type *out[DEA_DESIGN_MODELS_MAX],
+                                size_t *count)
+{
+  bool given = options->model_count > 0, bad = false;
+  *count = given ? options->model_count : design->compute.model_count;
+  for (size_t i = 0; i < *count; i++) {
+    const struct dea_label *label = &design->compute.models[i];
+    const struct dea_place option = {.file = "--model"};
+    out[i] = given ? find_model(cli, options->models[i], option)
+                   : find_model(cli, label->text, label->place);
+    bad = bad || out[i] == NULL;
+  }
+  if (bad) {
+    return dea_fail(cli->ctx, given ? DEA_E_USAGE : DEA_E_DESIGN, "a model is not known");
+  }
+  return DEA_OK;
+}
+
+static dea_status build(struct dea_cli *cli, const struct run_options *options, const char *bytes,
+                        size_t length, struct run *run)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, dea_design_read_memory(ctx, options->file, bytes, length, options->overrides,
+                                      options->override_count, &run->design));
+  DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
+  DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
+  DEA_TRY(ctx, dea_provenance_fill(ctx, bytes, length, options->overrides, options->override_count,
+                                   cli->command_line, &run->result->provenance));
+  return DEA_OK;
+}
+
+static dea_status prepare(struct dea_cli *cli, const struct run_options *options, struct run *run)
+{
+  struct dea_context *ctx = cli->ctx;
+  char *bytes;
+  size_t length;
+  DEA_TRY(ctx, dea_file_read(ctx, options->file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = build(cli, options, bytes, length, run); // the very bytes that are kept
+  dea_free(ctx, bytes);
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
+static void release(struct dea_cli *cli, struct run *run)
+{
+  if (run->directory.ctx != NULL) {
+    dea_text_free(&run->directory);
+  }
+  dea_result_destroy(cli->ctx, run->result);
+  dea_device_destroy(cli->ctx, run->device);
+  dea_design_destroy(cli->ctx, run->design);
+}
+
+static void print_cell(double value, double factor, int width, int digits)
+{
+  if (isnan(value)) {
+    printf("%*s", width, "-");
+  } else {
+    printf("%*.*f", width, digits, value * factor);
+  }
+}
+
+static const char *event_text(enum dea_event_kind kind)
+{
+  switch (kind) {
+  case DEA_EVENT_PULL_IN:
+    return "pull-in";
+  case DEA_EVENT_SNAP_BACK:
+    return "snap-back";
+  case DEA_EVENT_SLACK:
+    return "film goes slack";
+  default:
+    return "breakdown field reached";
+  }
+}
+
+/* A few rows of the sweep and the events of the path. */
+static void print_model(const struct dea_result *result, const char *model)
+{
+  const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
+  const struct dea_curve *path = dea_result_find(result, model, "path");
+  printf("\n%s\n%9s%10s%12s%12s%12s%10s%10s\n", model, "V", "stretch", "u edge", "z tip", "field",
+         "margin", "tension");
+  printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
+  size_t count = sweep != NULL ? sweep->count : 0;
+  size_t rows = count < TABLE_ROWS ? count : TABLE_ROWS;
+  for (size_t i = 0; i < rows; i++) {
+    const struct dea_load_point *p = &sweep->points[rows > 1 ? i * (count - 1) / (rows - 1) : 0];
+    print_cell(p->voltage_V, 1e-3, 9, 3);
+    print_cell(p->electrode_stretch, 1, 10, 5);
+    print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
+    print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+    print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
+    print_cell(p->breakdown_margin, 100, 10, 1);
+    print_cell(p->min_tension_N_per_m, 1, 10, 3);
+    puts(p->stable ? "" : "  unstable");
+  }
+  for (size_t i = 0; path != NULL && i < path->event_count; i++) {
+    const struct dea_load_point *p = &path->events[i].point;
+    printf("  %s at %.4g kV, electrode stretch %.5g\n", event_text(path->events[i].kind),
+           1e-3 * p->voltage_V, p->electrode_stretch);
+  }
+}
+
+/* Writes what there is, whatever happened before: partial results are results. */
+static dea_status deliver(struct dea_cli *cli, const struct run_options *options, struct run *run,
+                          const struct dea_model_type *const *types, size_t count)
+{
+  struct dea_context *ctx = cli->ctx;
+  if (options->json) {
+    char *text;
+    DEA_TRY(ctx, dea_summary_text(ctx, run->result, &text));
+    fputs(text, stdout);
+    dea_free(ctx, text);
+  }
+  const char *directory = dea_text_get(&run->directory);
+  dea_status status = DEA_OK;
+  if (directory[0] != '\0') {
+    const struct dea_run_folder_options folder = {.force = true, // prepare has asked
+                                                  .no_figures = options->no_figures};
+    status = dea_run_folder_write(ctx, run->result, directory, &folder);
+  }
+  if (!options->json && !cli->quiet) {
+    puts(run->design->title.text);
+    for (size_t i = 0; i < count; i++) {
+      print_model(run->result, types[i]->name);
+    }
+    printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
+           options->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
+  }
+  return status;
+}
+
+static dea_status run_all(struct dea_cli *cli, const struct run_options *options, struct run *run)
+{
+  const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
+  struct dea_context *ctx = cli->ctx;
+  size_t count;
+  struct timespec start, end;
+  DEA_TRY(ctx, prepare(cli, options, run));
+  DEA_TRY(ctx, choose_models(cli, options, run->design, types, &count));
+  run->directory.ctx = ctx;
+  choose_directory(options, &run->directory);
+  if (run->directory.length > 0) {
+    DEA_TRY(ctx, dea_run_folder_prepare(ctx, dea_text_get(&run->directory), options->force));
+  }
+  dea_status first = DEA_OK;
+  char message[1024] = "";
+  clock_gettime(CLOCK_MONOTONIC, &start);
+  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED; i++) {
+    dea_status status = dea_study_run(ctx, types[i], run->result);
+    if (status != DEA_OK && first == DEA_OK) {
+      first = status;
+      snprintf(message, sizeof message, "%s: %s", types[i]->name, dea_context_message(ctx));
+    }
+  }
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  run->result->provenance.wall_s =
+      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  DEA_TRY(ctx, deliver(cli, options, run, types, count));
+  return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
+}
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  (void)argc;
-  (void)argv;
-  return cli_usage_error(cli, &cmd_run, "not built yet");
+  struct run_options options = {0};
+  struct run run = {0};
+  int code = parse_options(cli, argc, argv, &options);
+  if (code != 0) {
+    return code;
+  }
+  code = cli_report(cli, run_all(cli, &options, &run));
+  release(cli, &run);
+  return code;
 }
 
 const struct dea_command cmd_run = {
     .name = "run",
-    .summary = "",
-    .usage = "dea run\n",
+    .summary = "solve a design: stretch, field, displacement and margins against voltage",
+    .usage = "dea run DESIGN [options]\n"
+             "  -m, --model NAME      lumped or axisymmetric, instead of the design's list\n"
+             "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
+             "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
+             "  -f, --force           replace the results in an existing run folder\n"
+             "      --no-figures      no figures\n"
+             "      --json            summary as JSON on stdout; a folder only with -o\n",
     .run = run,
 };

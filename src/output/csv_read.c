@@ -1,8 +1,9 @@
 /* Reader of measurements (see dea_measurement_read in csv.h). */
 #include "output/csv.h"
 
+#include "base/file.h"
+#include "base/units.h"
 #include "output/file.h"
-#include "output/unit.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -22,7 +23,6 @@ struct field_meaning {
 struct reader {
   struct dea_context *ctx;
   const char *file;
-  const struct dea_unit_table *units;
   char separator;
   size_t line;
   struct field_meaning fields[FIELDS_MAX];
@@ -199,21 +199,14 @@ static void read_unit(struct reader *r, const char *title, const char *unit, boo
     }
     return;
   }
-  switch (dea_unit_factor(r->units, unit, c->si_unit, &field->factor)) {
-  case DEA_UNIT_FITS:
-    break;
-  case DEA_UNIT_UNKNOWN:
-    if (one_more_error(r)) {
-      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
-                      "'%s' in '%s' is not a unit; '%s' would be right", unit, title, proper);
-    }
-    break;
-  case DEA_UNIT_OTHER_DIMENSION:
-    if (one_more_error(r)) {
-      dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
-                      "'%s' does not measure %s; '%s' would be right", unit, c->header, proper);
-    }
-    break;
+  char one[FIELD_MAX + 2], why[DEA_WHY_SIZE], example[32];
+  snprintf(one, sizeof one, "1 %s", unit);
+  snprintf(example, sizeof example, "1 %s", c->display_unit);
+  const struct dea_measure due = {.unit = c->si_unit, .example = example};
+  if (!dea_units_read(r->ctx, one, due, &field->factor, why) && why[0] != '\0' &&
+      one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "the unit in '%s' does not fit: %s",
+                    title, why);
   }
 }
 
@@ -400,12 +393,8 @@ static dea_status read_text(struct dea_context *ctx, const char *file, char *tex
   if (memchr(text, '\0', length) != NULL) {
     return dea_fail(ctx, DEA_E_IO, "%s is not a text file", file);
   }
-  struct dea_unit_table *units;
-  DEA_TRY(ctx, dea_unit_table_create(ctx, &units));
-  r.units = units;
   dea_context_clear(ctx); // so that the status below can only be of a finding
   dea_status status = read_lines(&r, text, m);
-  dea_unit_table_destroy(ctx, units);
   if (status == DEA_OK && dea_context_status(ctx) == DEA_E_MEMORY) {
     return DEA_E_MEMORY; // a finding could not be kept
   }
@@ -426,7 +415,8 @@ dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
   }
   char *text;
   size_t length;
-  DEA_TRY(ctx, dea_file_read(ctx, file, FILE_MAX, &text, &length));
+  dea_status read = dea_file_read(ctx, file, FILE_MAX, &text, &length);
+  DEA_TRY(ctx, read == DEA_E_DESIGN ? dea_fail(ctx, DEA_E_IO, "'%s' is too large", file) : read);
   struct dea_measurement *m = dea_alloc(ctx, 1, sizeof *m);
   dea_status status = DEA_E_MEMORY;
   if (m != NULL) {

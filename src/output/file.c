@@ -142,51 +142,6 @@ dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
   return status;
 }
 
-static dea_status read_stream(struct dea_context *ctx, FILE *stream, const char *path,
-                              size_t max_length, char **bytes, size_t *length)
-{
-  size_t room = 0, got = 0;
-  do {
-    if (room - *length < 2) {
-      room = room > 0 ? 2 * room : 16384;
-      char *moved = dea_resize(ctx, *bytes, room, 1);
-      if (moved == NULL) {
-        return DEA_E_MEMORY;
-      }
-      *bytes = moved;
-    }
-    got = fread(*bytes + *length, 1, room - *length - 1, stream);
-    *length += got;
-    if (*length > max_length) {
-      return dea_fail(ctx, DEA_E_IO, "%s is too large (more than %zu MB)", path,
-                      max_length / 1000000);
-    }
-  } while (got > 0);
-  (*bytes)[*length] = '\0';
-  if (ferror(stream)) {
-    return dea_fail(ctx, DEA_E_IO, "cannot read %s: %s", path, strerror(errno));
-  }
-  return DEA_OK;
-}
-
-dea_status dea_file_read(struct dea_context *ctx, const char *path, size_t max_length, char **out,
-                         size_t *length)
-{
-  *out = NULL;
-  *length = 0;
-  FILE *stream = fopen(path, "rbe");
-  if (stream == NULL) {
-    return dea_fail(ctx, DEA_E_IO, "cannot open %s: %s", path, strerror(errno));
-  }
-  dea_status status = read_stream(ctx, stream, path, max_length, out, length);
-  fclose(stream);
-  if (status != DEA_OK) {
-    dea_free(ctx, *out);
-    *out = NULL;
-  }
-  return status;
-}
-
 void *dea_c_locale_enter(void)
 {
   locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", duplocale(uselocale((locale_t)0)));

@@ -23,11 +23,6 @@ dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
 char *dea_partial_name(struct dea_context *ctx, const char *path);
 /* Gives a finished hidden file its name; removes it when that fails. */
 dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
-/* Whole file as bytes with a NUL after them (not counted); at most max_length bytes, DEA_E_IO for
- * more. out: owned by the caller. */
-dea_status dea_file_read(struct dea_context *ctx, const char *path, size_t max_length, char **out,
-                         size_t *length);
-
 /* Numbers are written with a decimal point whatever the program's locale: between these two calls
  * the thread formats in the C locale. */
 void *dea_c_locale_enter(void);
