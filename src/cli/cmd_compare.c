@@ -134,11 +134,8 @@ static int read_options(struct dea_cli *cli, int argc, char **argv, struct reque
   int letter, code = 0;
   opterr = 0;
   while (code == 0 && (letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter == ':') {
-      return cli_usage_error(cli, &cmd_compare, "%s needs a value", argv[optind - 1]);
-    }
-    if (letter == '?') {
-      return cli_usage_error(cli, &cmd_compare, "'%s' is not an option", argv[optind - 1]);
+    if (letter == ':' || letter == '?') {
+      return cli_option_error(cli, &cmd_compare, letter, argv);
     }
     code = take_option(cli, letter, request);
   }

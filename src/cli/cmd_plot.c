@@ -32,11 +32,8 @@ static int read_options(struct dea_cli *cli, int argc, char **argv, struct reque
   int letter;
   opterr = 0;
   while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter == ':') {
-      return cli_usage_error(cli, &cmd_plot, "%s needs a value", argv[optind - 1]);
-    }
-    if (letter == '?') {
-      return cli_usage_error(cli, &cmd_plot, "'%s' is not an option", argv[optind - 1]);
+    if (letter == ':' || letter == '?') {
+      return cli_option_error(cli, &cmd_plot, letter, argv);
     }
     if (letter == 'o') {
       request->folder = optarg;

@@ -395,8 +395,8 @@ static dea_status read_text(struct dea_context *ctx, const char *file, char *tex
   }
   dea_context_clear(ctx); // so that the status below can only be of a finding
   dea_status status = read_lines(&r, text, m);
-  if (status == DEA_OK && dea_context_status(ctx) == DEA_E_MEMORY) {
-    return DEA_E_MEMORY; // a finding could not be kept
+  if (status == DEA_OK && dea_context_status(ctx) != DEA_OK) {
+    return dea_context_status(ctx); // a finding could not be kept, or there are no units
   }
   if (status == DEA_OK && r.errors > 0) {
     status = dea_fail(ctx, DEA_E_IO, "%s cannot be used: %zu error%s", file, r.errors,
