@@ -1,8 +1,8 @@
 /* result: growth, names, provenance, failing allocations, and the comparison of curves. */
-#include "result/compare.h"
 #include "base/version.h"
-#include "fake_result.h"
 #include "failing_allocator.h"
+#include "fake_result.h"
+#include "result/compare.h"
 #include "testing.h"
 
 #include <stdlib.h>
