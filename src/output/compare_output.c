@@ -79,7 +79,7 @@ static dea_status fill_plot(struct dea_context *ctx, const struct dea_compared *
   series->colour = DEA_BLUE;
   dea_label_escape(compared->a, series->title, sizeof series->title);
   DEA_TRY(ctx, add(ctx, top, m, m->b, NULL, m->b_std, &series));
-  series->style = bars ? DEA_ERROR_BARS : DEA_MARKERS;
+  series->style = bars ? DEA_ERROR_BARS : m->count > 25 ? DEA_LINE_MARKED : DEA_MARKERS;
   series->colour = DEA_VERMILLION;
   dea_label_escape(compared->b, series->title, sizeof series->title);
   DEA_TRY(ctx, add(ctx, low, m, m->a, m->b, m->b_std, &series));
@@ -90,7 +90,8 @@ static dea_status fill_plot(struct dea_context *ctx, const struct dea_compared *
   snprintf(low->y_label, sizeof low->y_label, "Difference");
   dea_figure_voltage_axis(top);
   dea_figure_voltage_axis(low);
-  dea_figure_even_tics(top);
+  dea_figure_even_tics(top, 7);
+  dea_figure_even_tics(low, 3);
   return DEA_OK;
 }
 
