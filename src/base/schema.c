@@ -208,7 +208,7 @@ static dea_status choose_option(const struct dea_reader *reader, const struct se
       *option = field->option;
     } else if (is_first && field >= asking && node->overridden == first->overridden) {
       DEA_TRY(reader->ctx, dea_schema_error(reader, node->key_place,
-                                            "'%s' and '%s' say the same thing; write one of them",
+                                            "'%s' and '%s' exclude each other; write one of them",
                                             first->key, field->key));
     }
   }

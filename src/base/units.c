@@ -179,9 +179,10 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
   if (from == NULL) {
     snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
              unit, text, due->example);
-  } else if (number_due && (strcmp(unit, "%") != 0 || to == NULL)) {
+  } else if (number_due) {
     snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
-             text, name != NULL ? name : "a value with a unit", due->example);
+             text, unit[0] == '%' ? "a percentage" : (name != NULL ? name : "a value with a unit"),
+             due->example);
   } else if (to == NULL || ut_are_convertible(from, to) == 0 ||
              (strcmp(due->unit, "radian") == 0 && unit[0] == '%')) {
     snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but %s is due, such as '%s'", text,

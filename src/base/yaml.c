@@ -300,7 +300,8 @@ static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, con
   } else {
     if (yaml_document_get_root_node(&document) == NULL) {
       struct dea_place place = {yaml->name, 1, 1};
-      status = found(ctx, fixed != NULL ? *fixed : place, "there is nothing in it");
+      status = fixed != NULL ? found(ctx, *fixed, "no value is given")
+                             : found(ctx, place, "the file is empty");
     } else {
       struct reading r = {.ctx = ctx, .yaml = yaml, .document = &document, .fixed = fixed};
       status = take_document(&r, out);

@@ -165,18 +165,6 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
   json_decref(json);
 }
 
-/* Takes "KEY=VALUE" apart in place. */
-static bool take_override(struct arguments *arguments, char *text)
-{
-  char *equals = strchr(text, '=');
-  if (equals == NULL || equals == text || arguments->override_count == OVERRIDES_MAX) {
-    return false;
-  }
-  *equals = '\0';
-  arguments->overrides[arguments->override_count++] = (struct dea_override){text, equals + 1};
-  return true;
-}
-
 /* -1, or the exit code after a usage error. */
 static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *out)
 {
@@ -185,7 +173,8 @@ static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *o
       out->json = true;
     } else if (strcmp(argv[i], "--set") == 0 || strncmp(argv[i], "--set=", 6) == 0) {
       char *text = argv[i][5] == '=' ? argv[i] + 6 : i + 1 < argc ? argv[++i] : NULL;
-      if (text == NULL || !take_override(out, text)) {
+      if (text == NULL ||
+          !cli_parse_override(text, out->overrides, OVERRIDES_MAX, &out->override_count)) {
         return cli_usage_error(cli, &cmd_check,
                                "--set wants KEY=VALUE, such as "
                                "--set film.thickness=200um");

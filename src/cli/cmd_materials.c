@@ -35,25 +35,26 @@ static const char *leaf(const char *path)
   return dot != NULL ? dot + 1 : path;
 }
 
-/* Text broken into lines of at most 76 columns below a heading. */
+/* Text broken into lines of at most 96 columns below a heading. */
 static void print_wrapped(const char *heading, const char *text)
 {
-  int column = printf("    %-14s ", heading);
-  const int margin = column;
+  const int margin = printf("    %-14s ", heading);
+  int column = margin;
   while (*text != '\0') {
     size_t length = strcspn(text, " \n");
     if (column > margin && column + (int)length > 96) {
       printf("\n%*s", margin, "");
       column = margin;
     }
-    column += printf("%.*s ", (int)length, text);
+    column += printf("%s%.*s", column > margin ? " " : "", (int)length, text);
     text += length;
     text += strspn(text, " \n");
   }
   putchar('\n');
 }
 
-/* Heading of the section that a path belongs to: everything before its last key. */
+/* Length of the section that a path belongs to: everything before its last key. The parameters of a
+ * law are shown with its set. */
 static size_t section_length(const char *path)
 {
   const char *dot = strrchr(path, '.');
@@ -64,14 +65,22 @@ static size_t section_length(const char *path)
                                                                                : length;
 }
 
-/* All values of a material, in the words of its file. Prose comes after the numbers of a section.
- */
-static void print_section(const struct dea_listing *listing, size_t first, size_t end)
+/* True when the item belongs to the section `path[0 .. length)`. */
+static bool in_section(const struct dea_listed *item, const char *path, size_t length)
+{
+  return section_length(item->path) == length && strncmp(item->path, path, length) == 0;
+}
+
+/* Values of one section, in the words of the file; prose comes after the numbers. */
+static void print_section(const struct dea_listing *listing, const char *path, size_t length)
 {
   static const char *const prose[] = {"uncertainty", "range", "source", "note"};
   const size_t prose_count = sizeof prose / sizeof prose[0];
   for (size_t pass = 0; pass <= prose_count; pass++) {
-    for (size_t i = first; i < end; i++) {
+    for (size_t i = 0; i < listing->count; i++) {
+      if (!in_section(&listing->items[i], path, length)) {
+        continue;
+      }
       const char *key = leaf(listing->items[i].path);
       size_t which = 0;
       while (which < prose_count && strcmp(prose[which], key) != 0) {
@@ -89,24 +98,22 @@ static void print_material(const struct dea_catalogue_entry *entry)
   const struct dea_listing *listing = &entry->listing;
   const struct dea_material_data *data = &entry->data;
   printf("%s (%s)\n%s\n%s\n", data->name.text, kind_of(data), data->title.text, entry->file);
-  for (size_t i = 0; i < listing->count;) {
+  for (size_t i = 0; i < listing->count; i++) {
     const char *path = listing->items[i].path;
-    size_t length = section_length(path), end = i + 1;
-    while (end < listing->count && section_length(listing->items[end].path) == length &&
-           strncmp(listing->items[end].path, path, length) == 0) {
-      end++;
-    }
-    if (length > 0) {
-      printf("\n  %.*s\n", (int)length, path);
-      print_section(listing, i, end);
-    } else {
-      for (size_t j = i; j < end; j++) {
-        if (listing->items[j].origin == DEA_ABSENT) {
-          printf("\n  %s: %s\n", listing->items[j].path, listing->items[j].text);
-        }
+    size_t length = section_length(path), before = 0;
+    if (length == 0) {
+      if (listing->items[i].origin == DEA_ABSENT) {
+        printf("\n  %s: %s\n", path, listing->items[i].text);
       }
+      continue;
     }
-    i = end;
+    while (!in_section(&listing->items[before], path, length)) {
+      before++;
+    }
+    if (before == i) { // the first of its section
+      printf("\n  %.*s\n", (int)length, path);
+      print_section(listing, path, length);
+    }
   }
 }
 

@@ -122,14 +122,11 @@ dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *
                               const struct dea_device *device)
 {
   double r_a = device->electrode_radius_m, frame = device->frame_radius_m;
-  if (r_a >= frame * (1 - touching)) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, design->electrodes.radius.length.place,
-                                 "the electrodes, %.4g mm in radius (stretched), do not fit into "
-                                 "the frame of %.4g mm inner radius",
-                                 1e3 * r_a, 1e3 * frame));
+  if (r_a >= frame * (1 - touching)) { // then the tips of fibres mean nothing either
+    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.radius.length.place,
+                           "the electrodes, %.4g mm in radius (stretched), do not fit into the "
+                           "frame of %.4g mm inner radius",
+                           1e3 * r_a, 1e3 * frame);
   }
-  if (design->has_fibres) {
-    DEA_TRY(ctx, check_fibres(ctx, design, device));
-  }
-  return DEA_OK;
+  return design->has_fibres ? check_fibres(ctx, design, device) : DEA_OK;
 }

@@ -167,13 +167,12 @@ static const struct dea_record elastic_record = {"linear elasticity", "linear el
 
 static const char *const kinds[] = {"elastomer", "plastic", "electrode", NULL};
 
-#define SET_LIST_FIELD(name, member, counter, about, text)                                         \
+#define SET_LIST_FIELD(name, member, counter, about, none, text)                                   \
   {                                                                                                \
     .key = name, .kind = DEA_FIELD_RECORD, .offset = offsetof(struct dea_material_data, member),   \
     .record = &about, .list_min = 1, .list_max = DEA_MATERIAL_SETS_MAX,                            \
     .element_size = sizeof((struct dea_material_data *)0)->member[0],                              \
-    .count_offset = offsetof(struct dea_material_data, counter), .absent_text = "none",            \
-    .doc = text                                                                                    \
+    .count_offset = offsetof(struct dea_material_data, counter), .absent_text = none, .doc = text  \
   }
 
 static const struct dea_field material_fields[] = {
@@ -211,7 +210,7 @@ static const struct dea_field material_fields[] = {
      .present_offset = offsetof(struct dea_material_data, has_density),
      .absent_text = "unknown",
      .doc = "mass density"},
-    SET_LIST_FIELD("laws", laws, law_count, law_record,
+    SET_LIST_FIELD("laws", laws, law_count, law_record, "none",
                    "sets of parameters of hyperelastic laws; the first is the default"),
     {.key = "elastic",
      .kind = DEA_FIELD_RECORD,
@@ -219,9 +218,9 @@ static const struct dea_field material_fields[] = {
      .present_offset = offsetof(struct dea_material_data, has_elastic),
      .absent_text = "none",
      .doc = "linear elastic constants"},
-    SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_record,
+    SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_record, "unknown",
                    "relative permittivity; the first is the default"),
-    SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record,
+    SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record, "unknown",
                    "breakdown field; the first is the default; left out when unknown"),
 };
 

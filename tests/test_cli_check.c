@@ -1,0 +1,135 @@
+/* dea check, schema, materials: what they print and their exit codes. */
+#define _POSIX_C_SOURCE 200809L // mkdtemp
+#include "command.h"
+
+#include <jansson.h>
+
+static void test_every_bad_file_has_its_exit_code(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *arguments;
+    int code;
+    const char *part;
+  } bad[] = {
+      {"check missing.yaml", 5, "cannot open 'missing.yaml': No such file or directory"},
+      {"check .", 5, "'.' is a directory, not a file"},
+      {"check pipe", 5, "'pipe' is a pipe, not a file"},
+      {"check /dev/zero", 5, "is a device, not a file"},
+      {"check big.yaml", 3, "larger than 4 MB"},
+      {"check text.yaml", 3, "text.yaml:1:1: error: "},
+      {"check binary.yaml", 3, "not a text file in UTF-8"},
+      {"check", 2, "which design file?"},
+      {"check a b", 2, "'b' is a second"},
+      {"check --nonsense", 2, "--nonsense"},
+      {"check @/examples/frdea-4.yaml --set x", 2, "--set wants KEY=VALUE"},
+      {"check @/examples/frdea-4.yaml --set pre_stretch=0.9", 3,
+       "--set pre_stretch: error: pre_stretch must be at least 1, not '0.9'"},
+      {"materials nothing", 3, "there is no material 'nothing'"},
+      {"schema --json --markdown", 2, "exclude each other"},
+  };
+  command_write("text.yaml", "hello\n");
+  command_write("binary.yaml", "\x7f"
+                               "ELF\x02\x01\xff\xfe");
+  char text[600];
+  snprintf(text, sizeof text, "cd '%s' && mkfifo pipe && truncate -s 100000000 big.yaml",
+           command_folder);
+  assert_int_equal(system(text), 0);
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    int code = command_run(bad[i].arguments);
+    if (code != bad[i].code) {
+      fail_msg("dea %s gave %d: %s", bad[i].arguments, code, command_err);
+    }
+    assert_contains(command_err, bad[i].part);
+  }
+}
+
+static void test_check_lists_values_and_what_follows(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml --set film.thickness=200um"), 0);
+  assert_contains(command_out, "film.thickness            200um                     --set");
+  assert_contains(command_out, "electrodes.thickness      0 um                      default");
+  assert_contains(command_out, "fibre length                      11.25 mm");
+  assert_contains(command_out, "film thickness (stretched)        88.8889 um");
+}
+
+static json_t *run_json(const char *arguments, int code)
+{
+  json_error_t error;
+  assert_int_equal(command_run(arguments), code);
+  json_t *json = json_loads(command_out, 0, &error);
+  if (json == NULL) {
+    fail_msg("%s: %s", arguments, error.text);
+  }
+  return json;
+}
+
+static void test_check_as_json(void **state)
+{
+  (void)state;
+  json_t *json = run_json("check @/examples/paper/fig02.yaml --json", 0);
+  json_t *derived = json_object_get(json, "derived");
+  assert_true(json_is_true(json_object_get(json, "good")));
+  assert_close(json_number_value(json_object_get(derived, "coverage")), 0.2, 1e-12, 0);
+  assert_close(json_number_value(json_object_get(derived, "fibre_length_m")), 0.01, 1e-12, 0);
+  assert_true(json_array_size(json_object_get(json, "values")) > 20);
+  json_decref(json);
+  json = run_json("check @/examples/paper/fig02.yaml --json --set film.thickness=1", 3);
+  assert_true(json_is_false(json_object_get(json, "good")));
+  assert_true(json_array_size(json_object_get(json, "findings")) > 0);
+  json_decref(json);
+}
+
+static void test_schema(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("schema"), 0);
+  assert_contains(command_out, "film.thickness\n      thickness of the unstretched film");
+  assert_int_equal(command_run("schema --material"), 0);
+  assert_contains(command_out, "laws[].parameters");
+  json_t *json = run_json("schema --json", 0);
+  json_t *film = json_object_get(json_object_get(json, "properties"), "film");
+  assert_non_null(json_object_get(json_object_get(film, "properties"), "thickness"));
+  assert_true(json_is_false(json_object_get(film, "additionalProperties")));
+  json_decref(json);
+}
+
+static void test_reference_is_that_of_the_table(void **state)
+{
+  (void)state;
+  static char document[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/design-file.md", "rb");
+  assert_non_null(file);
+  document[fread(document, 1, sizeof document - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("schema --markdown"), 0);
+  assert_contains(document, command_out);
+  assert_int_equal(command_run("schema --markdown --material"), 0);
+  assert_contains(document, command_out);
+}
+
+static void test_materials(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("materials"), 0);
+  assert_contains(command_out, "elastosil-2030");
+  assert_int_equal(command_run("materials elastosil-2030"), 0);
+  assert_contains(command_out, "c1             178.4 kPa");
+  json_t *json = run_json("materials --json", 0);
+  assert_true(json_array_size(json) >= 5);
+  json_decref(json);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_bad_file_has_its_exit_code),
+      cmocka_unit_test(test_check_lists_values_and_what_follows),
+      cmocka_unit_test(test_check_as_json),
+      cmocka_unit_test(test_schema),
+      cmocka_unit_test(test_reference_is_that_of_the_table),
+      cmocka_unit_test(test_materials),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}

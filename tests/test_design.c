@@ -1,0 +1,277 @@
+/* design and device: what a good file gives, with defaults, overrides and the list of values. */
+#include "design_text.h"
+
+static struct dea_context *ctx;
+static struct dea_design *design;
+static struct dea_device *device;
+
+static int set_up(void **state)
+{
+  (void)state;
+  design = NULL;
+  device = NULL;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+static void read_good(const char *text, const struct dea_override *overrides, size_t count)
+{
+  dea_status status = read_and_build(ctx, text, overrides, count, &design, &device);
+  if (status != DEA_OK) {
+    print_findings(ctx);
+    fail_msg("%s", dea_context_message(ctx));
+  }
+}
+
+static const struct dea_listed *listed(const char *path)
+{
+  for (size_t i = 0; i < design->values.count; i++) {
+    if (strcmp(design->values.items[i].path, path) == 0) {
+      return &design->values.items[i];
+    }
+  }
+  fail_msg("'%s' is not listed", path);
+  return NULL;
+}
+
+static void test_lengths_are_those_of_the_stretched_film(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  assert_close(device->film_thickness_unstretched_m, 100e-6, 1e-14, 0);
+  assert_close(device->film_thickness_m, 100e-6 / 2.25, 1e-14, 0);
+  assert_close(device->frame_radius_m, 15e-3, 1e-14, 0);
+  assert_close(device->electrode_radius_m, 3.75e-3, 1e-14, 0);
+  assert_close(device->coverage, 0.25, 1e-14, 0);
+  assert_close(device->fibre_tip_radius_m, 3.75e-3, 1e-14, 0);
+  assert_close(device->fibre_length_m, 11.25e-3, 1e-14, 0);
+  assert_close(device->fibre_overlap_m, 0, 0, 1e-18);
+}
+
+static void test_materials_of_the_file(void **state)
+{
+  (void)state;
+  const struct dea_override sets[] = {{"film.law", "b"}, {"film.permittivity", "sloped"}};
+  read_good(GOOD_DESIGN, sets, 2);
+  assert_string_equal(device->film.law->name, "neo-hookean");
+  assert_string_equal(device->film.law_id, "b");
+  assert_close(device->film.param[0], 300e3, 1e-14, 0);
+  assert_close(device->film.permittivity.at_rest, 2.48, 1e-14, 0);
+  assert_close(device->film.permittivity.slope, -0.28, 1e-14, 0);
+  assert_true(device->film.breakdown.known && device->film.breakdown.exponent_known);
+  assert_close(device->film.breakdown.at_rest_V_per_m, 80e6, 1e-14, 0);
+  assert_close(device->fibre.young_modulus_Pa, 2950e6, 1e-14, 0);
+}
+
+static void test_first_set_is_the_default(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  assert_string_equal(device->film.law_id, "a");
+  assert_close(device->film.param[1], -6000, 1e-14, 0);
+  assert_close(device->film.permittivity.at_rest, 2.8, 1e-14, 0);
+  assert_close(device->film.stretch_max, 2, 0, 0);
+}
+
+static void test_every_default_is_listed(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  static const struct {
+    const char *path, *text;
+    enum dea_origin origin;
+  } wanted[] = {
+      {"film.thickness", "100 um", DEA_GIVEN},
+      {"film.law", "the material's first", DEA_ABSENT},
+      {"electrodes.material", "none", DEA_ABSENT},
+      {"electrodes.thickness", "0 um", DEA_DEFAULT},
+      {"fibres.width", "2 mm", DEA_DEFAULT},
+      {"fibres.thickness", "100 um", DEA_DEFAULT},
+      {"fibres.overlap", "0 mm stretched", DEA_DEFAULT},
+      {"fibres.bond.thickness", "0 um", DEA_DEFAULT},
+      {"fibres.bond.modulus", "1 MPa", DEA_DEFAULT},
+      {"fibres.outer_end", "clamped", DEA_DEFAULT},
+      {"materials[0].laws[0].parameters.c2", "-6 kPa", DEA_GIVEN},
+      {"compute.models[1]", "axisymmetric", DEA_DEFAULT},
+      {"compute.voltage.to", "8 kV", DEA_DEFAULT},
+      {"compute.voltage.step", "0.1 kV", DEA_DEFAULT},
+      {"compute.path.max_stretch", "1.5 x pre_stretch", DEA_ABSENT},
+      {"compute.coverage_by", "radius", DEA_DEFAULT},
+      {"report.figures[2]", "png", DEA_DEFAULT},
+      {"report.width", "85 mm", DEA_DEFAULT},
+  };
+  for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+    const struct dea_listed *value = listed(wanted[i].path);
+    assert_string_equal(value->text, wanted[i].text);
+    assert_int_equal(value->origin, wanted[i].origin);
+  }
+  assert_int_equal(listed("film.thickness")->place.line, 2);
+  assert_int_equal(listed("film.thickness")->place.column, 35);
+}
+
+static void test_default_sweep(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  assert_int_equal(design->compute.voltage_count, 81);
+  assert_close(design->compute.voltages_V[0], 0, 0, 0);
+  assert_close(design->compute.voltages_V[3], 300, 1e-14, 0);
+  assert_close(design->compute.voltages_V[80], 8000, 0, 0);
+  assert_close(design->compute.path_max_stretch.si, 2.25, 1e-14, 0);
+  assert_int_equal(design->compute.model_count, 2);
+  assert_true(design->report.svg && design->report.pdf && design->report.png);
+}
+
+static void test_sweeps(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *voltage;
+    size_t count;
+    double last;
+  } sweeps[] = {
+      {"{from: 8 kV, to: 0 kV, step: 1 kV}", 9, 0},
+      {"{from: 1 kV, to: 1 kV}", 1, 1000},
+      {"{to: 1 kV, step: 300 V}", 4, 900},
+      {"{from: 0 kV, to: 0.9 kV, step: 0.1 kV}", 10, 900},
+      {"{values: [3 kV, 1 kV, 500 V]}", 3, 500},
+  };
+  for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++) {
+    const struct dea_override set = {"compute.voltage", sweeps[i].voltage};
+    read_good(GOOD_DESIGN, &set, 1);
+    assert_int_equal(design->compute.voltage_count, sweeps[i].count);
+    assert_close(design->compute.voltages_V[sweeps[i].count - 1], sweeps[i].last, 1e-14, 1e-9);
+    dea_device_destroy(ctx, device);
+    dea_design_destroy(ctx, design);
+    design = NULL;
+    device = NULL;
+  }
+}
+
+static void test_three_ways_to_place_the_tip(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *key, *value;
+    double tip_m;
+  } ways[] = {
+      {"fibres.length", "12 mm stretched", 3e-3},
+      {"fibres.tip_radius", "4 mm stretched", 4e-3},
+      {"fibres.tip_radius", "4 mm unstretched", 6e-3},
+      {"fibres.overlap", "1 mm stretched", 2.75e-3},
+      {"fibres.overlap", "-1 mm unstretched", 5.25e-3},
+  };
+  for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    const struct dea_override set = {ways[i].key, ways[i].value};
+    read_good(GOOD_DESIGN, &set, 1);
+    assert_close(device->fibre_tip_radius_m, ways[i].tip_m, 1e-12, 0);
+    assert_close(device->fibre_length_m, 15e-3 - ways[i].tip_m, 1e-12, 0);
+    dea_device_destroy(ctx, device);
+    dea_design_destroy(ctx, design);
+    design = NULL;
+    device = NULL;
+  }
+}
+
+static void test_override_wins_over_the_other_way_to_say_it(void **state)
+{
+  (void)state;
+  const struct dea_override sets[] = {{"electrodes.radius", "4 mm stretched"},
+                                      {"frame.inner_radius", "20 mm"},
+                                      {"film.thickness", "200um"},
+                                      {"compute.coverage_by", "area"}};
+  read_good(GOOD_DESIGN, sets, 4);
+  assert_close(device->electrode_radius_m, 4e-3, 1e-14, 0);
+  assert_close(device->frame_radius_m, 20e-3, 1e-14, 0);
+  assert_close(device->film_thickness_unstretched_m, 200e-6, 1e-14, 0);
+  assert_close(device->coverage, 0.04, 1e-14, 0);
+  assert_int_equal(listed("film.thickness")->origin, DEA_OVERRIDE);
+  assert_string_equal(listed("film.thickness")->place.file, "--set film.thickness");
+}
+
+static void test_null_takes_a_section_away(void **state)
+{
+  (void)state;
+  const struct dea_override set = {"fibres", "null"};
+  read_good(GOOD_DESIGN, &set, 1);
+  assert_false(design->has_fibres);
+  assert_int_equal(device->fibre_count, 0);
+  assert_true(isnan(design->fibres.width_m.si));
+  assert_string_equal(listed("fibres")->text, "none");
+}
+
+static void test_coverage_given(void **state)
+{
+  (void)state;
+  const struct dea_override set = {"compute.coverage", "0.2"};
+  read_good(GOOD_DESIGN, &set, 1);
+  assert_close(device->coverage, 0.2, 0, 0);
+}
+
+static void test_pre_stretch_beyond_the_data_is_a_warning(void **state)
+{
+  (void)state;
+  const struct dea_override set = {"pre_stretch", "2.5"};
+  read_good(GOOD_DESIGN, &set, 1);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
+}
+
+static void test_fibres_that_just_touch_are_good(void **state)
+{
+  (void)state;
+  // 8 fibres of 2 mm meet at 1 mm/tan(22.5 degrees) = 2.414213562 mm.
+  const struct dea_override touching[] = {{"fibres.count", "8"},
+                                          {"fibres.tip_radius", "2.41421356237310 mm stretched"}};
+  read_good(GOOD_DESIGN, touching, 2);
+}
+
+static void test_examples_are_good(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"plain-disc", "frdea-4", "frdea-8", "paper/fig02"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char file[512];
+    snprintf(file, sizeof file, "%s/examples/%s.yaml", DEA_SOURCE_DIR, names[i]);
+    assert_int_equal(dea_design_read(ctx, file, NULL, 0, &design), DEA_OK);
+    assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+    assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 0);
+    assert_close(device->electrode_radius_m, i < 3 ? 3.75e-3 : 5e-3, 1e-14, 0);
+    assert_close(device->coverage, i < 3 ? 0.25 : 0.2, 1e-14, 0);
+    assert_int_equal(device->fibre_count, i == 0 ? 0 : i == 2 ? 8 : 4);
+    dea_device_destroy(ctx, device);
+    dea_design_destroy(ctx, design);
+    design = NULL;
+    device = NULL;
+  }
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+  const struct CMUnitTest tests[] = {
+      TEST(test_lengths_are_those_of_the_stretched_film),
+      TEST(test_materials_of_the_file),
+      TEST(test_first_set_is_the_default),
+      TEST(test_every_default_is_listed),
+      TEST(test_default_sweep),
+      TEST(test_sweeps),
+      TEST(test_three_ways_to_place_the_tip),
+      TEST(test_override_wins_over_the_other_way_to_say_it),
+      TEST(test_null_takes_a_section_away),
+      TEST(test_coverage_given),
+      TEST(test_pre_stretch_beyond_the_data_is_a_warning),
+      TEST(test_fibres_that_just_touch_are_good),
+      TEST(test_examples_are_good),
+  };
+#undef TEST
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

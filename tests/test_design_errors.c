@@ -1,0 +1,343 @@
+/* design and device: what a bad file says, and where. */
+#include "base/yaml.h"
+#include "design_text.h"
+
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+/* Reading text must fail with exactly these errors. */
+struct wanted {
+  size_t line, column;
+  const char *part;
+};
+
+static void check_errors(const char *text, const struct wanted *wanted, size_t count)
+{
+  struct dea_design *design;
+  struct dea_device *device;
+  dea_finding_clear(ctx);
+  assert_int_equal(read_and_build(ctx, text, NULL, 0, &design, &device), DEA_E_DESIGN);
+  assert_null(device);
+  dea_design_destroy(ctx, design);
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_finding *finding = find_error(ctx, wanted[i].part);
+    if (finding == NULL || finding->place.line != wanted[i].line ||
+        finding->place.column != wanted[i].column) {
+      print_findings(ctx);
+      fail_msg("no error at %zu:%zu with '%s' in:\n%s", wanted[i].line, wanted[i].column,
+               wanted[i].part, text);
+    }
+    assert_string_equal(finding->place.file, "t.yaml");
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) != count) {
+    print_findings(ctx);
+    fail_msg("%zu errors, wanted %zu", dea_finding_count(ctx, DEA_ERROR), count);
+  }
+}
+
+#define FILM "film: {material: film, thickness: 100 um}\n"
+#define REST                                                                                       \
+  "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"                                             \
+  "electrodes: {radius: 3.75 mm stretched}\n" FILM_MATERIAL
+
+static void test_one_error_each(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    struct wanted wanted;
+  } bad[] = {
+      {"dea: 1\nfilm: {material: film, thickness: -100 um}\n" REST,
+       {2, 35, "thickness must be above 0, not '-100 um'"}},
+      {"dea: 1\nfilm: {material: film, thickness: 0 um}\n" REST, {2, 35, "must be above 0"}},
+      {"dea: 1\nfilm: {material: film, thickness: 100}\n" REST,
+       {2, 35, "'100' has no unit: a length is due; write for example '100 um'"}},
+      {"dea: 1\nfilm: {material: film, thickness: 3 kV}\n" REST,
+       {2, 35, "'3 kV' is a voltage, but a length is due"}},
+      {"dea: 1\nfilm: {material: film, thickness: .nan}\n" REST, {2, 35, "not a finite number"}},
+      {"dea: 1\nfilm: {material: film, thickness: nan um}\n" REST, {2, 35, "not a finite number"}},
+      {"dea: 1\nfilm: {material: film, thickness: 100 um, thicknes: 1 um}\n" REST,
+       {2, 43, "unknown key 'thicknes'; did you mean 'thickness'?"}},
+      {"dea: 1\nfilm: {material: film, thickness: 100 um, colour: red}\n" REST,
+       {2, 43, "known here are: material, law, permittivity, thickness"}},
+      {"dea: 1\nfilm: {material: film}\n" REST, {2, 1, "section 'film' lacks 'thickness'"}},
+      {"dea: 1\nfilm: {material: film, thickness: }\n" REST, {2, 34, "thickness has no value"}},
+      {"dea: 1\nfilm: {material: film, thickness: [1 um]}\n" REST,
+       {2, 35, "thickness must be a single value, not a list"}},
+      {"dea: 1\nfilm: 3\n" REST, {2, 7, "film must be a section"}},
+      {"dea: 2\n" FILM REST, {1, 6, "dea must be at most 1"}},
+      {FILM REST, {1, 1, "lacks 'dea'"}},
+      {"dea: 1\n" FILM REST "fibers: {count: 4}\n", {23, 1, "did you mean 'fibres'?"}},
+      {"dea: 1\n" FILM REST "title: a\ntitle: b\n",
+       {24, 1, "the key 'title' stands twice in this section, first in line 23"}},
+      {"dea: 1\n" FILM REST "fibres: {count: 4.5, material: stiff}\n",
+       {23, 17, "count must be a whole number"}},
+      {"dea: 1\n" FILM REST "fibres: {count: 0, material: stiff}\n", {23, 17, "at least 1"}},
+      {"dea: 1\n" FILM REST "fibres: {count: 4, material: stiff, outer_end: glued}\n",
+       {23, 48, "'glued' is none of: clamped, hinged, free"}},
+      {"dea: 1\n" FILM REST "fibres: {count: 4, material: stiff, width: 2 mm stretched}\n",
+       {23, 44, "the word 'stretched' does not belong here"}},
+      {"dea: 1\n" FILM REST "fibres: {count: 4, material: stiff, length: 9 mm}\n",
+       {23, 45, "write '9 mm stretched' (as built) or '9 mm unstretched'"}},
+      {"dea: 1\n" FILM REST
+       "fibres: {count: 4, material: stiff, length: 9 mm stretched, tip_radius: 1 mm stretched}\n",
+       {23, 61, "exclude each other"}},
+      {"dea: 1\n" FILM REST "compute: {coverage: 1}\n", {23, 21, "coverage must be below 1"}},
+      {"dea: 1\n" FILM REST "compute: {models: lumped}\n", {23, 19, "models must be a list"}},
+      {"dea: 1\n" FILM REST "compute: {voltage: {to: 8 kV, values: [1 kV]}}\n",
+       {23, 31, "'to' and 'values' exclude each other"}},
+      {"dea: 1\n" FILM REST "compute: {voltage: {step: 0.01 V}}\n",
+       {23, 27, "more than 10000 voltages"}},
+      {"dea: 1\n" FILM REST "compute: {path: {max_stretch: 1.4}}\n",
+       {23, 31, "must be above the pre-stretch 1.5"}},
+      {"dea: 1\n" FILM REST "report: {figures: [svg, jpg]}\n", {23, 25, "'jpg' is none of"}},
+      {"dea: 1\n" FILM "pre_stretch: 0.8\nframe: {inner_diameter: 30 mm}\n"
+       "electrodes: {radius: 3.75 mm stretched}\n" FILM_MATERIAL,
+       {3, 14, "pre_stretch must be at least 1, not '0.8'"}},
+      {"dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm unstretched}\n"
+       "electrodes: {radius: 3.75 mm stretched}\n" FILM_MATERIAL,
+       {4, 25, "lengths of the stretched film; write '30 mm'"}},
+      {"dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
+       "electrodes: {radius: 3.75 mm}\n" FILM_MATERIAL,
+       {5, 22, "write '3.75 mm stretched' (as built) or '3.75 mm unstretched'"}},
+      {"dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
+       "electrodes: {radius: 3.75 mm unstreched}\n" FILM_MATERIAL,
+       {5, 22, "did you mean 'unstretched'?"}},
+      {"dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
+       "electrodes: {thickness: 0 um}\n" FILM_MATERIAL,
+       {5, 1, "'diameter: 5 mm unstretched' or 'radius: 3.75 mm stretched'"}},
+      {"dea: 1\n" FILM "pre_stretch: 1.5\nframe: {}\n"
+       "electrodes: {radius: 3.75 mm stretched}\n" FILM_MATERIAL,
+       {4, 1, "'inner_diameter: 30 mm' or 'inner_radius: 15 mm'"}},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    check_errors(bad[i].text, &bad[i].wanted, 1);
+  }
+}
+
+static void test_not_yaml(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    struct wanted wanted;
+  } bad[] = {
+      {"", {1, 1, "the file is empty"}},
+      {"# only a comment\n", {1, 1, "the file is empty"}},
+      {"just text", {1, 1, "must be 'key: value' lines"}},
+      {"- 1\n- 2\n", {1, 1, "must be 'key: value' lines"}},
+      {"dea: [1", {2, 1, "this is not YAML"}},
+      {"dea: 1\n  film: 2\n", {2, 7, "this is not YAML"}},
+      {"dea: 1\nx: \xff\n", {2, 4, "not a text file in UTF-8"}},
+      {"dea: \"\\0\"\n", {1, 6, "zero byte"}},
+      {"dea: 1\n---\ndea: 1\n", {3, 1, "a second document"}},
+      {"a: &x [1]\nb: *x\n", {2, 1, "aliases"}},
+      {"a: &x [*x]\n", {1, 4, "aliases"}},
+      {"a: *y\n", {1, 4, "aliases"}},
+      {"a: !!binary aGVsbG8=\n", {1, 4, "tags"}},
+      {"? [a]\n: 1\n", {1, 3, "a key must be a word"}},
+      {"a: [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]\n",
+       {1, 35, "nested too deeply"}},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    check_errors(bad[i].text, &bad[i].wanted, 1);
+  }
+}
+
+static void test_a_zero_byte_in_the_file(void **state)
+{
+  (void)state;
+  struct dea_design *design;
+  assert_int_equal(dea_design_read_memory(ctx, "t.yaml", "dea: 1\n\0\n", 9, NULL, 0, &design),
+                   DEA_E_DESIGN);
+  assert_non_null(find_error(ctx, "not a text file"));
+}
+
+static void test_all_errors_at_once(void **state)
+{
+  (void)state;
+  static const char text[] = "dea: 1\n"
+                             "film:\n"
+                             "  thicknes: 100 um\n"
+                             "  thickness: -1 um\n"
+                             "pre_stretch: 0.5\n"
+                             "electrodes: {diameter: 5 mm, thickness: 3 kV}\n"
+                             "compute: {coverage: 2, voltage: {to: 8}}\n";
+  static const struct wanted wanted[] = {
+      {3, 3, "unknown key 'thicknes'"},
+      {2, 1, "section 'film' lacks 'material'"},
+      {4, 14, "thickness must be above 0"},
+      {5, 14, "pre_stretch must be at least 1"},
+      {1, 1, "the file lacks 'frame'"},
+      {6, 24, "does not say in which film"},
+      {6, 41, "is a voltage, but a length is due"},
+      {7, 21, "coverage must be below 1"},
+      {7, 38, "'8' has no unit: a voltage is due"},
+  };
+  check_errors(text, wanted, sizeof wanted / sizeof wanted[0]);
+}
+
+static void test_number_of_errors_is_bounded(void **state)
+{
+  (void)state;
+  struct dea_text text = {.ctx = ctx};
+  for (int i = 0; i < 20000; i++) {
+    dea_text_add(&text, "key%d: 1\n", i);
+  }
+  struct dea_design *design;
+  dea_status status =
+      dea_design_read_memory(ctx, "t.yaml", text.data, text.length, NULL, 0, &design);
+  dea_text_free(&text);
+  assert_int_equal(status, DEA_E_DESIGN);
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), DEA_SCHEMA_ERRORS_MAX);
+  assert_non_null(strstr(dea_finding_get(ctx, &(size_t){0})[DEA_SCHEMA_ERRORS_MAX].text,
+                         "errors after the first 100 are not shown"));
+}
+
+#define GEOMETRY(electrode, fibres)                                                                \
+  "dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_radius: 15 mm}\n"                               \
+  "electrodes: {radius: " electrode "}\nfibres: {material: stiff, " fibres "}\n" FILM_MATERIAL
+
+static void test_geometry(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    struct wanted wanted;
+  } bad[] = {
+      {GEOMETRY("15 mm stretched", "count: 4"),
+       {5, 22, "15 mm in radius (stretched), do not fit into the frame of 15 mm"}},
+      {GEOMETRY("12 mm unstretched", "count: 4"), {5, 22, "18 mm in radius"}},
+      {GEOMETRY("3.75 mm stretched", "count: 16"),
+       {6, 34, "16 fibres of 2 mm width overlap each other at their tips, 3.75 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, overlap: 3 mm stretched"),
+       {6, 34, "4 fibres of 2 mm width overlap each other"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, overlap: 3.75 mm stretched"),
+       {6, 46, "meet at the centre"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, overlap: 2.5 mm unstretched"),
+       {6, 46, "meet at the centre"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, length: 16 mm stretched"),
+       {6, 45, "reach beyond the centre"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, tip_radius: 15 mm stretched"),
+       {6, 49, "are not inside the frame of 15 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 1, width: 31 mm"), {6, 44, "do not fit into a frame"}},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    check_errors(bad[i].text, &bad[i].wanted, 1);
+  }
+}
+
+#define WITH(film, electrodes, fibre)                                                              \
+  "dea: 1\nfilm: {thickness: 100 um, material: " film "}\npre_stretch: 1.5\n"                      \
+  "frame: {inner_radius: 15 mm}\nelectrodes: {radius: 3.75 mm stretched" electrodes "}\n"          \
+  "fibres: {count: 4, material: " fibre "}\n" FILM_MATERIAL
+
+static void test_materials(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    struct wanted wanted;
+  } bad[] = {
+      {WITH("no-such-thing", "", "stiff"), {2, 37, "there is no material 'no-such-thing'"}},
+      {WITH("film, law: aa", "", "stiff"), {2, 48, "no law set 'aa'; did you mean 'a'?"}},
+      {WITH("film, law: z1234", "", "stiff"), {2, 48, "no law set 'z1234'; there are: a, b"}},
+      {WITH("film, permittivity: flt", "", "stiff"), {2, 57, "did you mean 'flat'?"}},
+      {WITH("film", "", "film"), {6, 30, "no linear elastic constants"}},
+      {WITH("film", ", thickness: 5 um", "stiff"), {5, 51, "none is given"}},
+      {WITH("film", "", "stiff") "  - {name: film, kind: plastic}\n",
+       {24, 12, "the name 'film' is taken by the material in line 8"}},
+      {WITH("film", "", "stiff") "  - {name: x, kind: wood}\n", {24, 23, "'wood' is none of"}},
+      {WITH("film", "", "stiff") "  - {name: x, kind: plastic, laws: [{id: q, law: yeho, "
+                                 "parameters: {}, source: s}]}\n",
+       {24, 50, "'yeho' is not a law; did you mean 'yeoh'?"}},
+      {WITH(
+           "film", "",
+           "stiff") "  - {name: x, kind: plastic, laws: [{id: q, law: neo-hookean, parameters: {}, "
+                    "source: s}]}\n",
+       {24, 63, "lacks 'mu'"}},
+      {WITH("film", "", "stiff") "  - {name: x, kind: plastic, laws: [{id: q, law: neo-hookean, "
+                                 "parameters: {mu: 3 kPa, "
+                                 "nu: 1}, source: s}]}\n",
+       {24, 87, "unknown key 'nu'; did you mean 'mu'?"}},
+      {WITH("film", "", "stiff") "  - {name: x, kind: plastic, density: {value: 9 kPa, source: s}}"
+                                 "\n",
+       {24, 48, "'9 kPa' is a pressure, but a density is due"}},
+      {WITH("film", "", "stiff") "  - {name: x, kind: plastic, density: {value: 9 kg/m^3}}\n",
+       {24, 30, "section 'materials[2].density' lacks 'source'"}},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    check_errors(bad[i].text, &bad[i].wanted, 1);
+  }
+}
+
+static void test_film_without_law_or_permittivity(void **state)
+{
+  (void)state;
+  static const struct wanted wanted[] = {{2, 37, "has no hyperelastic law"},
+                                         {2, 37, "has no permittivity"}};
+  check_errors(WITH("stiff", "", "stiff"), wanted, 2);
+}
+
+static void check_override(const char *key, const char *value, const char *part)
+{
+  struct dea_design *design;
+  struct dea_device *device;
+  const struct dea_override set = {key, value};
+  char place[128];
+  dea_finding_clear(ctx);
+  assert_int_equal(read_and_build(ctx, GOOD_DESIGN, &set, 1, &design, &device), DEA_E_DESIGN);
+  dea_design_destroy(ctx, design);
+  const struct dea_finding *finding = find_error(ctx, part);
+  if (finding == NULL) {
+    print_findings(ctx);
+    fail_msg("no error with '%s'", part);
+  }
+  snprintf(place, sizeof place, "--set %s", key);
+  assert_string_equal(finding->place.file, place);
+  assert_int_equal(finding->place.line, 0);
+}
+
+static void test_bad_overrides(void **state)
+{
+  (void)state;
+  check_override("film.thicknes", "200 um", "did you mean 'thickness'?");
+  check_override("flim.thickness", "200 um", "did you mean 'film'?");
+  check_override("film.thickness", "", "no value is given");
+  check_override("film.thickness", "[", "this is not YAML");
+  check_override("film.thickness", "200", "'200' has no unit");
+  check_override("film.thickness.x", "200 um", "'thickness' is a value, not a section");
+  check_override("materials.name", "x", "'materials' is a list, not a section");
+  check_override("fibres.count", "64", "overlap each other");
+  check_override("compute.voltage.values", "[1 kV, nan]", "not a finite number");
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+  const struct CMUnitTest tests[] = {
+      TEST(test_one_error_each),
+      TEST(test_not_yaml),
+      TEST(test_a_zero_byte_in_the_file),
+      TEST(test_all_errors_at_once),
+      TEST(test_number_of_errors_is_bounded),
+      TEST(test_geometry),
+      TEST(test_materials),
+      TEST(test_film_without_law_or_permittivity),
+      TEST(test_bad_overrides),
+  };
+#undef TEST
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
