@@ -199,6 +199,10 @@ static void read_unit(struct reader *r, const char *title, const char *unit, boo
     }
     return;
   }
+  if (strcmp(unit, "%") == 0 && strcmp(c->si_unit, "1") == 0) {
+    field->factor = 0.01;
+    return;
+  }
   char one[FIELD_MAX + 2], why[DEA_WHY_SIZE], example[32];
   snprintf(one, sizeof one, "1 %s", unit);
   snprintf(example, sizeof example, "1 %s", c->display_unit);
