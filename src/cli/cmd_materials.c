@@ -195,7 +195,7 @@ const struct dea_command cmd_materials = {
     .summary = "List the materials of the catalogue, or show one with all its numbers and sources",
     .usage = "dea materials [NAME] [--json]\n\n"
              "Own materials: put NAME.yaml into a directory that the environment variable\n"
-             "DEA_MATERIALS names (several, separated by colons); 'dea schema --material'\n"
-             "says what such a file holds.\n",
+             "DEA_MATERIALS names (several, separated by colons). What such a file holds says\n"
+             "'dea schema' for material files.\n",
     .run = run,
 };

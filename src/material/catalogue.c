@@ -117,13 +117,12 @@ static dea_status unknown_material(struct dea_context *ctx, const char *name,
   }
   const char *nearest = dea_nearest_name(name, names, count);
   dea_status status =
-      list.failed
-          ? DEA_E_MEMORY
-          : dea_finding_add(ctx, DEA_ERROR, place,
-                            "there is no material '%.60s'%s%s%s; there %s: %s", name,
-                            nearest != NULL ? "; did you mean '" : "",
-                            nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "",
-                            count > 0 ? "are" : "is", count > 0 ? dea_text_get(&list) : "none");
+      list.failed ? DEA_E_MEMORY
+                  : dea_finding_add(ctx, DEA_ERROR, place, "there is no material '%.60s'%s%s%s: %s",
+                                    name, nearest != NULL ? "; did you mean '" : "",
+                                    nearest != NULL ? nearest : "",
+                                    nearest != NULL ? "'? All materials" : "; there are",
+                                    count > 0 ? dea_text_get(&list) : "none");
   dea_text_free(&list);
   dea_free(ctx, names);
   DEA_TRY(ctx, status);
@@ -231,9 +230,9 @@ static int find_set(struct dea_context *ctx, const char *what, const struct dea_
   }
   const char *nearest = dea_nearest_name(wanted, names, count);
   dea_status status = dea_finding_add(
-      ctx, DEA_ERROR, place, "material '%s' has no %s '%.60s'%s%s%s; there %s: %s", data->name.text,
-      what, wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'?" : "", count == 1 ? "is" : "are", count > 0 ? list : "none");
+      ctx, DEA_ERROR, place, "material '%s' has no %s '%.60s'%s%s%s: %s", data->name.text, what,
+      wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+      nearest != NULL ? "'? All" : "; there are", count > 0 ? list : "none");
   if (status == DEA_OK) {
     dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
   }

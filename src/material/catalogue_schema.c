@@ -250,9 +250,9 @@ static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *
   }
   const char *nearest = dea_nearest_name(set->law_name.text, names, count);
   dea_status status = dea_schema_error(
-      reader, set->law_name.place, "'%.60s' is not a law%s%s%s; there are: %s", set->law_name.text,
+      reader, set->law_name.place, "'%.60s' is not a law%s%s%s: %s", set->law_name.text,
       nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'?" : "", dea_text_get(&list));
+      nearest != NULL ? "'? All laws" : "; there are", dea_text_get(&list));
   bool failed = list.failed;
   dea_text_free(&list);
   return failed ? DEA_E_MEMORY : status;
