@@ -40,7 +40,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # A program that links the static library needs its dependencies too; one that links the shared
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files
 # differently from one distribution to the next.
-set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd lapacke lapack")
+set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd lapacke")
 set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${HDF5_C_LIBRARIES} ${HDF5_C_HL_LIBRARIES})
 list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits")
 list(REMOVE_DUPLICATES DEA_PC_LIBRARIES)

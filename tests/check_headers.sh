@@ -17,6 +17,18 @@ for header in $(cd "$source/src" && find . -name '*.h' | sed 's|^\./||'); do
     bad=1
   }
 done
+listed=$(sed -n 's/^#include "\(.*\)".*/\1/p' "$source/src/dea.h")
+for header in $listed; do
+  file=$source/src/$header
+  [ -f "$file" ] || continue # made at configuration
+  # shellcheck disable=SC2013 # a header has no white space in its name
+  for needed in $(sed -n 's/^#include "\(.*\)".*/\1/p' "$file"); do
+    printf '%s\n' "$listed" | grep -qxF "$needed" || {
+      echo "src/dea.h lacks $needed, which $header includes"
+      bad=1
+    }
+  done
+done
 if command -v clang-14 >/dev/null 2>&1; then
   printf '#include "dea.h"\nint main() { return dea_status_exit_code(DEA_OK); }\n' |
     clang-14 -std=c++17 -x c++ -Wall -Wextra -Werror "-I$source/src" "-I$build/src" -fsyntax-only - ||

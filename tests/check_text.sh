@@ -3,19 +3,23 @@
 # carriage return, or lacks its last line end.
 set -eu
 cd "$1"
-if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
-  list="git ls-files"
-else
-  list="find . -type f ! -path ./build* ! -path ./runs/*"
-fi
-texts=$($list | grep -vE '\.(png|pdf|h5)$|(^|/)corpus/' | while read -r file; do
+files() {
+  if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    git ls-files
+  else
+    find . \( -name .git -o -path './build*' -o -path ./runs -o -name '*.run' \) -prune -o -type f -print
+  fi
+}
+texts=$(files | grep -vE '\.(png|pdf|h5)$|(^|/)corpus/' | while read -r file; do
   [ ! -f "$file" ] || echo "$file"
 done)
 [ -n "$texts" ] || { echo "no file found: the check is broken"; exit 1; }
 bad=0
-# A temporary file by mkstemp or mkdtemp (XXXXXX) is meant to lie in the machine's folder for them.
+# A temporary file by mkstemp or mkdtemp (XXXXXX) is meant to lie in the machine's folder for them,
+# which is the fallback for TMPDIR.
 # shellcheck disable=SC2086 # one argument a file
-if grep -nE '(^|[^A-Za-z0-9_.$}/])/(wor[k]|roo[t]|hom[e]|tm[p]|mn[t]|Users)(/|"|$)' $texts | grep -v XXXXXX; then
+if grep -nE '(^|[^A-Za-z0-9_.$}/])/(wor[k]|roo[t]|hom[e]|tm[p]|mn[t]|Users)(/|"|$)' $texts |
+  grep -vE 'XXXXXX|: "/tm[p]"'; then
   echo "^ folders of a machine"
   bad=1
 fi

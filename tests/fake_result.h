@@ -11,7 +11,8 @@
 static inline struct dea_design fake_design(void)
 {
   struct dea_design design = {.file = "fake.yaml"};
-  snprintf(design.title.text, sizeof design.title.text, "A made-up actuator, \302\265 and \"quotes\"");
+  snprintf(design.title.text, sizeof design.title.text,
+           "A made-up actuator, \302\265 and \"quotes\"");
   design.report.svg = true;
   design.report.width_m = (struct dea_quantity){.si = 0.085};
   return design;
@@ -85,7 +86,8 @@ static inline dea_status fake_add_model(struct dea_context *ctx, struct dea_resu
   return dea_curve_add_event(ctx, curve, &breakdown);
 }
 
-/* design is lent. scale: of the voltages. On failure *out may be half made and is to be destroyed. */
+/* design is lent. scale: of the voltages. On failure *out may be half made and is to be destroyed.
+ */
 static inline dea_status fake_result(struct dea_context *ctx, const struct dea_design *design,
                                      double scale, struct dea_result **out)
 {

@@ -47,6 +47,10 @@ expect 0 "copy by force" dea examples --force --copy "$folder/new/deep"
 echo x >"$folder/file"
 expect 5 "copy into a file" dea examples --copy "$folder/file"
 
+# the design in the README is a valid one
+awk '/^```/ { inside = /yaml/; next } inside' "$source/README.md" >"$folder/readme.yaml"
+expect 0 "design of the README" dea check "$folder/readme.yaml"
+
 # doctor
 expect 0 "doctor" dea doctor
 has out "HDF5"
@@ -76,7 +80,9 @@ offers new dea examples --copy ne
 for command in $(dea completion names commands); do
   offers "$command" dea "$command"
   # Each long option of the help text is offered.
-  for option in $(dea "$command" --help | grep -oE '(^|[ [,|])--[a-z][a-z-]*' | tr -d ' [,|' | sort -u); do
+  for option in $(dea "$command" --help | sed '1,2d' |
+    awk '/^$/ { prose = 1 } !prose || /^ +-/' | sed 's/  [A-Za-z].*//' |
+    grep -oE -- '--[a-z][a-z-]*' | sort -u); do
     offers "$option" dea "$command" "$option"
   done
   dea completion man | grep -qx "\.Ss $command" || { echo "the manual lacks $command"; failed=1; }

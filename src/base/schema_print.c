@@ -70,13 +70,15 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
 {
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
-    char inner[PATH_SIZE];
-    snprintf(inner, sizeof inner, "%.180s%s%.60s%s", path, path[0] != '\0' ? "." : "", field->key,
-             field->list_max > 0 && field->kind == DEA_FIELD_RECORD ? "[]" : "");
-    print(record, field, inner, out);
+    struct dea_text inner = {.ctx = out->ctx};
+    dea_text_add(&inner, "%s%s%s%s", path, path[0] != '\0' ? "." : "", field->key,
+                 field->list_max > 0 && field->kind == DEA_FIELD_RECORD ? "[]" : "");
+    out->failed = out->failed || inner.failed;
+    print(record, field, dea_text_get(&inner), out);
     if (field->kind == DEA_FIELD_RECORD) {
-      walk(field->record, inner, print, out);
+      walk(field->record, dea_text_get(&inner), print, out);
     }
+    dea_text_free(&inner);
   }
 }
 

@@ -179,7 +179,7 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
   if (from == NULL) {
     snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
              unit, text, due->example);
-  } else if (number_due) {
+  } else if (number_due && strcmp(unit, example_unit(due)) != 0) {
     snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
              text, unit[0] == '%' ? "a percentage" : (name != NULL ? name : "a value with a unit"),
              due->example);

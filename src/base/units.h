@@ -12,10 +12,10 @@ struct dea_measure {
 
 enum { DEA_WHY_SIZE = 400 };
 
-/* Reads "100 um", "2.5 kV", "80 V/um" (or "0.2", "20 %" where the unit due is "1"), numbers in the
- * C locale. true: *si is finite and in SI. false: why holds a clause that says what is wrong and
- * what to write instead, or the context holds DEA_E_MEMORY or DEA_E_TOOL (no unit database) and why
- * is "". */
+/* Reads "100 um", "2.5 kV", "80 V/um" (or "0.2" where the unit due is "1"; "20 %" only where the
+ * example is in percent too), numbers in the C locale. true: *si is finite and in SI. false: why
+ * holds a clause that says what is wrong and what to write instead, or the context holds
+ * DEA_E_MEMORY or DEA_E_TOOL (no unit database) and why is "". */
 bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measure due, double *si,
                     char why[DEA_WHY_SIZE]);
 

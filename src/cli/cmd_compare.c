@@ -1,15 +1,429 @@
+#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
+
+#include "cli/figure_options.h"
+#include "output/compare_output.h"
+#include "output/csv.h"
+#include "output/figure.h"
+#include "output/file.h"
+#include "output/store.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PAIRS_MAX = DEA_DESIGN_MODELS_MAX, QUANTITIES_MAX = DEA_LOAD_POINT_COLUMNS };
+
+/* One of the two sides: a run or measurements. */
+struct side {
+  const char *name;
+  struct dea_run *run;
+  struct dea_measurement *measurement;
+};
+
+struct request {
+  struct side side[2];
+  char model[2][DEA_NAME_SIZE]; // asked for with --model, "" for any
+  int columns[QUANTITIES_MAX];
+  size_t column_count;
+  double tolerance; // NAN for none
+  const char *folder;
+  struct dea_plot_format format;
+  bool json;
+};
+
+/* A pair of curves and what came out. */
+struct pair {
+  const struct dea_curve *a, *b;
+  const struct dea_load_point *b_std;
+  struct dea_comparison *comparison;
+  struct dea_compared compared;
+};
+
+// Command line -----------------------------------------------------------------------------------
+
+static int add_quantity(struct dea_cli *cli, const char *name, struct request *request)
+{
+  int column = dea_point_column_find(name);
+  if (column >= 0 && request->column_count < QUANTITIES_MAX) {
+    request->columns[request->column_count++] = column;
+    return 0;
+  }
+  const char *keys[DEA_LOAD_POINT_COLUMNS];
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    keys[c] = dea_point_columns[c].key;
+  }
+  const char *nearest = dea_nearest_name(name, keys, DEA_LOAD_POINT_COLUMNS);
+  return cli_usage_error(cli, &cmd_compare, "'%s' is not a quantity; %s%s%s", name,
+                         nearest != NULL ? "did you mean '" : "see 'dea compare --help'",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+/* "5%" or "0.05". */
+static bool read_tolerance(const char *text, double *tolerance)
+{
+  const char *end;
+  *tolerance = dea_text_to_double(text, &end);
+  bool number = end != text && isfinite(*tolerance) && *tolerance >= 0.0;
+  if (number && (strcmp(end, "%") == 0 || strcmp(end, " %") == 0)) {
+    *tolerance /= 100.0;
+    return true;
+  }
+  return number && *end == '\0';
+}
+
+/* "lumped" or "lumped:axisymmetric". */
+static bool read_models(const char *text, char model[2][DEA_NAME_SIZE])
+{
+  size_t n = strcspn(text, ":");
+  const char *second = text[n] == ':' ? text + n + 1 : text;
+  size_t m = strcspn(second, ":");
+  if (n == 0 || m == 0 || n >= DEA_NAME_SIZE || m >= DEA_NAME_SIZE || second[m] != '\0') {
+    return false;
+  }
+  memcpy(model[0], text, n);
+  memcpy(model[1], second, m);
+  return true;
+}
+
+static int take_option(struct dea_cli *cli, int letter, struct request *request)
+{
+  switch (letter) {
+  case 't':
+    if (!read_tolerance(optarg, &request->tolerance)) {
+      return cli_usage_error(cli, &cmd_compare, "'%s' is not a tolerance such as 5%%", optarg);
+    }
+    return 0;
+  case 'q':
+    return add_quantity(cli, optarg, request);
+  case 'm':
+    if (!read_models(optarg, request->model)) {
+      return cli_usage_error(cli, &cmd_compare, "'%s' names no model", optarg);
+    }
+    return 0;
+  case 'o':
+    request->folder = optarg;
+    return 0;
+  case 'f':
+    if (!cli_read_formats(optarg, &request->format)) {
+      return cli_usage_error(cli, &cmd_compare, "'%s' is not a list of svg, pdf, png", optarg);
+    }
+    return 0;
+  case 'w':
+    if (!cli_read_width(optarg, &request->format)) {
+      return cli_usage_error(cli, &cmd_compare, "'%s' is not a width of 40 to 400 mm", optarg);
+    }
+    return 0;
+  default:
+    request->json = true;
+    return 0;
+  }
+}
+
+static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
+{
+  static const struct option options[] = {{"tolerance", required_argument, NULL, 't'},
+                                          {"quantity", required_argument, NULL, 'q'},
+                                          {"model", required_argument, NULL, 'm'},
+                                          {"output", required_argument, NULL, 'o'},
+                                          {"format", required_argument, NULL, 'f'},
+                                          {"width", required_argument, NULL, 'w'},
+                                          {"json", no_argument, NULL, 'j'},
+                                          {0}};
+  int letter, code = 0;
+  opterr = 0;
+  while (code == 0 && (letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
+    if (letter == ':' || letter == '?') {
+      return cli_option_error(cli, &cmd_compare, letter, argv);
+    }
+    code = take_option(cli, letter, request);
+  }
+  if (code == 0 && argc - optind != 2) {
+    return cli_usage_error(cli, &cmd_compare, "give two: a run, and a run or a table");
+  }
+  if (code == 0) {
+    request->side[0].name = argv[optind];
+    request->side[1].name = argv[optind + 1];
+  }
+  return code;
+}
+
+// Sides ------------------------------------------------------------------------------------------
+
+/* True for a file that starts like HDF5. */
+static bool is_store(const char *path)
+{
+  char head[8] = {0};
+  FILE *file = fopen(path, "rb");
+  bool good = file != NULL && fread(head, 1, sizeof head, file) == sizeof head &&
+              memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
+  if (file != NULL) {
+    fclose(file);
+  }
+  return good;
+}
+
+static dea_status side_read(struct dea_context *ctx, struct side *side)
+{
+  size_t n = strlen(side->name);
+  bool named_store = n > 3 && strcmp(side->name + n - 3, ".h5") == 0;
+  if (named_store || dea_path_is_folder(side->name) || is_store(side->name)) {
+    return dea_run_read(ctx, side->name, &side->run);
+  }
+  return dea_measurement_read(ctx, side->name, &side->measurement);
+}
+
+static void side_free(struct dea_context *ctx, struct side *side)
+{
+  dea_run_destroy(ctx, side->run);
+  dea_measurement_destroy(ctx, side->measurement);
+}
+
+/* Curve of a model, or of the only one there is when model is ""; NULL if there is none. */
+static const struct dea_curve *side_curve(const struct side *side, const char *model)
+{
+  if (side->measurement != NULL) {
+    return &side->measurement->curve;
+  }
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_figure_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
+  const char *wanted = model[0] != '\0' ? model : count > 0 ? models[0] : "";
+  return dea_figure_curve(side->run->result, wanted, false);
+}
+
+static void pair_set(const struct request *request, const struct dea_curve *a,
+                     const struct dea_curve *b, struct pair *pair)
+{
+  const struct side *sides = request->side;
+  *pair = (struct pair){.a = a, .b = b};
+  pair->b_std = sides[1].measurement != NULL ? sides[1].measurement->std : NULL;
+  const struct dea_curve *const curves[2] = {a, b};
+  char *const names[2] = {pair->compared.a, pair->compared.b};
+  for (int k = 0; k < 2; k++) {
+    const char *slash = strrchr(sides[k].name, '/');
+    const char *name = slash != NULL && slash[1] != '\0' ? slash + 1 : sides[k].name;
+    bool measured = sides[k].measurement != NULL;
+    snprintf(names[k], DEA_LABEL_SIZE, "%.60s%s%.60s", name, measured ? "" : ", ",
+             measured ? "" : curves[k]->model);
+  }
+}
+
+static dea_status no_curve(struct dea_context *ctx, const struct side *side, const char *model)
+{
+  struct dea_text all = {.ctx = ctx};
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_figure_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t m = 0; m < count; m++) {
+    dea_text_add(&all, "%s%s", m > 0 ? ", " : "", models[m]);
+  }
+  dea_status status = model[0] != '\0'
+                          ? dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model '%s' (it has: %s)",
+                                     side->name, model, count > 0 ? dea_text_get(&all) : "none")
+                          : dea_fail(ctx, DEA_E_ARGUMENT, "%s has no points", side->name);
+  dea_text_free(&all);
+  return status;
+}
+
+/* The curves to be compared: those of the same model; a chosen pair with --model; the only ones. */
+static dea_status find_pairs(struct dea_context *ctx, const struct request *request,
+                             struct pair *pairs, size_t *count)
+{
+  const struct side *a = &request->side[0], *b = &request->side[1];
+  *count = 0;
+  if (request->model[0][0] == '\0' && a->run != NULL && b->run != NULL) {
+    const char *models[DEA_DESIGN_MODELS_MAX];
+    size_t n = dea_figure_models(a->run->result, models, DEA_DESIGN_MODELS_MAX);
+    for (size_t m = 0; m < n; m++) {
+      const struct dea_curve *x = side_curve(a, models[m]), *y = side_curve(b, models[m]);
+      if (x != NULL && y != NULL) {
+        pair_set(request, x, y, &pairs[(*count)++]);
+      }
+    }
+    if (*count > 0) {
+      return DEA_OK;
+    }
+  }
+  const struct dea_curve *x = side_curve(a, request->model[0]);
+  const struct dea_curve *y = side_curve(b, request->model[1]);
+  if (x == NULL || y == NULL) {
+    return no_curve(ctx, x == NULL ? a : b, request->model[x == NULL ? 0 : 1]);
+  }
+  pair_set(request, x, y, &pairs[(*count)++]);
+  return DEA_OK;
+}
+
+// Comparison and output --------------------------------------------------------------------------
+
+/* Takes the misfits out that were not asked for; a quantity that is missing is an error. */
+static dea_status compare_pair(struct dea_context *ctx, const struct request *request,
+                               struct pair *pair)
+{
+  const int *only = request->column_count == 1 ? &request->columns[0] : NULL;
+  DEA_TRY(ctx, dea_compare_curves(ctx, pair->a, pair->b, pair->b_std, only != NULL ? *only : -1,
+                                  &pair->comparison));
+  pair->compared.comparison = pair->comparison;
+  if (request->column_count < 2) {
+    return DEA_OK;
+  }
+  struct dea_comparison *c = pair->comparison;
+  size_t found = 0;
+  for (size_t i = 0; i < c->misfit_count; i++) {
+    for (size_t q = 0; q < request->column_count; q++) {
+      if (c->misfits[i].column == request->columns[q]) {
+        struct dea_misfit wanted = c->misfits[i]; // swapped, so that all are still freed
+        c->misfits[i] = c->misfits[found];
+        c->misfits[found++] = wanted;
+        break;
+      }
+    }
+  }
+  if (found < request->column_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common");
+  }
+  while (c->misfit_count > found) {
+    struct dea_misfit *last = &c->misfits[--c->misfit_count];
+    dea_free(ctx, last->voltage_V);
+    dea_free(ctx, last->a);
+    dea_free(ctx, last->b);
+    dea_free(ctx, last->b_std);
+  }
+  return DEA_OK;
+}
+
+static void print_table(const struct pair *pair, double tolerance)
+{
+  printf("a: %s\nb: %s\n%-28s %6s %12s %12s %8s %12s %10s %10s\n", pair->compared.a,
+         pair->compared.b, "a - b", "points", "RMS", "largest", "at kV", "bias", "RMS/range",
+         "largest/range");
+  for (size_t i = 0; i < pair->comparison->misfit_count; i++) {
+    const struct dea_misfit *m = &pair->comparison->misfits[i];
+    const struct dea_column *c = &dea_point_columns[m->column];
+    char title[96];
+    dea_column_title(c, title, sizeof title);
+    printf("%-28s %6zu %12.5g %12.5g %8.4g %12.5g %8.3g %% %8.3g %%%s\n", title, m->count,
+           c->factor * m->rms, c->factor * m->largest, 1e-3 * m->largest_at_V, c->factor * m->bias,
+           100.0 * m->relative_rms, 100.0 * m->relative_largest,
+           !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
+  }
+}
+
+static dea_status print_json(struct dea_context *ctx, const struct pair *pairs, size_t count,
+                             double tolerance)
+{
+  json_t *root = json_object(), *list = json_array();
+  json_object_set_new(root, "schema", json_integer(1));
+  if (!isnan(tolerance)) {
+    dea_json_put(root, "tolerance", tolerance);
+  }
+  for (size_t i = 0; i < count; i++) {
+    json_array_append_new(list, dea_compared_json(&pairs[i].compared, tolerance));
+  }
+  json_object_set_new(root, "comparisons", list);
+  char *text;
+  DEA_TRY(ctx, dea_json_text(ctx, root, &text));
+  fputs(text, stdout);
+  dea_free(ctx, text);
+  return DEA_OK;
+}
+
+static dea_status draw(struct dea_context *ctx, const struct request *request,
+                       const struct pair *pairs, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, dea_compared_draw(ctx, &pairs[i].compared, count > 1 ? pairs[i].a->model : "",
+                                   &request->format, request->folder));
+  }
+  return DEA_OK;
+}
+
+/* DEA_E_DIFFERS with the worst quantity when a tolerance is given and exceeded. */
+static dea_status judge(struct dea_context *ctx, const struct pair *pairs, size_t count,
+                        double tolerance)
+{
+  const struct dea_misfit *worst = NULL;
+  for (size_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < pairs[i].comparison->misfit_count; k++) {
+      const struct dea_misfit *m = &pairs[i].comparison->misfits[k];
+      worst = worst == NULL || m->relative_largest > worst->relative_largest ? m : worst;
+    }
+  }
+  if (isnan(tolerance) || worst == NULL || worst->relative_largest <= tolerance) {
+    return DEA_OK;
+  }
+  return dea_fail(ctx, DEA_E_DIFFERS, "%s differs by %.3g %% of its range, more than %.3g %%",
+                  dea_point_columns[worst->column].key, 100.0 * worst->relative_largest,
+                  100.0 * tolerance);
+}
+
+static dea_status compare(struct dea_cli *cli, struct request *request, struct pair *pairs,
+                          size_t *count)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, side_read(ctx, &request->side[0]));
+  DEA_TRY(ctx, side_read(ctx, &request->side[1]));
+  DEA_TRY(ctx, find_pairs(ctx, request, pairs, count));
+  for (size_t i = 0; i < *count; i++) {
+    DEA_TRY(ctx, compare_pair(ctx, request, &pairs[i]));
+    if (pairs[i].comparison->part_only) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
+                                   "the voltages of %s and %s differ and go up and down: only the "
+                                   "first part of one was compared",
+                                   pairs[i].compared.a, pairs[i].compared.b));
+    }
+    if (!request->json) {
+      print_table(&pairs[i], request->tolerance);
+    }
+  }
+  if (request->json) {
+    DEA_TRY(ctx, print_json(ctx, pairs, *count, request->tolerance));
+  }
+  if (request->folder != NULL) {
+    DEA_TRY(ctx, draw(ctx, request, pairs, *count));
+  }
+  return judge(ctx, pairs, *count, request->tolerance);
+}
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  (void)argc;
-  (void)argv;
-  return cli_usage_error(cli, &cmd_compare, "not built yet");
+  struct request request = {.tolerance = NAN, .format = {.svg = true, .width_m = 0.085}};
+  struct pair pairs[PAIRS_MAX];
+  memset(pairs, 0, sizeof pairs);
+  size_t count = 0;
+  int code = read_options(cli, argc, argv, &request);
+  if (code != 0) {
+    return code;
+  }
+  code = cli_report(cli, compare(cli, &request, pairs, &count));
+  for (size_t i = 0; i < count; i++) {
+    dea_comparison_destroy(cli->ctx, pairs[i].comparison);
+  }
+  side_free(cli->ctx, &request.side[0]);
+  side_free(cli->ctx, &request.side[1]);
+  return code;
 }
 
 const struct dea_command cmd_compare = {
     .name = "compare",
-    .summary = "",
-    .usage = "dea compare\n",
+    .summary = "compare two runs, or a run and a table of measurements",
+    .usage =
+        "dea compare A B [--tolerance SHARE] [--quantity KEY]... [--model MODEL]\n"
+        "            [-o DIR] [--format LIST] [--width MM] [--json]\n"
+        "\n"
+        "A and B are folders of runs; B may be a CSV table with headers such as 'V (kV)',\n"
+        "'z centre (um)', 'z centre std (um)'. Curves of the same model are compared. Differences\n"
+        "are a - b, relative ones over the range of b. The exit code is 1 when a tolerance is "
+        "given\n"
+        "and the largest difference of a quantity exceeds it.\n"
+        "\n"
+        "  A                  folder of a run\n"
+        "  B                  folder of a run, or a CSV table\n"
+        "  --tolerance SHARE  largest difference allowed, such as 5%\n"
+        "  --quantity KEY     only this quantity, such as fibre_tip_z_m; can be repeated\n"
+        "  --model MODEL      only this model; lumped:axisymmetric takes one of A, the other of B\n"
+        "  -o, --output DIR   draw each quantity with its difference into this folder\n"
+        "  --format LIST      formats such as svg,pdf,png; svg if not given\n"
+        "  --width MM         width, 85 for one column or 170 for two\n"
+        "  --json             print the comparison as JSON\n",
     .run = run,
 };

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "cli/usage.h"
+#include "material/catalogue.h"
 #include "model/model.h"
 
 #include <string.h>
@@ -238,18 +239,30 @@ static void print_fish(void)
   }
 }
 
-static void print_data_names(struct dea_context *ctx, enum dea_data_kind kind)
+static dea_status print_example_names(struct dea_context *ctx)
 {
   struct cli_data_list list;
-  if (cli_data_find(ctx, kind, ".yaml", &list) == DEA_OK) {
-    for (size_t i = 0; i < list.count; i++) {
-      printf("%.*s\n", (int)cli_data_stem(list.files[i].name), list.files[i].name);
-    }
+  dea_status status = cli_examples_find(ctx, ".yaml", &list);
+  for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
+    printf("%.*s\n", (int)cli_data_stem(list.files[i].name), list.files[i].name);
   }
   cli_data_free(ctx, &list);
+  return status;
 }
 
-static void print_names(struct dea_context *ctx, const char *what)
+static dea_status print_material_names(struct dea_context *ctx)
+{
+  const char **names;
+  size_t count;
+  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
+  for (size_t i = 0; i < count; i++) {
+    puts(names[i]);
+  }
+  dea_free(ctx, names);
+  return DEA_OK;
+}
+
+static dea_status print_names(struct dea_context *ctx, const char *what)
 {
   size_t count;
   if (strcmp(what, "commands") == 0) {
@@ -265,10 +278,11 @@ static void print_names(struct dea_context *ctx, const char *what)
   } else if (strcmp(what, "shells") == 0) {
     puts("bash\nzsh\nfish");
   } else if (strcmp(what, "examples") == 0) {
-    print_data_names(ctx, DEA_DATA_EXAMPLES);
+    return print_example_names(ctx);
   } else if (strcmp(what, "materials") == 0) {
-    print_data_names(ctx, DEA_DATA_MATERIALS);
+    return print_material_names(ctx);
   }
+  return DEA_OK;
 }
 
 static int run(struct dea_cli *cli, int argc, char **argv)
@@ -279,8 +293,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   } outputs[] = {
       {"bash", print_bash}, {"zsh", print_zsh}, {"fish", print_fish}, {"man", cli_print_manual}};
   if (argc == 3 && strcmp(argv[1], "names") == 0) { // for the completions themselves
-    print_names(cli->ctx, argv[2]);
-    return 0;
+    return cli_report(cli, print_names(cli->ctx, argv[2]));
   }
   if (argc != 2) {
     return cli_usage_error(cli, &cmd_completion, "name one shell: bash, zsh or fish");
@@ -297,7 +310,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_completion = {
     .name = "completion",
-    .summary = "print the completion for a shell",
+    .summary = "Print the completion for a shell",
     .usage = "dea completion SHELL\n"
              "\n"
              "  SHELL  bash, zsh or fish; 'man' prints the manual page instead\n"

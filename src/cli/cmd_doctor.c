@@ -3,15 +3,13 @@
 #include "base/version.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
+#include "material/catalogue.h"
+#include "result/provenance.h"
 
 #include <errno.h>
-#include <hdf5.h>
-#include <jansson.h>
-#include <lapacke.h>
 #include <string.h>
 #include <udunits2.h>
 #include <unistd.h>
-#include <yaml.h>
 
 enum { OUTPUT_SIZE = 8192 };
 
@@ -38,15 +36,7 @@ static void say(struct report *report, enum importance importance, bool ok, cons
 static void check_libraries(struct report *report)
 {
   char text[256];
-  int major = 0, minor = 0, patch = 0;
-  yaml_get_version(&major, &minor, &patch);
-  unsigned h5_major = 0, h5_minor = 0, h5_release = 0;
-  H5get_libversion(&h5_major, &h5_minor, &h5_release);
-  lapack_int la_major = 0, la_minor = 0, la_patch = 0;
-  LAPACK_ilaver(&la_major, &la_minor, &la_patch);
-  snprintf(text, sizeof text, "libyaml %d.%d.%d, jansson %s, HDF5 %u.%u.%u, LAPACK %d.%d.%d", major,
-           minor, patch, jansson_version_str(), h5_major, h5_minor, h5_release, (int)la_major,
-           (int)la_minor, (int)la_patch);
+  dea_libraries_text(text, sizeof text);
   say(report, NEEDED, true, "libraries", text, NULL);
 }
 
@@ -62,17 +52,53 @@ static void check_units(struct report *report)
   ut_free_system(units);
 }
 
-static void check_data(struct dea_context *ctx, struct report *report, enum dea_data_kind kind,
-                       const char *what)
+/* Line "N in FOLDER", and what to do if there are none. */
+static void say_data(struct dea_context *ctx, struct report *report, enum importance importance,
+                     const char *what, size_t count, const char *folder)
 {
-  struct cli_data_list list;
   struct dea_text text = {.ctx = ctx};
-  bool ok = cli_data_find(ctx, kind, ".yaml", &list) == DEA_OK && list.count > 0;
-  dea_text_add(&text, "%zu in %s", list.count, list.folder != NULL ? list.folder : "?");
-  say(report, kind == DEA_DATA_MATERIALS ? NEEDED : WISHED, ok, what, dea_text_get(&text),
+  dea_text_add(&text, "%zu in %s", count, folder);
+  say(report, importance, count > 0, what, count > 0 ? dea_text_get(&text) : "none were found",
       "install the program again: its data files are not where they should be");
   dea_text_free(&text);
+}
+
+/* All materials must be readable; the folder is that of the first. */
+static dea_status check_materials(struct dea_context *ctx, struct report *report)
+{
+  const struct dea_place nowhere = {.file = ""};
+  const char **names;
+  const char *folder = "";
+  size_t count;
+  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    struct dea_catalogue_entry *entry;
+    status = dea_catalogue_read(ctx, names[i], nowhere, &entry);
+    if (status == DEA_OK && i == 0) {
+      folder = entry->file;
+    }
+    dea_catalogue_destroy(ctx, entry);
+  }
+  dea_free(ctx, names);
+  if (status == DEA_OK) {
+    const char *slash = strrchr(folder, '/');
+    char *directory = dea_copy_text(ctx, folder, slash != NULL ? (size_t)(slash - folder) : 0);
+    say_data(ctx, report, NEEDED, "materials", count, directory != NULL ? directory : folder);
+    dea_free(ctx, directory);
+  }
+  return status;
+}
+
+static dea_status check_examples(struct dea_context *ctx, struct report *report)
+{
+  struct cli_data_list list;
+  dea_status status = cli_examples_find(ctx, ".yaml", &list);
+  if (status == DEA_OK) {
+    say_data(ctx, report, WISHED, "examples", list.count, list.folder);
+  }
   cli_data_free(ctx, &list);
+  return status;
 }
 
 /* Runs a command line and keeps what it prints; false when it fails. */
@@ -143,19 +169,21 @@ static int run(struct dea_cli *cli, int argc, char **argv)
       NULL);
   check_libraries(&report);
   check_units(&report);
-  check_data(cli->ctx, &report, DEA_DATA_MATERIALS, "materials");
-  check_data(cli->ctx, &report, DEA_DATA_EXAMPLES, "examples");
+  dea_status status = check_materials(cli->ctx, &report);
+  if (status == DEA_OK) {
+    status = check_examples(cli->ctx, &report);
+  }
   check_gnuplot(&report);
   check_folder(&report);
-  if (!report.usable) {
-    return cli_report(cli, dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing"));
+  if (status == DEA_OK && !report.usable) {
+    status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");
   }
-  return cli_report(cli, DEA_OK);
+  return cli_report(cli, status);
 }
 
 const struct dea_command cmd_doctor = {
     .name = "doctor",
-    .summary = "say what this installation has and what it lacks",
+    .summary = "Say what this installation has and what it lacks",
     .usage = "dea doctor\n"
              "\n"
              "One line a thing that a run needs: ok or missing, and what to do about it.\n"

@@ -162,7 +162,7 @@ static dea_status copy_one(struct dea_context *ctx, const struct cli_data_file *
 static dea_status copy_all(struct dea_cli *cli, const char *folder, bool force)
 {
   struct cli_data_list list;
-  dea_status status = cli_data_find(cli->ctx, DEA_DATA_EXAMPLES, "", &list);
+  dea_status status = cli_examples_find(cli->ctx, "", &list);
   for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
     status = copy_one(cli->ctx, &list.files[i], folder, force);
     if (status == DEA_OK && !cli->quiet) {
@@ -177,7 +177,7 @@ static int show(struct dea_cli *cli, const char *name)
 {
   struct cli_data_list list;
   int code;
-  dea_status status = cli_data_find(cli->ctx, DEA_DATA_EXAMPLES, ".yaml", &list);
+  dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   if (status == DEA_OK && list.count == 0) {
     status = dea_fail(cli->ctx, DEA_E_IO, "no examples were found in %s", list.folder);
   }
@@ -224,7 +224,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_examples = {
     .name = "examples",
-    .summary = "list the example designs, print one, or copy all of them",
+    .summary = "List the example designs, print one, or copy all of them",
     .usage = "dea examples [EXAMPLE]\n"
              "       dea examples --copy DIR [--force]\n"
              "\n"

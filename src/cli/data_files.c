@@ -7,10 +7,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char *const installed[] = {DEA_INSTALL_DATA_DIR "/examples",
-                                        DEA_INSTALL_DATA_DIR "/materials"};
-static const char *const source[] = {DEA_SOURCE_DIR "/examples", DEA_SOURCE_DIR "/data/materials"};
-
 static bool is_regular(const char *path)
 {
   struct stat info;
@@ -77,10 +73,11 @@ static dea_status find_in(struct dea_context *ctx, const char *folder, const cha
   return status;
 }
 
-dea_status cli_data_find(struct dea_context *ctx, enum dea_data_kind kind, const char *ending,
-                         struct cli_data_list *list)
+dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
+                             struct cli_data_list *list)
 {
-  const char *const places[] = {installed[kind], source[kind]};
+  static const char *const places[] = {DEA_INSTALL_DATA_DIR "/examples",
+                                       DEA_SOURCE_DIR "/examples"};
   *list = (struct cli_data_list){.count = 0};
   for (size_t i = 0; i < 2 && list->count == 0; i++) {
     cli_data_free(ctx, list);

@@ -78,12 +78,14 @@ void cli_print_manual(void)
   for (size_t i = 0; i < count; i++) {
     printf(".Ss %s\n", commands[i]->name);
     print_roff(commands[i]->summary);
-    puts("\n.Bd -literal");
+    puts(commands[i]->summary[0] != '\0' ? "\n.Bd -literal" : ".Bd -literal");
     fputs("Usage: ", stdout);
     print_roff(commands[i]->usage);
     puts(".Ed");
   }
-  puts(".Sh ENVIRONMENT\n.Bl -tag -width NO_COLOR\n.It Ev NO_COLOR\nmessages have no colours\n.El");
+  puts(".Sh ENVIRONMENT\n.Bl -tag -width DEA_MATERIALS\n.It Ev DEA_MATERIALS\n"
+       "directories with materials of your own, separated by colons\n"
+       ".It Ev NO_COLOR\nmessages have no colours\n.El");
   print_exit_codes();
   puts(".Sh EXAMPLES\nCompute the paper\\(aqs actuator with four fibres:\n.Bd -literal -offset "
        "indent\n"

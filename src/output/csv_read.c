@@ -199,6 +199,10 @@ static void read_unit(struct reader *r, const char *title, const char *unit, boo
     }
     return;
   }
+  if (strcmp(unit, "%") == 0 && strcmp(c->si_unit, "1") == 0) {
+    field->factor = 0.01;
+    return;
+  }
   char one[FIELD_MAX + 2], why[DEA_WHY_SIZE], example[32];
   snprintf(one, sizeof one, "1 %s", unit);
   snprintf(example, sizeof example, "1 %s", c->display_unit);
@@ -307,10 +311,12 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
   const char *cursor = line;
   char text[FIELD_MAX];
   size_t column = 1, i = 0, before = r->errors;
+  bool more = false;
   *point = *std = dea_load_point_empty();
   for (; next_field(line, &cursor, r->separator, text, &column); i++) {
     double value;
-    if (i >= r->field_count) {
+    if (i == r->field_count) {
+      more = true;
       break;
     }
     char shown[FIELD_MAX];
@@ -323,10 +329,10 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
       set_field(&r->fields[i], value, point, std);
     }
   }
-  if ((i != r->field_count || cursor != NULL) && one_more_error(r)) {
+  if ((more || i < r->field_count) && one_more_error(r)) {
     dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
-                    "%s fields than the header, which has %zu",
-                    i < r->field_count ? "fewer" : "more", r->field_count);
+                    "%s fields than the header, which has %zu", more ? "more" : "fewer",
+                    r->field_count);
   } else if (r->errors == before && isnan(point->voltage_V) && one_more_error(r)) {
     dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "a row without a voltage");
   }
@@ -395,8 +401,8 @@ static dea_status read_text(struct dea_context *ctx, const char *file, char *tex
   }
   dea_context_clear(ctx); // so that the status below can only be of a finding
   dea_status status = read_lines(&r, text, m);
-  if (status == DEA_OK && dea_context_status(ctx) == DEA_E_MEMORY) {
-    return DEA_E_MEMORY; // a finding could not be kept
+  if (status == DEA_OK && dea_context_status(ctx) != DEA_OK) {
+    return dea_context_status(ctx); // a finding could not be kept, or there are no units
   }
   if (status == DEA_OK && r.errors > 0) {
     status = dea_fail(ctx, DEA_E_IO, "%s cannot be used: %zu error%s", file, r.errors,

@@ -53,8 +53,8 @@ void dea_figure_voltage_axis(struct dea_panel *panel);
 dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
                                  const struct dea_result *result, int column, double factor,
                                  double shift, bool whole_path);
-/* A tic format with the same number of decimals on all tics of the left axis. */
-void dea_figure_even_tics(struct dea_panel *panel);
+/* At most about `most` tics on the left axis, all with the same number of decimals. */
+void dea_figure_even_tics(struct dea_panel *panel, int most);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
 

@@ -21,6 +21,19 @@ static double z_factor(const struct dea_result *result, const int columns[2])
   return 1e6;
 }
 
+/* True when a curve says the same of both quantities; one of them is then enough. */
+static bool are_equal(const struct dea_curve *curve, const int columns[2])
+{
+  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
+    double first = dea_point_get(&curve->points[i], columns[0]);
+    double second = dea_point_get(&curve->points[i], columns[1]);
+    if (!(fabs(first - second) <= 1e-9 * fabs(first))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
@@ -39,14 +52,16 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   strain_count = panel->series_count;
   for (size_t m = 0; m < count; m++) {
-    for (int c = 0; c < 2; c++) {
+    bool once = are_equal(dea_figure_curve(result, models[m], false), z);
+    for (int c = 0; c < (once ? 1 : 2); c++) {
       struct dea_series look = dea_figure_look(models[m], m);
       look.style = DEA_LINE_MARKED;
       look.colour = c == 0 ? DEA_GREEN : DEA_PURPLE;
       look.marker = 2 + c + 5 * (int)m;
       look.right = true;
       size_t n = strlen(look.title);
-      snprintf(look.title + n, sizeof look.title - n, ", {/:Italic z} %s", words[c]);
+      snprintf(look.title + n, sizeof look.title - n, ", {/:Italic z}%s%s", once ? "" : " ",
+               once ? "" : words[c]);
       DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false), z[c],
                                   factor, 0.0, &look));
     }

@@ -160,8 +160,10 @@ dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *pane
   return add_events_of(ctx, panel, result, DEA_EVENT_BREAKDOWN, &q, whole_path);
 }
 
-void dea_figure_even_tics(struct dea_panel *panel)
+void dea_figure_even_tics(struct dea_panel *panel, int most)
 {
+  static const double nice[] = {1.0, 2.0, 5.0, 10.0};
+  static const char *const formats[] = {"%.0f", "%.1f", "%.2f", "%.3f", "%.4f"};
   double low = INFINITY, high = -INFINITY;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
@@ -171,8 +173,18 @@ void dea_figure_even_tics(struct dea_panel *panel)
       high = isfinite(y) ? fmax(high, y) : high;
     }
   }
-  double span = high - low; // gnuplot makes five to ten tics of it
-  panel->y_format = span >= 5.0 ? NULL : span >= 0.5 ? "%.1f" : span >= 0.05 ? "%.2f" : "%.3f";
+  if (!(high > low)) {
+    return;
+  }
+  double least = (high - low) / most, power = pow(10.0, floor(log10(least)));
+  for (size_t i = 0; i < sizeof nice / sizeof nice[0]; i++) {
+    if (nice[i] * power >= 0.999 * least) {
+      panel->y_step = nice[i] * power;
+      break;
+    }
+  }
+  int decimals = (int)-floor(log10(panel->y_step) + 1e-9);
+  panel->y_format = decimals > 4 ? NULL : formats[decimals > 0 ? decimals : 0];
 }
 
 /* Display unit with its proper signs: "um" -> "µm". */

@@ -80,6 +80,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     snprintf(hoop->title, sizeof hoop->title, "hoop");
     hoop->values[0] = 0.0;
     hoop->values[1] = records[0].columns[2 * records[0].count];
+    dea_figure_even_tics(&plot->panels[0], 7);
+    dea_figure_even_tics(&plot->panels[1], 7);
   }
   return DEA_OK;
 }

@@ -141,7 +141,7 @@ static dea_status draw(struct dea_context *ctx, const char *directory, const cha
   char *scripts = dea_alloc(ctx, count, 80);
   dea_status status = DEA_E_MEMORY;
   if (!folder.failed && argv != NULL && scripts != NULL) {
-    static char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
+    char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
     argv[0] = program;
     argv[1] = defaults; // without the user's start-up files
     argv[2] = execute;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
+void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
 {
   *h = (struct h5){.ctx = ctx, .path = path, .status = DEA_OK};
   H5open();
@@ -11,7 +11,7 @@ void h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-void h5_end(struct h5 *h)
+void dea_h5_end(struct h5 *h)
 {
   H5Eclear2(H5E_DEFAULT);
   H5Eset_auto2(H5E_DEFAULT, h->print, h->print_data);
@@ -28,7 +28,7 @@ static herr_t take_description(unsigned n, const H5E_error2_t *error, void *user
   return 0;
 }
 
-void h5_fail(struct h5 *h, const char *what)
+void dea_h5_fail(struct h5 *h, const char *what)
 {
   if (h->status != DEA_OK) {
     return;
@@ -45,12 +45,12 @@ static const char cannot_read[] = "not a complete results file:";
 static hid_t checked(struct h5 *h, hid_t id, const char *what)
 {
   if (id < 0) {
-    h5_fail(h, what);
+    dea_h5_fail(h, what);
   }
   return id;
 }
 
-hid_t h5_group_make(struct h5 *h, hid_t parent, const char *name)
+hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name)
 {
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
@@ -58,7 +58,7 @@ hid_t h5_group_make(struct h5 *h, hid_t parent, const char *name)
   return checked(h, H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), cannot_write);
 }
 
-hid_t h5_group_open(struct h5 *h, hid_t parent, const char *name)
+hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name)
 {
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
@@ -66,7 +66,7 @@ hid_t h5_group_open(struct h5 *h, hid_t parent, const char *name)
   return checked(h, H5Gopen2(parent, name, H5P_DEFAULT), cannot_read);
 }
 
-void h5_close(hid_t object)
+void dea_h5_close(hid_t object)
 {
   if (object >= 0) {
     H5Idec_ref(object);
@@ -90,26 +90,26 @@ static void put_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
   hid_t space = H5Screate(H5S_SCALAR);
   hid_t attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT);
   if (attribute < 0 || H5Awrite(attribute, memory_type, value) < 0) {
-    h5_fail(h, cannot_write);
+    dea_h5_fail(h, cannot_write);
   }
-  h5_close(attribute);
-  h5_close(space);
+  dea_h5_close(attribute);
+  dea_h5_close(space);
 }
 
-void h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text)
+void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text)
 {
   const char *value = text != NULL ? text : "";
   hid_t type = text_type(strlen(value) + 1);
   put_scalar(h, object, name, type, type, value);
-  h5_close(type);
+  dea_h5_close(type);
 }
 
-void h5_put_int(struct h5 *h, hid_t object, const char *name, long long value)
+void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value)
 {
   put_scalar(h, object, name, H5T_NATIVE_LLONG, H5T_STD_I64LE, &value);
 }
 
-void h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
+void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
 {
   put_scalar(h, object, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, &value);
 }
@@ -121,14 +121,15 @@ static hid_t make_dataset(struct h5 *h, hid_t group, const char *name, hid_t mem
   H5Pset_obj_track_times(properties, false); // the same result gives the same bytes
   hid_t set = H5Dcreate2(group, name, file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
   if (set < 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
-    h5_fail(h, cannot_write);
+    dea_h5_fail(h, cannot_write);
   }
-  h5_close(properties);
+  dea_h5_close(properties);
   return set;
 }
 
-void h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, hid_t file_type,
-                  size_t count, const void *values, const char *unit, const char *meaning)
+void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                      hid_t file_type, size_t count, const void *values, const char *unit,
+                      const char *meaning)
 {
   if (h->status != DEA_OK) {
     return;
@@ -136,25 +137,25 @@ void h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type
   hsize_t length = count;
   hid_t space = H5Screate_simple(1, &length, NULL);
   hid_t set = make_dataset(h, group, name, memory_type, file_type, space, values);
-  h5_put_text(h, set, "unit", unit);
-  h5_put_text(h, set, "meaning", meaning);
-  h5_close(set);
-  h5_close(space);
+  dea_h5_put_text(h, set, "unit", unit);
+  dea_h5_put_text(h, set, "meaning", meaning);
+  dea_h5_close(set);
+  dea_h5_close(space);
 }
 
-void h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text)
+void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text)
 {
   if (h->status != DEA_OK || text == NULL) {
     return;
   }
   hid_t space = H5Screate(H5S_SCALAR);
   hid_t type = text_type(strlen(text) + 1);
-  h5_close(make_dataset(h, group, name, type, type, space, text));
-  h5_close(type);
-  h5_close(space);
+  dea_h5_close(make_dataset(h, group, name, type, type, space, text));
+  dea_h5_close(type);
+  dea_h5_close(space);
 }
 
-void h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size)
+void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size)
 {
   out[0] = '\0';
   if (h->status != DEA_OK) {
@@ -165,13 +166,13 @@ void h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t
   hid_t type = text_type(size);
   if (stored < 0 || H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0 ||
       H5Aread(attribute, type, out) < 0) {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
     out[0] = '\0';
   }
   out[size - 1] = '\0';
-  h5_close(type);
-  h5_close(stored);
-  h5_close(attribute);
+  dea_h5_close(type);
+  dea_h5_close(stored);
+  dea_h5_close(attribute);
 }
 
 /* True when an attribute or dataset of this space holds exactly one value. */
@@ -188,33 +189,33 @@ static void get_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
   if (!is_single(space) || H5Aread(attribute, memory_type, out) < 0) {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
   }
-  h5_close(space);
-  h5_close(attribute);
+  dea_h5_close(space);
+  dea_h5_close(attribute);
 }
 
-long long h5_get_int(struct h5 *h, hid_t object, const char *name)
+long long dea_h5_get_int(struct h5 *h, hid_t object, const char *name)
 {
   long long value = 0;
   get_scalar(h, object, name, H5T_NATIVE_LLONG, &value);
   return value;
 }
 
-double h5_get_real(struct h5 *h, hid_t object, const char *name)
+double dea_h5_get_real(struct h5 *h, hid_t object, const char *name)
 {
   double value = 0.0;
   get_scalar(h, object, name, H5T_NATIVE_DOUBLE, &value);
   return value;
 }
 
-bool h5_has(const struct h5 *h, hid_t group, const char *name)
+bool dea_h5_has(const struct h5 *h, hid_t group, const char *name)
 {
   return h->status == DEA_OK && H5Lexists(group, name, H5P_DEFAULT) > 0;
 }
 
-void h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
-                  void *out)
+void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
+                      void *out)
 {
   if (h->status != DEA_OK) {
     return;
@@ -225,15 +226,15 @@ void h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type
     h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: dataset '%s' has not %zu values",
                          h->path, name, count);
   } else if (space < 0 || H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
   }
-  h5_close(space);
-  h5_close(set);
+  dea_h5_close(space);
+  dea_h5_close(set);
 }
 
-char *h5_get_long_text(struct h5 *h, hid_t group, const char *name)
+char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name)
 {
-  if (!h5_has(h, group, name)) {
+  if (!dea_h5_has(h, group, name)) {
     return NULL;
   }
   hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
@@ -246,35 +247,35 @@ char *h5_get_long_text(struct h5 *h, hid_t group, const char *name)
     if (text == NULL) {
       h->status = DEA_E_MEMORY;
     } else if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
-      h5_fail(h, cannot_read);
+      dea_h5_fail(h, cannot_read);
     }
   } else {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
   }
-  h5_close(space);
-  h5_close(type);
-  h5_close(set);
+  dea_h5_close(space);
+  dea_h5_close(type);
+  dea_h5_close(set);
   return text;
 }
 
-size_t h5_link_count(struct h5 *h, hid_t group)
+size_t dea_h5_link_count(struct h5 *h, hid_t group)
 {
   H5G_info_t info;
   if (h->status != DEA_OK) {
     return 0;
   }
   if (H5Gget_info(group, &info) < 0) {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
     return 0;
   }
   return (size_t)info.nlinks;
 }
 
-void h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size)
+void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size)
 {
   out[0] = '\0';
   if (h->status == DEA_OK && H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, out,
                                                 size, H5P_DEFAULT) < 0) {
-    h5_fail(h, cannot_read);
+    dea_h5_fail(h, cannot_read);
   }
 }

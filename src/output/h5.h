@@ -17,39 +17,40 @@ struct h5 {
   void *print_data;
 };
 
-/* Silences HDF5's own printing for this thread until h5_end. */
-void h5_begin(struct h5 *h, struct dea_context *ctx, const char *path);
-void h5_end(struct h5 *h);
+/* Silences HDF5's own printing for this thread until dea_h5_end. */
+void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path);
+void dea_h5_end(struct h5 *h);
 /* Records the failure with the innermost text of HDF5's error stack; what: "cannot write". */
-void h5_fail(struct h5 *h, const char *what);
+void dea_h5_fail(struct h5 *h, const char *what);
 
-/* Handles are negative after a failure; h5_close takes any. */
-hid_t h5_group_make(struct h5 *h, hid_t parent, const char *name);
-hid_t h5_group_open(struct h5 *h, hid_t parent, const char *name);
-void h5_close(hid_t object);
+/* Handles are negative after a failure; dea_h5_close takes any. */
+hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name);
+hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name);
+void dea_h5_close(hid_t object);
 
-void h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text);
-void h5_put_int(struct h5 *h, hid_t object, const char *name, long long value);
-void h5_put_real(struct h5 *h, hid_t object, const char *name, double value);
+void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text);
+void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value);
+void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value);
 /* One-dimensional dataset with its unit and meaning. memory_type, file_type: HDF5 types. */
-void h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, hid_t file_type,
-                  size_t count, const void *values, const char *unit, const char *meaning);
+void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                      hid_t file_type, size_t count, const void *values, const char *unit,
+                      const char *meaning);
 /* Text of any length as a scalar dataset. */
-void h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
+void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
 
 /* Readers of attributes fail when the attribute is missing. Text longer than size is cut. */
-void h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size);
-long long h5_get_int(struct h5 *h, hid_t object, const char *name);
-double h5_get_real(struct h5 *h, hid_t object, const char *name);
+void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size);
+long long dea_h5_get_int(struct h5 *h, hid_t object, const char *name);
+double dea_h5_get_real(struct h5 *h, hid_t object, const char *name);
 /* True when a link of that name exists. */
-bool h5_has(const struct h5 *h, hid_t group, const char *name);
+bool dea_h5_has(const struct h5 *h, hid_t group, const char *name);
 /* A one-dimensional dataset of exactly `count` values. */
-void h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
-                  void *out);
+void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
+                      void *out);
 /* Text of a scalar dataset, NULL when it does not exist; owned by the caller. */
-char *h5_get_long_text(struct h5 *h, hid_t group, const char *name);
+char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
 /* Number of links of a group, and the name of one of them in alphabetical order. */
-size_t h5_link_count(struct h5 *h, hid_t group);
-void h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size);
+size_t dea_h5_link_count(struct h5 *h, hid_t group);
+void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size);
 
 #endif

@@ -362,6 +362,11 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
     dea_text_add(gp, "  unset xlabel\n  set format x \"\"\n");
   }
   dea_text_add(gp, "  set format y \"%s\"\n", panel->y_format != NULL ? panel->y_format : "%h");
+  if (panel->y_step > 0.0) {
+    dea_text_add(gp, "  set ytics %.10g\n", panel->y_step);
+  } else {
+    dea_text_add(gp, "  set ytics autofreq\n");
+  }
   add_label(gp, "  set ylabel", panel->y_label);
   dea_text_add(gp, " offset y_shift,0\n");
   if (panel->y2_label[0] != '\0') {

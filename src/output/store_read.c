@@ -13,7 +13,7 @@ enum { COUNT_MAX = 10000000, KIND_SIZE = 16 };
 
 static size_t get_count(struct h5 *h, hid_t group)
 {
-  long long count = h5_get_int(h, group, "count");
+  long long count = dea_h5_get_int(h, group, "count");
   if (h->status == DEA_OK && (count < 0 || count > COUNT_MAX)) {
     h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a curve of %lld points", h->path, count);
   }
@@ -39,18 +39,18 @@ static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points
     (*points)[i] = dea_load_point_empty();
   }
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (h5_has(h, group, dea_point_columns[c].key)) {
-      h5_get_array(h, group, dea_point_columns[c].key, H5T_NATIVE_DOUBLE, n, buffer);
+    if (dea_h5_has(h, group, dea_point_columns[c].key)) {
+      dea_h5_get_array(h, group, dea_point_columns[c].key, H5T_NATIVE_DOUBLE, n, buffer);
       for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
         dea_point_set(&(*points)[i], c, buffer[i]);
       }
     }
   }
-  h5_get_array(h, group, "stable", H5T_NATIVE_INT, n, whole);
+  dea_h5_get_array(h, group, "stable", H5T_NATIVE_INT, n, whole);
   for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
     (*points)[i].stable = whole[i] != 0;
   }
-  h5_get_array(h, group, "unstable_modes", H5T_NATIVE_INT, n, whole);
+  dea_h5_get_array(h, group, "unstable_modes", H5T_NATIVE_INT, n, whole);
   for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
     (*points)[i].unstable_modes = whole[i];
   }
@@ -60,7 +60,7 @@ static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points
 
 static void get_events(struct h5 *h, hid_t parent, struct dea_curve *curve)
 {
-  hid_t group = h5_group_open(h, parent, "events");
+  hid_t group = dea_h5_group_open(h, parent, "events");
   struct dea_load_point *points;
   size_t count;
   get_points(h, group, &points, &count);
@@ -70,8 +70,8 @@ static void get_events(struct h5 *h, hid_t parent, struct dea_curve *curve)
   } else if (count > 0) {
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, KIND_SIZE);
-    h5_get_array(h, group, "kind", type, count, names);
-    h5_close(type);
+    dea_h5_get_array(h, group, "kind", type, count, names);
+    dea_h5_close(type);
   }
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     struct dea_event event = {.point = points[i]};
@@ -85,7 +85,7 @@ static void get_events(struct h5 *h, hid_t parent, struct dea_curve *curve)
   }
   dea_free(h->ctx, names);
   dea_free(h->ctx, points);
-  h5_close(group);
+  dea_h5_close(group);
 }
 
 static dea_status status_of_name(const char *name)
@@ -115,12 +115,12 @@ static struct entry *list_entries(struct h5 *h, hid_t parent, size_t *count)
 {
   struct entry *entries = NULL;
   *count = 0;
-  size_t models = h5_link_count(h, parent);
+  size_t models = dea_h5_link_count(h, parent);
   for (size_t m = 0; m < models && h->status == DEA_OK; m++) {
     struct entry entry;
-    h5_link_name(h, parent, m, entry.model, sizeof entry.model);
-    hid_t model = h5_group_open(h, parent, entry.model);
-    size_t names = h5_link_count(h, model);
+    dea_h5_link_name(h, parent, m, entry.model, sizeof entry.model);
+    hid_t model = dea_h5_group_open(h, parent, entry.model);
+    size_t names = dea_h5_link_count(h, model);
     struct entry *moved =
         h->status == DEA_OK ? dea_resize(h->ctx, entries, *count + names, sizeof *entries) : NULL;
     if (moved != NULL) {
@@ -129,13 +129,13 @@ static struct entry *list_entries(struct h5 *h, hid_t parent, size_t *count)
       h->status = DEA_E_MEMORY;
     }
     for (size_t i = 0; i < names && h->status == DEA_OK; i++) {
-      h5_link_name(h, model, i, entry.name, sizeof entry.name);
-      hid_t group = h5_group_open(h, model, entry.name);
-      entry.index = h5_get_int(h, group, "index");
-      h5_close(group);
+      dea_h5_link_name(h, model, i, entry.name, sizeof entry.name);
+      hid_t group = dea_h5_group_open(h, model, entry.name);
+      entry.index = dea_h5_get_int(h, group, "index");
+      dea_h5_close(group);
       entries[(*count)++] = entry;
     }
-    h5_close(model);
+    dea_h5_close(model);
   }
   if (h->status == DEA_OK && *count > 1) {
     qsort(entries, *count, sizeof *entries, entry_compare);
@@ -146,9 +146,9 @@ static struct entry *list_entries(struct h5 *h, hid_t parent, size_t *count)
 /* parent/<model>/<name> of an entry. */
 static hid_t open_entry(struct h5 *h, hid_t parent, const struct entry *entry)
 {
-  hid_t model = h5_group_open(h, parent, entry->model);
-  hid_t group = h5_group_open(h, model, entry->name);
-  h5_close(model);
+  hid_t model = dea_h5_group_open(h, parent, entry->model);
+  hid_t group = dea_h5_group_open(h, model, entry->name);
+  dea_h5_close(model);
   return group;
 }
 
@@ -163,10 +163,10 @@ static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
     return;
   }
   char name[DEA_NAME_SIZE];
-  curve->complete = h5_get_int(h, group, "complete") != 0;
-  h5_get_text(h, group, "status", name, sizeof name);
+  curve->complete = dea_h5_get_int(h, group, "complete") != 0;
+  dea_h5_get_text(h, group, "status", name, sizeof name);
   curve->status = status_of_name(name);
-  h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
+  dea_h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
   get_points(h, group, &curve->points, &curve->count);
   curve->room = curve->count;
   get_events(h, group, curve);
@@ -174,29 +174,29 @@ static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
 
 static void get_curves(struct h5 *h, hid_t file, struct dea_result *result)
 {
-  hid_t parent = h5_group_open(h, file, "curves");
+  hid_t parent = dea_h5_group_open(h, file, "curves");
   size_t count;
   struct entry *entries = list_entries(h, parent, &count);
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     hid_t group = open_entry(h, parent, &entries[i]);
     get_curve(h, group, &entries[i], result);
-    h5_close(group);
+    dea_h5_close(group);
   }
   dea_free(h->ctx, entries);
-  h5_close(parent);
+  dea_h5_close(parent);
 }
 
 static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea_result *result)
 {
   size_t n = get_count(h, group);
-  double voltage_V = h5_get_real(h, group, "voltage_V");
+  double voltage_V = dea_h5_get_real(h, group, "voltage_V");
   double *columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof *columns);
   if (columns == NULL) {
     h->status = DEA_E_MEMORY;
     return;
   }
   for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-    h5_get_array(h, group, dea_profile_columns[c].key, H5T_NATIVE_DOUBLE, n, columns + c * n);
+    dea_h5_get_array(h, group, dea_profile_columns[c].key, H5T_NATIVE_DOUBLE, n, columns + c * n);
   }
   if (h->status == DEA_OK) {
     struct dea_profile profile = {n,
@@ -213,46 +213,46 @@ static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea
 
 static void get_profiles(struct h5 *h, hid_t file, struct dea_result *result)
 {
-  hid_t parent = h5_group_open(h, file, "profiles");
+  hid_t parent = dea_h5_group_open(h, file, "profiles");
   size_t count;
   struct entry *entries = list_entries(h, parent, &count);
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     hid_t group = open_entry(h, parent, &entries[i]);
     get_profile(h, group, entries[i].model, result);
-    h5_close(group);
+    dea_h5_close(group);
   }
   dea_free(h->ctx, entries);
-  h5_close(parent);
+  dea_h5_close(parent);
 }
 
 static void get_rest(struct h5 *h, hid_t file, struct dea_run *run)
 {
   struct dea_provenance *p = &run->result->provenance;
-  hid_t design = h5_group_open(h, file, "design");
-  h5_get_text(h, design, "title", run->title, sizeof run->title);
-  h5_get_text(h, design, "file", run->design_file, sizeof run->design_file);
-  h5_get_text(h, design, "sha256", p->input_sha256, sizeof p->input_sha256);
-  run->width_m = h5_get_real(h, design, "report_width_m");
-  run->svg = h5_get_int(h, design, "report_svg") != 0;
-  run->pdf = h5_get_int(h, design, "report_pdf") != 0;
-  run->png = h5_get_int(h, design, "report_png") != 0;
-  p->input = h5_get_long_text(h, design, "text");
-  p->overrides = h5_get_long_text(h, design, "overrides");
-  h5_close(design);
-  hid_t group = h5_group_open(h, file, "provenance");
-  h5_get_text(h, group, "program", p->program, sizeof p->program);
-  h5_get_text(h, group, "compiler", p->compiler, sizeof p->compiler);
-  h5_get_text(h, group, "build", p->build, sizeof p->build);
-  h5_get_text(h, group, "libraries", p->libraries, sizeof p->libraries);
-  h5_get_text(h, group, "started", p->started, sizeof p->started);
-  p->wall_s = h5_get_real(h, group, "wall_s");
-  p->command = h5_get_long_text(h, group, "command");
-  h5_close(group);
+  hid_t design = dea_h5_group_open(h, file, "design");
+  dea_h5_get_text(h, design, "title", run->title, sizeof run->title);
+  dea_h5_get_text(h, design, "file", run->design_file, sizeof run->design_file);
+  dea_h5_get_text(h, design, "sha256", p->input_sha256, sizeof p->input_sha256);
+  run->width_m = dea_h5_get_real(h, design, "report_width_m");
+  run->svg = dea_h5_get_int(h, design, "report_svg") != 0;
+  run->pdf = dea_h5_get_int(h, design, "report_pdf") != 0;
+  run->png = dea_h5_get_int(h, design, "report_png") != 0;
+  p->input = dea_h5_get_long_text(h, design, "text");
+  p->overrides = dea_h5_get_long_text(h, design, "overrides");
+  dea_h5_close(design);
+  hid_t group = dea_h5_group_open(h, file, "provenance");
+  dea_h5_get_text(h, group, "program", p->program, sizeof p->program);
+  dea_h5_get_text(h, group, "compiler", p->compiler, sizeof p->compiler);
+  dea_h5_get_text(h, group, "build", p->build, sizeof p->build);
+  dea_h5_get_text(h, group, "libraries", p->libraries, sizeof p->libraries);
+  dea_h5_get_text(h, group, "started", p->started, sizeof p->started);
+  p->wall_s = dea_h5_get_real(h, group, "wall_s");
+  p->command = dea_h5_get_long_text(h, group, "command");
+  dea_h5_close(group);
 }
 
 static void check_schema(struct h5 *h, hid_t file)
 {
-  long long schema = h5_get_int(h, file, "schema");
+  long long schema = dea_h5_get_int(h, file, "schema");
   if (h->status == DEA_OK && schema != DEA_STORE_SCHEMA) {
     h->status = dea_fail(h->ctx, DEA_E_UNSUPPORTED,
                          "%s has schema %lld of results; this version reads schema %d", h->path,
@@ -263,17 +263,17 @@ static void check_schema(struct h5 *h, hid_t file)
 static dea_status read_file(struct dea_context *ctx, const char *path, struct dea_run *run)
 {
   struct h5 h;
-  h5_begin(&h, ctx, path);
+  dea_h5_begin(&h, ctx, path);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) {
-    h5_fail(&h, "cannot read");
+    dea_h5_fail(&h, "cannot read");
   }
   check_schema(&h, file);
   get_curves(&h, file, run->result);
   get_profiles(&h, file, run->result);
   get_rest(&h, file, run);
-  h5_close(file);
-  h5_end(&h);
+  dea_h5_close(file);
+  dea_h5_end(&h);
   return h.status;
 }
 

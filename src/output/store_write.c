@@ -23,14 +23,14 @@ static void put_column(struct h5 *h, hid_t group, const char *points, size_t str
   }
   const struct dea_column *c = &dea_point_columns[column];
   if (any) {
-    h5_put_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, count, buffer, c->si_unit,
-                 c->meaning);
+    dea_h5_put_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, count, buffer, c->si_unit,
+                     c->meaning);
   }
 }
 
 static void put_points(struct h5 *h, hid_t group, const char *points, size_t stride, size_t count)
 {
-  h5_put_int(h, group, "count", (long long)count);
+  dea_h5_put_int(h, group, "count", (long long)count);
   double *buffer = count > 0 ? dea_alloc(h->ctx, count, sizeof *buffer) : NULL;
   int *whole = count > 0 ? dea_alloc(h->ctx, count, sizeof *whole) : NULL;
   if (count == 0 || buffer == NULL || whole == NULL) {
@@ -45,13 +45,13 @@ static void put_points(struct h5 *h, hid_t group, const char *points, size_t str
   for (size_t i = 0; i < count; i++) {
     whole[i] = ((const struct dea_load_point *)(const void *)(points + i * stride))->stable;
   }
-  h5_put_array(h, group, "stable", H5T_NATIVE_INT, H5T_STD_U8LE, count, whole, "1",
-               "1: stable under voltage control, 0: not");
+  dea_h5_put_array(h, group, "stable", H5T_NATIVE_INT, H5T_STD_U8LE, count, whole, "1",
+                   "1: stable under voltage control, 0: not");
   for (size_t i = 0; i < count; i++) {
     whole[i] = ((const struct dea_load_point *)(const void *)(points + i * stride))->unstable_modes;
   }
-  h5_put_array(h, group, "unstable_modes", H5T_NATIVE_INT, H5T_STD_I32LE, count, whole, "1",
-               "number of negative modes of the tangent");
+  dea_h5_put_array(h, group, "unstable_modes", H5T_NATIVE_INT, H5T_STD_I32LE, count, whole, "1",
+                   "number of negative modes of the tangent");
   dea_free(h->ctx, whole);
   dea_free(h->ctx, buffer);
 }
@@ -60,7 +60,7 @@ enum { KIND_SIZE = 16 };
 
 static void put_events(struct h5 *h, hid_t parent, const struct dea_curve *curve)
 {
-  hid_t group = h5_group_make(h, parent, "events");
+  hid_t group = dea_h5_group_make(h, parent, "events");
   if (curve->event_count > 0) {
     put_points(h, group, (const char *)&curve->events[0].point, sizeof *curve->events,
                curve->event_count);
@@ -71,95 +71,97 @@ static void put_events(struct h5 *h, hid_t parent, const struct dea_curve *curve
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, KIND_SIZE);
     if (names != NULL) {
-      h5_put_array(h, group, "kind", type, type, curve->event_count, names, "1",
-                   "pull_in, snap_back, slack or breakdown");
+      dea_h5_put_array(h, group, "kind", type, type, curve->event_count, names, "1",
+                       "pull_in, snap_back, slack or breakdown");
     } else if (h->status == DEA_OK) {
       h->status = DEA_E_MEMORY;
     }
-    h5_close(type);
+    dea_h5_close(type);
     dea_free(h->ctx, names);
   } else {
-    h5_put_int(h, group, "count", 0);
+    dea_h5_put_int(h, group, "count", 0);
   }
-  h5_close(group);
+  dea_h5_close(group);
 }
 
 /* Opens a group of that name, made if it is not there. */
 static hid_t group_get(struct h5 *h, hid_t parent, const char *name)
 {
-  return h5_has(h, parent, name) ? h5_group_open(h, parent, name) : h5_group_make(h, parent, name);
+  return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
+                                     : dea_h5_group_make(h, parent, name);
 }
 
 static void put_curves(struct h5 *h, hid_t file, const struct dea_result *result)
 {
-  hid_t curves = h5_group_make(h, file, "curves");
+  hid_t curves = dea_h5_group_make(h, file, "curves");
   for (size_t i = 0; i < result->curve_count && h->status == DEA_OK; i++) {
     const struct dea_curve *curve = &result->curves[i];
     hid_t model = group_get(h, curves, curve->model);
-    hid_t kind = h5_group_make(h, model, curve->kind);
-    h5_put_int(h, kind, "index", (long long)i);
-    h5_put_int(h, kind, "complete", curve->complete);
-    h5_put_text(h, kind, "status", dea_status_name(curve->status));
-    h5_put_text(h, kind, "stopped", curve->stopped);
+    hid_t kind = dea_h5_group_make(h, model, curve->kind);
+    dea_h5_put_int(h, kind, "index", (long long)i);
+    dea_h5_put_int(h, kind, "complete", curve->complete);
+    dea_h5_put_text(h, kind, "status", dea_status_name(curve->status));
+    dea_h5_put_text(h, kind, "stopped", curve->stopped);
     put_points(h, kind, (const char *)curve->points, sizeof *curve->points, curve->count);
     put_events(h, kind, curve);
-    h5_close(kind);
-    h5_close(model);
+    dea_h5_close(kind);
+    dea_h5_close(model);
   }
-  h5_close(curves);
+  dea_h5_close(curves);
 }
 
 static void put_profiles(struct h5 *h, hid_t file, const struct dea_result *result)
 {
-  hid_t profiles = h5_group_make(h, file, "profiles");
+  hid_t profiles = dea_h5_group_make(h, file, "profiles");
   for (size_t i = 0; i < result->profile_count && h->status == DEA_OK; i++) {
     const struct dea_profile_record *record = &result->profiles[i];
     hid_t model = group_get(h, profiles, record->model);
     char name[24];
-    snprintf(name, sizeof name, "%04zu", h5_link_count(h, model));
-    hid_t group = h5_group_make(h, model, name);
-    h5_put_int(h, group, "index", (long long)i);
-    h5_put_int(h, group, "count", (long long)record->count);
-    h5_put_real(h, group, "voltage_V", record->voltage_V);
+    snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
+    hid_t group = dea_h5_group_make(h, model, name);
+    dea_h5_put_int(h, group, "index", (long long)i);
+    dea_h5_put_int(h, group, "count", (long long)record->count);
+    dea_h5_put_real(h, group, "voltage_V", record->voltage_V);
     for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
       const struct dea_column *column = &dea_profile_columns[c];
-      h5_put_array(h, group, column->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, record->count,
-                   record->columns + (size_t)c * record->count, column->si_unit, column->meaning);
+      dea_h5_put_array(h, group, column->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, record->count,
+                       record->columns + (size_t)c * record->count, column->si_unit,
+                       column->meaning);
     }
-    h5_close(group);
-    h5_close(model);
+    dea_h5_close(group);
+    dea_h5_close(model);
   }
-  h5_close(profiles);
+  dea_h5_close(profiles);
 }
 
 static void put_design(struct h5 *h, hid_t file, const struct dea_result *result)
 {
   const struct dea_design *design = result->design;
   const struct dea_provenance *p = &result->provenance;
-  hid_t group = h5_group_make(h, file, "design");
-  h5_put_text(h, group, "title", design != NULL ? design->title.text : "");
-  h5_put_text(h, group, "file", design != NULL ? design->file : "");
-  h5_put_text(h, group, "sha256", p->input_sha256);
-  h5_put_real(h, group, "report_width_m", design != NULL ? design->report.width_m.si : NAN);
-  h5_put_int(h, group, "report_svg", design != NULL && design->report.svg);
-  h5_put_int(h, group, "report_pdf", design != NULL && design->report.pdf);
-  h5_put_int(h, group, "report_png", design != NULL && design->report.png);
-  h5_put_long_text(h, group, "text", p->input);
-  h5_put_long_text(h, group, "overrides", p->overrides);
-  h5_close(group);
+  hid_t group = dea_h5_group_make(h, file, "design");
+  dea_h5_put_text(h, group, "title", design != NULL ? design->title.text : "");
+  dea_h5_put_text(h, group, "file", design != NULL ? design->file : "");
+  dea_h5_put_text(h, group, "sha256", p->input_sha256);
+  dea_h5_put_real(h, group, "report_width_m", design != NULL ? design->report.width_m.si : NAN);
+  dea_h5_put_int(h, group, "report_svg", design != NULL && design->report.svg);
+  dea_h5_put_int(h, group, "report_pdf", design != NULL && design->report.pdf);
+  dea_h5_put_int(h, group, "report_png", design != NULL && design->report.png);
+  dea_h5_put_long_text(h, group, "text", p->input);
+  dea_h5_put_long_text(h, group, "overrides", p->overrides);
+  dea_h5_close(group);
 }
 
 static void put_provenance(struct h5 *h, hid_t file, const struct dea_provenance *p)
 {
-  hid_t group = h5_group_make(h, file, "provenance");
-  h5_put_text(h, group, "program", p->program);
-  h5_put_text(h, group, "compiler", p->compiler);
-  h5_put_text(h, group, "build", p->build);
-  h5_put_text(h, group, "libraries", p->libraries);
-  h5_put_text(h, group, "started", p->started);
-  h5_put_real(h, group, "wall_s", p->wall_s);
-  h5_put_long_text(h, group, "command", p->command);
-  h5_close(group);
+  hid_t group = dea_h5_group_make(h, file, "provenance");
+  dea_h5_put_text(h, group, "program", p->program);
+  dea_h5_put_text(h, group, "compiler", p->compiler);
+  dea_h5_put_text(h, group, "build", p->build);
+  dea_h5_put_text(h, group, "libraries", p->libraries);
+  dea_h5_put_text(h, group, "started", p->started);
+  dea_h5_put_real(h, group, "wall_s", p->wall_s);
+  dea_h5_put_long_text(h, group, "command", p->command);
+  dea_h5_close(group);
 }
 
 /* The whole file as bytes; owned by the caller. */
@@ -171,14 +173,14 @@ static char *file_image(struct h5 *h, hid_t file, size_t *length)
     size = H5Fget_file_image(file, NULL, 0);
   }
   if (size < 0) {
-    h5_fail(h, "cannot write");
+    dea_h5_fail(h, "cannot write");
     return NULL;
   }
   char *bytes = dea_alloc(h->ctx, (size_t)size, 1);
   if (bytes == NULL) {
     h->status = DEA_E_MEMORY;
   } else if (H5Fget_file_image(file, bytes, (size_t)size) != size) {
-    h5_fail(h, "cannot write");
+    dea_h5_fail(h, "cannot write");
   }
   *length = (size_t)size;
   return bytes;
@@ -188,24 +190,24 @@ dea_status dea_store_write(struct dea_context *ctx, const struct dea_result *res
                            const char *path)
 {
   struct h5 h;
-  h5_begin(&h, ctx, path);
+  dea_h5_begin(&h, ctx, path);
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, 1 << 18, false);
   hid_t file = H5Fcreate("results.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access);
   if (file < 0) {
-    h5_fail(&h, "cannot write");
+    dea_h5_fail(&h, "cannot write");
   }
-  h5_put_text(&h, file, "format", "libdea results");
-  h5_put_int(&h, file, "schema", DEA_STORE_SCHEMA);
+  dea_h5_put_text(&h, file, "format", "libdea results");
+  dea_h5_put_int(&h, file, "schema", DEA_STORE_SCHEMA);
   put_curves(&h, file, result);
   put_profiles(&h, file, result);
   put_design(&h, file, result);
   put_provenance(&h, file, &result->provenance);
   size_t length;
   char *bytes = file_image(&h, file, &length);
-  h5_close(file);
-  h5_close(access);
-  h5_end(&h);
+  dea_h5_close(file);
+  dea_h5_close(access);
+  dea_h5_end(&h);
   if (h.status == DEA_OK) {
     h.status = dea_file_write(ctx, path, bytes, length);
   }

@@ -1,0 +1,28 @@
+/* A comparison as JSON and as figures. */
+#ifndef DEA_OUTPUT_COMPARE_OUTPUT_H
+#define DEA_OUTPUT_COMPARE_OUTPUT_H
+
+#include "output/json.h"
+#include "output/plot.h"
+#include "result/compare.h"
+
+/* One comparison with the names of its sides. */
+struct dea_compared {
+  const struct dea_comparison *comparison;   // lent
+  char a[DEA_LABEL_SIZE], b[DEA_LABEL_SIZE]; // names for people: "run-1 lumped"
+};
+
+/* Object {a, b, quantities: [{quantity, unit, points, rms, largest, largest_at_V, bias, range,
+ * relative_rms, relative_largest, within}]}; `within` only with a tolerance (NAN: none). NULL when
+ * memory is short. */
+json_t *dea_compared_json(const struct dea_compared *compared, double tolerance);
+
+/* For each quantity compare_KEY.gp, .dat and pictures in directory (made if need be): both curves,
+ * and below their difference, with error bars where b has uncertainties. suffix: added to the
+ * names,
+ * "" when there is only one comparison. */
+dea_status dea_compared_draw(struct dea_context *ctx, const struct dea_compared *compared,
+                             const char *suffix, const struct dea_plot_format *format,
+                             const char *directory);
+
+#endif

@@ -1,0 +1,41 @@
+/* Misfit of two curves, quantity by quantity. */
+#ifndef DEA_RESULT_COMPARE_H
+#define DEA_RESULT_COMPARE_H
+
+#include "result/columns.h"
+
+/* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these voltages
+ * (the largest |b| when all are equal); relative values are over it. Arrays [count], owned. */
+struct dea_misfit {
+  int column; // of dea_point_columns
+  size_t count;
+  double *voltage_V, *a, *b;
+  double *b_std; // standard uncertainty of b, NAN where unknown
+  double rms, largest, largest_at_V, bias, range;
+  double relative_rms, relative_largest;
+};
+
+struct dea_comparison {
+  struct dea_misfit misfits[DEA_LOAD_POINT_COLUMNS];
+  size_t misfit_count;
+  bool
+      part_only; // the interpolated curve turns back in voltage: only its part before that was used
+};
+
+/* Compares curve a with curve b at common voltages. Equal lists of voltages are compared point by
+ * point (loops too). Otherwise one curve is interpolated by a piecewise cubic that adds no extremes
+ * (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984), nothing is extrapolated: a at the
+ * voltages of b if b was measured, else the one with more points at those of the other.
+ * b_std: [b->count] uncertainties of a measured b, else NULL. column: only that quantity, -1 for
+ * all. DEA_E_ARGUMENT when there is nothing to compare. out: owned by the caller, NULL on failure.
+ */
+dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a,
+                              const struct dea_curve *b, const struct dea_load_point *b_std,
+                              int column, struct dea_comparison **out);
+void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comparison);
+
+/* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
+ * [x[0], x[count-1]]. */
+double dea_interpolate(const double *x, const double *y, size_t count, double at);
+
+#endif

@@ -1,0 +1,66 @@
+/* Runs a piece of work again and again; in the n-th run the n-th allocation fails. */
+#ifndef DEA_TESTS_FAILING_ALLOCATOR_H
+#define DEA_TESTS_FAILING_ALLOCATOR_H
+
+#include "base/context.h"
+#include "testing.h"
+
+#include <stdlib.h>
+
+struct failing_count {
+  long left;  // allocations until the one that fails; negative: none fails
+  long alive; // allocated and not released
+  bool failed;
+};
+
+static inline void *failing_resize(void *user, void *pointer, size_t size)
+{
+  struct failing_count *count = user;
+  if (count->left == 0) {
+    count->failed = true;
+    return NULL;
+  }
+  count->left -= count->left > 0;
+  void *moved = realloc(pointer, size);
+  count->alive += moved != NULL && pointer == NULL;
+  return moved;
+}
+
+static inline void failing_release(void *user, void *pointer)
+{
+  struct failing_count *count = user;
+  count->alive -= pointer != NULL;
+  free(pointer);
+}
+
+/* To be called by the work with its status: good, or out of memory with a message. */
+static inline void failing_check(const struct dea_context *ctx, dea_status status)
+{
+  if (status != DEA_OK) {
+    assert_int_equal(status, DEA_E_MEMORY);
+    assert_true(dea_context_message(ctx)[0] != '\0');
+  }
+}
+
+/* Returns the number of allocations of the work; checks in every run that nothing is left over. */
+static inline long failing_each(void (*work)(struct dea_context *ctx))
+{
+  for (long n = 0;; n++) {
+    struct failing_count count = {.left = -1};
+    struct dea_allocator allocator = {failing_resize, failing_release, &count};
+    struct dea_context *ctx;
+    assert_int_equal(dea_context_create(&allocator, &ctx), DEA_OK);
+    count.left = n;
+    work(ctx);
+    count.left = -1;
+    dea_context_destroy(ctx);
+    if (count.alive != 0) {
+      fail_msg("%ld allocations left when number %ld failed", count.alive, n);
+    }
+    if (!count.failed) {
+      return n;
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,322 @@
+/* result: growth, names, provenance, failing allocations, and the comparison of curves. */
+#include "base/version.h"
+#include "failing_allocator.h"
+#include "fake_result.h"
+#include "result/compare.h"
+#include "testing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dea_context *context(void)
+{
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  return ctx;
+}
+
+static void test_empty_point_is_nan_everywhere(void **state)
+{
+  (void)state;
+  struct dea_load_point p = dea_load_point_empty();
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    assert_true(isnan(dea_point_get(&p, c)));
+  }
+  assert_true(p.stable);
+  assert_int_equal(p.unstable_modes, 0);
+}
+
+static void test_columns_reach_their_members(void **state)
+{
+  (void)state;
+  struct dea_load_point p = dea_load_point_empty();
+  dea_point_set(&p, dea_point_column_find("force_N"), 0.25);
+  assert_close(p.force_N, 0.25, 0, 0);
+  assert_true(isnan(p.energy_J));
+  assert_int_equal(dea_point_column_find("force"), -1);
+  assert_int_equal(dea_point_column_find("voltage_V"), 0);
+}
+
+static void test_curves_grow_and_are_found(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_curve *curve;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_OK);
+  for (int i = 0; i < 1000; i++) {
+    struct dea_load_point p = dea_load_point_empty();
+    p.voltage_V = i;
+    assert_int_equal(dea_curve_add_point(ctx, curve, &p), DEA_OK);
+  }
+  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "path", &curve), DEA_OK);
+  const struct dea_curve *found = dea_result_find(result, "lumped", "sweep");
+  assert_int_equal(found->count, 1000);
+  assert_close(found->points[999].voltage_V, 999.0, 0, 0);
+  assert_null(dea_result_find(result, "axisymmetric", "sweep"));
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_names_are_checked(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_curve *curve;
+  char name[DEA_NAME_SIZE + 1];
+  memset(name, 'x', DEA_NAME_SIZE);
+  name[DEA_NAME_SIZE] = '\0';
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  assert_int_equal(dea_result_add_curve(ctx, result, name, "sweep", &curve), DEA_E_ARGUMENT);
+  assert_int_equal(dea_result_add_curve(ctx, result, "a/b", "sweep", &curve), DEA_E_ARGUMENT);
+  assert_int_equal(dea_result_add_curve(ctx, result, "", "sweep", &curve), DEA_E_ARGUMENT);
+  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_OK);
+  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_E_ARGUMENT);
+  assert_null(curve);
+  assert_int_equal(result->curve_count, 1);
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_profiles_are_copied(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_design design = fake_design();
+  struct dea_result *result = NULL;
+  assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
+  assert_int_equal(result->profile_count, 6);
+  const struct dea_profile_record *last = &result->profiles[5];
+  assert_close(last->voltage_V, 5000.0, 0, 0);
+  assert_close(last->columns[30], 15e-3, 1e-15, 0);           // radius at the frame
+  assert_close(last->columns[4 * 31], 35.0 - 15.0, 1e-15, 0); // radial tension at the centre
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_sha256_of_a_known_text(void **state)
+{
+  (void)state;
+  char hex[65];
+  dea_sha256_hex("abc", 3, hex); // FIPS 180-4, first example
+  assert_string_equal(hex, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+static void test_provenance_says_what_ran(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_provenance p = {.wall_s = 0.0};
+  const struct dea_override o[] = {{"a.b", "1 mm"}, {"c", "2"}};
+  assert_int_equal(dea_provenance_fill(ctx, "abc", 3, o, 2, "dea run x", &p), DEA_OK);
+  assert_string_equal(p.program, "dea " DEA_VERSION);
+  assert_string_equal(p.input, "abc");
+  assert_string_equal(p.overrides, "a.b=1 mm\nc=2\n");
+  assert_string_equal(p.command, "dea run x");
+  assert_int_equal(strlen(p.started), strlen("2026-01-01T00:00:00Z"));
+  assert_int_equal(p.started[10], 'T');
+  assert_non_null(strstr(p.libraries, "libyaml 0."));
+  assert_non_null(strstr(p.libraries, "HDF5 1."));
+  assert_int_equal(strncmp(p.input_sha256, "ba7816bf", 8), 0);
+  // A second time: what was there is freed (the sanitizer sees a leak).
+  assert_int_equal(dea_provenance_fill(ctx, "", 0, NULL, 0, NULL, &p), DEA_OK);
+  assert_null(p.overrides);
+  dea_free(ctx, p.input);
+  dea_context_destroy(ctx);
+}
+
+static void make_result(struct dea_context *ctx)
+{
+  struct dea_design design = fake_design();
+  struct dea_result *result = NULL;
+  dea_status status = fake_result(ctx, &design, 1.0, &result);
+  failing_check(ctx, status);
+  dea_result_destroy(ctx, result);
+}
+
+static void test_every_allocation_may_fail(void **state)
+{
+  (void)state;
+  assert_true(failing_each(make_result) > 20);
+}
+
+// Comparison -------------------------------------------------------------------------------------
+
+/* Curve of a result with stretch = 1 + (v/v0)^2 and z = 1e-6 v at `count` voltages up to v_max. */
+static void parabola(struct dea_context *ctx, struct dea_result *result, const char *model,
+                     size_t count, double v_max, double scale, double shift)
+{
+  struct dea_curve *curve;
+  assert_int_equal(dea_result_add_curve(ctx, result, model, "sweep", &curve), DEA_OK);
+  for (size_t i = 0; i < count; i++) {
+    struct dea_load_point p = dea_load_point_empty();
+    p.voltage_V = v_max * (double)i / (double)(count - 1);
+    p.electrode_stretch = 1.0 + scale * pow(p.voltage_V / 1e4, 2.0) + shift;
+    p.centre_z_m = 1e-6 * p.voltage_V;
+    assert_int_equal(dea_curve_add_point(ctx, curve, &p), DEA_OK);
+  }
+}
+
+static void test_compare_finds_a_known_offset(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_comparison *c;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.01);
+  parabola(ctx, result, "b", 11, 5000.0, 1.0, 0.0);
+  const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
+  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
+  assert_int_equal(c->misfit_count, 2);
+  const struct dea_misfit *m = &c->misfits[0];
+  assert_int_equal(m->column, dea_point_column_find("electrode_stretch"));
+  assert_int_equal(m->count, 11);
+  assert_close(m->bias, 0.01, 1e-12, 0);
+  assert_close(m->rms, 0.01, 1e-12, 0);
+  assert_close(m->largest, 0.01, 1e-12, 0);
+  assert_close(m->range, 0.25, 1e-12, 0);
+  assert_close(m->relative_largest, 0.04, 1e-12, 0);
+  assert_close(c->misfits[1].largest, 0.0, 0, 0); // z is the same
+  dea_comparison_destroy(ctx, c);
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_compare_interpolates_between_voltages(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_comparison *c;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  parabola(ctx, result, "a", 101, 5000.0, 1.0, 0.0);
+  parabola(ctx, result, "b", 8, 7000.0, 1.0, 0.0); // 0, 1, ..., 7 kV: six in common
+  const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
+  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
+  assert_int_equal(c->misfits[0].count, 6);
+  assert_close(c->misfits[0].relative_largest, 0.0, 0, 1e-12);
+  dea_comparison_destroy(ctx, c);
+  // The other way round the same six voltages are used, with the sign turned.
+  assert_int_equal(dea_compare_curves(ctx, b, a, NULL, -1, &c), DEA_OK);
+  assert_int_equal(c->misfits[0].count, 6);
+  dea_comparison_destroy(ctx, c);
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_compare_reports_nothing_in_common(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_comparison *c;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.0);
+  parabola(ctx, result, "b", 11, 5000.0, 1.0, 0.0);
+  for (size_t i = 0; i < 11; i++) {
+    result->curves[1].points[i].voltage_V += 6000.0;
+  }
+  const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
+  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_E_ARGUMENT);
+  assert_null(c);
+  assert_non_null(strstr(dea_context_message(ctx), "nothing to compare"));
+  int force = dea_point_column_find("force_N");
+  assert_int_equal(dea_compare_curves(ctx, a, a, NULL, force, &c), DEA_E_ARGUMENT);
+  assert_string_equal(dea_context_message(ctx), "neither of the two has force_N");
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_compare_up_and_down(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_result *result;
+  struct dea_comparison *c;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.0);
+  parabola(ctx, result, "b", 6, 5000.0, 1.0, 0.0);
+  struct dea_curve *a = &result->curves[0];
+  for (size_t i = 0; i < 10; i++) { // back down, with another stretch there
+    struct dea_load_point p = a->points[9 - i];
+    p.electrode_stretch += 0.1;
+    assert_int_equal(dea_curve_add_point(ctx, a, &p), DEA_OK);
+  }
+  assert_int_equal(dea_compare_curves(ctx, a, &result->curves[1], NULL, -1, &c), DEA_OK);
+  assert_true(c->part_only);
+  assert_close(c->misfits[0].largest, 0.0, 0, 1e-12);
+  dea_comparison_destroy(ctx, c);
+  assert_int_equal(dea_compare_curves(ctx, a, a, NULL, -1, &c), DEA_OK); // point by point
+  assert_false(c->part_only);
+  assert_int_equal(c->misfits[0].count, 21);
+  dea_comparison_destroy(ctx, c);
+  dea_result_destroy(ctx, result);
+  dea_context_destroy(ctx);
+}
+
+static void test_interpolation_adds_no_extremes(void **state)
+{
+  (void)state;
+  const double x[] = {0.0, 1.0, 2.0, 3.0, 4.0}, y[] = {0.0, 0.0, 0.1, 5.0, 5.0};
+  double before = 0.0;
+  for (int i = 0; i <= 400; i++) {
+    double value = dea_interpolate(x, y, 5, 0.01 * i);
+    assert_true(value >= before - 1e-14 && value <= 5.0 + 1e-14);
+    before = value;
+  }
+  assert_close(dea_interpolate(x, y, 5, 2.0), 0.1, 0, 0);
+  assert_true(isnan(dea_interpolate(x, y, 5, 4.01)));
+  assert_true(isnan(dea_interpolate(x, y, 5, -0.01)));
+  assert_close(dea_interpolate(x, y, 1, 0.0), 0.0, 0, 0);
+  const double line[] = {1.0, 3.0, 5.0, 7.0, 9.0};
+  assert_close(dea_interpolate(x, line, 5, 0.3), 1.6, 1e-14, 0);
+  assert_close(dea_interpolate(x, line, 2, 0.3), 1.6, 1e-14, 0);
+}
+
+static void compare_once(struct dea_context *ctx)
+{
+  static const double v[] = {0.0, 1000.0, 2000.0};
+  struct dea_load_point points[3];
+  for (int i = 0; i < 3; i++) {
+    points[i] = dea_load_point_empty();
+    points[i].voltage_V = v[i];
+    points[i].force_N = 0.1 * i;
+  }
+  struct dea_curve a = {.model = "a", .points = points, .count = 3}, b = a;
+  b.count = 2;
+  struct dea_comparison *c;
+  dea_status status = dea_compare_curves(ctx, &a, &b, NULL, -1, &c);
+  failing_check(ctx, status);
+  assert_true((status == DEA_OK) == (c != NULL));
+  dea_comparison_destroy(ctx, c);
+}
+
+static void test_compare_with_failing_allocations(void **state)
+{
+  (void)state;
+  assert_true(failing_each(compare_once) > 6);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_empty_point_is_nan_everywhere),
+      cmocka_unit_test(test_columns_reach_their_members),
+      cmocka_unit_test(test_curves_grow_and_are_found),
+      cmocka_unit_test(test_names_are_checked),
+      cmocka_unit_test(test_profiles_are_copied),
+      cmocka_unit_test(test_sha256_of_a_known_text),
+      cmocka_unit_test(test_provenance_says_what_ran),
+      cmocka_unit_test(test_every_allocation_may_fail),
+      cmocka_unit_test(test_compare_finds_a_known_offset),
+      cmocka_unit_test(test_compare_interpolates_between_voltages),
+      cmocka_unit_test(test_compare_reports_nothing_in_common),
+      cmocka_unit_test(test_compare_up_and_down),
+      cmocka_unit_test(test_interpolation_adds_no_extremes),
+      cmocka_unit_test(test_compare_with_failing_allocations),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
