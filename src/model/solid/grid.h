@@ -1,0 +1,49 @@
+/* Structured meshes of layered plates: mapped blocks of quadrilaterals, extruded through layers. */
+#ifndef DEA_MODEL_SOLID_GRID_H
+#define DEA_MODEL_SOLID_GRID_H
+
+#include "model/solid/hex.h"
+
+#include "base/context.h"
+
+/* A block of a plate: [0, 1]^2 mapped into the plane. */
+struct dea_block {
+  void (*map)(const void *self, double s, double t, double x[2]);
+  const void *self;
+  const double *cuts_s, *cuts_t; // ascending from 0 to 1, [count_s + 1], [count_t + 1]
+  size_t count_s, count_t;       // elements
+  int region;                    // of its elements
+};
+
+/* One layer of a stack, from bottom to top. */
+struct dea_sheet {
+  double thickness_m;
+  size_t count; // elements through it
+  int order_z;
+};
+
+struct dea_grid {
+  int order;
+  size_t node_count, element_count;
+  double *X;           // [node_count][3]
+  int *nodes;          // [element_count][DEA_HEX_NODES_MAX], the first shape.nodes of each used
+  int *region, *sheet; // [element_count]
+};
+
+/* Plate of blocks (joined where their edge nodes coincide) through sheets that start at z =
+ * bottom_m. All sheets have the same order_z. length_m: a typical length of the plate, nodes closer
+ * than 1e-9 of it are one. out: owned by the caller, NULL on failure. */
+dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
+                           size_t block_count, const struct dea_sheet *sheets, size_t sheet_count,
+                           double bottom_m, double length_m, struct dea_grid **out);
+void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
+
+/* Quarter disc (x, y >= 0) of radius b with a concentric circle a < b as element edge: regions 0
+ * inside a and 1 outside. fine: elements along an eighth of the circle a. edge_m: width of the
+ * elements on both sides of the circle a, from where they double up to about square; 0 for no
+ * grading. */
+dea_status dea_grid_quarter_disc(struct dea_context *ctx, int order, int order_z, double a_m,
+                                 double b_m, double thickness_m, size_t fine, double edge_m,
+                                 struct dea_grid **out);
+
+#endif
