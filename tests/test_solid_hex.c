@@ -225,7 +225,8 @@ static void test_patch_and_area(void **state)
     const struct dea_hex_layer soft = film(1.5);
     double volume, largest = 0;
     assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
-    assert_int_equal(dea_grid_quarter_disc(ctx, order, 2, a, b, h, 3, 5e-4, &grid), DEA_OK);
+    const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
+    assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
     double *g = calloc(3 * grid->node_count, sizeof *g);
     assert_non_null(g);
     forces(grid, &soft, D, g, &volume);
@@ -248,18 +249,49 @@ static void test_patch_and_area(void **state)
   }
 }
 
-/* No two nodes in one place: neighbouring blocks share theirs. */
+/* No two nodes in one place: neighbouring blocks share theirs, and fibres theirs with the film.
+ * Every node has an element. The fibres' volume is that of their strips. */
 static void test_blocks_are_joined(void **state)
 {
   (void)state;
   struct dea_grid *grid;
-  assert_int_equal(dea_grid_quarter_disc(ctx, 2, 1, 1e-3, 9e-3, 1e-4, 4, 0, &grid), DEA_OK);
+  const struct dea_quarter quarter = {2, 1, 2e-3, 9e-3, 1e-4, 2e-3, 1e-4, .fine = 3, .across = 2};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   for (size_t i = 0; i < grid->node_count; i++) {
     for (size_t j = 0; j < i; j++) {
       const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
       assert_true(fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) > 1e-6);
     }
   }
+  assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
+  static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
+  const struct dea_hex_layer hard = plastic();
+  char *used = calloc(grid->node_count, 1);
+  double volume = 0;
+  assert_non_null(used);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    double X[DEA_HEX_DOFS_MAX];
+    for (int n = 0; n < shape.nodes; n++) {
+      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+      used[node] = 1;
+      for (int i = 0; i < 3; i++) {
+        X[3 * n + i] = grid->X[3 * node + i];
+      }
+    }
+    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, false, &at), DEA_OK);
+    volume += grid->sheet[e] == DEA_SHEET_FIBRE ? at.volume_m3 : 0;
+  }
+  for (size_t n = 0; n < grid->node_count; n++) {
+    assert_int_equal(used[n], 1);
+  }
+  free(used);
+  // strip between the circles: integral of sqrt(b^2 - y^2) - sqrt(a^2 - y^2) over half the width
+  double strip = 0;
+  for (int i = 0; i < 1000; i++) {
+    double y = 1e-3 * (i + 0.5) / 1000;
+    strip += 1e-6 * (sqrt(81e-6 - y * y) - sqrt(4e-6 - y * y));
+  }
+  assert_close(volume, 2 * 1e-4 * strip, 1e-4, 0);
   dea_grid_destroy(ctx, grid);
 }
 

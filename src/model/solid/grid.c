@@ -104,7 +104,7 @@ static dea_status plane_create(struct dea_context *ctx, int order, const struct 
 
 /* Nodes of all levels through the sheets, and elements between them. */
 static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, size_t sheet_count,
-                    double bottom_m, struct dea_grid *grid)
+                    bool (*present)(int region, int sheet), double bottom_m, struct dea_grid *grid)
 {
   int order_z = sheets[0].order_z, per_quad = (grid->order + 1) * (grid->order + 1);
   double at[DEA_HEX_ORDER_MAX + 1], z = bottom_m;
@@ -121,7 +121,10 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
           X[3 * n + 2] = z + 0.5 * (1 + at[l]) * step;
         }
       }
-      for (size_t e = 0; e < m->quad_count; e++, element++) {
+      for (size_t e = 0; e < m->quad_count; e++) {
+        if (present != NULL && !present(m->region[e], (int)s)) {
+          continue;
+        }
         int *to = grid->nodes + element * DEA_HEX_NODES_MAX;
         const int *quad = m->quads + e * (size_t)per_quad;
         for (int l = 0; l <= order_z; l++) {
@@ -130,15 +133,47 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
           }
         }
         grid->region[element] = m->region[e];
-        grid->sheet[element] = (int)s;
+        grid->sheet[element++] = (int)s;
       }
     }
   }
+  grid->element_count = element;
+}
+
+/* Takes out the nodes that no element has. */
+static dea_status compact(struct dea_context *ctx, int per_element, struct dea_grid *grid)
+{
+  int *number = dea_alloc(ctx, grid->node_count, sizeof *number);
+  if (number == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < per_element; n++) {
+      number[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 1;
+    }
+  }
+  size_t count = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (number[n] != 0) {
+      memmove(grid->X + 3 * count, grid->X + 3 * n, 3 * sizeof(double));
+      number[n] = (int)count++;
+    }
+  }
+  grid->node_count = count;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < per_element; n++) {
+      int *node = &grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+      *node = number[*node];
+    }
+  }
+  dea_free(ctx, number);
+  return DEA_OK;
 }
 
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
                            size_t block_count, const struct dea_sheet *sheets, size_t sheet_count,
-                           double bottom_m, double length_m, struct dea_grid **out)
+                           bool (*present)(int region, int sheet), double bottom_m, double length_m,
+                           struct dea_grid **out)
 {
   struct plane_mesh m = {0};
   size_t through = 0;
@@ -163,8 +198,14 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
     plane_release(&m);
     return DEA_E_MEMORY;
   }
-  extrude(&m, sheets, sheet_count, bottom_m, grid);
+  extrude(&m, sheets, sheet_count, present, bottom_m, grid);
+  int per_element = (order + 1) * (order + 1) * (sheets[0].order_z + 1);
+  status = compact(ctx, per_element, grid);
   plane_release(&m);
+  if (status != DEA_OK) {
+    dea_grid_destroy(ctx, grid);
+    return status;
+  }
   *out = grid;
   return DEA_OK;
 }
@@ -178,107 +219,4 @@ void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
     dea_free(ctx, grid->sheet);
     dea_free(ctx, grid);
   }
-}
-
-/* ---- quarter disc ---- */
-
-static const double quarter = 0.78539816339744831; // pi/4
-
-/* A square in the middle, its far corner pushed out, and rings around it. */
-struct disc_block {
-  int half;            // 0: angles up to pi/4, 1: beyond
-  double core, r0, r1; // core > 0: from the square to the circle r1, else from circle r0 to r1
-};
-
-static const double core_corner = 0.8; // coordinates of the corner over the side: rounder than 1
-
-static void map_core(const void *self, double s, double t, double x[2])
-{
-  const struct disc_block *b = self;
-  double pull = 1 - (1 - core_corner) * s * t;
-  x[0] = b->core * s * pull;
-  x[1] = b->core * t * pull;
-}
-
-static void map_ring(const void *self, double s, double t, double x[2])
-{
-  const struct disc_block *b = self;
-  double angle = quarter * (t + b->half), inner[2];
-  if (b->core > 0) {
-    double along = b->half == 0 ? t : 1 - t, edge[2];
-    map_core(self, b->half == 0 ? 1 : along, b->half == 0 ? along : 1, edge);
-    inner[0] = edge[0];
-    inner[1] = edge[1];
-  } else {
-    inner[0] = b->r0 * cos(angle);
-    inner[1] = b->r0 * sin(angle);
-  }
-  x[0] = (1 - s) * inner[0] + s * b->r1 * cos(angle);
-  x[1] = (1 - s) * inner[1] + s * b->r1 * sin(angle);
-}
-
-enum { CUTS_MAX = 257 };
-
-/* Cuts of [0, 1] for a strip of `length`: elements that start at `first` and double until they are
- * as wide as `widest`, scaled to fit. Returns their number, 0 when there are too many. */
-static size_t graded_cuts(double length, double first, double widest, double *cuts)
-{
-  size_t count = 0;
-  double sum = 0, width = first;
-  cuts[0] = 0;
-  while (sum < length * (1 - 1e-9)) {
-    if (count + 2 > CUTS_MAX) {
-      return 0;
-    }
-    sum += width;
-    cuts[++count] = sum;
-    width = fmin(2 * width, widest);
-  }
-  for (size_t i = 1; i <= count; i++) {
-    cuts[i] /= sum;
-  }
-  return count;
-}
-
-/* The same seen from the other end. */
-static void reverse_cuts(double *cuts, size_t count)
-{
-  double turned[CUTS_MAX];
-  for (size_t i = 0; i <= count; i++) {
-    turned[i] = 1 - cuts[count - i];
-  }
-  memcpy(cuts, turned, (count + 1) * sizeof *cuts);
-}
-
-dea_status dea_grid_quarter_disc(struct dea_context *ctx, int order, int order_z, double a_m,
-                                 double b_m, double thickness_m, size_t fine, double edge_m,
-                                 struct dea_grid **out)
-{
-  double even[CUTS_MAX], ring[CUTS_MAX], rest[CUTS_MAX];
-  double square = quarter * a_m / (double)(fine > 0 ? fine : 1); // width along the circle
-  double first = edge_m > 0 && edge_m < square ? edge_m : square;
-  size_t rings = graded_cuts(0.45 * a_m, first, square, ring);
-  size_t rests = graded_cuts(b_m - a_m, first, 2 * square, rest);
-  if (fine < 1 || fine >= CUTS_MAX || rings == 0 || rests == 0) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh would have more than %d elements in a row",
-                    CUTS_MAX - 1);
-  }
-  reverse_cuts(ring, rings);
-  for (size_t i = 0; i <= fine; i++) {
-    even[i] = (double)i / (double)fine;
-  }
-  const struct disc_block core = {0, 0.55 * a_m, 0, a_m};
-  const struct disc_block inner[2] = {{0, core.core, 0, a_m}, {1, core.core, 0, a_m}};
-  const struct disc_block outer[2] = {{0, 0, a_m, b_m}, {1, 0, a_m, b_m}};
-  const struct dea_block blocks[] = {
-      {map_core, &core, even, even, fine, fine, 0},
-      {map_ring, &inner[0], ring, even, rings, fine, 0},
-      {map_ring, &inner[1], ring, even, rings, fine, 0},
-      {map_ring, &outer[0], rest, even, rests, fine, 1},
-      {map_ring, &outer[1], rest, even, rests, fine, 1},
-  };
-  const struct dea_sheet sheet = {thickness_m, 1, order_z};
-  DEA_TRY(ctx, dea_grid_create(ctx, order, blocks, sizeof blocks / sizeof blocks[0], &sheet, 1,
-                               -0.5 * thickness_m, b_m, out));
-  return DEA_OK;
 }

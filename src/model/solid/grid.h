@@ -31,19 +31,31 @@ struct dea_grid {
 };
 
 /* Plate of blocks (joined where their edge nodes coincide) through sheets that start at z =
- * bottom_m. All sheets have the same order_z. length_m: a typical length of the plate, nodes closer
- * than 1e-9 of it are one. out: owned by the caller, NULL on failure. */
+ * bottom_m. All sheets have the same order_z. present: whether a region has a sheet; NULL: all have
+ * all. length_m: a typical length of the plate, nodes closer than 1e-9 of it are one. out: owned by
+ * the caller, NULL on failure. */
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
                            size_t block_count, const struct dea_sheet *sheets, size_t sheet_count,
-                           double bottom_m, double length_m, struct dea_grid **out);
+                           bool (*present)(int region, int sheet), double bottom_m, double length_m,
+                           struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
-/* Quarter disc (x, y >= 0) of radius b with a concentric circle a < b as element edge: regions 0
- * inside a and 1 outside. fine: elements along an eighth of the circle a. edge_m: width of the
- * elements on both sides of the circle a, from where they double up to about square; 0 for no
- * grading. */
-dea_status dea_grid_quarter_disc(struct dea_context *ctx, int order, int order_z, double a_m,
-                                 double b_m, double thickness_m, size_t fine, double edge_m,
-                                 struct dea_grid **out);
+/* Quarter (x, y >= 0) of a film in a ring, its middle plane at z = 0, with electrodes inside the
+ * circle a and, unless their thickness is 0, half a fibre along each axis from the circle a to the
+ * frame, on top of the film. Lengths in m. */
+struct dea_quarter {
+  int order, order_z;
+  double a, b;           // electrode radius, frame radius
+  double film_thickness; // h
+  double fibre_width, fibre_thickness;
+  size_t fine;   // elements along an eighth of the circle a, beside those of the fibre
+  size_t across; // elements across half a fibre
+  double edge;   // width of the elements on both sides of the circle a, from where they double
+                 // up to about square; 0 for no grading
+};
+enum { DEA_REGION_ELECTRODE, DEA_REGION_FILM, DEA_REGION_FIBRE };
+enum { DEA_SHEET_FILM, DEA_SHEET_FIBRE };
+dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *quarter,
+                            struct dea_grid **out);
 
 #endif
