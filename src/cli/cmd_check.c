@@ -83,6 +83,12 @@ static void print_material(const char *what, const struct dea_material *material
   if (material->permittivity.slope != 0) {
     printf(" %+g (s - 1)", material->permittivity.slope);
   }
+  if (material->breakdown.known) {
+    printf(", E_b %g V/um", 1e-6 * material->breakdown.at_rest_V_per_m);
+    if (material->breakdown.exponent != 0) {
+      printf(" s^%g", material->breakdown.exponent);
+    }
+  }
   if (material->young_modulus_Pa > 0) {
     printf(", E %g MPa", 1e-6 * material->young_modulus_Pa);
   }

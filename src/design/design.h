@@ -23,9 +23,10 @@ struct dea_design {
   const char *file; // as given by the caller; interned in the context
   struct dea_label title;
 
-  struct {                                        // film
-    struct dea_label material, law, permittivity; // catalogue or inline name; set ids, "" = default
-    struct dea_quantity thickness_m;              // unstretched
+  struct {                                         // film
+    struct dea_label material;                     // catalogue or inline name
+    struct dea_label law, permittivity, breakdown; // ids of sets, "" = the first
+    struct dea_quantity thickness_m;               // unstretched
   } film;
   struct dea_quantity pre_stretch; // equibiaxial, >= 1
 
