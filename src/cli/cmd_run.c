@@ -300,7 +300,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_run = {
     .name = "run",
-    .summary = "solve a design: stretch, field, displacement and margins against voltage",
+    .summary = "Solve a design: stretch, field, displacement and margins against voltage",
     .usage = "dea run DESIGN [options]\n"
              "  -m, --model NAME      lumped or axisymmetric, instead of the design's list\n"
              "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
