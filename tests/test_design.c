@@ -132,7 +132,7 @@ static void test_every_default_is_listed(void **state)
       {"compute.models[1]", "axisymmetric", DEA_DEFAULT},
       {"compute.voltage.to", "8 kV", DEA_DEFAULT},
       {"compute.voltage.step", "0.1 kV", DEA_DEFAULT},
-      {"compute.path.max_stretch", "1.5 x pre_stretch", DEA_ABSENT},
+      {"compute.path.max_stretch", "1.5 x pre_stretch, or all voltages", DEA_ABSENT},
       {"compute.coverage_by", "radius", DEA_DEFAULT},
       {"report.figures[2]", "png", DEA_DEFAULT},
       {"report.width", "85 mm", DEA_DEFAULT},

@@ -108,7 +108,10 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   }
   printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
          1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
-  printf("  %-32s  %g\n", "end of the path (total stretch)", design->compute.path_max_stretch.si);
+  printf("  %-32s  %g%s\n", "end of the path (total stretch)", design->compute.path_max_stretch.si,
+         design->compute.path_max_stretch.origin == DEA_DEFAULT
+             ? ", or that of the highest voltage if larger"
+             : "");
   print_material("film", &device->film);
   print_material("electrodes", &device->electrode);
   print_material("fibres", &device->fibre);

@@ -184,21 +184,54 @@ static void print_cell(double value, double factor, int width, int digits)
   }
 }
 
-static const char *event_text(enum dea_event_kind kind)
+static void print_event(const struct dea_event *event)
 {
-  switch (kind) {
+  const struct dea_load_point *p = &event->point;
+  printf("  at %.4g kV, electrode stretch %.5g: ", 1e-3 * p->voltage_V, p->electrode_stretch);
+  switch (event->kind) {
   case DEA_EVENT_PULL_IN:
-    return "pull-in";
+    puts("pull-in");
+    break;
   case DEA_EVENT_SNAP_BACK:
-    return "snap-back";
+    puts("snap-back");
+    break;
   case DEA_EVENT_SLACK:
-    return "film goes slack";
-  default:
-    return "breakdown field reached";
+    puts("the film goes slack");
+    break;
+  case DEA_EVENT_BREAKDOWN:
+    printf("the field reaches the film's breakdown field, %.4g V/um (margin 0)\n",
+           1e-6 * p->true_field_V_per_m);
+    break;
   }
 }
 
-/* A few rows of the sweep and the events of the path. */
+static void print_row(const struct dea_load_point *p)
+{
+  print_cell(p->voltage_V, 1e-3, 9, 3);
+  print_cell(p->electrode_stretch, 1, 10, 5);
+  print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
+  print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+  print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
+  print_cell(p->breakdown_margin, 100, 10, 1);
+  print_cell(p->min_tension_N_per_m, 1, 10, 3);
+  printf("%s%s\n", p->stable ? "" : "  unstable", p->min_tension_N_per_m < 0 ? "  slack" : "");
+}
+
+/* Points from row to row of a table of at most TABLE_ROWS rows: 1, 2 or 5 times a power of ten, so
+ * that round voltages stay round. */
+static size_t row_step(size_t count)
+{
+  static const size_t factors[] = {1, 2, 5};
+  for (size_t power = 1;; power *= 10) {
+    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
+      if ((count - 1 + factors[i] * power - 1) / (factors[i] * power) < TABLE_ROWS) {
+        return factors[i] * power;
+      }
+    }
+  }
+}
+
+/* A few rows of the sweep, the last one among them, and the events of the path. */
 static void print_model(const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
@@ -207,22 +240,15 @@ static void print_model(const struct dea_result *result, const char *model)
          "margin", "tension");
   printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
   size_t count = sweep != NULL ? sweep->count : 0;
-  size_t rows = count < TABLE_ROWS ? count : TABLE_ROWS;
-  for (size_t i = 0; i < rows; i++) {
-    const struct dea_load_point *p = &sweep->points[rows > 1 ? i * (count - 1) / (rows - 1) : 0];
-    print_cell(p->voltage_V, 1e-3, 9, 3);
-    print_cell(p->electrode_stretch, 1, 10, 5);
-    print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-    print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
-    print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
-    print_cell(p->breakdown_margin, 100, 10, 1);
-    print_cell(p->min_tension_N_per_m, 1, 10, 3);
-    puts(p->stable ? "" : "  unstable");
+  size_t step = count > 0 ? row_step(count) : 1;
+  for (size_t i = 0; i + 1 < count; i += step) {
+    print_row(&sweep->points[i]);
+  }
+  if (count > 0) {
+    print_row(&sweep->points[count - 1]);
   }
   for (size_t i = 0; path != NULL && i < path->event_count; i++) {
-    const struct dea_load_point *p = &path->events[i].point;
-    printf("  %s at %.4g kV, electrode stretch %.5g\n", event_text(path->events[i].kind),
-           1e-3 * p->voltage_V, p->electrode_stretch);
+    print_event(&path->events[i]);
   }
 }
 

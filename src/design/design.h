@@ -63,7 +63,7 @@ struct dea_design {
     double *voltages_V; // [voltage_count], owned; in the order to be computed
     size_t voltage_count;
     struct dea_place voltages_place;
-    struct dea_quantity path_max_stretch; // the path study ends here (electrode, total stretch)
+    struct dea_quantity path_max_stretch; // of the electrode, total; DEA_DEFAULT: or beyond
     struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
     struct dea_quantity coverage;         // R itself; absent: from coverage_by
   } compute;

@@ -66,8 +66,8 @@ static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *
   return DEA_OK;
 }
 
-/* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films.
- */
+/* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films,
+ * and what the sweep reaches (study/path.c). */
 static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
 {
   struct dea_quantity *end = &design->compute.path_max_stretch;

@@ -267,7 +267,7 @@ static const struct dea_field path_fields[] = {
      .min = 1,
      .above_min = true,
      .max = 20,
-     .absent_text = "1.5 x pre_stretch",
+     .absent_text = "1.5 x pre_stretch, or all voltages",
      .doc = "total stretch of the electrode, pre-stretch included, at which the path ends",
      .example = "2.2"},
 };
