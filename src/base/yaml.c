@@ -237,6 +237,21 @@ static struct dea_place place_of_byte(const char *name, const char *bytes, size_
   return place;
 }
 
+/* Whether a tab stands at a mark, which counts lines and characters from 0. */
+static bool stands_on_tab(const char *bytes, size_t length, yaml_mark_t mark)
+{
+  size_t at = 0;
+  for (size_t line = 0; line < mark.line && at < length; at++) {
+    line += bytes[at] == '\n';
+  }
+  for (size_t column = 0; column < mark.column && at < length; column++) {
+    do {
+      at++;
+    } while (at < length && (bytes[at] & 0xC0) == 0x80); // the rest of a character of UTF-8
+  }
+  return at < length && bytes[at] == '\t';
+}
+
 static dea_status parser_failed(struct dea_context *ctx, const yaml_parser_t *parser,
                                 const char *name, const char *bytes, size_t length,
                                 const struct dea_place *fixed)
@@ -256,6 +271,9 @@ static dea_status parser_failed(struct dea_context *ctx, const yaml_parser_t *pa
   } else if (strstr(problem, "found undefined alias") != NULL) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
                                  "aliases (*name) are not supported; write the value out"));
+  } else if (stands_on_tab(bytes, length, parser->problem_mark)) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_ERROR, place, "a tab stands here; YAML indents with spaces"));
   } else {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "this is not YAML: %s%s%s", problem,
                                  parser->context != NULL ? " " : "",

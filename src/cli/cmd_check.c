@@ -1,4 +1,4 @@
-#include "cli/cli.h"
+#include "cli/models.h"
 
 #include "base/text.h"
 #include "device/device.h"
@@ -155,8 +155,9 @@ static json_t *values_json(const struct dea_design *design)
 static void print_json(const struct dea_cli *cli, const char *file, const struct dea_design *design,
                        const struct dea_device *device)
 {
-  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good", device != NULL, "findings",
-                           findings_json(cli->ctx));
+  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good",
+                           dea_finding_count(cli->ctx, DEA_ERROR) == 0 && device != NULL,
+                           "findings", findings_json(cli->ctx));
   if (design != NULL) {
     json_object_set_new(json, "values", values_json(design));
   }
@@ -211,7 +212,9 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   dea_status status = dea_design_read(cli->ctx, arguments.file, arguments.overrides,
                                       arguments.override_count, &design);
   if (status == DEA_OK) {
+    dea_status known = cli_models_check(cli, design);
     status = dea_device_build(cli->ctx, design, &device);
+    status = status != DEA_OK ? status : known;
   }
   if (arguments.json) {
     print_json(cli, arguments.file, design, device);

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/yaml.h"
-#include "cli/cli.h"
+#include "cli/models.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -49,6 +49,11 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
     case 'm':
       if (out->model_count == DEA_DESIGN_MODELS_MAX) {
         return cli_usage_error(cli, &cmd_run, "too many models");
+      }
+      for (size_t i = 0; i < out->model_count; i++) {
+        if (strcmp(out->models[i], optarg) == 0) {
+          return cli_usage_error(cli, &cmd_run, "--model %s is given twice", optarg);
+        }
       }
       out->models[out->model_count++] = optarg;
       break;
@@ -99,25 +104,6 @@ static void choose_directory(const struct run_options *options, struct dea_text 
   dea_text_add(out, "%.*s.run", (int)length, name);
 }
 
-static const struct dea_model_type *find_model(struct dea_cli *cli, const char *name,
-                                               struct dea_place place)
-{
-  const struct dea_model_type *type = dea_model_find(name);
-  if (type == NULL) {
-    size_t count;
-    const struct dea_model_type *const *all = dea_model_all(&count);
-    struct dea_text known = {.ctx = cli->ctx};
-    for (size_t i = 0; i < count; i++) {
-      dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
-    }
-    dea_finding_add(cli->ctx, DEA_ERROR, place,
-                    "there is no model '%s' in this version; there is %s", name,
-                    dea_text_get(&known));
-    dea_text_free(&known);
-  }
-  return type;
-}
-
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown ones.
  */
 static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
@@ -130,8 +116,8 @@ static dea_status choose_models(struct dea_cli *cli, const struct run_options *o
   for (size_t i = 0; i < *count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_place option = {.file = "--model"};
-    out[i] = given ? find_model(cli, options->models[i], option)
-                   : find_model(cli, label->text, label->place);
+    out[i] = given ? cli_model_find(cli, options->models[i], option)
+                   : cli_model_find(cli, label->text, label->place);
     bad = bad || out[i] == NULL;
   }
   if (bad) {
