@@ -22,7 +22,8 @@
   "      - {id: flat, at_rest: 2.8, source: test}\n"                                               \
   "      - {id: sloped, at_rest: 2.48, slope: -0.28, source: test}\n"                              \
   "    breakdown:\n"                                                                               \
-  "      - {id: x, at_rest: 80 V/um, exponent: 1.5, source: test}\n"                               \
+  "      [{id: x, at_rest: 80 V/um, exponent: 1.5, source: test},"                                 \
+  "       {id: y, at_rest: 100 V/um, source: test}]\n"                                             \
   "  - name: stiff\n"                                                                              \
   "    kind: plastic\n"                                                                            \
   "    elastic: {young_modulus: 2950 MPa, poisson_ratio: 0.38, source: test}\n"

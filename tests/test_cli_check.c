@@ -25,10 +25,19 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"check @/examples/frdea-4.yaml --set x", 2, "--set wants KEY=VALUE"},
       {"check @/examples/frdea-4.yaml --set pre_stretch=0.9", 3,
        "--set pre_stretch: error: pre_stretch must be at least 1, not '0.9'"},
+      {"check @/examples/frdea-4.yaml --set 'compute.models=[lumped, FEM]'", 3,
+       "--set compute.models: error: there is no model 'FEM' in this version; there are: lumped"},
+      {"check @/examples/frdea-4.yaml --set 'compute.models=[lumped, lumped]'", 3,
+       "the model 'lumped' stands twice in the list"},
+      {"run @/examples/frdea-4.yaml -m lumped -m lumped", 2, "--model lumped is given twice"},
+      {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
+      {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
       {"materials nothing", 3, "there is no material 'nothing'"},
       {"schema --json --markdown", 2, "exclude each other"},
   };
   command_write("text.yaml", "hello\n");
+  command_write("design.yaml", "my own\n");
+  command_write("tab.yaml", "dea: 1\nfilm: # für VHB\n\tthickness: 100 um\n");
   command_write("binary.yaml", "\x7f"
                                "ELF\x02\x01\xff\xfe");
   char text[600];

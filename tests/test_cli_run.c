@@ -97,6 +97,21 @@ static void test_run_folder(void **state)
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --force"), 0);
 }
 
+/* The electrode's stretch triples, far beyond 1.5: events up there are reported all the same. */
+static void test_path_reaches_as_far_as_the_sweep(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("run @/examples/plain-disc.yaml --model lumped --no-figures -o vhb"
+                  " --set film='{material: vhb-4910, thickness: 1 mm}' --set pre_stretch=3"
+                  " --set compute.voltage='{to: 8 kV, step: 0.1 kV}'"),
+      0);
+  assert_contains(command_out, "\n    8.000   3."); // last row
+  assert_contains(command_out, "  slack\n");
+  assert_contains(command_out, ": the film goes slack\n");
+  assert_contains(command_out, "reaches the film's breakdown field, ");
+}
+
 static const char soft_disc[] = "dea: 1\n"
                                 "title: soft\n"
                                 "film: {material: soft, thickness: 100 um}\n"
@@ -211,6 +226,7 @@ int main(void)
       cmocka_unit_test(test_figure_2_json),
       cmocka_unit_test(test_set_overrides_the_design),
       cmocka_unit_test(test_run_folder),
+      cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),

@@ -85,11 +85,19 @@ for command in $(dea completion names commands); do
     grep -oE -- '--[a-z][a-z-]*' | sort -u); do
     offers "$option" dea "$command" "$option"
   done
+  dea --help | grep -qE "^  $command +[A-Z]" || { echo "$command: no capital in --help"; failed=1; }
   dea completion man | grep -qx "\.Ss $command" || { echo "the manual lacks $command"; failed=1; }
   for shell in zsh fish; do
     dea completion $shell | grep -q "$command" || { echo "$shell: $command is missing"; failed=1; }
   done
 done
+expect 0 "the manual" dea completion man
+has out ".It Fl q , Fl -quiet"
+# Output that is lost is a failure; a closed one is not wanted.
+expect 5 "a full disk" sh -c 'dea check "$1" >/dev/full' sh "$source/examples/frdea-4.yaml"
+has err "standard output could not be written"
+expect 5 "a full disk" sh -c 'dea schema >/dev/full'
+expect 0 "no output" sh -c 'dea schema >&-'
 expect 2 "completion for an unknown shell" dea completion tcsh
 expect 2 "completion without a shell" dea completion
 exit $failed

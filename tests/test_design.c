@@ -24,6 +24,8 @@ static int tear_down(void **state)
 
 static void read_good(const char *text, const struct dea_override *overrides, size_t count)
 {
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
   dea_status status = read_and_build(ctx, text, overrides, count, &design, &device);
   if (status != DEA_OK) {
     print_findings(ctx);
@@ -71,6 +73,33 @@ static void test_materials_of_the_file(void **state)
   assert_close(device->fibre.young_modulus_Pa, 2950e6, 1e-14, 0);
 }
 
+static bool has_note(const char *part)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity == DEA_NOTE && strstr(findings[i].text, part) != NULL) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static void test_breakdown_without_a_known_exponent_is_noted(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  assert_false(has_note("pessimistic")); // set x has its exponent
+  const struct dea_override y[] = {{"film.breakdown", "y"}, {"pre_stretch", "1"}};
+  read_good(GOOD_DESIGN, &y[0], 1);
+  assert_true(device->film.breakdown.known && !device->film.breakdown.exponent_known);
+  assert_close(device->film.breakdown.at_rest_V_per_m, 100e6, 1e-14, 0);
+  assert_true(has_note("margins at pre-stretch 1.5 are pessimistic"));
+  dea_finding_clear(ctx);
+  read_good(GOOD_DESIGN, y, 2);
+  assert_false(has_note("pessimistic")); // the film is not pre-stretched
+}
+
 static void test_first_set_is_the_default(void **state)
 {
   (void)state;
@@ -103,7 +132,7 @@ static void test_every_default_is_listed(void **state)
       {"compute.models[1]", "axisymmetric", DEA_DEFAULT},
       {"compute.voltage.to", "8 kV", DEA_DEFAULT},
       {"compute.voltage.step", "0.1 kV", DEA_DEFAULT},
-      {"compute.path.max_stretch", "1.5 x pre_stretch", DEA_ABSENT},
+      {"compute.path.max_stretch", "1.5 x pre_stretch, or all voltages", DEA_ABSENT},
       {"compute.coverage_by", "radius", DEA_DEFAULT},
       {"report.figures[2]", "png", DEA_DEFAULT},
       {"report.width", "85 mm", DEA_DEFAULT},
@@ -149,10 +178,6 @@ static void test_sweeps(void **state)
     read_good(GOOD_DESIGN, &set, 1);
     assert_int_equal(design->compute.voltage_count, sweeps[i].count);
     assert_close(design->compute.voltages_V[sweeps[i].count - 1], sweeps[i].last, 1e-14, 1e-9);
-    dea_device_destroy(ctx, device);
-    dea_design_destroy(ctx, design);
-    design = NULL;
-    device = NULL;
   }
 }
 
@@ -174,10 +199,6 @@ static void test_three_ways_to_place_the_tip(void **state)
     read_good(GOOD_DESIGN, &set, 1);
     assert_close(device->fibre_tip_radius_m, ways[i].tip_m, 1e-12, 0);
     assert_close(device->fibre_length_m, 15e-3 - ways[i].tip_m, 1e-12, 0);
-    dea_device_destroy(ctx, device);
-    dea_design_destroy(ctx, design);
-    design = NULL;
-    device = NULL;
   }
 }
 
@@ -260,6 +281,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       TEST(test_lengths_are_those_of_the_stretched_film),
       TEST(test_materials_of_the_file),
+      TEST(test_breakdown_without_a_known_exponent_is_noted),
       TEST(test_first_set_is_the_default),
       TEST(test_every_default_is_listed),
       TEST(test_default_sweep),

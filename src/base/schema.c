@@ -256,6 +256,20 @@ static dea_status read_field(const struct dea_reader *reader, const struct secti
                       : read_absent(reader, section, field, path);
 }
 
+/* Key of the first section right below that knows a key, or NULL. */
+static const char *section_with(const struct dea_record *record, const char *key)
+{
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_record *below = record->fields[i].record;
+    for (size_t k = 0; below != NULL && k < below->field_count; k++) {
+      if (strcmp(below->fields[k].key, key) == 0) {
+        return record->fields[i].key;
+      }
+    }
+  }
+  return NULL;
+}
+
 static dea_status check_unknown_keys(const struct dea_reader *reader, const struct section *section)
 {
   const struct dea_record *record = section->record;
@@ -278,8 +292,14 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
       continue;
     }
     const char *nearest = dea_nearest_name(node->key, keys, count);
+    const char *below = section_with(record, node->key);
     DEA_TRY(reader->ctx,
-            nearest != NULL
+            below != NULL
+                ? dea_schema_error(reader, node->key_place,
+                                   "unknown key '%.60s' here; it belongs into a section such as "
+                                   "'%s', indented",
+                                   node->key, below)
+            : nearest != NULL
                 ? dea_schema_error(reader, node->key_place,
                                    "unknown key '%.60s'; did you mean '%s'?", node->key, nearest)
                 : dea_schema_error(reader, node->key_place,

@@ -3,6 +3,7 @@
 #include "base/yaml.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <yaml.h>
 
 /* State of the pass. */
@@ -37,6 +38,21 @@ static yaml_mark_t mark_of_byte(const struct dea_yaml_text *text, size_t offset)
   return mark;
 }
 
+/* Whether a tab stands at a mark, which counts lines and characters from 0. */
+static bool stands_on_tab(const struct dea_yaml_text *text, yaml_mark_t mark)
+{
+  size_t at = 0;
+  for (size_t line = 0; line < mark.line && at < text->length; at++) {
+    line += text->bytes[at] == '\n';
+  }
+  for (size_t column = 0; column < mark.column && at < text->length; column++) {
+    do {
+      at++;
+    } while (at < text->length && (text->bytes[at] & 0xC0) == 0x80); // rest of a character of UTF-8
+  }
+  return at < text->length && text->bytes[at] == '\t';
+}
+
 static dea_status parser_failed(const struct check *check, const yaml_parser_t *parser)
 {
   char message[300];
@@ -47,6 +63,14 @@ static dea_status parser_failed(const struct check *check, const yaml_parser_t *
   if (parser->error == YAML_READER_ERROR) {
     snprintf(message, sizeof message, "this is not a text file in UTF-8: %s", problem);
     return refuse(check, mark_of_byte(check->text, parser->problem_offset), message);
+  }
+  if (stands_on_tab(check->text, parser->problem_mark)) {
+    return refuse(check, parser->problem_mark, "a tab stands here; YAML indents with spaces");
+  }
+  if (strstr(problem, "mapping values are not allowed") != NULL) {
+    return refuse(check, parser->problem_mark,
+                  "this is not YAML: no key can stand here; is the line indented like its "
+                  "neighbours?");
   }
   snprintf(message, sizeof message, "this is not YAML: %s%s%s", problem,
            parser->context != NULL ? " " : "", parser->context != NULL ? parser->context : "");

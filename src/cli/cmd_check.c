@@ -1,4 +1,4 @@
-#include "cli/cli.h"
+#include "cli/models.h"
 
 #include "base/text.h"
 #include "device/device.h"
@@ -83,6 +83,12 @@ static void print_material(const char *what, const struct dea_material *material
   if (material->permittivity.slope != 0) {
     printf(" %+g (s - 1)", material->permittivity.slope);
   }
+  if (material->breakdown.known) {
+    printf(", E_b %g V/um", 1e-6 * material->breakdown.at_rest_V_per_m);
+    if (material->breakdown.exponent != 0) {
+      printf(" s^%g", material->breakdown.exponent);
+    }
+  }
   if (material->young_modulus_Pa > 0) {
     printf(", E %g MPa", 1e-6 * material->young_modulus_Pa);
   }
@@ -102,7 +108,10 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   }
   printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
          1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
-  printf("  %-32s  %g\n", "end of the path (total stretch)", design->compute.path_max_stretch.si);
+  printf("  %-32s  %g%s\n", "end of the path (total stretch)", design->compute.path_max_stretch.si,
+         design->compute.path_max_stretch.origin == DEA_DEFAULT
+             ? ", or that of the highest voltage if larger"
+             : "");
   print_material("film", &device->film);
   print_material("electrodes", &device->electrode);
   print_material("fibres", &device->fibre);
@@ -146,8 +155,9 @@ static json_t *values_json(const struct dea_design *design)
 static void print_json(const struct dea_cli *cli, const char *file, const struct dea_design *design,
                        const struct dea_device *device)
 {
-  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good", device != NULL, "findings",
-                           findings_json(cli->ctx));
+  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good",
+                           dea_finding_count(cli->ctx, DEA_ERROR) == 0 && device != NULL,
+                           "findings", findings_json(cli->ctx));
   if (design != NULL) {
     json_object_set_new(json, "values", values_json(design));
   }
@@ -202,7 +212,9 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   dea_status status = dea_design_read(cli->ctx, arguments.file, arguments.overrides,
                                       arguments.override_count, &design);
   if (status == DEA_OK) {
+    dea_status known = cli_models_check(cli, design);
     status = dea_device_build(cli->ctx, design, &device);
+    status = status != DEA_OK ? status : known;
   }
   if (arguments.json) {
     print_json(cli, arguments.file, design, device);

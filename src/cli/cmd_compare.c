@@ -405,7 +405,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_compare = {
     .name = "compare",
-    .summary = "compare two runs, or a run and a table of measurements",
+    .summary = "Compare two runs, or a run and a table of measurements",
     .usage =
         "dea compare A B [--tolerance SHARE] [--quantity KEY]... [--model MODEL]\n"
         "            [-o DIR] [--format LIST] [--width MM] [--json]\n"

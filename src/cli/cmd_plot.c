@@ -113,7 +113,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_plot = {
     .name = "plot",
-    .summary = "draw the figures of a run again",
+    .summary = "Draw the figures of a run again",
     .usage =
         "dea plot RUN [--figure NAME]... [--format LIST] [--width MM] [-o DIR]\n"
         "\n"

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/yaml.h"
-#include "cli/cli.h"
+#include "cli/models.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -49,6 +49,11 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
     case 'm':
       if (out->model_count == DEA_DESIGN_MODELS_MAX) {
         return cli_usage_error(cli, &cmd_run, "too many models");
+      }
+      for (size_t i = 0; i < out->model_count; i++) {
+        if (strcmp(out->models[i], optarg) == 0) {
+          return cli_usage_error(cli, &cmd_run, "--model %s is given twice", optarg);
+        }
       }
       out->models[out->model_count++] = optarg;
       break;
@@ -99,25 +104,6 @@ static void choose_directory(const struct run_options *options, struct dea_text 
   dea_text_add(out, "%.*s.run", (int)length, name);
 }
 
-static const struct dea_model_type *find_model(struct dea_cli *cli, const char *name,
-                                               struct dea_place place)
-{
-  const struct dea_model_type *type = dea_model_find(name);
-  if (type == NULL) {
-    size_t count;
-    const struct dea_model_type *const *all = dea_model_all(&count);
-    struct dea_text known = {.ctx = cli->ctx};
-    for (size_t i = 0; i < count; i++) {
-      dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
-    }
-    dea_finding_add(cli->ctx, DEA_ERROR, place,
-                    "there is no model '%s' in this version; there is %s", name,
-                    dea_text_get(&known));
-    dea_text_free(&known);
-  }
-  return type;
-}
-
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown ones.
  */
 static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
@@ -130,8 +116,8 @@ static dea_status choose_models(struct dea_cli *cli, const struct run_options *o
   for (size_t i = 0; i < *count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_place option = {.file = "--model"};
-    out[i] = given ? find_model(cli, options->models[i], option)
-                   : find_model(cli, label->text, label->place);
+    out[i] = given ? cli_model_find(cli, options->models[i], option)
+                   : cli_model_find(cli, label->text, label->place);
     bad = bad || out[i] == NULL;
   }
   if (bad) {
@@ -184,21 +170,54 @@ static void print_cell(double value, double factor, int width, int digits)
   }
 }
 
-static const char *event_text(enum dea_event_kind kind)
+static void print_event(const struct dea_event *event)
 {
-  switch (kind) {
+  const struct dea_load_point *p = &event->point;
+  printf("  at %.4g kV, electrode stretch %.5g: ", 1e-3 * p->voltage_V, p->electrode_stretch);
+  switch (event->kind) {
   case DEA_EVENT_PULL_IN:
-    return "pull-in";
+    puts("pull-in");
+    break;
   case DEA_EVENT_SNAP_BACK:
-    return "snap-back";
+    puts("snap-back");
+    break;
   case DEA_EVENT_SLACK:
-    return "film goes slack";
-  default:
-    return "breakdown field reached";
+    puts("the film goes slack");
+    break;
+  case DEA_EVENT_BREAKDOWN:
+    printf("the field reaches the film's breakdown field, %.4g V/um (margin 0)\n",
+           1e-6 * p->true_field_V_per_m);
+    break;
   }
 }
 
-/* A few rows of the sweep and the events of the path. */
+static void print_row(const struct dea_load_point *p)
+{
+  print_cell(p->voltage_V, 1e-3, 9, 3);
+  print_cell(p->electrode_stretch, 1, 10, 5);
+  print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
+  print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+  print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
+  print_cell(p->breakdown_margin, 100, 10, 1);
+  print_cell(p->min_tension_N_per_m, 1, 10, 3);
+  printf("%s%s\n", p->stable ? "" : "  unstable", p->min_tension_N_per_m < 0 ? "  slack" : "");
+}
+
+/* Points from row to row of a table of at most TABLE_ROWS rows: 1, 2 or 5 times a power of ten, so
+ * that round voltages stay round. */
+static size_t row_step(size_t count)
+{
+  static const size_t factors[] = {1, 2, 5};
+  for (size_t power = 1;; power *= 10) {
+    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
+      if ((count - 1 + factors[i] * power - 1) / (factors[i] * power) < TABLE_ROWS) {
+        return factors[i] * power;
+      }
+    }
+  }
+}
+
+/* A few rows of the sweep, the last one among them, and the events of the path. */
 static void print_model(const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
@@ -207,22 +226,15 @@ static void print_model(const struct dea_result *result, const char *model)
          "margin", "tension");
   printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
   size_t count = sweep != NULL ? sweep->count : 0;
-  size_t rows = count < TABLE_ROWS ? count : TABLE_ROWS;
-  for (size_t i = 0; i < rows; i++) {
-    const struct dea_load_point *p = &sweep->points[rows > 1 ? i * (count - 1) / (rows - 1) : 0];
-    print_cell(p->voltage_V, 1e-3, 9, 3);
-    print_cell(p->electrode_stretch, 1, 10, 5);
-    print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-    print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
-    print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
-    print_cell(p->breakdown_margin, 100, 10, 1);
-    print_cell(p->min_tension_N_per_m, 1, 10, 3);
-    puts(p->stable ? "" : "  unstable");
+  size_t step = count > 0 ? row_step(count) : 1;
+  for (size_t i = 0; i + 1 < count; i += step) {
+    print_row(&sweep->points[i]);
+  }
+  if (count > 0) {
+    print_row(&sweep->points[count - 1]);
   }
   for (size_t i = 0; path != NULL && i < path->event_count; i++) {
-    const struct dea_load_point *p = &path->events[i].point;
-    printf("  %s at %.4g kV, electrode stretch %.5g\n", event_text(path->events[i].kind),
-           1e-3 * p->voltage_V, p->electrode_stretch);
+    print_event(&path->events[i]);
   }
 }
 
@@ -300,7 +312,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 
 const struct dea_command cmd_run = {
     .name = "run",
-    .summary = "solve a design: stretch, field, displacement and margins against voltage",
+    .summary = "Solve a design: stretch, field, displacement and margins against voltage",
     .usage = "dea run DESIGN [options]\n"
              "  -m, --model NAME      lumped or axisymmetric, instead of the design's list\n"
              "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"

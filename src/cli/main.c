@@ -3,9 +3,11 @@
 #include "base/version.h"
 #include "cli/cli.h"
 
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const struct dea_command *const commands[] = {
@@ -176,8 +178,36 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
   return command->run(cli, argc, argv);
 }
 
+/* Standard files that the caller has closed become /dev/null; else the first result file would get
+ * their number and what is printed would end in it. */
+static void open_standard_files(void)
+{
+  int fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    fd = open("/dev/null", O_RDWR);
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+}
+
+/* Output that could not be written is a failure; a reader of a pipe that has had enough (head)
+ * needs no message. */
+static int finish_output(int code)
+{
+  struct stat file;
+  bool lost = ferror(stdout) != 0; // some earlier flush
+  lost = fflush(stdout) != 0 || lost;
+  if (lost && !(fstat(STDOUT_FILENO, &file) == 0 && S_ISFIFO(file.st_mode))) {
+    fputs("dea: error: standard output could not be written completely; is its disk full?\n",
+          stderr);
+  }
+  return lost && code == 0 ? dea_status_exit_code(DEA_E_IO) : code;
+}
+
 int main(int argc, char **argv)
 {
+  open_standard_files();
   struct dea_cli cli = {.terminal = isatty(STDERR_FILENO) == 1};
   cli.colour = cli.terminal && getenv("NO_COLOR") == NULL;
   if (dea_context_create(NULL, &cli.ctx) != DEA_OK) {
@@ -206,8 +236,5 @@ int main(int argc, char **argv)
   }
   dea_text_free(&line);
   dea_context_destroy(cli.ctx);
-  if (fflush(stdout) != 0 && code == 0) {
-    code = dea_status_exit_code(DEA_E_IO);
-  }
-  return code;
+  return finish_output(code);
 }

@@ -70,7 +70,7 @@ void cli_print_manual(void)
        "Results go to standard output or to a folder, everything else to standard error.\n"
        ".Pp\nEvery command also takes:\n.Bl -tag -width Ds");
   for (size_t i = 0; i < CLI_COMMON_COUNT; i++) {
-    printf(".It Fl %s , \\-%s\n", cli_common_options[i].letter + 1, cli_common_options[i].name + 1);
+    printf(".It Fl %s , Fl %s\n", cli_common_options[i].letter + 1, cli_common_options[i].name + 1);
     print_roff(cli_common_options[i].explanation);
     puts("");
   }

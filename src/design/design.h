@@ -23,9 +23,10 @@ struct dea_design {
   const char *file; // as given by the caller; interned in the context
   struct dea_label title;
 
-  struct {                                        // film
-    struct dea_label material, law, permittivity; // catalogue or inline name; set ids, "" = default
-    struct dea_quantity thickness_m;              // unstretched
+  struct {                                         // film
+    struct dea_label material;                     // catalogue or inline name
+    struct dea_label law, permittivity, breakdown; // ids of sets, "" = the first
+    struct dea_quantity thickness_m;               // unstretched
   } film;
   struct dea_quantity pre_stretch; // equibiaxial, >= 1
 
@@ -62,7 +63,7 @@ struct dea_design {
     double *voltages_V; // [voltage_count], owned; in the order to be computed
     size_t voltage_count;
     struct dea_place voltages_place;
-    struct dea_quantity path_max_stretch; // the path study ends here (electrode, total stretch)
+    struct dea_quantity path_max_stretch; // of the electrode, total; DEA_DEFAULT: or beyond
     struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
     struct dea_quantity coverage;         // R itself; absent: from coverage_by
   } compute;

@@ -66,8 +66,8 @@ static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *
   return DEA_OK;
 }
 
-/* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films.
- */
+/* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films,
+ * and what the sweep reaches (study/path.c). */
 static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
 {
   struct dea_quantity *end = &design->compute.path_max_stretch;
@@ -82,6 +82,21 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
                            "max_stretch %g is the total stretch and must be above the pre-stretch "
                            "%g",
                            end->si, pre_stretch);
+  }
+  return DEA_OK;
+}
+
+static dea_status check_models(struct dea_context *ctx, const struct dea_design *design)
+{
+  for (size_t i = 1; i < design->compute.model_count; i++) {
+    const struct dea_label *model = &design->compute.models[i];
+    for (size_t j = 0; j < i; j++) {
+      if (strcmp(model->text, design->compute.models[j].text) == 0 && model->text[0] != '\0') {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->place,
+                                     "the model '%.60s' stands twice in the list", model->text));
+        break;
+      }
+    }
   }
   return DEA_OK;
 }
@@ -146,6 +161,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *name, const char
     DEA_TRY(ctx, take_materials(&reader, raw));
     DEA_TRY(ctx, take_voltages(ctx, raw));
     DEA_TRY(ctx, take_path(ctx, design));
+    DEA_TRY(ctx, check_models(ctx, design));
     take_figures(raw);
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;

@@ -43,6 +43,15 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_design *d
                             film->name));
   }
   double l_pre = design->pre_stretch.si;
+  if (film->breakdown.known && !film->breakdown.exponent_known && l_pre > 1) {
+    bool chosen = design->film.breakdown.origin != DEA_ABSENT;
+    DEA_TRY(ctx, dea_finding_add(
+                     ctx, DEA_NOTE, chosen ? design->film.breakdown.place : place,
+                     "the breakdown field of '%s', %g V/um, is that of unstretched film; it "
+                     "usually grows with stretch, but by how much is unknown here and taken as "
+                     "nothing, so breakdown margins at pre-stretch %g are pessimistic",
+                     film->name, 1e-6 * film->breakdown.at_rest_V_per_m, l_pre));
+  }
   bool ranged = film->stretch_max > 0;
   if (ranged && (l_pre < film->stretch_min || l_pre > film->stretch_max)) {
     DEA_TRY(ctx,
@@ -57,9 +66,14 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_design *d
 static dea_status build_film(struct dea_context *ctx, const struct dea_design *design,
                              struct dea_device *device)
 {
-  const struct dea_material_choice choice = {design->film.law.text, design->film.permittivity.text,
-                                             design->film.law.place,
-                                             design->film.permittivity.place};
+  const struct dea_material_choice choice = {
+      .law = design->film.law.text,
+      .permittivity = design->film.permittivity.text,
+      .breakdown = design->film.breakdown.text,
+      .law_place = design->film.law.place,
+      .permittivity_place = design->film.permittivity.place,
+      .breakdown_place = design->film.breakdown.place,
+  };
   DEA_TRY(ctx, resolve(ctx, design, &design->film.material, &choice, &device->film));
   return check_film(ctx, design, &device->film);
 }

@@ -263,7 +263,10 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
   int permittivity =
       find_set(ctx, "permittivity", data, choice->permittivity, choice->permittivity_place,
                &data->permittivity[0].id, data->permittivity_count, sizeof data->permittivity[0]);
-  if (law < 0 || permittivity < 0) {
+  int breakdown =
+      find_set(ctx, "breakdown field", data, choice->breakdown, choice->breakdown_place,
+               &data->breakdown[0].id, data->breakdown_count, sizeof data->breakdown[0]);
+  if (law < 0 || permittivity < 0 || breakdown < 0) {
     return dea_context_status(ctx);
   }
   if (data->law_count > 0) {
@@ -274,7 +277,7 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
     out->permittivity = (struct dea_permittivity){set->at_rest.si, set->slope.si};
   }
   if (data->breakdown_count > 0) {
-    const struct dea_breakdown_set *set = &data->breakdown[0];
+    const struct dea_breakdown_set *set = &data->breakdown[breakdown];
     bool known = !isnan(set->exponent.si);
     out->breakdown =
         (struct dea_breakdown){true, set->at_rest_V_per_m.si, known ? set->exponent.si : 0, known};

@@ -98,8 +98,8 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
 
 /* Which sets of a material are wanted; "" or NULL for the first. place: of what named it. */
 struct dea_material_choice {
-  const char *law, *permittivity;
-  struct dea_place law_place, permittivity_place;
+  const char *law, *permittivity, *breakdown;
+  struct dea_place law_place, permittivity_place, breakdown_place;
 };
 
 /* The material as the models use it. A set that does not exist gives DEA_E_DESIGN after a finding

@@ -7,8 +7,9 @@
 enum { ROWS_MAX = DEA_PATH_UNKNOWNS_MAX + 1, NEWTON_MAX = 12, LOCATE_MAX = 60, STEPS_MAX = 100000 };
 
 static const double step_first = 0.01, step_largest = 0.05, step_smallest = 1e-9;
-static const double newton_small = 1e-11; // of a correction whose unknowns are of order one
-static const double turn_cosine = 0.98;   // between tangents of neighbouring points
+static const double traced_largest = 0.02; // a drawn path looks smooth
+static const double newton_small = 1e-11;  // of a correction whose unknowns are of order one
+static const double turn_cosine = 0.98;    // between tangents of neighbouring points
 
 struct dea_path {
   struct dea_context *ctx;
@@ -468,6 +469,7 @@ dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
     if (dea_interrupted(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted after %zu points of the path", i);
     }
+    ds = fmin(ds, traced_largest);
     if (step_adaptively(path, &from, &ds, &to, &taken) != DEA_OK ||
         state_point(path, &to, &trace.now) != DEA_OK || to.voltage_V <= 0) {
       break; // the law's domain or the path's own end

@@ -55,6 +55,9 @@ dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *pane
                                  double shift, bool whole_path);
 /* At most about `most` tics on the left axis, all with the same number of decimals. */
 void dea_figure_even_tics(struct dea_panel *panel, int most);
+/* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
+ * called when all series are there. */
+void dea_figure_place_key(struct dea_panel *panel);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
 

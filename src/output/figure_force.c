@@ -17,8 +17,10 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Out-of-plane force {/:Italic F} (mN)");
   dea_figure_voltage_axis(panel);
-  return dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor, 0.0,
-                               false);
+  DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor,
+                                     0.0, false));
+  dea_figure_place_key(panel);
+  return DEA_OK;
 }
 
 const struct dea_figure dea_figure_force = {

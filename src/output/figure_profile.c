@@ -38,6 +38,25 @@ static dea_status add_record(struct dea_context *ctx, struct dea_plot *plot,
   return DEA_OK;
 }
 
+/* Key entries of the two directions; of their series only a point shows, on a curve that is there.
+ */
+static dea_status add_directions(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_profile_record *record)
+{
+  static const char *const titles[2] = {"radial", "hoop"};
+  for (int d = 0; d < 2; d++) {
+    struct dea_series *entry;
+    DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
+    entry->style = d == 0 ? DEA_LINE : DEA_DASHED;
+    entry->colour = DEA_GREY;
+    snprintf(entry->title, sizeof entry->title, "%s", titles[d]);
+    entry->values[0] = 0.0;
+    entry->values[1] =
+        dea_profile_columns[4 + d].factor * record->columns[(size_t)(4 + d) * record->count];
+  }
+  return DEA_OK;
+}
+
 static void set_labels(struct dea_plot *plot, const struct dea_profile_record *last)
 {
   plot->panel_count = 2;
@@ -47,8 +66,9 @@ static void set_labels(struct dea_plot *plot, const struct dea_profile_record *l
              "Radius in the stretched flat film {/:Italic R} (mm)");
     panel->x_min = 0.0;
     panel->x_max = last->count > 0 ? 1e3 * last->columns[last->count - 1] : panel->x_max;
-    panel->key = "above horizontal maxrows 1 samplen 1 width -1";
   }
+  plot->panels[0].key = "above horizontal maxrows 1 samplen 1 width key_width";
+  plot->panels[1].key = "inside vertical top right maxrows auto samplen 2.2 width 0";
   snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Total stretch {/:Italic \316\273}");
   snprintf(plot->panels[1].y_label, DEA_LABEL_SIZE, "Tension {/:Italic T} (N/m)");
 }
@@ -73,13 +93,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   if (shown > 0) {
     set_labels(plot, &records[0]);
-    struct dea_series *hoop; // only for the key
-    DEA_TRY(ctx, dea_panel_add(ctx, &plot->panels[0], 1, &hoop));
-    hoop->style = DEA_DASHED;
-    hoop->colour = DEA_GREY;
-    snprintf(hoop->title, sizeof hoop->title, "hoop");
-    hoop->values[0] = 0.0;
-    hoop->values[1] = records[0].columns[2 * records[0].count];
+    DEA_TRY(ctx, add_directions(ctx, &plot->panels[1], &records[0]));
     dea_figure_even_tics(&plot->panels[0], 7);
     dea_figure_even_tics(&plot->panels[1], 7);
   }

@@ -19,6 +19,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   snprintf(panel->y_label, sizeof panel->y_label, "Electrode stretch {/:Italic \316\273}_a");
   dea_figure_voltage_axis(panel);
   dea_figure_even_tics(panel, 7);
+  dea_figure_place_key(panel);
   return DEA_OK;
 }
 

@@ -20,7 +20,7 @@ dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char
   (*out)->second_height = 1.0;
   for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
     struct dea_panel *panel = &(*out)->panels[i];
-    panel->x_min = panel->x_max = panel->y_min = panel->y_max = NAN;
+    panel->x_min = panel->x_max = panel->y_min = panel->y_max = panel->y2_max = NAN;
     panel->key = "top left";
     panel->y2_colour = DEA_BLACK;
   }
@@ -281,6 +281,23 @@ struct layout {
       top_mm[DEA_PLOT_PANELS_MAX];
 };
 
+/* Characters of the longest tic label of a panel's left axis, as "%h" writes round numbers. */
+static int tic_length(const struct dea_panel *panel)
+{
+  double largest = 0.0, smallest = 0.0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    for (size_t i = 0; i < series->count && !series->right; i++) {
+      double y = series->values[series->count + i];
+      largest = isfinite(y) ? fmax(largest, fabs(y)) : largest;
+      smallest = isfinite(y) ? fmin(smallest, y) : smallest;
+    }
+  }
+  double power = largest > 0.0 ? floor(log10(1.2 * largest)) : 0.0; // the last tic lies above
+  int digits = (int)(power >= 0.0 ? power + 1.0 : 3.0 - power);     // 0.05 in steps of 0.005
+  return digits + (smallest < 0.0);
+}
+
 static struct layout lay_out(const struct dea_plot *plot, double width_m)
 {
   bool right_axis = false;
@@ -288,6 +305,9 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
     right_axis = right_axis || plot->panels[p].y2_label[0] != '\0';
   }
   struct layout l = {.width_mm = 1e3 * width_m, .left_mm = 14.0};
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    l.left_mm = fmax(l.left_mm, 14.0 + 1.6 * (fmin(tic_length(&plot->panels[p]), 9.0) - 4.0));
+  }
   double panel = l.width_mm > 120.0 ? 0.50 * l.width_mm : 0.60 * l.width_mm;
   l.right_mm = l.width_mm - (right_axis ? 13.5 : 3.5);
   l.bottom_mm[0] = 10.0;
@@ -329,19 +349,20 @@ static void add_terminals(struct dea_text *gp)
           "  if (format eq \"svg\") {\n"
           "    px = 96 / 25.4 # of an SVG, per mm\n"
           "    x_shift = 0.6; y_shift = 1.0\n"
+          "    key_width = -2 # this terminal takes words for wider than they are\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt * 96 / 72.0)\n"
           "    set terminal svg size width_mm * px, height_mm * px enhanced \\\n"
           "      font sprintf(\"Arial,%%g\", font_pt * 96 / 72.0) linewidth 1\n"
           "  }\n"
           "  if (format eq \"pdf\") {\n"
-          "    x_shift = 0.2; y_shift = 0.3\n"
+          "    x_shift = 0.2; y_shift = 0.3; key_width = 0\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
           "    set terminal pdfcairo size width_mm / 10.0 cm, height_mm / 10.0 cm enhanced \\\n"
           "      font sprintf(\"Arial,%%g\", font_pt) fontscale 0.75 linewidth 1.5\n"
           "  }\n"
           "  if (format eq \"png\") {\n"
           "    px = 300 / 25.4 # 300 dots an inch\n"
-          "    x_shift = 0.2; y_shift = 0.3\n"
+          "    x_shift = 0.2; y_shift = 0.3; key_width = 0\n"
           "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
           "    set terminal pngcairo size width_mm * px, height_mm * px enhanced \\\n"
           "      font sprintf(\"Arial,%%g\", font_pt) fontscale 300 / 96.0 linewidth 3.1 "
@@ -370,6 +391,7 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
   add_label(gp, "  set ylabel", panel->y_label);
   dea_text_add(gp, " offset y_shift,0\n");
   if (panel->y2_label[0] != '\0') {
+    add_range(gp, "y2", NAN, panel->y2_max);
     add_label(gp, "  set y2label", panel->y2_label);
     dea_text_add(gp, " offset -y_shift,0 textcolor rgb \"%s\"\n  set y2tics textcolor rgb \"%s\"\n",
                  colours[panel->y2_colour], colours[panel->y2_colour]);

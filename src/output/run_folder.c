@@ -25,14 +25,18 @@ static dea_status exists(struct dea_context *ctx, const char *directory, const c
 
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force)
 {
-  bool has_store = false, has_summary = false;
-  DEA_TRY(ctx, exists(ctx, directory, "results.h5", &has_store));
-  DEA_TRY(ctx, exists(ctx, directory, "summary.json", &has_summary));
-  if ((has_store || has_summary) && !force) {
-    return dea_fail(ctx, DEA_E_IO,
-                    "%s holds results already; choose another folder with -o or replace them with "
-                    "--force",
-                    directory);
+  // Also a user's own file of such a name would be lost.
+  static const char *const names[] = {"results.h5", "summary.json", "design.yaml",
+                                      DEA_FIGURE_FOLDER};
+  for (size_t i = 0; i < sizeof names / sizeof names[0] && !force; i++) {
+    bool there;
+    DEA_TRY(ctx, exists(ctx, directory, names[i], &there));
+    if (there) {
+      return dea_fail(ctx, DEA_E_IO,
+                      "%s/%s is there already; choose another folder with -o, or replace what is "
+                      "there with --force",
+                      directory, names[i]);
+    }
   }
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   if (access(directory, W_OK) != 0) {

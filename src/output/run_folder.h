@@ -9,8 +9,8 @@ struct dea_run_folder_options {
   bool no_figures; // neither scripts nor pictures
 };
 
-/* To be asked before a long run: DEA_E_IO when the folder holds results and force is not set, or
- * when it cannot be made. Makes the folder. */
+/* To be asked before a long run: DEA_E_IO when the folder holds results, or other files of
+ * their names, and force is not set, or when it cannot be made. Makes the folder. */
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force);
 
 /* Writes everything of a result, each file as a whole; with force the files of the run that was

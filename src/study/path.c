@@ -40,13 +40,40 @@ static void fill_distances(struct dea_curve *curve)
   }
 }
 
+/* Total stretch at which the path ends: the design's, or else by default far enough to hold the
+ * sweep too, so that no point of it lies beyond the path's figure and events. */
+static dea_status choose_end(struct dea_context *ctx, const struct dea_model_type *type,
+                             const struct dea_result *result, double *out)
+{
+  const struct dea_design *design = result->design;
+  struct dea_load_point point;
+  struct dea_model *model;
+  double highest_V = 0;
+  *out = design->compute.path_max_stretch.si;
+  if (design->compute.path_max_stretch.origin != DEA_DEFAULT) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < design->compute.voltage_count; i++) {
+    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
+  }
+  DEA_TRY(ctx, type->create(ctx, result->device, &model));
+  dea_status status = type->solve(ctx, model, highest_V, &point);
+  type->destroy(ctx, model);
+  if (status == DEA_OK) {
+    *out = fmax(*out, design->pre_stretch.si * point.electrode_stretch);
+  }
+  return status == DEA_E_MEMORY ? status : DEA_OK; // without equilibrium: the sweep will say so
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
   struct target target = {.ctx = ctx};
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
+  double end;
+  DEA_TRY(ctx, choose_end(ctx, type, result, &end));
   const struct dea_path_options options = {
-      .max_stretch = result->design->compute.path_max_stretch.si,
+      .max_stretch = end,
       .max_voltage_V = INFINITY,
       .max_points = POINTS_MAX,
   };

@@ -1,0 +1,14 @@
+/* Names of models in a design or on the command line. */
+#ifndef DEA_CLI_MODELS_H
+#define DEA_CLI_MODELS_H
+
+#include "cli/cli.h"
+#include "model/model.h"
+
+/* Model of that name, or NULL after a finding at `place` that names those that there are. */
+const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *name,
+                                            struct dea_place place);
+/* DEA_E_DESIGN after a finding for each model of the design that this version lacks. */
+dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design);
+
+#endif

@@ -1,0 +1,95 @@
+/* Where the key of a panel stands: in a corner that no curve crosses, or else above all curves. */
+#include "output/figure.h"
+
+#include <math.h>
+
+/* Share of the panel that the key takes, a little more than it needs at 85 mm. */
+static const double key_width = 0.48, key_width_two_axes = 0.6, key_line_height = 0.075;
+enum { PIECES = 8 }; // of a line between two points
+
+struct range {
+  double low, high;
+};
+
+static void widen(struct range *range, double value)
+{
+  if (isfinite(value)) {
+    range->low = fmin(range->low, value);
+    range->high = fmax(range->high, value);
+  }
+}
+
+static double share(const struct range *range, double value)
+{
+  return range->high > range->low ? (value - range->low) / (range->high - range->low) : 0.5;
+}
+
+/* Box of the key in shares of the panel. */
+struct box {
+  double width, height;
+  bool left, top;
+};
+
+/* Whether the line through the points of a series comes into the box. */
+static bool crosses(const struct dea_series *series, const struct range *x, const struct range *y,
+                    const struct box *box)
+{
+  size_t n = series->count;
+  for (size_t i = 0; i + 1 < n; i++) {
+    for (int k = 0; k <= PIECES; k++) {
+      double t = (double)k / PIECES;
+      double at_x = share(x, (1 - t) * series->values[i] + t * series->values[i + 1]);
+      double at_y = share(y, (1 - t) * series->values[n + i] + t * series->values[n + i + 1]);
+      bool beside = box->left ? at_x < box->width : at_x > 1 - box->width;
+      bool level = box->top ? at_y > 1 - box->height : at_y < box->height;
+      if (beside && level) { // never for what is not a number
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void dea_figure_place_key(struct dea_panel *panel)
+{
+  static const struct {
+    const char *name;
+    bool left, top;
+  } corners[] = {{"top left", true, true},
+                 {"bottom right", false, false},
+                 {"bottom left", true, false},
+                 {"top right", false, true}};
+  struct range x = {INFINITY, -INFINITY}, y[2] = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+  double lines = panel->says_unstable ? 1.6 : 0.6;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    bool shown = false;
+    for (size_t i = 0; i < series->count; i++) {
+      shown = shown || isfinite(series->values[series->count + i]);
+      widen(&x, series->values[i]);
+      widen(&y[series->right], series->values[series->count + i]);
+    }
+    lines += shown && series->title[0] != '\0';
+  }
+  struct box box = {panel->y2_label[0] != '\0' ? key_width_two_axes : key_width,
+                    fmin(lines * key_line_height, 0.6), true, true};
+  for (size_t c = 0; c < sizeof corners / sizeof corners[0]; c++) {
+    bool crossed = false;
+    box.left = corners[c].left;
+    box.top = corners[c].top;
+    for (size_t s = 0; s < panel->series_count && !crossed; s++) {
+      const struct dea_series *series = &panel->series[s];
+      crossed = series->style != DEA_DOTTED && // a limit may pass under the key
+                crosses(series, &x, &y[series->right], &box);
+    }
+    if (!crossed) {
+      panel->key = corners[c].name;
+      return;
+    }
+  }
+  panel->key = "top left";
+  panel->y_max = y[0].low + (y[0].high - y[0].low) / (1 - box.height);
+  if (y[1].high > y[1].low) {
+    panel->y2_max = y[1].low + (y[1].high - y[1].low) / (1 - box.height);
+  }
+}
