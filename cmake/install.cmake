@@ -5,6 +5,10 @@ install(TARGETS libdea dea
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
+if(TARGET dea_solid_module)
+  install(TARGETS dea_solid_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
+endif()
+
 # The public headers are those that dea.h names; base/version.h is made at configuration.
 set(headers ${PROJECT_SOURCE_DIR}/src/dea.h)
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dea)

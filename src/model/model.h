@@ -57,7 +57,7 @@ struct dea_model_type {
                       struct dea_load_point *out);
   /* The whole equilibrium path by arc-length from 0 V, through limit points; events (may be NULL)
    * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the
-   * path itself ends, with DEA_OK. */
+   * path itself ends, with DEA_OK. NULL when the model has none. */
   dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_path_options *options, dea_point_sink points,
                      dea_event_sink events, void *user);

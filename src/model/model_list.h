@@ -2,4 +2,5 @@
 // X(name of the `const struct dea_model_type`)
 #define DEA_MODEL_LIST(X)                                                                          \
   X(dea_model_lumped)                                                                              \
-  X(dea_model_axisymmetric)
+  X(dea_model_axisymmetric)                                                                        \
+  X(dea_model_3d)

@@ -69,6 +69,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   struct target target = {.ctx = ctx};
+  if (type->path == NULL) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
   double end;
   DEA_TRY(ctx, choose_end(ctx, type, result, &end));

@@ -77,4 +77,16 @@ dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_
                             const double *X, const double *u, const double *multiplier,
                             double voltage_V, bool want_tangent, struct dea_hex_result *out);
 
+/* Membrane state of a film element at its in-plane Gauss points, averaged through the thickness. */
+struct dea_hex_membrane {
+  int count;
+  double area[DEA_HEX_GAUSS_MAX];    // |F_1 x F_2|, current over reference area
+  double tension[DEA_HEX_GAUSS_MAX]; // smaller principal force per current length [N/m]
+};
+/* Arguments as in dea_hex_evaluate; one element through the thickness of the layer, thickness_m. */
+dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape,
+                                 const struct dea_hex_layer *layer, const double *X,
+                                 const double *u, const double *multiplier, double voltage_V,
+                                 struct dea_hex_membrane *out);
+
 #endif

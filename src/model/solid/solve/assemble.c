@@ -1,6 +1,8 @@
 /* Energy, forces and tangent of the whole solid. */
 #include "model/solid/solve/internal.h"
 
+#include "material/plane.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -18,19 +20,29 @@ double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b
   return sum;
 }
 
+/* What an element needs from the whole. */
+struct element_place {
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  const double *multiplier;
+};
+
+static void gather(const struct dea_solid *s, size_t e, const double *u, struct element_place *out)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  for (int n = 0; n < s->shape.nodes; n++) {
+    memcpy(out->X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
+    memcpy(out->u + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
+  }
+  out->multiplier = s->multiplier + e * (size_t)s->shape.pressures;
+}
+
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
                                    bool want_tangent)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  double X[DEA_HEX_DOFS_MAX], local[DEA_HEX_DOFS_MAX];
-  for (int n = 0; n < s->shape.nodes; n++) {
-    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
-    memcpy(local + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
-  }
-  const struct dea_hex_layer *layer = &s->layers[s->layer[e]];
-  const double *multiplier = s->multiplier + e * (size_t)s->shape.pressures;
-  return dea_hex_evaluate(&s->shape, layer, X, local, multiplier, s->active[e] ? voltage_V : 0,
-                          want_tangent, s->element);
+  struct element_place at;
+  gather(s, e, u, &at);
+  return dea_hex_evaluate(&s->shape, &s->layers[s->layer[e]], at.X, at.u, at.multiplier,
+                          s->active[e] ? voltage_V : 0, want_tangent, s->element);
 }
 
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
@@ -109,5 +121,40 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   DEA_TRY(ctx,
           dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  return DEA_OK;
+}
+
+dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
+                              double pre_stretch, struct dea_solid_extremes *out)
+{
+  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    const struct dea_hex_layer *layer = &s->layers[s->layer[e]];
+    struct element_place at;
+    struct dea_hex_membrane membrane;
+    if (layer->law == NULL) {
+      continue;
+    }
+    double voltage_V = s->active[e] ? s->voltage_V : 0;
+    gather(s, e, s->u, &at);
+    dea_status status =
+        dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier, voltage_V, &membrane);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (int p = 0; p < membrane.count; p++) {
+      double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
+      double stretch = pre_stretch * sqrt(membrane.area[p]);
+      out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
+      if (s->active[e]) {
+        out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+        out->breakdown_margin =
+            fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
+      }
+    }
+  }
+  if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
+    out->breakdown_margin = NAN;
+  }
   return DEA_OK;
 }

@@ -53,4 +53,14 @@ double *dea_solid_displacement(struct dea_solid *solid);
 /* Dead loads on the nodes [node_count][3] [N], lent; at first 0. Set them before a solve. */
 double *dea_solid_force(struct dea_solid *solid);
 
+/* Extremes of the film (elements of hyperelastic layers) at the last equilibrium. */
+struct dea_solid_extremes {
+  double true_field_V_per_m;  // largest V over the current thickness
+  double breakdown_margin;    // smallest; NAN when unknown
+  double min_tension_N_per_m; // smallest principal membrane force per current length
+};
+/* material: of the film, for its breakdown field; pre_stretch: of it. */
+dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,
+                              double pre_stretch, struct dea_solid_extremes *out);
+
 #endif

@@ -1,0 +1,81 @@
+/* Model "3d" as the rest of the library sees it: a door to a module that is loaded only when a
+ * model is made, since PETSc and what it brings along take longer to load than most commands to
+ * run. */
+#include "model/model.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct dea_model {
+  const struct dea_model_type *type; // of the module
+  struct dea_model *inner;
+};
+
+/* Opens the module: in the folder that DEA_MODULES names, where it is installed, where it was
+ * built. The handle stays open: MPI cannot be unloaded. */
+static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
+{
+  const char *const folders[] = {getenv("DEA_MODULES"), DEA_INSTALL_MODULE_DIR,
+                                 DEA_BUILD_MODULE_DIR};
+  char path[4096];
+  for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+    if (folders[i] == NULL || folders[i][0] == '\0') {
+      continue;
+    }
+    snprintf(path, sizeof path, "%s/dea_solid_module.so", folders[i]);
+    void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (handle != NULL) {
+      *out = dlsym(handle, "dea_solid_module");
+      if (*out != NULL) {
+        return DEA_OK;
+      }
+    }
+  }
+  return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                  "the 3D engine is not here: it is built when PETSc (libpetsc-real-dev) and BLAS "
+                  "are installed; DEA_MODULES may name the folder of dea_solid_module.so");
+}
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    model->type->destroy(ctx, model->inner);
+    dea_free(ctx, model);
+  }
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         struct dea_model **out)
+{
+  *out = NULL;
+  const struct dea_model_type *type;
+  DEA_TRY(ctx, open_module(ctx, &type));
+  struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
+  if (model == NULL) {
+    return DEA_E_MEMORY;
+  }
+  model->type = type;
+  dea_status status = type->create(ctx, device, &model->inner);
+  if (status != DEA_OK) {
+    dea_free(ctx, model);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = model;
+  return DEA_OK;
+}
+
+static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  DEA_TRY(ctx, model->type->solve(ctx, model->inner, voltage_V, out));
+  return DEA_OK;
+}
+
+const struct dea_model_type dea_model_3d = {
+    .name = "3d",
+    .long_name = "3D solid (preview: a quarter, coarse)",
+    .create = create,
+    .destroy = destroy,
+    .solve = solve,
+};
