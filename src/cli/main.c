@@ -206,8 +206,10 @@ int main(int argc, char **argv)
   }
   dea_text_free(&line);
   dea_context_destroy(cli.ctx);
-  if (fflush(stdout) != 0 && code == 0) {
-    code = dea_status_exit_code(DEA_E_IO);
+  bool lost = fflush(stdout) != 0; // what is left in the buffer, and whatever failed before
+  if (lost || ferror(stdout) != 0) {
+    fputs("dea: error: standard output could not be written\n", stderr);
+    code = code == 0 ? dea_status_exit_code(DEA_E_IO) : code;
   }
   return code;
 }
