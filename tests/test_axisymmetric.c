@@ -201,6 +201,29 @@ static void test_refinement(void **state)
   }
 }
 
+/* Small strains of lumped and exact disc in the ratio of docs/theory/lumped.md, section 2. */
+static void test_cost_of_eq_17_at_small_strain(void **state)
+{
+  (void)state;
+  const struct dea_model_type *type = dea_model_find("lumped");
+  static const double radius_mm[] = {3.75, 5, 9};
+  struct dea_material film = test_yeoh();
+  struct dea_plane k;
+  assert_int_equal(dea_plane_elastic(&film, 1.5, 1.5, &k), DEA_OK);
+  for (size_t i = 0; i < 9; i++) {
+    double ratio = radius_mm[i / 3] / 15;
+    double R = i % 3 == 0 ? ratio : i % 3 == 1 ? ratio * ratio : 0.2;
+    struct dea_device device = test_disc(film, 1.5, 1e-3 * radius_mm[i / 3], R, 0);
+    struct dea_load_point exact = solve_at(&device, 100), lumped;
+    struct dea_model *model;
+    assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+    assert_int_equal(type->solve(ctx, model, 100, &lumped), DEA_OK);
+    type->destroy(ctx, model);
+    double wanted = 2 * (1 - R) / (1 - ratio * ratio) * k.k11 / (k.k11 + k.k12);
+    assert_close((lumped.electrode_stretch - 1) / (exact.electrode_stretch - 1), wanted, 1e-4, 0);
+  }
+}
+
 /* Holzapfel-Gasser-Ogden with fibres at an angle to the radius. */
 static struct dea_device fibre_film(double angle_rad, double kappa)
 {
@@ -338,6 +361,7 @@ int main(void)
       cmocka_unit_test(test_loss_of_tension),
       cmocka_unit_test(test_against_shooting),
       cmocka_unit_test(test_refinement),
+      cmocka_unit_test(test_cost_of_eq_17_at_small_strain),
       cmocka_unit_test(test_films_with_a_direction),
       cmocka_unit_test(test_disc_derivatives),
       cmocka_unit_test(test_profile),
