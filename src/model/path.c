@@ -272,11 +272,6 @@ void dea_path_destroy(struct dea_context *ctx, struct dea_path *path)
   dea_free(ctx, path);
 }
 
-void dea_path_rewind(struct dea_path *path)
-{
-  path->state = path->rest;
-}
-
 const struct dea_path_state *dea_path_state_get(const struct dea_path *path)
 {
   return &path->state;
