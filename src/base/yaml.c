@@ -274,7 +274,8 @@ static dea_status parser_failed(struct dea_context *ctx, const yaml_parser_t *pa
   } else if (stands_on_tab(bytes, length, parser->problem_mark)) {
     DEA_TRY(ctx,
             dea_finding_add(ctx, DEA_ERROR, place, "a tab stands here; YAML indents with spaces"));
-  } else if (strstr(problem, "mapping values are not allowed") != NULL) {
+  } else if (strstr(problem, "mapping values are not allowed") != NULL ||
+             strcmp(problem, "did not find expected key") == 0) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
                                  "this is not YAML: no key can stand here; is the line indented "
                                  "like its neighbours?"));
