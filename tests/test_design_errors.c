@@ -145,8 +145,8 @@ static void test_not_yaml(void **state)
       {"dea: 1\n  film: 2\n", {2, 7, "is the line indented like its neighbours?"}},
       {"dea: 1\nx: \xff\n", {2, 4, "not a text file in UTF-8"}},
       {"dea: \"\\0\"\n", {1, 6, "zero byte"}},
-      {"dea: 1\n---\ndea: 1\n", {3, 1, "a second document"}},
-      {"a: &x [1]\nb: *x\n", {2, 1, "aliases"}},
+      {"dea: 1\n---\ndea: 1\n", {2, 1, "a second document"}},
+      {"a: &x [1]\nb: *x\n", {1, 4, "aliases"}},
       {"a: &x [*x]\n", {1, 4, "aliases"}},
       {"a: *y\n", {1, 4, "aliases"}},
       {"a: !!binary aGVsbG8=\n", {1, 4, "tags"}},
@@ -157,6 +157,24 @@ static void test_not_yaml(void **state)
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     check_errors(bad[i].text, &bad[i].wanted, 1);
   }
+}
+
+/* libyaml's scanner takes time by the depth for each bracket: without a bound this runs for
+ * minutes. */
+static void test_four_megabytes_of_brackets(void **state)
+{
+  (void)state;
+  const size_t length = DEA_YAML_SIZE_MAX;
+  struct dea_design *design;
+  char *text = malloc(length);
+  assert_non_null(text);
+  memset(text, '[', length);
+  assert_int_equal(dea_design_read_memory(ctx, "t.yaml", text, length, NULL, 0, &design),
+                   DEA_E_DESIGN);
+  free(text);
+  const struct dea_finding *finding = find_error(ctx, "nested too deeply");
+  assert_non_null(finding);
+  assert_int_equal(finding->place.column, DEA_YAML_DEPTH_MAX + 1);
 }
 
 static void test_a_zero_byte_in_the_file(void **state)
@@ -335,6 +353,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       TEST(test_one_error_each),
       TEST(test_not_yaml),
+      TEST(test_four_megabytes_of_brackets),
       TEST(test_a_zero_byte_in_the_file),
       TEST(test_all_errors_at_once),
       TEST(test_number_of_errors_is_bounded),

@@ -1,6 +1,7 @@
 #include "base/yaml.h"
 
 #include "base/text.h"
+#include "base/yaml_check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -24,10 +25,8 @@ struct reading {
   struct dea_context *ctx;
   struct dea_yaml *yaml;
   yaml_document_t *document;
-  unsigned char *seen;           // [node of the document]: used once already
   const struct dea_place *fixed; // all places are this one, or NULL
-  size_t depth;
-  size_t repeated; // keys that stand twice
+  size_t repeated;               // keys that stand twice
 };
 
 static void *keep_memory(struct dea_context *ctx, struct dea_yaml *yaml, size_t size)
@@ -72,15 +71,7 @@ static bool is_null(const yaml_node_t *node)
          (text[0] == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
 }
 
-static const char *default_tag(yaml_node_type_t type)
-{
-  return type == YAML_SCALAR_NODE     ? YAML_DEFAULT_SCALAR_TAG
-         : type == YAML_SEQUENCE_NODE ? YAML_DEFAULT_SEQUENCE_TAG
-                                      : YAML_DEFAULT_MAPPING_TAG;
-}
-
-static dea_status take_node(struct reading *r, int index, struct dea_place from,
-                            struct dea_node **out);
+static dea_status take_node(struct reading *r, int index, struct dea_node **out);
 
 static dea_status take_value(struct reading *r, const yaml_node_t *source, struct dea_node *node)
 {
@@ -99,7 +90,7 @@ static dea_status take_list(struct reading *r, const yaml_node_t *source, struct
   struct dea_node **last = &node->child;
   for (const yaml_node_item_t *item = source->data.sequence.items.start;
        item < source->data.sequence.items.top; item++) {
-    DEA_TRY(r->ctx, take_node(r, *item, node->place, last));
+    DEA_TRY(r->ctx, take_node(r, *item, last));
     last = &(*last)->next;
     node->child_count++;
   }
@@ -157,8 +148,8 @@ static dea_status take_section(struct reading *r, const yaml_node_t *source, str
       return found(r->ctx, place, "a key must be a word");
     }
     struct dea_node *key_node = NULL;
-    DEA_TRY(r->ctx, take_node(r, pair->key, node->place, &key_node));
-    DEA_TRY(r->ctx, take_node(r, pair->value, place, last));
+    DEA_TRY(r->ctx, take_node(r, pair->key, &key_node));
+    DEA_TRY(r->ctx, take_node(r, pair->value, last));
     (*last)->key = key_node->text;
     (*last)->key_place = place;
     last = &(*last)->next;
@@ -167,171 +158,48 @@ static dea_status take_section(struct reading *r, const yaml_node_t *source, str
   return check_keys(r, node);
 }
 
-/* from: where to point when the node is an alias, whose own place libyaml does not keep. */
-static dea_status take_node(struct reading *r, int index, struct dea_place from,
-                            struct dea_node **out)
+/* Recursion ends at DEA_YAML_DEPTH_MAX, and there are no cycles: the check has seen to both. */
+static dea_status take_node(struct reading *r, int index, struct dea_node **out)
 {
   const yaml_node_t *source = yaml_document_get_node(r->document, index);
-  if (r->seen[index - 1] != 0) {
-    return found(r->ctx, from, "aliases (*name) are not supported; write the value out");
-  }
-  r->seen[index - 1] = 1;
   struct dea_place place = place_of(r, source->start_mark);
-  if (source->tag != NULL && strcmp((const char *)source->tag, default_tag(source->type)) != 0) {
-    return found(r->ctx, place, "tags (!name) are not supported; write the plain value");
-  }
-  if (r->depth >= DEA_YAML_DEPTH_MAX) {
-    return found(r->ctx, place, "sections and lists are nested too deeply");
-  }
   struct dea_node *node = keep_memory(r->ctx, r->yaml, sizeof *node);
   if (node == NULL) {
     return DEA_E_MEMORY;
   }
   *node = (struct dea_node){.text = "", .place = place, .overridden = r->fixed != NULL};
   *out = node;
-  r->depth++;
-  dea_status status;
   if (source->type == YAML_SCALAR_NODE) {
     node->kind = DEA_NODE_VALUE;
-    status = take_value(r, source, node);
-  } else if (source->type == YAML_SEQUENCE_NODE) {
+    return take_value(r, source, node);
+  }
+  if (source->type == YAML_SEQUENCE_NODE) {
     node->kind = DEA_NODE_LIST;
-    status = take_list(r, source, node);
-  } else {
-    node->kind = DEA_NODE_SECTION;
-    status = take_section(r, source, node);
+    return take_list(r, source, node);
   }
-  r->depth--;
-  return status;
-}
-
-static dea_status take_document(struct reading *r, struct dea_node **out)
-{
-  size_t count = (size_t)(r->document->nodes.top - r->document->nodes.start);
-  struct dea_place start = r->fixed != NULL ? *r->fixed : (struct dea_place){r->yaml->name, 1, 1};
-  if (count > DEA_YAML_NODES_MAX) {
-    return found(r->ctx, start, "the file holds too many values to be a design");
-  }
-  r->seen = dea_alloc(r->ctx, count, 1);
-  if (r->seen == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = take_node(r, 1, start, out);
-  dea_free(r->ctx, r->seen);
-  return status;
-}
-
-/* Line and column of a byte, which libyaml does not know for text that it cannot decode. */
-static struct dea_place place_of_byte(const char *name, const char *bytes, size_t length,
-                                      size_t offset)
-{
-  struct dea_place place = {name, 1, 1};
-  for (size_t i = 0; i < offset && i < length; i++) {
-    if (bytes[i] == '\n') {
-      place.line++;
-      place.column = 1;
-    } else {
-      place.column++;
-    }
-  }
-  return place;
-}
-
-/* Whether a tab stands at a mark, which counts lines and characters from 0. */
-static bool stands_on_tab(const char *bytes, size_t length, yaml_mark_t mark)
-{
-  size_t at = 0;
-  for (size_t line = 0; line < mark.line && at < length; at++) {
-    line += bytes[at] == '\n';
-  }
-  for (size_t column = 0; column < mark.column && at < length; column++) {
-    do {
-      at++;
-    } while (at < length && (bytes[at] & 0xC0) == 0x80); // the rest of a character of UTF-8
-  }
-  return at < length && bytes[at] == '\t';
-}
-
-static dea_status parser_failed(struct dea_context *ctx, const yaml_parser_t *parser,
-                                const char *name, const char *bytes, size_t length,
-                                const struct dea_place *fixed)
-{
-  const char *problem = parser->problem != NULL ? parser->problem : "unknown";
-  struct dea_place place = {name, parser->problem_mark.line + 1, parser->problem_mark.column + 1};
-  if (parser->error == YAML_MEMORY_ERROR) {
-    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
-  }
-  if (parser->error == YAML_READER_ERROR) {
-    place = place_of_byte(name, bytes, length, parser->problem_offset);
-  }
-  place = fixed != NULL ? *fixed : place;
-  if (parser->error == YAML_READER_ERROR) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "this is not a text file in UTF-8: %s",
-                                 problem));
-  } else if (strstr(problem, "found undefined alias") != NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
-                                 "aliases (*name) are not supported; write the value out"));
-  } else if (stands_on_tab(bytes, length, parser->problem_mark)) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_ERROR, place, "a tab stands here; YAML indents with spaces"));
-  } else if (strstr(problem, "mapping values are not allowed") != NULL ||
-             strcmp(problem, "did not find expected key") == 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
-                                 "this is not YAML: no key can stand here; is the line indented "
-                                 "like its neighbours?"));
-  } else {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "this is not YAML: %s%s%s", problem,
-                                 parser->context != NULL ? " " : "",
-                                 parser->context != NULL ? parser->context : ""));
-  }
-  return dea_fail(ctx, DEA_E_DESIGN, "'%s' is not YAML: %s", name, problem);
-}
-
-/* A second document after the first is an error: silently ignoring it would lose values. */
-static dea_status check_end(struct dea_context *ctx, yaml_parser_t *parser, const char *name,
-                            const char *bytes, size_t length, const struct dea_place *fixed)
-{
-  yaml_document_t second;
-  if (yaml_parser_load(parser, &second) == 0) {
-    return parser_failed(ctx, parser, name, bytes, length, fixed);
-  }
-  const yaml_node_t *root = yaml_document_get_root_node(&second);
-  dea_status status = DEA_OK;
-  if (root != NULL) {
-    struct dea_place place = {name, root->start_mark.line + 1, root->start_mark.column + 1};
-    status = found(ctx, fixed != NULL ? *fixed : place,
-                   "a second document starts here; a file holds one");
-  }
-  yaml_document_delete(&second);
-  return status;
+  node->kind = DEA_NODE_SECTION;
+  return take_section(r, source, node);
 }
 
 /* Parses text into nodes of yaml. fixed: place of all nodes, or NULL. */
 static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, const char *bytes,
                              size_t length, const struct dea_place *fixed, struct dea_node **out)
 {
+  const struct dea_yaml_text text = {yaml->name, bytes, length, fixed};
   yaml_parser_t parser;
   yaml_document_t document;
+  DEA_TRY(ctx, dea_yaml_check(ctx, &text));
   if (yaml_parser_initialize(&parser) == 0) {
     return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
   }
   yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
   yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, length);
   dea_status status;
-  if (yaml_parser_load(&parser, &document) == 0) {
-    status = parser_failed(ctx, &parser, yaml->name, bytes, length, fixed);
+  if (yaml_parser_load(&parser, &document) == 0) { // the check has found all that is wrong
+    status = dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
   } else {
-    if (yaml_document_get_root_node(&document) == NULL) {
-      struct dea_place place = {yaml->name, 1, 1};
-      status = fixed != NULL ? found(ctx, *fixed, "no value is given")
-                             : found(ctx, place, "the file is empty");
-    } else {
-      struct reading r = {.ctx = ctx, .yaml = yaml, .document = &document, .fixed = fixed};
-      status = take_document(&r, out);
-      if (status == DEA_OK) {
-        status = check_end(ctx, &parser, yaml->name, bytes, length, fixed);
-      }
-    }
+    struct reading r = {.ctx = ctx, .yaml = yaml, .document = &document, .fixed = fixed};
+    status = take_node(&r, 1, out);
     yaml_document_delete(&document);
   }
   yaml_parser_delete(&parser);

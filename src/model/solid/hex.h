@@ -1,0 +1,80 @@
+/* Layered hexahedra: one kinematics for film, glue and fibre (docs/theory/solid.md).
+ *
+ * Symbol   meaning                                                        unit
+ * X, u     place in the stretched flat film, displacement                 m
+ * F        dx/dX, x = X + u                                               1
+ * G        pre-stretch of a layer, diagonal, det G = 1: W sees F G        1
+ * J        det F                                                          1
+ * theta    projection of J - 1 on the element's pressure polynomials      1
+ * kappa    bulk modulus of the projected part                             Pa
+ * kappa_s  bulk modulus of the pointwise part (stabilisation)             Pa
+ *
+ * Energy of an element, per volume of the stretched flat film:
+ *
+ *   W(F G) + p0 (J - 1) + kappa_s/2 (J - 1)^2 + p_k theta + kappa/2 theta^2 - (eps/2)(V/h)^2 |F_1 x
+ * F_2|^2
+ *
+ * p0 frees the flat layer of thickness stress; p_k is a multiplier per element that an outer loop
+ * moves until theta vanishes. */
+#ifndef DEA_MODEL_SOLID_HEX_H
+#define DEA_MODEL_SOLID_HEX_H
+
+#include "material/material.h"
+#include "material/point.h"
+
+enum {
+  DEA_HEX_ORDER_MAX = 3,
+  DEA_HEX_NODES_MAX = 64,     // (order + 1)^3
+  DEA_HEX_GAUSS_MAX = 64,     // the same rule in each direction
+  DEA_HEX_PRESSURES_MAX = 10, // polynomials of total degree order - 1
+  DEA_HEX_DOFS_MAX = 3 * DEA_HEX_NODES_MAX,
+};
+
+/* Basis of one element shape: in-plane order and order through the thickness. Nodes: first local
+ * axis fastest, Gauss points alike. */
+struct dea_hex_shape {
+  int order, order_z;
+  int nodes, gauss, pressures;
+  double value[DEA_HEX_GAUSS_MAX][DEA_HEX_NODES_MAX];
+  double slope[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX]; // by the local axes
+  double pressure[DEA_HEX_GAUSS_MAX][DEA_HEX_PRESSURES_MAX];
+  double weight[DEA_HEX_GAUSS_MAX];
+  double node_at[DEA_HEX_NODES_MAX][3]; // local coordinates in [-1, 1]
+};
+
+/* What an element is made of. */
+struct dea_hex_layer {
+  const struct dea_law *law; // NULL: compressible neo-Hookean solid of the two Lame constants
+  const double *param;
+  double lame_lambda_Pa, lame_mu_Pa;
+  double pre_stretch[3];    // diagonal of G
+  double p0_Pa, kappa_s_Pa; // see above; dea_hex_layer_relax sets them
+  double kappa_Pa;
+  double permittivity_F_per_m; // eps, 0: no electric energy
+  double thickness_m;          // h, over which the voltage stands
+};
+
+/* order, order_z: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
+dea_status dea_hex_shape_create(int order, int order_z, struct dea_hex_shape *out);
+
+/* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
+ * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
+dea_status dea_hex_layer_relax(struct dea_hex_layer *layer);
+
+/* Result of one element. g: [3 nodes], K: [3 nodes][3 nodes] row by row, theta: see above. */
+struct dea_hex_result {
+  double energy_J;
+  double g[DEA_HEX_DOFS_MAX];
+  double K[DEA_HEX_DOFS_MAX * DEA_HEX_DOFS_MAX];
+  double theta[DEA_HEX_PRESSURES_MAX];
+  double volume_m3;
+};
+
+/* Energy, and with want_tangent also g and K. X, u: [nodes][3]; multiplier: [pressures] p_k.
+ * voltage_V: 0 where there is no electrode. DEA_E_DOMAIN for an inverted element or beyond the
+ * law's domain. */
+dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_hex_layer *layer,
+                            const double *X, const double *u, const double *multiplier,
+                            double voltage_V, bool want_tangent, struct dea_hex_result *out);
+
+#endif

@@ -1,0 +1,49 @@
+/* What the files of the solver share: the solid itself and its assembly. */
+#ifndef DEA_MODEL_SOLID_SOLVE_INTERNAL_H
+#define DEA_MODEL_SOLID_SOLVE_INTERNAL_H
+
+#include "model/solid/solve/solid.h"
+
+#include <petscmat.h>
+
+struct dea_solid {
+  const struct dea_grid *grid;
+  struct dea_hex_shape shape;
+  struct dea_hex_layer *layers;
+  size_t dofs;
+  int *layer;                                    // [elements]
+  bool *active;                                  // [elements]
+  unsigned char *held;                           // [dofs]
+  double *u, *trial, *g, *step, *metric, *force; // [dofs]
+  double *multiplier, *theta;                    // [elements][shape.pressures]
+  double *
+      before; // [dofs + pressures] displacements and multipliers of the equilibrium before the last
+  double voltage_V, voltage_before_V; // of the last two equilibria
+  int solved;                         // how many there are, up to 2
+  double force_scale;  // root of the sum of squared element forces at the last assembly
+  double energy_scale; // sum of absolute element energies there
+  struct dea_hex_result *element;
+  Mat K, factor;
+  Vec right, solution;
+  double last_shift; // that made K positive definite, relative to the metric
+  bool analysed;
+};
+
+/* Turns PETSc's error code into a status. */
+dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const char *what);
+
+/* All multipliers of a solid. */
+size_t dea_solid_pressure_count(const struct dea_solid *s);
+
+/* Scalar product over all degrees of freedom. */
+double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b);
+
+/* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
+
+/* Energy, g and K at s->u; also theta, the metric (diagonal of K in absolute value) and the scales.
+ */
+dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              double *energy);
+
+#endif

@@ -1,0 +1,309 @@
+/* Layered hexahedra and their meshes: derivatives, invariance, patch test, areas. */
+#include "devices.h"
+#include "model/solid/grid.h"
+#include "testing.h"
+
+#include <stdlib.h>
+
+static struct dea_context *ctx;
+static struct dea_hex_shape shape;
+static struct dea_hex_result at, up, down;
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+
+/* Pre-stretched film with a field (law), or a compressible solid. */
+static struct dea_hex_layer film(double pre_stretch)
+{
+  double h = 100e-6 / (pre_stretch * pre_stretch);
+  struct dea_hex_layer layer = {
+      .law = dea_law_find("yeoh"),
+      .param = yeoh,
+      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
+      .kappa_Pa = 4e7,
+      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+      .thickness_m = h};
+  assert_int_equal(dea_hex_layer_relax(&layer), DEA_OK);
+  return layer;
+}
+
+static struct dea_hex_layer plastic(void)
+{
+  struct dea_hex_layer layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  return layer;
+}
+
+/* A distorted element of the shape, about 200 um wide and 44 um thick, with displacements of given
+ * size relative to it. */
+static void sample(double size, double *X, double *u)
+{
+  for (int n = 0; n < shape.nodes; n++) {
+    const double *x = shape.node_at[n];
+    X[3 * n] = 100e-6 * x[0] + 1e-5 * x[0] * x[1];
+    X[3 * n + 1] = 100e-6 * x[1] + 1e-5 * x[0] - 5e-6 * x[1] * x[1];
+    X[3 * n + 2] = 22e-6 * x[2] + 1e-6 * x[0] * x[2];
+    for (int i = 0; i < 3; i++) {
+      u[3 * n + i] = size * (i == 2 ? 2e-6 : 1e-5) * sin(1.3 * n + i);
+    }
+  }
+}
+
+static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
+                                                        2e3, 1e3,  -4e2, 7e2, 1e2};
+
+static void check_derivatives(const struct dea_hex_layer *layer)
+{
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], d = 1e-10, largest_g = 0, largest_K = 0;
+  int dofs = 3 * shape.nodes;
+  sample(1, X, u);
+  assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &at), DEA_OK);
+  for (int i = 0; i < dofs; i++) {
+    largest_g = fmax(largest_g, fabs(at.g[i]));
+    for (int j = 0; j < dofs; j++) {
+      largest_K = fmax(largest_K, fabs(at.K[i * dofs + j]));
+    }
+  }
+  for (int j = 0; j < dofs; j++) {
+    double keep = u[j];
+    u[j] = keep + d;
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &up), DEA_OK);
+    u[j] = keep - d;
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &down), DEA_OK);
+    u[j] = keep;
+    assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * largest_g);
+    for (int i = 0; i < dofs; i++) {
+      assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * d), 0, 1e-8 * largest_K);
+      assert_close(at.K[i * dofs + j], at.K[j * dofs + i], 0, 1e-13 * largest_K);
+    }
+  }
+}
+
+static void test_derivatives_of_all_orders(void **state)
+{
+  (void)state;
+  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    for (int order_z = 1; order_z <= 2; order_z++) {
+      const struct dea_hex_layer soft = film(1.5), hard = plastic();
+      assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
+      check_derivatives(&soft);
+      check_derivatives(&hard);
+    }
+  }
+}
+
+/* Turned and moved as a whole the element keeps its energy; its forces turn with it. */
+static void test_rigid_motion(void **state)
+{
+  (void)state;
+  static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], turned[DEA_HEX_DOFS_MAX];
+  const struct dea_hex_layer soft = film(1.5);
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  sample(1, X, u);
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      double x = 1e-3 * (i + 1);
+      for (int j = 0; j < 3; j++) {
+        x += Q[3 * i + j] * (X[3 * n + j] + u[3 * n + j]);
+      }
+      turned[3 * n + i] = x - X[3 * n + i];
+    }
+  }
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 4e3, true, &at), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, turned, pressures, 4e3, true, &up), DEA_OK);
+  assert_close(up.energy_J, at.energy_J, 1e-10, 0);
+  double scale = 0;
+  for (int i = 0; i < 3 * shape.nodes; i++) {
+    scale = fmax(scale, fabs(at.g[i]));
+  }
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      double g = 0;
+      for (int j = 0; j < 3; j++) {
+        g += Q[3 * i + j] * at.g[3 * n + j];
+      }
+      assert_close(up.g[3 * n + i], g, 0, 1e-9 * scale);
+    }
+  }
+}
+
+/* Held flat, a pre-stretched film pulls in its plane with the stress of benchmark 1 and not through
+ * its thickness; a field of V takes eps E^2 of it. */
+static void test_flat_film_has_the_true_pre_stress(void **state)
+{
+  (void)state;
+  static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
+  double X[DEA_HEX_DOFS_MAX];
+  const struct dea_hex_layer soft = film(1.5);
+  const double a = 100e-6, h = 22e-6, voltages[] = {0, 5e3};
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      X[3 * n + i] = (i == 2 ? h : a) * shape.node_at[n][i];
+    }
+  }
+  for (int k = 0; k < 2; k++) {
+    double pull[3] = {0, 0, 0}, field = voltages[k] / soft.thickness_m;
+    assert_int_equal(dea_hex_evaluate(&shape, &soft, X, rest, none, voltages[k], true, &at),
+                     DEA_OK);
+    for (int n = 0; n < shape.nodes; n++) {
+      for (int i = 0; i < 3; i++) {
+        pull[i] += shape.node_at[n][i] > 0.5 ? at.g[3 * n + i] : 0;
+      }
+    }
+    double stress = 797.745e3 - soft.permittivity_F_per_m * field * field;
+    assert_close(pull[0] / (2 * a * 2 * h), stress, 2e-6, 0);
+    assert_close(pull[1] / (2 * a * 2 * h), stress, 2e-6, 0);
+    assert_close(pull[2] / (4 * a * a), 0, 0, 1e-6 * stress);
+  }
+}
+
+static void test_inverted_element_and_bad_order(void **state)
+{
+  (void)state;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  const struct dea_hex_layer soft = film(1.5);
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  sample(1, X, u);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_OK);
+  u[3 * 13 + 2] = 1e-4; // the middle node out through the top
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_E_DOMAIN);
+  u[3 * 13 + 2] = NAN;
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_E_DOMAIN);
+  assert_int_equal(dea_hex_shape_create(0, 1, &shape), DEA_E_ARGUMENT);
+  assert_int_equal(dea_hex_shape_create(2, DEA_HEX_ORDER_MAX + 1, &shape), DEA_E_ARGUMENT);
+}
+
+/* ---- meshes ---- */
+
+/* Forces of all elements on the nodes under u = (D - 1) X. */
+static void forces(const struct dea_grid *grid, const struct dea_hex_layer *layer, const double *D,
+                   double *g, double *volume)
+{
+  static const double none[DEA_HEX_PRESSURES_MAX] = {0};
+  *volume = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+    for (int n = 0; n < shape.nodes; n++) {
+      for (int i = 0; i < 3; i++) {
+        X[3 * n + i] = grid->X[3 * nodes[n] + i];
+        u[3 * n + i] = -X[3 * n + i];
+      }
+      for (int i = 0; i < 9; i++) {
+        u[3 * n + i / 3] += D[i] * X[3 * n + i % 3];
+      }
+    }
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, none, 2e3, true, &at), DEA_OK);
+    *volume += at.volume_m3;
+    for (int i = 0; i < 3 * shape.nodes; i++) {
+      g[3 * nodes[i / 3] + i % 3] += at.g[i];
+    }
+  }
+}
+
+/* Patch test: a homogeneous deformation of a distorted mesh leaves no force on the inner nodes. */
+static void test_patch_and_area(void **state)
+{
+  (void)state;
+  static const double D[9] = {1.1, 0.05, 0, -0.02, 0.95, 0.03, 0.04, 0, 0.96};
+  const double a = 3.75e-3, b = 15e-3, h = 44e-6;
+  for (int order = 1; order <= 3; order++) {
+    struct dea_grid *grid;
+    const struct dea_hex_layer soft = film(1.5);
+    double volume, largest = 0;
+    assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
+    const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
+    assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+    double *g = calloc(3 * grid->node_count, sizeof *g);
+    assert_non_null(g);
+    forces(grid, &soft, D, g, &volume);
+    for (size_t i = 0; i < 3 * grid->node_count; i++) {
+      largest = fmax(largest, fabs(g[i]));
+    }
+    size_t inner = 0;
+    for (size_t n = 0; n < grid->node_count; n++) {
+      const double *X = grid->X + 3 * n;
+      bool edge = hypot(X[0], X[1]) > 0.98 * b || X[0] < 1e-9 || X[1] < 1e-9;
+      for (int i = 0; i < 3 && !edge && fabs(X[2]) < 0.1 * h; i++, inner++) {
+        assert_close(g[3 * n + (size_t)i], 0, 0, 1e-9 * largest);
+      }
+    }
+    assert_true(inner > 20);
+    double exact = 0.25 * acos(-1) * b * b * h, error = fabs(volume / exact - 1);
+    assert_true(error < (order == 1 ? 2e-2 : order == 2 ? 2e-4 : 2e-6));
+    free(g);
+    dea_grid_destroy(ctx, grid);
+  }
+}
+
+/* No two nodes in one place: neighbouring blocks share theirs, and fibres theirs with the film.
+ * Every node has an element. The fibres' volume is that of their strips. */
+static void test_blocks_are_joined(void **state)
+{
+  (void)state;
+  struct dea_grid *grid;
+  const struct dea_quarter quarter = {2, 1, 2e-3, 9e-3, 1e-4, 2e-3, 1e-4, .fine = 3, .across = 2};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  for (size_t i = 0; i < grid->node_count; i++) {
+    for (size_t j = 0; j < i; j++) {
+      const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
+      assert_true(fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) > 1e-6);
+    }
+  }
+  assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
+  static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
+  const struct dea_hex_layer hard = plastic();
+  char *used = calloc(grid->node_count, 1);
+  double volume = 0;
+  assert_non_null(used);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    double X[DEA_HEX_DOFS_MAX];
+    for (int n = 0; n < shape.nodes; n++) {
+      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+      used[node] = 1;
+      for (int i = 0; i < 3; i++) {
+        X[3 * n + i] = grid->X[3 * node + i];
+      }
+    }
+    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, false, &at), DEA_OK);
+    volume += grid->sheet[e] == DEA_SHEET_FIBRE ? at.volume_m3 : 0;
+  }
+  for (size_t n = 0; n < grid->node_count; n++) {
+    assert_int_equal(used[n], 1);
+  }
+  free(used);
+  // strip between the circles: integral of sqrt(b^2 - y^2) - sqrt(a^2 - y^2) over half the width
+  double strip = 0;
+  for (int i = 0; i < 1000; i++) {
+    double y = 1e-3 * (i + 0.5) / 1000;
+    strip += 1e-6 * (sqrt(81e-6 - y * y) - sqrt(4e-6 - y * y));
+  }
+  assert_close(volume, 2 * 1e-4 * strip, 1e-4, 0);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_derivatives_of_all_orders),
+      cmocka_unit_test(test_rigid_motion),
+      cmocka_unit_test(test_flat_film_has_the_true_pre_stress),
+      cmocka_unit_test(test_inverted_element_and_bad_order),
+      cmocka_unit_test(test_patch_and_area),
+      cmocka_unit_test(test_blocks_are_joined),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
