@@ -225,16 +225,6 @@ static void test_lost_output(void **state)
   }
 }
 
-/* A model that is named twice is computed once. */
-static void test_model_named_twice(void **state)
-{
-  (void)state;
-  json_t *root = summary("run @/examples/plain-disc.yaml --model lumped --model lumped --json");
-  assert_int_equal(json_array_size(json_object_get(root, "points")), 116);
-  assert_int_equal(json_array_size(json_object_get(root, "more_models")), 0);
-  json_decref(root);
-}
-
 /* Interrupted in a long sweep: exit code 130, and what was computed is there. How fast this machine
  * is is not known, so several delays are tried until one falls into the sweep. */
 static void test_interrupt_keeps_points(void **state)
@@ -260,7 +250,6 @@ int main(void)
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),
       cmocka_unit_test(test_lost_output),
-      cmocka_unit_test(test_model_named_twice),
       cmocka_unit_test(test_interrupt_keeps_points),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

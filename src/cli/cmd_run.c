@@ -104,29 +104,21 @@ static void choose_directory(const struct run_options *options, struct dea_text 
   dea_text_add(out, "%.*s.run", (int)length, name);
 }
 
-/* The models to run: --model, or those of the design, each once. DEA_E_USAGE or DEA_E_DESIGN for
- * unknown ones. */
+/* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
+ * ones. */
 static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
                                 const struct dea_design *design,
                                 const struct dea_model_type *out[DEA_DESIGN_MODELS_MAX],
                                 size_t *count)
 {
   bool given = options->model_count > 0, bad = false;
-  size_t named = given ? options->model_count : design->compute.model_count;
-  *count = 0;
-  for (size_t i = 0; i < named; i++) {
+  *count = given ? options->model_count : design->compute.model_count;
+  for (size_t i = 0; i < *count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_place option = {.file = "--model"};
-    const struct dea_model_type *type = given ? cli_model_find(cli, options->models[i], option)
-                                              : cli_model_find(cli, label->text, label->place);
-    bool there = false;
-    for (size_t k = 0; k < *count; k++) {
-      there = there || out[k] == type;
-    }
-    if (!there) {
-      out[(*count)++] = type;
-    }
-    bad = bad || type == NULL;
+    out[i] = given ? cli_model_find(cli, options->models[i], option)
+                   : cli_model_find(cli, label->text, label->place);
+    bad = bad || out[i] == NULL;
   }
   if (bad) {
     return dea_fail(cli->ctx, given ? DEA_E_USAGE : DEA_E_DESIGN, "a model is not known");
