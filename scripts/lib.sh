@@ -60,8 +60,11 @@ need() {
   } || die "could not install the packages; as root: apt-get install --no-install-recommends$missing"
 }
 
-# build_release [CMAKE OPTION...]: an optimised build in build/.
+# build_release FOLDER [CMAKE OPTION...]: an optimised build there. What runs without tests has a
+# folder of its own: the same one would leave old test programs behind that still pass.
 build_release() {
-  cmake -G Ninja -S "$root" -B "$root/build" -DCMAKE_BUILD_TYPE=Release "$@" >&2
-  cmake --build "$root/build" >&2
+  build=$1
+  shift
+  cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" >&2
+  cmake --build "$build" >&2
 }

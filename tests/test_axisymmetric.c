@@ -201,6 +201,61 @@ static void test_refinement(void **state)
   }
 }
 
+/* Small strains of lumped and exact disc in the ratio of docs/theory/lumped.md, section 2. */
+static void test_cost_of_eq_17_at_small_strain(void **state)
+{
+  (void)state;
+  const struct dea_model_type *type = dea_model_find("lumped");
+  static const double radius_mm[] = {3.75, 5, 9};
+  struct dea_material film = test_yeoh();
+  struct dea_plane k;
+  assert_int_equal(dea_plane_elastic(&film, 1.5, 1.5, &k), DEA_OK);
+  for (size_t i = 0; i < 9; i++) {
+    double ratio = radius_mm[i / 3] / 15;
+    double R = i % 3 == 0 ? ratio : i % 3 == 1 ? ratio * ratio : 0.2;
+    struct dea_device device = test_disc(film, 1.5, 1e-3 * radius_mm[i / 3], R, 0);
+    struct dea_load_point exact = solve_at(&device, 100), lumped;
+    struct dea_model *model;
+    assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+    assert_int_equal(type->solve(ctx, model, 100, &lumped), DEA_OK);
+    type->destroy(ctx, model);
+    double wanted = 2 * (1 - R) / (1 - ratio * ratio) * k.k11 / (k.k11 + k.k12);
+    assert_close((lumped.electrode_stretch - 1) / (exact.electrode_stretch - 1), wanted, 1e-4, 0);
+  }
+}
+
+/* Holzapfel-Gasser-Ogden with fibres at an angle to the radius. */
+static struct dea_device fibre_film(double angle_rad, double kappa)
+{
+  struct dea_material m = test_material("holzapfel-gasser-ogden", 3e5, 1e5, 0);
+  m.param[3] = kappa;
+  m.fibre_angle_rad = angle_rad;
+  return test_disc(m, 1.5, 3.75e-3, 0.25, 0);
+}
+
+/* A film with a direction is refused, one whose fibres balance is solved as finely as others. */
+static void test_films_with_a_direction(void **state)
+{
+  (void)state;
+  const double quarter = acos(0) / 2;
+  const struct dea_device round[] = {fibre_film(quarter, 0), fibre_film(0, 1.0 / 3)};
+  struct dea_device directed[] = {fibre_film(0, 0), fibre_film(2 * quarter, 0.2), fibre_film(0, 0)};
+  directed[2].pre_stretch = 1; // at rest nothing shows yet
+  for (size_t i = 0; i < 2; i++) {
+    struct dea_load_point p = solve_at(&round[i], 3e3);
+    assert_true(p.electrode_stretch > 1.001);
+    assert_close(p.electrode_stretch, stretch_at_order(&round[i], 20, 3e3), 0, 1e-9);
+    assert_close(solve_at(&round[i], 0).electrode_stretch, 1, 0, 1e-12);
+  }
+  for (size_t i = 0; i < 3; i++) {
+    struct dea_model *model;
+    assert_int_equal(dea_model_find("axisymmetric")->create(ctx, &directed[i], &model),
+                     DEA_E_DESIGN);
+    assert_null(model);
+    assert_non_null(strstr(dea_context_message(ctx), "direction"));
+  }
+}
+
 static void test_disc_derivatives(void **state)
 {
   (void)state;
@@ -306,6 +361,8 @@ int main(void)
       cmocka_unit_test(test_loss_of_tension),
       cmocka_unit_test(test_against_shooting),
       cmocka_unit_test(test_refinement),
+      cmocka_unit_test(test_cost_of_eq_17_at_small_strain),
+      cmocka_unit_test(test_films_with_a_direction),
       cmocka_unit_test(test_disc_derivatives),
       cmocka_unit_test(test_profile),
       cmocka_unit_test(test_charge_from_energy),

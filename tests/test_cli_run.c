@@ -207,6 +207,24 @@ static size_t interrupt_after(double delay_s)
   return lines;
 }
 
+/* A full disk behind standard output is an error of exit code 5, said on stderr. */
+static void test_lost_output(void **state)
+{
+  (void)state;
+  static const char *const commands[] = {
+      "--version", "run '" DEA_SOURCE_DIR "/examples/plain-disc.yaml' --json", "schema --json"};
+  for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+    char text[2048];
+    snprintf(text, sizeof text, "'%s' %s --quiet >/dev/full 2>'%s/err.txt'", DEA_COMMAND,
+             commands[i], command_folder);
+    int status = system(text);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 5);
+    command_read("err.txt", command_err);
+    assert_contains(command_err, "standard output");
+  }
+}
+
 /* Interrupted in a long sweep: exit code 130, and what was computed is there. How fast this machine
  * is is not known, so several delays are tried until one falls into the sweep. */
 static void test_interrupt_keeps_points(void **state)
@@ -231,6 +249,7 @@ int main(void)
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),
+      cmocka_unit_test(test_lost_output),
       cmocka_unit_test(test_interrupt_keeps_points),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

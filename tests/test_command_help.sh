@@ -91,10 +91,13 @@ for command in $(dea completion names commands); do
     dea completion $shell | grep -q "$command" || { echo "$shell: $command is missing"; failed=1; }
   done
 done
+expect 0 "help on a command" dea help run
+has out "Usage: dea run"
 expect 0 "the manual" dea completion man
 has out ".It Fl q , Fl -quiet"
 # Output that is lost is a failure; a closed one is not wanted.
-expect 5 "a full disk" sh -c 'dea check "$1" >/dev/full' sh "$source/examples/frdea-4.yaml"
+cp "$source/examples/frdea-4.yaml" "$folder/a.yaml"
+expect 5 "a full disk" sh -c 'dea check a.yaml >/dev/full'
 has err "standard output could not be written"
 expect 5 "a full disk" sh -c 'dea schema >/dev/full'
 expect 0 "no output" sh -c 'dea schema >&-'

@@ -116,6 +116,9 @@ static void test_errors_of_the_command_line(void **state)
   command_write("far.csv", "V (kV),z centre (um)\n90,1\n");
   assert_int_equal(command_run("compare a far.csv"), 2);
   assert_contains(command_err, "nothing to compare");
+  command_write("far.csv", "V (kV),z centre (um)\n1,1000\n90,1\n");
+  assert_int_equal(command_run("compare a far.csv"), 0);
+  assert_contains(command_err, "1 of 2 measured points of 'z centre' lie outside the voltages");
 }
 
 static void test_plot_draws_again(void **state)

@@ -141,6 +141,7 @@ static void test_not_yaml(void **state)
       {"just text", {1, 1, "must be 'key: value' lines"}},
       {"- 1\n- 2\n", {1, 1, "must be 'key: value' lines"}},
       {"dea: [1", {2, 1, "this is not YAML"}},
+      {"dea: 1\nfilm: {}\n  law: a\n", {3, 3, "is the line indented like its neighbours?"}},
       {"dea: 1\n  film: 2\n", {2, 7, "is the line indented like its neighbours?"}},
       {"dea: 1\nx: \xff\n", {2, 4, "not a text file in UTF-8"}},
       {"dea: \"\\0\"\n", {1, 6, "zero byte"}},

@@ -238,10 +238,55 @@ static void test_seek_beyond_pull_in_keeps_the_last_point(void **state)
   dea_context_destroy(ctx);
 }
 
+/* A free film whose tension and breakdown margin vanish just before its limit point. */
+static dea_status crowded_point(void *self, const double *u, double voltage_V,
+                                struct dea_load_point *out)
+{
+  dea_status status = free_point(self, u, voltage_V, out);
+  out->min_tension_N_per_m = 1.2598 - u[0];
+  out->breakdown_margin = 1.2595 - u[0];
+  return status;
+}
+
+/* Events that share a segment are reported in their order along the path, and none beyond its end.
+ */
+static void test_events_come_in_order(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
+  struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
+  const struct dea_path_system system = {1, &free, free_evaluate, crowded_point,
+                                         dea_film_voltage_scale(&free.film)};
+  const double start = 1;
+  struct dea_path *path;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  static const enum dea_event_kind kinds[] = {DEA_EVENT_BREAKDOWN, DEA_EVENT_SLACK,
+                                              DEA_EVENT_PULL_IN};
+  static const struct {
+    double end;
+    size_t events;
+  } runs[] = {{1.5, 3}, {1.25985, 2}, {1.2597, 1}, {1.259, 0}};
+  for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
+    const struct dea_path_options options = {runs[k].end, INFINITY, 5000};
+    struct record r = {0};
+    assert_int_equal(dea_path_trace(ctx, path, &options, 1, take_point, take_event, &r), DEA_OK);
+    assert_close(r.last_stretch, runs[k].end, 1e-9, 0);
+    assert_int_equal(r.event_count, runs[k].events);
+    for (size_t i = 0; i < r.event_count; i++) {
+      assert_int_equal(r.events[i].kind, kinds[i]);
+    }
+  }
+  dea_path_destroy(ctx, path);
+  dea_context_destroy(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neo_hookean_pull_in),
+      cmocka_unit_test(test_events_come_in_order),
       cmocka_unit_test(test_gent_snaps_through),
       cmocka_unit_test(test_stiff_gent_has_no_limit_and_ends_at_lock_up),
       cmocka_unit_test(test_table_1_pull_in),

@@ -1,5 +1,6 @@
 /* Layered hexahedra and their meshes: derivatives, invariance, patch test, areas. */
 #include "devices.h"
+#include "failing_allocator.h"
 #include "model/solid/grid.h"
 #include "testing.h"
 
@@ -295,6 +296,20 @@ static void test_blocks_are_joined(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+static void make_grid(struct dea_context *failing)
+{
+  const struct dea_quarter quarter = {2, 2, 2e-3, 9e-3, 1e-4, 2e-3, 1e-4, .fine = 1, .across = 1};
+  struct dea_grid *grid = NULL;
+  failing_check(failing, dea_grid_quarter(failing, &quarter, &grid));
+  dea_grid_destroy(failing, grid);
+}
+
+static void test_each_allocation_of_a_mesh(void **state)
+{
+  (void)state;
+  assert_true(failing_each(make_grid) > 5);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -304,6 +319,7 @@ int main(void)
       cmocka_unit_test(test_inverted_element_and_bad_order),
       cmocka_unit_test(test_patch_and_area),
       cmocka_unit_test(test_blocks_are_joined),
+      cmocka_unit_test(test_each_allocation_of_a_mesh),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

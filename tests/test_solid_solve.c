@@ -1,6 +1,7 @@
 /* Solids by PETSc: the plain disc against the exact one, false unstable modes, bending. */
 // ctest: solid
 #include "devices.h"
+#include "failing_allocator.h"
 #include "model/model.h"
 #include "model/solid/solve/solid.h"
 #include "testing.h"
@@ -311,6 +312,37 @@ static void test_cantilever_under_end_shear(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+/* What is ours; PETSc has its own memory. */
+static struct dea_grid *small_grid;
+
+static void make_solid(struct dea_context *failing)
+{
+  const struct dea_hex_layer steel = {.lame_mu_Pa = 0.6e6};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 1,
+                                            .layers = &steel,
+                                            .layer_of = only_layer,
+                                            .active = no_region,
+                                            .held = disc_held};
+  struct dea_solid *solid = NULL;
+  struct dea_solid_report report;
+  dea_status status = dea_solid_create(failing, small_grid, &options, &solid);
+  if (status == DEA_OK) {
+    status = dea_solid_solve(failing, solid, 0, &report);
+  }
+  failing_check(failing, status);
+  dea_solid_destroy(failing, solid);
+}
+
+static void test_each_allocation_of_a_solid(void **state)
+{
+  (void)state;
+  const struct dea_quarter quarter = {2, 2, a_m, b_m, 1e-4, .fine = 1};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &small_grid), DEA_OK);
+  assert_true(failing_each(make_solid) > 15);
+  dea_grid_destroy(ctx, small_grid);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -319,6 +351,7 @@ int main(void)
       cmocka_unit_test(test_no_false_modes_at_rest),
       cmocka_unit_test(test_four_fibres_as_built),
       cmocka_unit_test(test_cantilever_under_end_shear),
+      cmocka_unit_test(test_each_allocation_of_a_solid),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -3,7 +3,10 @@
  * Nothing in the library prints, exits or keeps global state. A function that can fail takes the
  * context first and returns a status; the context then holds the message, the chain of calls that
  * led to it, and for errors in an input file every finding with its file, line and column.
- * A context belongs to one thread at a time. */
+ * A context belongs to one thread at a time. Contexts of several threads may read designs and solve
+ * at the same time; results (dea_store_write, dea_run_read, run folders) go through HDF5, which
+ * keeps state of its own, and are for one thread at a time unless that HDF5 was built thread-safe.
+ */
 #ifndef DEA_BASE_CONTEXT_H
 #define DEA_BASE_CONTEXT_H
 

@@ -28,9 +28,12 @@ static void unlock_udunits(ut_error_message_handler handler)
   pthread_mutex_unlock(&udunits_lock);
 }
 
+/* Freeing a table takes it out of udunits2's list of all tables, so that too is locked. */
 static void release_system(void *system)
 {
+  ut_error_message_handler handler = lock_udunits();
   ut_free_system(system);
+  unlock_udunits(handler);
 }
 
 /* The unit table of the context, read on first use (5 ms). */
@@ -169,26 +172,36 @@ static bool read_number(const char *text, const struct dea_measure *due, double 
   return true;
 }
 
+/* Says why a unit (NULL: not known) is not the one due. Naming its dimension parses a unit for each
+ * one known, which is why it is done for bad units only. */
+static void explain_unit(const ut_system *system, const char *text, const char *unit,
+                         const ut_unit *from, const struct dea_measure *due, char why[DEA_WHY_SIZE])
+{
+  const char *name = from != NULL ? dimension_of(system, from) : NULL;
+  if (from == NULL) {
+    snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
+             unit, text, due->example);
+  } else if (strcmp(due->unit, "1") == 0) {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
+             text, unit[0] == '%' ? "a percentage" : (name != NULL ? name : "a value with a unit"),
+             due->example);
+  } else {
+    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but %s is due, such as '%s'", text,
+             name != NULL ? name : "of another dimension", dimension_name(due->unit), due->example);
+  }
+}
+
 /* Compares the unit with the one due and converts. */
 static bool convert(const ut_system *system, const char *text, const char *unit, double value,
                     const struct dea_measure *due, double *si, char why[DEA_WHY_SIZE])
 {
   ut_unit *from = ut_parse(system, unit, UT_UTF8), *to = ut_parse(system, due->unit, UT_UTF8);
-  bool number_due = strcmp(due->unit, "1") == 0, known = false;
-  const char *name = from != NULL ? dimension_of(system, from) : NULL;
-  if (from == NULL) {
-    snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
-             unit, text, due->example);
-  } else if (number_due && strcmp(unit, example_unit(due)) != 0) {
-    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
-             text, unit[0] == '%' ? "a percentage" : (name != NULL ? name : "a value with a unit"),
-             due->example);
-  } else if (to == NULL || ut_are_convertible(from, to) == 0 ||
-             (strcmp(due->unit, "radian") == 0 && unit[0] == '%')) {
-    snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but %s is due, such as '%s'", text,
-             name != NULL ? name : "of another dimension", dimension_name(due->unit), due->example);
-  } else {
-    known = true;
+  bool number_due = strcmp(due->unit, "1") == 0, percent = unit[0] == '%';
+  bool known = from != NULL && to != NULL && ut_are_convertible(from, to) != 0 &&
+               !(number_due && strcmp(unit, example_unit(due)) != 0) &&
+               !(strcmp(due->unit, "radian") == 0 && percent);
+  if (!known) {
+    explain_unit(system, text, unit, from, due, why);
   }
   cv_converter *converter = known ? ut_get_converter(from, to) : NULL;
   if (converter != NULL) {

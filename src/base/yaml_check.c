@@ -67,7 +67,8 @@ static dea_status parser_failed(const struct check *check, const yaml_parser_t *
   if (stands_on_tab(check->text, parser->problem_mark)) {
     return refuse(check, parser->problem_mark, "a tab stands here; YAML indents with spaces");
   }
-  if (strstr(problem, "mapping values are not allowed") != NULL) {
+  if (strstr(problem, "mapping values are not allowed") != NULL ||
+      strcmp(problem, "did not find expected key") == 0) {
     return refuse(check, parser->problem_mark,
                   "this is not YAML: no key can stand here; is the line indented like its "
                   "neighbours?");

@@ -255,6 +255,26 @@ static dea_status find_pairs(struct dea_context *ctx, const struct request *requ
 
 // Comparison and output --------------------------------------------------------------------------
 
+/* Says of which measured points the run has no counterpart: a good misfit of a few says little. */
+static dea_status note_left_out(struct dea_context *ctx, const struct pair *pair)
+{
+  for (size_t i = 0; i < pair->comparison->misfit_count && pair->b_std != NULL; i++) {
+    const struct dea_misfit *m = &pair->comparison->misfits[i];
+    size_t measured = 0;
+    for (size_t k = 0; k < pair->b->count; k++) {
+      measured += isnan(dea_point_get(&pair->b->points[k], m->column)) ? 0U : 1U;
+    }
+    if (m->count < measured) {
+      DEA_TRY(ctx,
+              dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                              "%zu of %zu measured points of '%s' lie outside the voltages of "
+                              "the run and are left out",
+                              measured - m->count, measured, dea_point_columns[m->column].header));
+    }
+  }
+  return DEA_OK;
+}
+
 /* Takes the misfits out that were not asked for; a quantity that is missing is an error. */
 static dea_status compare_pair(struct dea_context *ctx, const struct request *request,
                                struct pair *pair)
@@ -263,6 +283,7 @@ static dea_status compare_pair(struct dea_context *ctx, const struct request *re
   DEA_TRY(ctx, dea_compare_curves(ctx, pair->a, pair->b, pair->b_std, only != NULL ? *only : -1,
                                   &pair->comparison));
   pair->compared.comparison = pair->comparison;
+  DEA_TRY(ctx, note_left_out(ctx, pair));
   if (request->column_count < 2) {
     return DEA_OK;
   }

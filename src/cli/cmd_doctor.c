@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "material/catalogue.h"
+#include "model/model.h"
 #include "result/provenance.h"
 
 #include <errno.h>
@@ -134,6 +135,14 @@ static void check_terminal(struct report *report, const char *terminal)
       "(fonts-dejavu-core)");
 }
 
+static void check_engine(struct report *report)
+{
+  char path[4096];
+  bool ok = dea_solid_module_find(path, sizeof path);
+  say(report, WISHED, ok, "3D engine", ok ? path : "not built",
+      "install libpetsc-real-dev and build again; without it there is no model 3d");
+}
+
 static void check_gnuplot(struct report *report)
 {
   char output[OUTPUT_SIZE];
@@ -174,6 +183,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     status = check_examples(cli->ctx, &report);
   }
   check_gnuplot(&report);
+  check_engine(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {
     status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");

@@ -104,8 +104,8 @@ static void choose_directory(const struct run_options *options, struct dea_text 
   dea_text_add(out, "%.*s.run", (int)length, name);
 }
 
-/* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown ones.
- */
+/* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
+ * ones. */
 static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
                                 const struct dea_design *design,
                                 const struct dea_model_type *out[DEA_DESIGN_MODELS_MAX],
@@ -314,7 +314,7 @@ const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
     .usage = "dea run DESIGN [options]\n"
-             "  -m, --model NAME      lumped or axisymmetric, instead of the design's list\n"
+             "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
              "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
              "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
              "  -f, --force           replace the results in an existing run folder\n"

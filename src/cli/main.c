@@ -229,8 +229,11 @@ int main(int argc, char **argv)
   } else if (strcmp(argv[1], "--version") == 0) {
     printf("dea %s\n", DEA_VERSION);
   } else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
-             strcmp(argv[1], "help") == 0) {
+             (strcmp(argv[1], "help") == 0 && argc == 2)) {
     print_help();
+  } else if (strcmp(argv[1], "help") == 0) { // "dea help run" as "dea run --help"
+    char *swapped[] = {argv[2], "--help", NULL};
+    code = run_command(&cli, 2, swapped);
   } else {
     code = run_command(&cli, argc - 1, argv + 1);
   }

@@ -65,6 +65,9 @@ struct dea_model_type {
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
 };
 
+/* Path of the module that holds the 3D engine, into out[size]; false when it is not here. */
+bool dea_solid_module_find(char *out, size_t size);
+
 /* Model of that name, or NULL. Static storage. */
 const struct dea_model_type *dea_model_find(const char *name);
 const struct dea_model_type *const *dea_model_all(size_t *count);

@@ -113,9 +113,9 @@ static dea_status finish(struct dea_path *path, const double *along_u, double al
 {
   size_t n = path->system.unknowns;
   double scale = path->system.voltage_scale_V, right[ROWS_MAX] = {0};
+  right[n] = 1;
   dea_status status = evaluate(path, at->u, at->voltage_V);
   if (status == DEA_OK) {
-    right[n] = 1;
     status = solve_bordered(path, along_u, along_V / scale, right);
   }
   if (status != DEA_OK) {
@@ -176,14 +176,7 @@ static dea_status state_point(struct dea_path *path, const struct dea_path_state
 }
 
 /* What is watched along a path; each changes sign at its event. */
-enum watched {
-  WATCH_LIMIT,
-  WATCH_TENSION,
-  WATCH_BREAKDOWN,
-  WATCH_STRETCH,
-  WATCH_VOLTAGE,
-  WATCH_COUNT
-};
+enum watched { WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN, WATCH_STRETCH, WATCH_VOLTAGE };
 
 struct watch {
   double stretch_end, voltage_end_V;
@@ -208,11 +201,11 @@ static double watch_value(enum watched what, const struct watch *watch,
   }
 }
 
-/* Arc length in (0, ds) where the watched value changes its sign (Illinois rule, which brackets);
- * the state and point there. Values at the ends: at_0, at_1. */
+/* Arc length *arc in (0, ds) where the watched value changes its sign (Illinois rule, which
+ * brackets); the state and point there. Values at the ends: at_0, at_1. */
 static dea_status locate(struct dea_path *path, const struct dea_path_state *from, double ds,
                          enum watched what, const struct watch *watch, double at_0, double at_1,
-                         struct dea_path_state *state, struct dea_load_point *point)
+                         double *arc, struct dea_path_state *state, struct dea_load_point *point)
 {
   double s0 = 0, s1 = ds, f0 = at_0, f1 = at_1;
   for (int i = 0; i < LOCATE_MAX; i++) {
@@ -225,6 +218,7 @@ static dea_status locate(struct dea_path *path, const struct dea_path_state *fro
     if (status != DEA_OK) {
       return status;
     }
+    *arc = s;
     double f = watch_value(what, watch, state, point);
     if (f == 0 || s1 - s0 < 1e-13 || fabs(f) < 1e-13 * fabs(at_1 - at_0)) {
       break;
@@ -279,11 +273,6 @@ void dea_path_destroy(struct dea_context *ctx, struct dea_path *path)
   dea_free(ctx, path);
 }
 
-void dea_path_rewind(struct dea_path *path)
-{
-  path->state = path->rest;
-}
-
 const struct dea_path_state *dea_path_state_get(const struct dea_path *path)
 {
   return &path->state;
@@ -328,7 +317,8 @@ static bool settle(struct dea_path *path, const struct dea_path_state *from, dou
                    const struct watch *watch, double at_0, double at_1, struct dea_path_state *out)
 {
   struct dea_load_point point;
-  if (locate(path, from, ds, WATCH_VOLTAGE, watch, at_0, at_1, out, &point) != DEA_OK ||
+  double arc;
+  if (locate(path, from, ds, WATCH_VOLTAGE, watch, at_0, at_1, &arc, out, &point) != DEA_OK ||
       out->negative != 0) {
     return false;
   }
@@ -375,11 +365,10 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
     }
     from = to;
   }
-  return dea_fail(
-      ctx, DEA_E_NO_EQUILIBRIUM,
-      "no stable equilibrium at %.6g kV: the path from %.6g kV turns back (pull-in) and "
-      "does not return before %s; lower the voltage or look at the whole path",
-      1e-3 * voltage_V, 1e-3 * path->state.voltage_V, "the end of the path");
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                  "no stable equilibrium at %.6g kV: the path from %.6g kV does not reach it (it "
+                  "turns back at pull-in, or ends); lower the voltage or look at the whole path",
+                  1e-3 * voltage_V, 1e-3 * path->state.voltage_V);
 }
 
 /* A path being traced, with what it reports to. */
@@ -403,29 +392,38 @@ static enum dea_event_kind event_kind(enum watched what, double before)
   }
 }
 
-/* Finds and reports the events inside one segment, in their order along it as far as kinds go. */
+/* Finds and reports the events inside one segment of arc length ds, in their order along it. */
 static dea_status report_events(struct trace *trace, const struct dea_path_state *from, double ds,
                                 const struct dea_path_state *to)
 {
-  static const enum watched kinds[] = {WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN};
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && trace->events != NULL; k++) {
+  enum { KINDS = 3 };
+  static const enum watched kinds[KINDS] = {WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN};
+  struct dea_context *ctx = trace->path->ctx;
+  struct dea_event found[KINDS];
+  double arc[KINDS], at;
+  size_t count = 0;
+  for (size_t k = 0; k < KINDS && trace->events != NULL; k++) {
     double at_0 = watch_value(kinds[k], &trace->watch, from, &trace->before);
     double at_1 = watch_value(kinds[k], &trace->watch, to, &trace->now);
-    bool crossed = kinds[k] == WATCH_LIMIT ? at_0 * at_1 < 0 : at_0 > 0 && at_1 <= 0;
-    if (!crossed) { // also when the value is unknown
+    // false when the value is unknown; a zero belongs to the segment that ends there
+    bool down = at_0 > 0 && at_1 <= 0, up = kinds[k] == WATCH_LIMIT && at_0 < 0 && at_1 >= 0;
+    struct dea_path_state state;
+    struct dea_event event = {.kind = event_kind(kinds[k], at_0)};
+    if (!down && !up) {
       continue;
     }
-    struct dea_path_state state;
-    struct dea_event event;
-    dea_status status =
-        locate(trace->path, from, ds, kinds[k], &trace->watch, at_0, at_1, &state, &event.point);
-    event.kind = event_kind(kinds[k], at_0);
-    if (status == DEA_OK) {
-      status = trace->events(trace->user, &event);
+    DEA_TRY(ctx, locate(trace->path, from, ds, kinds[k], &trace->watch, at_0, at_1, &at, &state,
+                        &event.point));
+    size_t i = count++;
+    for (; i > 0 && arc[i - 1] > at; i--) {
+      found[i] = found[i - 1];
+      arc[i] = arc[i - 1];
     }
-    if (status != DEA_OK) {
-      return status;
-    }
+    found[i] = event;
+    arc[i] = at;
+  }
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, trace->events(trace->user, &found[i]));
   }
   return DEA_OK;
 }
@@ -441,10 +439,12 @@ static bool cut_at_end(struct trace *trace, const struct dea_path_state *from, d
     double at_1 = watch_value(ends[k], &trace->watch, to, &trace->now);
     struct dea_path_state state;
     struct dea_load_point point;
+    double arc;
     if (isfinite(at_1) && at_0 > 0 && at_1 <= 0 &&
-        locate(trace->path, from, *ds, ends[k], &trace->watch, at_0, at_1, &state, &point) ==
+        locate(trace->path, from, *ds, ends[k], &trace->watch, at_0, at_1, &arc, &state, &point) ==
             DEA_OK) {
       *to = state;
+      *ds = arc;
       trace->now = point;
       cut = true;
     }
@@ -474,8 +474,8 @@ dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
         state_point(path, &to, &trace.now) != DEA_OK || to.voltage_V <= 0) {
       break; // the law's domain or the path's own end
     }
-    DEA_TRY(ctx, report_events(&trace, &from, taken, &to));
     bool last = cut_at_end(&trace, &from, &taken, &to);
+    DEA_TRY(ctx, report_events(&trace, &from, taken, &to)); // none beyond the end
     DEA_TRY(ctx, points(user, &trace.now));
     if (last) {
       break;

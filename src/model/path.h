@@ -40,9 +40,6 @@ dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system
                            const double *start, struct dea_path **out);
 void dea_path_destroy(struct dea_context *ctx, struct dea_path *path);
 
-/* Back to the rest state at 0 V. */
-void dea_path_rewind(struct dea_path *path);
-
 /* Current state; lent. */
 const struct dea_path_state *dea_path_state_get(const struct dea_path *path);
 

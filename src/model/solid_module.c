@@ -1,40 +1,49 @@
 /* Model "3d" as the rest of the library sees it: a door to a module that is loaded only when a
  * model is made, since PETSc and what it brings along take longer to load than most commands to
  * run. */
+#define _POSIX_C_SOURCE 200809L // access
 #include "model/model.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 struct dea_model {
   const struct dea_model_type *type; // of the module
   struct dea_model *inner;
 };
 
-/* Opens the module: in the folder that DEA_MODULES names, where it is installed, where it was
- * built. The handle stays open: MPI cannot be unloaded. */
-static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
+bool dea_solid_module_find(char *out, size_t size)
 {
   const char *const folders[] = {getenv("DEA_MODULES"), DEA_INSTALL_MODULE_DIR,
                                  DEA_BUILD_MODULE_DIR};
-  char path[4096];
   for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
-    if (folders[i] == NULL || folders[i][0] == '\0') {
-      continue;
-    }
-    snprintf(path, sizeof path, "%s/dea_solid_module.so", folders[i]);
-    void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (handle != NULL) {
-      *out = dlsym(handle, "dea_solid_module");
-      if (*out != NULL) {
-        return DEA_OK;
+    if (folders[i] != NULL && folders[i][0] != '\0') {
+      snprintf(out, size, "%s/dea_solid_module.so", folders[i]);
+      if (access(out, R_OK) == 0) {
+        return true;
       }
     }
   }
-  return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                  "the 3D engine is not here: it is built when PETSc (libpetsc-real-dev) and BLAS "
-                  "are installed; DEA_MODULES may name the folder of dea_solid_module.so");
+  return false;
+}
+
+/* The handle stays open: MPI cannot be unloaded. */
+static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
+{
+  char path[4096];
+  if (!dea_solid_module_find(path, sizeof path)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the 3D engine is not here: it is built when libpetsc-real-dev is installed; "
+                    "DEA_MODULES may name the folder of dea_solid_module.so");
+  }
+  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  *out = handle != NULL ? dlsym(handle, "dea_solid_module") : NULL;
+  if (*out == NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the 3D engine cannot be loaded: %.300s", dlerror());
+  }
+  return DEA_OK;
 }
 
 static void destroy(struct dea_context *ctx, struct dea_model *model)

@@ -19,10 +19,6 @@ dea_status dea_file_write(struct dea_context *ctx, const char *path, const char 
 /* The text of *text as file directory/name; fails for a text with a failed append. */
 dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
                           const char *directory, const char *name);
-/* Name of the hidden file for `path` ("dir/.name.PID.part"); owned by the caller. */
-char *dea_partial_name(struct dea_context *ctx, const char *path);
-/* Gives a finished hidden file its name; removes it when that fails. */
-dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
 /* Numbers are written with a decimal point whatever the program's locale: between these two calls
  * the thread formats in the C locale. */
 void *dea_c_locale_enter(void);

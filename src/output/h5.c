@@ -155,6 +155,12 @@ void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const cha
   dea_h5_close(space);
 }
 
+/* True when an attribute or dataset of this space holds exactly one value. */
+static bool is_single(hid_t space)
+{
+  return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
+}
+
 void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size)
 {
   out[0] = '\0';
@@ -163,22 +169,18 @@ void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, si
   }
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   hid_t stored = attribute >= 0 ? H5Aget_type(attribute) : H5I_INVALID_HID;
+  hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
   hid_t type = text_type(size);
-  if (stored < 0 || H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0 ||
-      H5Aread(attribute, type, out) < 0) {
+  if (!is_single(space) || stored < 0 || H5Tget_class(stored) != H5T_STRING ||
+      H5Tis_variable_str(stored) > 0 || H5Aread(attribute, type, out) < 0) {
     dea_h5_fail(h, cannot_read);
     out[0] = '\0';
   }
   out[size - 1] = '\0';
   dea_h5_close(type);
+  dea_h5_close(space);
   dea_h5_close(stored);
   dea_h5_close(attribute);
-}
-
-/* True when an attribute or dataset of this space holds exactly one value. */
-static bool is_single(hid_t space)
-{
-  return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
 }
 
 static void get_scalar(struct h5 *h, hid_t object, const char *name, hid_t memory_type, void *out)

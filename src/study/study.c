@@ -12,12 +12,6 @@ static const struct dea_study *const studies[] = {
 #undef STUDY_ROW
 };
 
-const struct dea_study *const *dea_study_all(size_t *count)
-{
-  *count = sizeof studies / sizeof studies[0];
-  return studies;
-}
-
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          struct dea_result *result)
 {

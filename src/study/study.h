@@ -14,9 +14,6 @@ struct dea_study {
                     struct dea_model *model, struct dea_result *result);
 };
 
-/* All studies in the order in which they run. Static storage. */
-const struct dea_study *const *dea_study_all(size_t *count);
-
 /* Runs every study of the result's design with one model. Returns the first failure, after all
  * studies had their turn (an interrupt ends it at once). */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,

@@ -32,6 +32,27 @@ static void element_create(const struct dea_disc *disc, double R0, double R1, si
   }
 }
 
+/* The flat film is at rest, and its centre regular, only where an equibiaxial stretch gives the
+ * same stress along the radius and around it. */
+static dea_status check_directions(struct dea_context *ctx, const struct dea_film *film,
+                                   double pre_stretch)
+{
+  static const double beyond[] = {1, 1.1}; // fibres may begin to carry only when stretched
+  for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+    double l = beyond[i] * pre_stretch;
+    struct dea_plane plane;
+    if (dea_film_eval(film, true, 0, l, l, &plane) == DEA_OK &&
+        fabs(plane.s1 - plane.s2) > 1e-9 * (fabs(plane.s1) + fabs(plane.s2))) {
+      return dea_fail(ctx, DEA_E_DESIGN,
+                      "material '%s' pulls harder in one direction of the plane than in the other, "
+                      "so that a disc of it does not stay round and homogeneous; the model "
+                      "axisymmetric takes films without a direction",
+                      film->material->name);
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *device,
                            size_t order_outer, struct dea_disc *out)
 {
@@ -42,6 +63,7 @@ dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *dev
                     DEA_DISC_ORDER_MAX);
   }
   DEA_TRY(ctx, dea_film_create(ctx, device, &out->film));
+  DEA_TRY(ctx, check_directions(ctx, &out->film, device->pre_stretch));
   out->pre_stretch = device->pre_stretch;
   out->electrode_radius_m = device->electrode_radius_m;
   out->frame_radius_m = device->frame_radius_m;

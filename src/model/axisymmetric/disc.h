@@ -33,7 +33,8 @@ struct dea_disc {
   struct dea_disc_element element[DEA_DISC_ELEMENTS];
 };
 
-/* order_outer: of the elements outside the electrode, 2 to DEA_DISC_ORDER_MAX. device: lent. */
+/* order_outer: of the elements outside the electrode, 2 to DEA_DISC_ORDER_MAX. device: lent.
+ * DEA_E_DESIGN for a film with a direction (docs/theory/axisymmetric.md). */
 dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *device,
                            size_t order_outer, struct dea_disc *out);
 

@@ -1,0 +1,47 @@
+/* output/h5: readers take what they have room for. */
+#include "output/h5.h"
+#include "testing.h"
+
+/* An attribute with many texts or numbers where one is due would write past its reader's room. */
+static void test_store_reads_single_attributes_only(void **state)
+{
+  (void)state;
+  enum { MANY = 1000 };
+  static const char texts[MANY][8];
+  static const long long numbers[MANY];
+  const hsize_t many = MANY;
+  struct h5 h;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, 1 << 16, false); // in memory only
+  hid_t file = H5Fcreate("many.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  hid_t space = H5Screate_simple(1, &many, NULL), type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, 8);
+  hid_t of_texts = H5Acreate2(file, "texts", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t of_numbers = H5Acreate2(file, "numbers", H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT);
+  assert_true(H5Awrite(of_texts, type, texts) >= 0);
+  assert_true(H5Awrite(of_numbers, H5T_NATIVE_LLONG, numbers) >= 0);
+  char text[8];
+  dea_h5_begin(&h, ctx, "many.h5");
+  dea_h5_get_text(&h, file, "texts", text, sizeof text);
+  assert_int_equal(h.status, DEA_E_IO);
+  assert_string_equal(text, "");
+  h.status = DEA_OK;
+  dea_h5_get_int(&h, file, "numbers");
+  assert_int_equal(h.status, DEA_E_IO);
+  dea_h5_end(&h);
+  H5Aclose(of_numbers);
+  H5Aclose(of_texts);
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Fclose(file);
+  H5Pclose(access);
+  dea_context_destroy(ctx);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_store_reads_single_attributes_only)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,76 @@
+/* dea run --model 3d. */
+// ctest: solid
+#define _GNU_SOURCE // mkdtemp
+#include "command.h"
+
+#include <jansson.h>
+
+static double number(const json_t *point, const char *key)
+{
+  const json_t *value = json_object_get(point, key);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* The paper's actuator as built; two other programs have 0.237 to 0.239 mm between the fibres at 5
+ * kV, and everything moves away from the fibres. */
+static void test_four_fibres(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json "
+                               "--set 'compute.voltage={values: [0 kV, 3 kV, 5 kV]}'"),
+                   0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  const json_t *points = json_object_get(root, "points");
+  assert_int_equal(json_array_size(points), 3);
+  const json_t *rest = json_array_get(points, 0), *last = json_array_get(points, 2);
+  assert_close(number(rest, "electrode_stretch"), 1, 1e-9, 0);
+  assert_close(number(rest, "min_tension_N_per_m"), 797.745e3 * 100e-6 / 2.25, 1e-4, 0);
+  assert_close(number(last, "electrode_edge_u_m"), 0.238e-3, 1e-2, 0);
+  assert_true(number(last, "centre_z_m") < -15e-6 && number(last, "centre_z_m") > -25e-6);
+  assert_true(number(last, "fibre_tip_z_m") < -15e-6 && number(last, "fibre_tip_z_m") > -25e-6);
+  assert_true(number(last, "min_tension_N_per_m") > 0);
+  assert_true(number(last, "min_tension_N_per_m") < number(rest, "min_tension_N_per_m"));
+  double h = 100e-6 / 2.25, stretch = number(last, "electrode_stretch");
+  assert_true(number(last, "true_field_V_per_m") > 5e3 / h); // the film thins
+  assert_close(number(last, "true_field_V_per_m"), 5e3 / h * stretch * stretch, 0.1, 0);
+  assert_true(json_is_true(json_object_get(last, "stable")));
+  assert_int_equal(json_integer_value(json_object_get(last, "unstable_modes")), 0);
+  json_decref(root);
+}
+
+/* Without fibres: the exact disc. Force and energy: charge is minus its derivative, so it falls
+ * with V. */
+static void test_plain_disc(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml --model 3d --json "
+                               "--set 'compute.voltage={values: [0 kV, 3 kV]}'"),
+                   0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  const json_t *p = json_array_get(json_object_get(root, "points"), 1);
+  assert_close(number(p, "electrode_stretch") - 1, 0.03434, 6e-3, 0);
+  assert_true(isnan(number(p, "fibre_tip_z_m")));
+  assert_close(number(p, "centre_z_m"), 0, 0, 1e-9);
+  assert_true(number(p, "energy_J") < 0);
+  json_decref(root);
+}
+
+static void test_what_it_cannot_do_yet(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-8.yaml --model 3d --json"), 2);
+  assert_contains(command_err, "four fibres or none");
+  assert_int_equal(
+      command_run("run @/examples/frdea-4.yaml --model 3d --json --set fibres.outer_end=free"), 2);
+  assert_contains(command_err, "clamped");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_four_fibres),
+      cmocka_unit_test(test_plain_disc),
+      cmocka_unit_test(test_what_it_cannot_do_yet),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
