@@ -51,23 +51,29 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
                                 dea_point_column_find("electrode_stretch"), 100.0, -1.0, &look));
   }
   strain_count = panel->series_count;
+  // colours that no model's strain has
+  static const enum dea_colour colours[] = {DEA_GREEN, DEA_PURPLE, DEA_SKY, DEA_ORANGE, DEA_BLACK};
+  enum { COLOURS = sizeof colours / sizeof colours[0] };
+  size_t next = count > 2 ? 1 : 0;
   for (size_t m = 0; m < count; m++) {
     bool once = are_equal(dea_figure_curve(result, models[m], false), z);
     for (int c = 0; c < (once ? 1 : 2); c++) {
       struct dea_series look = dea_figure_look(models[m], m);
       look.style = DEA_LINE_MARKED;
-      look.colour = c == 0 ? DEA_GREEN : DEA_PURPLE;
-      look.marker = 2 + c + 5 * (int)m;
+      look.colour = colours[next % COLOURS];
+      look.marker = 2 + (int)next;
       look.right = true;
       size_t n = strlen(look.title);
       snprintf(look.title + n, sizeof look.title - n, ", {/:Italic z}%s%s", once ? "" : " ",
                once ? "" : words[c]);
+      size_t before = panel->series_count;
       DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false), z[c],
                                   factor, 0.0, &look));
+      next += panel->series_count > before;
     }
   }
   if (panel->series_count > strain_count) {
-    panel->y2_colour = DEA_GREEN;
+    panel->y2_colour = panel->series_count == strain_count + 1 ? DEA_GREEN : DEA_BLACK;
     snprintf(panel->y2_label, sizeof panel->y2_label, "Out-of-plane displacement {/:Italic z} (%s)",
              factor < 1e5 ? "mm" : "\302\265m");
   }

@@ -98,6 +98,12 @@ static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
   model->lumped.coverage = device->coverage;
   model->lumped.electrode_radius_m = device->electrode_radius_m;
   model->lift = dea_lift_create(device);
+  if (device->fibre_count > 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                                 "z and force of model lumped are those of rigid, hinged rods "
+                                 "without the film between them (paper eqs 18-20): upper bounds, "
+                                 "far above a pre-stretched film's, and without a sign"));
+  }
   model->modulus_Pa = dea_film_modulus(&model->lumped.film);
   model->max_stretch = fmin(10 * device->pre_stretch, device->pre_stretch / device->coverage);
   struct dea_lumped_balance rest;
