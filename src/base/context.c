@@ -184,6 +184,14 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  for (size_t i = 0; i < ctx->finding_count; i++) {
+    const struct dea_finding *old = &ctx->findings[i];
+    if (old->severity == severity && old->place.file == place.file &&
+        old->place.line == place.line && old->place.column == place.column &&
+        strcmp(old->text, text) == 0) {
+      return DEA_OK;
+    }
+  }
   void *items =
       grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room, sizeof *ctx->findings);
   if (items == NULL) {

@@ -90,7 +90,7 @@ void dea_context_clear(struct dea_context *ctx);
     }                                                                                              \
   } while (0)
 
-/* Adds a finding (printf style). Fails only for want of memory. */
+/* Adds a finding (printf style); the same one is kept once. Fails only for want of memory. */
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
                            struct dea_place place, const char *format, ...) DEA_PRINTF(4, 5);
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least);
