@@ -328,8 +328,9 @@ static void test_script_runs_by_itself_in_its_folder(void **state)
   assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options), DEA_OK);
   char *drawn = read_all(in_folder("one/stretch.svg"));
   assert_int_equal(unlink(in_folder("one/stretch.svg")), 0);
-  char command[600];
-  snprintf(command, sizeof command, "cd '%s' && gnuplot -d stretch.gp 2>&1", in_folder("one"));
+  char command[600]; // in a locale of plain ASCII gnuplot warns that it has no degree sign
+  snprintf(command, sizeof command, "cd '%s' && LC_ALL=C.UTF-8 gnuplot -d stretch.gp 2>&1",
+           in_folder("one"));
   FILE *pipe = popen(command, "r");
   char said[200] = "";
   size_t n = fread(said, 1, sizeof said - 1, pipe);

@@ -252,11 +252,11 @@ static void test_patch_and_area(void **state)
 
 /* No two nodes in one place: neighbouring blocks share theirs, and fibres theirs with the film.
  * Every node has an element. The fibres' volume is that of their strips. */
-static void test_blocks_are_joined(void **state)
+static void check_joined(int fibres, double width)
 {
-  (void)state;
   struct dea_grid *grid;
-  const struct dea_quarter quarter = {2, 1, 2e-3, 9e-3, 1e-4, 2e-3, 1e-4, .fine = 3, .across = 2};
+  const struct dea_quarter quarter = {2,      1,     2e-3, 9e-3,      1e-4,
+                                      fibres, width, 1e-4, .fine = 3, .across = 2};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   for (size_t i = 0; i < grid->node_count; i++) {
     for (size_t j = 0; j < i; j++) {
@@ -289,16 +289,39 @@ static void test_blocks_are_joined(void **state)
   // strip between the circles: integral of sqrt(b^2 - y^2) - sqrt(a^2 - y^2) over half the width
   double strip = 0;
   for (int i = 0; i < 1000; i++) {
-    double y = 1e-3 * (i + 0.5) / 1000;
-    strip += 1e-6 * (sqrt(81e-6 - y * y) - sqrt(4e-6 - y * y));
+    double y = 0.5 * width * (i + 0.5) / 1000;
+    strip += 0.5 * width / 1000 * (sqrt(81e-6 - y * y) - sqrt(4e-6 - y * y));
   }
-  assert_close(volume, 2 * 1e-4 * strip, 1e-4, 0);
+  assert_close(volume, fibres / 2 * 1e-4 * strip, 2e-4, 0);
   dea_grid_destroy(ctx, grid);
+}
+
+static void test_blocks_are_joined(void **state)
+{
+  (void)state;
+  check_joined(4, 2e-3);
+  check_joined(8, 1.2e-3);
+}
+
+static void test_meshes_that_cannot_be(void **state)
+{
+  (void)state;
+  const struct dea_quarter good = {2, 1, 2e-3, 9e-3, 1e-4, 8, 1.2e-3, 1e-4, .fine = 3, .across = 2};
+  struct dea_quarter bad[] = {good, good, good};
+  struct dea_grid *grid = NULL;
+  bad[0].fibre_width = 1.6e-3; // meet at the circle a
+  bad[1].fibres = 5;
+  bad[2].fine = 0;
+  for (size_t i = 0; i < 3; i++) {
+    assert_int_equal(dea_grid_quarter(ctx, &bad[i], &grid), DEA_E_ARGUMENT);
+    assert_null(grid);
+  }
 }
 
 static void make_grid(struct dea_context *failing)
 {
-  const struct dea_quarter quarter = {2, 2, 2e-3, 9e-3, 1e-4, 2e-3, 1e-4, .fine = 1, .across = 1};
+  const struct dea_quarter quarter = {2, 2,    2e-3, 9e-3,      1e-4,
+                                      8, 1e-3, 1e-4, .fine = 1, .across = 1};
   struct dea_grid *grid = NULL;
   failing_check(failing, dea_grid_quarter(failing, &quarter, &grid));
   dea_grid_destroy(failing, grid);
@@ -319,6 +342,7 @@ int main(void)
       cmocka_unit_test(test_inverted_element_and_bad_order),
       cmocka_unit_test(test_patch_and_area),
       cmocka_unit_test(test_blocks_are_joined),
+      cmocka_unit_test(test_meshes_that_cannot_be),
       cmocka_unit_test(test_each_allocation_of_a_mesh),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -41,14 +41,15 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
 /* Quarter (x, y >= 0) of a film in a ring, its middle plane at z = 0, with electrodes inside the
- * circle a and, unless their thickness is 0, half a fibre along each axis from the circle a to the
- * frame, on top of the film. Lengths in m. */
+ * circle a and fibres from there to the frame, on top of the film: with 4 half a fibre along each
+ * axis, with 8 a whole one on the diagonal as well. Lengths in m. */
 struct dea_quarter {
   int order, order_z;
   double a, b;           // electrode radius, frame radius
   double film_thickness; // h
+  int fibres;            // of the whole actuator: 0, 4 or 8
   double fibre_width, fibre_thickness;
-  size_t fine;   // elements along an eighth of the circle a, beside those of the fibre
+  size_t fine;   // elements along an eighth of the circle a, beside those of the fibres
   size_t across; // elements across half a fibre
   double edge;   // width of the elements on both sides of the circle a, from where they double
                  // up to about square; 0 for no grading

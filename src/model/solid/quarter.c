@@ -1,4 +1,4 @@
-/* Mesh of a quarter of a disc in a ring, with half a fibre along each axis. */
+/* Mesh of a quarter of a disc in a ring, with fibres along the axes and the diagonal. */
 #include "model/solid/grid.h"
 
 #include <math.h>
@@ -84,67 +84,127 @@ static bool fibre_only_on_fibres(int region, int sheet)
   return sheet == DEA_SHEET_FILM || region == DEA_REGION_FIBRE;
 }
 
-/* Cuts of the angle from an axis (0) to pi/4 (1): those across half a fibre first. */
-static size_t angle_cuts(const struct dea_quarter *q, double share, double *cuts)
+/* Elements between two angles of the circle a, as shares of pi/4, and where their lines meet the
+ * frame. */
+struct sector {
+  double from, to, frame_from, frame_to;
+  size_t count;
+  bool fibre;
+};
+
+enum { SECTORS_MAX = 3 };
+
+/* The sectors from an axis to the diagonal; returns their number. */
+static size_t half_sectors(const struct dea_quarter *q, struct sector out[SECTORS_MAX])
 {
-  size_t across = share > 0 ? q->across : 0;
-  for (size_t i = 0; i < across; i++) {
-    cuts[i] = share * (double)i / (double)across;
+  if (q->fibres == 0) {
+    out[0] = (struct sector){0, 1, 0, 1, q->fine, false};
+    return 1;
   }
-  for (size_t i = 0; i <= q->fine; i++) {
-    cuts[across + i] = share + (1 - share) * (double)i / (double)q->fine;
+  double a = asin(0.5 * q->fibre_width / q->a) / eighth;
+  double b = asin(0.5 * q->fibre_width / q->b) / eighth;
+  double end = q->fibres == 8 ? a : 0, frame_end = q->fibres == 8 ? b : 0;
+  out[0] = (struct sector){0, a, 0, b, q->across, true};
+  out[1] = (struct sector){a, 1 - end, b, 1 - frame_end, q->fine, false};
+  out[2] = (struct sector){1 - a, 1, 1 - b, 1, q->across, true};
+  return q->fibres == 8 ? 3 : 2;
+}
+
+/* Cuts of the angle from the axis (0) to the diagonal (1) through all sectors; returns their
+ * number. */
+static size_t turn_cuts(const struct sector *sectors, size_t sector_count, double *cuts)
+{
+  size_t count = 0;
+  cuts[0] = 0;
+  for (size_t k = 0; k < sector_count; k++) {
+    const struct sector *s = &sectors[k];
+    for (size_t i = 1; i <= s->count; i++) {
+      cuts[++count] = s->from + (s->to - s->from) * (double)i / (double)s->count;
+    }
   }
-  return across + q->fine;
+  return count;
+}
+
+/* Blocks outside the circle a: each sector, and its mirror image beyond the diagonal. */
+static void outer_blocks(const struct dea_quarter *q, const struct sector *sectors, size_t count,
+                         const double *rest, size_t rests, double even[SECTORS_MAX][CUTS_MAX],
+                         struct outer_block *outer, struct dea_block *blocks)
+{
+  for (size_t k = 0; k < count; k++) {
+    const struct sector *s = &sectors[k];
+    for (size_t i = 0; i <= s->count; i++) {
+      even[k][i] = (double)i / (double)s->count;
+    }
+    outer[2 * k] = (struct outer_block){q->a,
+                                        q->b,
+                                        {eighth * s->from, eighth * s->to},
+                                        {eighth * s->frame_from, eighth * s->frame_to}};
+    outer[2 * k + 1] =
+        (struct outer_block){q->a,
+                             q->b,
+                             {eighth * (2 - s->to), eighth * (2 - s->from)},
+                             {eighth * (2 - s->frame_to), eighth * (2 - s->frame_from)}};
+    for (size_t m = 0; m < 2; m++) {
+      blocks[2 * k + m] = (struct dea_block){map_outer,
+                                             &outer[2 * k + m],
+                                             rest,
+                                             even[k],
+                                             rests,
+                                             s->count,
+                                             s->fibre ? DEA_REGION_FIBRE : DEA_REGION_FILM};
+    }
+  }
+}
+
+static dea_status check_quarter(struct dea_context *ctx, const struct dea_quarter *q)
+{
+  bool fibres = q->fibres == 4 || q->fibres == 8;
+  // fibres that meet leave no film between them at the circle a
+  double angle = fibres ? asin(fmin(1, 0.5 * q->fibre_width / q->a)) : 0;
+  if ((!fibres && q->fibres != 0) || !(angle * (q->fibres == 8 ? 2 : 1) < 0.99 * eighth) ||
+      (fibres && !(q->fibre_width > 0 && q->fibre_thickness > 0 && q->across > 0))) {
+    return dea_fail(ctx, DEA_E_ARGUMENT,
+                    "a mesh of a quarter takes 0, 4 or 8 fibres that do not meet");
+  }
+  if (q->fine < 1 || q->fine + 2 * q->across >= CUTS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes 1 to %d elements in a row", CUTS_MAX - 1);
+  }
+  return DEA_OK;
 }
 
 dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *q,
                             struct dea_grid **out)
 {
-  bool fibres = q->fibre_thickness > 0;
-  double angle_a = fibres ? asin(0.5 * q->fibre_width / q->a) : 0;
-  double angle_b = fibres ? asin(0.5 * q->fibre_width / q->b) : 0;
-  double turn[CUTS_MAX], back[CUTS_MAX], ring[CUTS_MAX], rest[CUTS_MAX], film[CUTS_MAX];
-  double strip[CUTS_MAX], square = eighth * q->a / (double)(q->fine > 0 ? q->fine : 1);
+  enum { INNER_BLOCKS = 3 };
+  double turn[CUTS_MAX], back[CUTS_MAX], ring[CUTS_MAX], rest[CUTS_MAX];
+  double even[SECTORS_MAX][CUTS_MAX];
+  struct sector sectors[SECTORS_MAX];
+  struct outer_block outer[2 * SECTORS_MAX];
+  struct dea_block blocks[INNER_BLOCKS + 2 * SECTORS_MAX];
+  DEA_TRY(ctx, check_quarter(ctx, q));
+  double square = eighth * q->a / (double)q->fine;
   double first = q->edge > 0 && q->edge < square ? q->edge : square;
   size_t rings = graded_cuts(0.45 * q->a, first, square, ring);
   size_t rests = graded_cuts(q->b - q->a, first, 2 * square, rest);
-  if (q->fine < 1 || q->fine + q->across >= CUTS_MAX || rings == 0 || rests == 0 ||
-      !(angle_a < eighth) || (fibres && q->across < 1)) {
-    return dea_fail(
-        ctx, DEA_E_ARGUMENT,
-        "a mesh of a quarter takes 1 to %d elements in a row, and fibres that do not meet",
-        CUTS_MAX - 1);
+  if (rings == 0 || rests == 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes 1 to %d elements in a row", CUTS_MAX - 1);
   }
-  size_t turns = angle_cuts(q, angle_a / eighth, turn), across = turns - q->fine;
+  size_t sector_count = half_sectors(q, sectors);
+  size_t turns = turn_cuts(sectors, sector_count, turn);
   reverse_cuts(ring, rings);
   memcpy(back, turn, (turns + 1) * sizeof *back);
   reverse_cuts(back, turns);
-  for (size_t i = 0; i <= q->fine; i++) {
-    film[i] = (double)i / (double)q->fine;
-  }
-  for (size_t i = 0; i <= across && across > 0; i++) {
-    strip[i] = (double)i / (double)across;
-  }
   const struct inner_block core = {0, 0.55 * q->a, q->a}, second = {1, core.core, q->a};
-  const double right = 2 * eighth;
-  const struct outer_block outer[] = {
-      {q->a, q->b, {angle_a, eighth}, {angle_b, eighth}},
-      {q->a, q->b, {eighth, right - angle_a}, {eighth, right - angle_b}},
-      {q->a, q->b, {0, angle_a}, {0, angle_b}},
-      {q->a, q->b, {right - angle_a, right}, {right - angle_b, right}},
-  };
-  const struct dea_block blocks[] = {
-      {map_core, &core, turn, turn, turns, turns, DEA_REGION_ELECTRODE},
-      {map_inner_ring, &core, ring, turn, rings, turns, DEA_REGION_ELECTRODE},
-      {map_inner_ring, &second, ring, back, rings, turns, DEA_REGION_ELECTRODE},
-      {map_outer, &outer[0], rest, film, rests, q->fine, DEA_REGION_FILM},
-      {map_outer, &outer[1], rest, film, rests, q->fine, DEA_REGION_FILM},
-      {map_outer, &outer[2], rest, strip, rests, across, DEA_REGION_FIBRE},
-      {map_outer, &outer[3], rest, strip, rests, across, DEA_REGION_FIBRE},
-  };
+  blocks[0] = (struct dea_block){map_core, &core, turn, turn, turns, turns, DEA_REGION_ELECTRODE};
+  blocks[1] =
+      (struct dea_block){map_inner_ring, &core, ring, turn, rings, turns, DEA_REGION_ELECTRODE};
+  blocks[2] =
+      (struct dea_block){map_inner_ring, &second, ring, back, rings, turns, DEA_REGION_ELECTRODE};
+  outer_blocks(q, sectors, sector_count, rest, rests, even, outer, blocks + INNER_BLOCKS);
   const struct dea_sheet sheets[] = {{q->film_thickness, 1, q->order_z},
                                      {q->fibre_thickness, 1, q->order_z}};
-  DEA_TRY(ctx, dea_grid_create(ctx, q->order, blocks, fibres ? 7 : 5, sheets, fibres ? 2 : 1,
-                               fibre_only_on_fibres, -0.5 * q->film_thickness, q->b, out));
+  DEA_TRY(ctx, dea_grid_create(ctx, q->order, blocks, INNER_BLOCKS + 2 * sector_count, sheets,
+                               q->fibres > 0 ? 2 : 1, fibre_only_on_fibres,
+                               -0.5 * q->film_thickness, q->b, out));
   return DEA_OK;
 }

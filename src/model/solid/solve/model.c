@@ -52,8 +52,8 @@ static int held(const void *self, const double X[3])
 static dea_status check(struct dea_context *ctx, const struct dea_device *d)
 {
   const char *lacking = NULL;
-  if (d->fibre_count != 0 && d->fibre_count != 4) {
-    lacking = "four fibres or none (fibres.count)";
+  if (d->fibre_count != 0 && d->fibre_count != 4 && d->fibre_count != 8) {
+    lacking = "four or eight fibres or none (fibres.count)";
   } else if (d->fibre_count > 0 && fabs(d->fibre_overlap_m) > 1e-6 * d->electrode_radius_m) {
     lacking = "fibre tips at the electrode edge (fibres.overlap: 0 mm stretched)";
   } else if (d->fibre_count > 0 && d->outer_end != DEA_END_CLAMPED) {
@@ -111,7 +111,9 @@ static size_t nearest_node(const struct dea_grid *grid, double x, double y, doub
 static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_device *d = model->device;
-  double a = d->electrode_radius_m, diagonal = a * sqrt(0.5);
+  double a = d->electrode_radius_m;
+  double between =
+      acos(-1) / (d->fibre_count > 0 ? d->fibre_count : 4); // half the angle of two fibres
   DEA_TRY(ctx, check(ctx, d));
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
                                "model 3d is a preview: a quarter of the actuator on one coarse "
@@ -124,8 +126,9 @@ static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
       .a = a,
       .b = d->frame_radius_m,
       .film_thickness = d->film_thickness_m,
+      .fibres = d->fibre_count,
       .fibre_width = d->fibre_width_m,
-      .fibre_thickness = d->fibre_count > 0 ? d->fibre_thickness_m : 0,
+      .fibre_thickness = d->fibre_thickness_m,
       .fine = FINE,
       .across = ACROSS,
       .edge = edge_share * a,
@@ -141,7 +144,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx, dea_solid_create(ctx, model->grid, &options, &model->solid));
   model->centre = nearest_node(model->grid, 0, 0, 0);
-  model->between = nearest_node(model->grid, diagonal, diagonal, 0);
+  model->between = nearest_node(model->grid, a * cos(between), a * sin(between), 0);
   model->tip = nearest_node(model->grid, a, 0, 0.5 * d->film_thickness_m); // where they meet
   DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, 0, &model->report));
   model->rest_energy_J = model->report.energy_J;
@@ -185,7 +188,9 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
   }
-  double outwards = (u[3 * model->between] + u[3 * model->between + 1]) * sqrt(0.5);
+  const double *X = model->grid->X + 3 * model->between;
+  double outwards =
+      (u[3 * model->between] * X[0] + u[3 * model->between + 1] * X[1]) / hypot(X[0], X[1]);
   *out = dea_load_point_empty();
   out->voltage_V = model->voltage_V;
   out->electrode_stretch = 1 + outwards / d->electrode_radius_m;
