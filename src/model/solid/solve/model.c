@@ -5,6 +5,7 @@
 #include "model/solid/solve/solid.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Preview mesh: elements an eighth of the electrode's edge, across half a fibre, and the width of
  * those at the edge over its radius (docs/theory/solid.md has what a finer one gives). */
@@ -207,6 +208,21 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* What a user can make of a solve that failed on the way to a voltage. */
+static dea_status stopped(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                          dea_status status)
+{
+  char why[200];
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, status,
+                  "stopped between %.4g and %.4g kV (%s); the points before are kept. %s",
+                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why,
+                  model->device->pre_stretch < 1.1
+                      ? "A film with hardly any pre-stretch buckles at once, which this preview "
+                        "cannot follow yet"
+                      : "Try smaller steps of compute.voltage");
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -220,7 +236,10 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                       1e-3 * voltage_V);
     }
     double next = i == steps ? voltage_V : from + way * i / steps;
-    DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, next, &model->report));
+    dea_status status = dea_solid_solve(ctx, model->solid, next, &model->report);
+    if (status != DEA_OK) {
+      return stopped(ctx, model, next, status);
+    }
     model->voltage_V = next;
   }
   DEA_TRY(ctx, report(ctx, model, out));
