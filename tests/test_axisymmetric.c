@@ -1,24 +1,10 @@
 /* Model axisymmetric: benchmark 4, an independent shooting solution, refinement, derivatives. */
+#include "context_fixture.h"
 #include "devices.h"
 #include "model/axisymmetric/disc.h"
 #include "model/model.h"
 #include "model/path.h"
 #include "testing.h"
-
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 static struct dea_load_point solve_at(const struct dea_device *device, double voltage_V)
 {
@@ -368,5 +354,5 @@ int main(void)
       cmocka_unit_test(test_charge_from_energy),
       cmocka_unit_test(test_held_film_goes_slack_at_the_maxwell_voltage),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

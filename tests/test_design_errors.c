@@ -2,20 +2,7 @@
 #include "base/yaml.h"
 #include "design_text.h"
 
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_context_destroy(ctx);
-  return 0;
-}
+#include "context_fixture.h" // after: its context shadows no name of the header above
 
 /* Reading text must fail with exactly these errors. */
 struct wanted {
@@ -349,7 +336,7 @@ static void test_bad_overrides(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, context_set_up, context_tear_down)
   const struct CMUnitTest tests[] = {
       TEST(test_one_error_each),
       TEST(test_not_yaml),

@@ -1,25 +1,11 @@
 /* Model lumped: benchmark 3, derivatives, force, batch. */
+#include "context_fixture.h"
 #include "devices.h"
 #include "model/lumped/lumped.h"
 #include "model/model.h"
 #include "testing.h"
 
 #include <stdlib.h>
-
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 static struct dea_model *make(const struct dea_device *device)
 {
@@ -267,5 +253,5 @@ int main(void)
       cmocka_unit_test(test_batch_against_model),
       cmocka_unit_test(test_scaling_with_thickness),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

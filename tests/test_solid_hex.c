@@ -4,24 +4,12 @@
 #include "model/solid/grid.h"
 #include "testing.h"
 
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
 #include <stdlib.h>
 
-static struct dea_context *ctx;
 static struct dea_hex_shape shape;
 static struct dea_hex_result at, up, down;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
@@ -345,5 +333,5 @@ int main(void)
       cmocka_unit_test(test_meshes_that_cannot_be),
       cmocka_unit_test(test_each_allocation_of_a_mesh),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

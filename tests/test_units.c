@@ -1,24 +1,10 @@
 /* base/units: numbers with units. */
 #include "base/units.h"
+#include "context_fixture.h"
 #include "testing.h"
 
 #include <locale.h>
 #include <string.h>
-
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 static void test_reads_what_designs_write(void **state)
 {
@@ -113,5 +99,5 @@ int main(void)
       cmocka_unit_test(test_refuses_with_a_reason),
       cmocka_unit_test(test_ignores_the_locale),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

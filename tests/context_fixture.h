@@ -1,0 +1,23 @@
+/* One context for all tests of a program: cmocka_run_group_tests(tests, context_set_up,
+ * context_tear_down). */
+#ifndef DEA_TESTS_CONTEXT_FIXTURE_H
+#define DEA_TESTS_CONTEXT_FIXTURE_H
+
+#include "base/context.h"
+
+static struct dea_context *ctx;
+
+static inline int context_set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static inline int context_tear_down(void **state)
+{
+  (void)state;
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+#endif
