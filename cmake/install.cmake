@@ -44,10 +44,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # A program that links the static library needs its dependencies too; one that links the shared
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files
 # differently from one distribution to the next.
-set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd lapacke")
-set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${HDF5_C_LIBRARIES})
+set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd")
+set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRARIES})
 # of what HDF5 names, the static one needs no more than these
-list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits|libsz|libz\\.")
+list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits|lapack|blas|gfortran|libsz|libz\\.")
 list(REMOVE_DUPLICATES DEA_PC_LIBRARIES)
 list(JOIN DEA_PC_LIBRARIES " " DEA_PC_LIBRARIES)
 if(BUILD_SHARED_LIBS)
