@@ -102,23 +102,40 @@ static double node_value(const struct dea_disc *disc, const double *u, size_t no
   return node == 0 || node + 1 == disc->node_count ? 0 : u[node - 1];
 }
 
+static void gather(const struct dea_disc *disc, const double *u,
+                   const struct dea_disc_element *element, double *local)
+{
+  for (size_t j = 0; j <= element->order; j++) {
+    local[j] = node_value(disc, u, element->first_node + j);
+  }
+}
+
 /* Sums of one Gauss point into element arrays. */
 struct element_sums {
-  double energy, g[DEA_DISC_ORDER_MAX + 1], gV[DEA_DISC_ORDER_MAX + 1];
+  double g[DEA_DISC_ORDER_MAX + 1], gV[DEA_DISC_ORDER_MAX + 1];
   double K[DEA_DISC_ORDER_MAX + 1][DEA_DISC_ORDER_MAX + 1];
 };
+
+/* Stretches l_pre dr/dR and l_pre r/R from the unstretched film at a Gauss point. */
+static void gauss_stretch(const struct dea_disc *disc, const struct dea_disc_element *element,
+                          size_t q, const double *local, double *l_r, double *l_t)
+{
+  double u_slope = 0, u_hoop = 0;
+  for (size_t j = 0; j <= element->order; j++) {
+    u_slope += element->slope[q][j] * local[j];
+    u_hoop += element->hoop[q][j] * local[j];
+  }
+  *l_r = disc->pre_stretch * (1 + u_slope);
+  *l_t = disc->pre_stretch * (1 + u_hoop);
+}
 
 static dea_status gauss_point(const struct dea_disc *disc, const struct dea_disc_element *element,
                               size_t q, const double *local, double voltage_V,
                               struct element_sums *sums)
 {
   const double *slope = element->slope[q], *hoop = element->hoop[q];
-  double l_pre = disc->pre_stretch, u_slope = 0, u_hoop = 0, H0 = disc->film.thickness_m;
-  for (size_t j = 0; j <= element->order; j++) {
-    u_slope += slope[j] * local[j];
-    u_hoop += hoop[j] * local[j];
-  }
-  double l_r = l_pre * (1 + u_slope), l_t = l_pre * (1 + u_hoop); // l_pre dr/dR, l_pre r/R
+  double l_pre = disc->pre_stretch, H0 = disc->film.thickness_m, l_r, l_t;
+  gauss_stretch(disc, element, q, local, &l_r, &l_t);
   struct dea_plane plane, unit = {0};
   dea_status status = dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane);
   if (status != DEA_OK) {
@@ -129,7 +146,6 @@ static dea_status gauss_point(const struct dea_disc *disc, const struct dea_disc
   }
   double weight = element->weight[q], w1 = weight * l_pre, w2 = w1 * l_pre;
   double per_volt = 2 * voltage_V / (H0 * H0);
-  sums->energy += weight * plane.W;
   for (size_t i = 0; i <= element->order; i++) {
     sums->g[i] += w1 * (plane.s1 * slope[i] + plane.s2 * hoop[i]);
     sums->gV[i] += w1 * per_volt * (unit.s1 * slope[i] + unit.s2 * hoop[i]);
@@ -164,28 +180,24 @@ static void scatter(const struct dea_disc *disc, const struct dea_disc_element *
 }
 
 dea_status dea_disc_evaluate(const struct dea_disc *disc, const double *u, double voltage_V,
-                             double *energy, double *g, double *K, double *gV)
+                             double *g, double *K, double *gV)
 {
   size_t n = dea_disc_unknowns(disc);
   double a = disc->electrode_radius_m, scale = 1 / (a * a * dea_film_modulus(&disc->film));
   memset(g, 0, n * sizeof *g);
   memset(gV, 0, n * sizeof *gV);
   memset(K, 0, n * n * sizeof *K);
-  *energy = 0;
   for (size_t e = 0; e < disc->element_count; e++) {
     const struct dea_disc_element *element = &disc->element[e];
     struct element_sums sums = {0};
     double local[DEA_DISC_ORDER_MAX + 1];
-    for (size_t j = 0; j <= element->order; j++) {
-      local[j] = node_value(disc, u, element->first_node + j);
-    }
+    gather(disc, u, element, local);
     for (size_t q = 0; q < element->gauss_count; q++) {
       dea_status status = gauss_point(disc, element, q, local, voltage_V, &sums);
       if (status != DEA_OK) {
         return status;
       }
     }
-    *energy += scale * sums.energy;
     scatter(disc, element, &sums, scale, g, K, gV);
   }
   for (size_t j = 0; j < n; j++) {
@@ -214,20 +226,30 @@ void dea_disc_stretch(const struct dea_disc *disc, const double *u, size_t e, do
   *stretch_t = R > 0 ? disc->pre_stretch * (1 + a * at / R) : *stretch_r;
 }
 
-double dea_disc_capacitance(const struct dea_disc *disc, const double *u)
+dea_status dea_disc_totals(const struct dea_disc *disc, const double *u, double voltage_V,
+                           double *energy, double *capacitance_F)
 {
-  const struct dea_disc_element *element = &disc->element[0];
-  double l_pre = disc->pre_stretch, sum = 0;
-  double h = disc->film.thickness_m / (l_pre * l_pre);
-  for (size_t q = 0; q < element->gauss_count; q++) {
-    double u_slope = 0, u_hoop = 0;
-    for (size_t j = 0; j <= element->order; j++) {
-      double uj = node_value(disc, u, element->first_node + j);
-      u_slope += element->slope[q][j] * uj;
-      u_hoop += element->hoop[q][j] * uj;
+  double a = disc->electrode_radius_m, l_pre = disc->pre_stretch, H0 = disc->film.thickness_m;
+  double h = H0 / (l_pre * l_pre), scale = 1 / (a * a * dea_film_modulus(&disc->film));
+  *energy = *capacitance_F = 0;
+  for (size_t e = 0; e < disc->element_count; e++) {
+    const struct dea_disc_element *element = &disc->element[e];
+    double local[DEA_DISC_ORDER_MAX + 1];
+    gather(disc, u, element, local);
+    for (size_t q = 0; q < element->gauss_count; q++) {
+      double l_r, l_t, weight = element->weight[q];
+      struct dea_plane plane;
+      gauss_stretch(disc, element, q, local, &l_r, &l_t);
+      dea_status status =
+          dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane);
+      if (status != DEA_OK) {
+        return status;
+      }
+      *energy += scale * weight * plane.W;
+      if (element->active) {
+        *capacitance_F += dea_film_capacitance(&disc->film, 2 * pi * h * weight, l_r, l_t);
+      }
     }
-    double volume = 2 * pi * h * element->weight[q];
-    sum += dea_film_capacitance(&disc->film, volume, l_pre * (1 + u_slope), l_pre * (1 + u_hoop));
   }
-  return sum;
+  return DEA_OK;
 }

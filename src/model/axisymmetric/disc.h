@@ -46,14 +46,15 @@ size_t dea_disc_edge(const struct dea_disc *disc);
 /* Pi/(2 pi h a^2 mu) and its derivatives by u and V (see dea_path_system): g, gV [unknowns], K
  * [unknowns x unknowns], full. DEA_E_DOMAIN outside the law's domain. */
 dea_status dea_disc_evaluate(const struct dea_disc *disc, const double *u, double voltage_V,
-                             double *energy, double *g, double *K, double *gV);
+                             double *g, double *K, double *gV);
 
 /* Stretches from the unstretched film at a place inside element e, R between its ends; at R = 0
  * both are the radial one. displacement_m: r - R. */
 void dea_disc_stretch(const struct dea_disc *disc, const double *u, size_t e, double R,
                       double *stretch_r, double *stretch_t, double *displacement_m);
 
-/* Capacitance [F]. */
-double dea_disc_capacitance(const struct dea_disc *disc, const double *u);
+/* Energy [in the unit 2 pi h a^2 mu] and capacitance [F], without the cost of a tangent. */
+dea_status dea_disc_totals(const struct dea_disc *disc, const double *u, double voltage_V,
+                           double *energy, double *capacitance_F);
 
 #endif

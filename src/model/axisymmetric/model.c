@@ -27,8 +27,7 @@ static dea_status evaluate(void *self, const double *u, double voltage_V, double
                            double *gV)
 {
   const struct dea_model *model = self;
-  double energy;
-  return dea_disc_evaluate(&model->disc, u, voltage_V, &energy, g, K, gV);
+  return dea_disc_evaluate(&model->disc, u, voltage_V, g, K, gV);
 }
 
 /* Stretches and tensions at one place. */
@@ -97,12 +96,10 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   const struct dea_disc *disc = &model->disc;
   double a = disc->electrode_radius_m, b = disc->frame_radius_m, energy;
   double edge_u_m = a * u[dea_disc_edge(disc)];
-  double g[DEA_PATH_UNKNOWNS_MAX], gV[DEA_PATH_UNKNOWNS_MAX];
-  double K[DEA_PATH_UNKNOWNS_MAX * DEA_PATH_UNKNOWNS_MAX];
   *out = dea_load_point_empty();
   dea_status status = find_extremes(disc, u, voltage_V, out);
   if (status == DEA_OK) {
-    status = dea_disc_evaluate(disc, u, voltage_V, &energy, g, K, gV);
+    status = dea_disc_totals(disc, u, voltage_V, &energy, &out->capacitance_F);
   }
   if (status != DEA_OK) {
     return status;
@@ -114,7 +111,6 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   out->nominal_field_V_per_m = voltage_V / disc->film.thickness_m;
   out->energy_J =
       (energy - model->rest_energy) * energy_unit_J(disc, model->device->film_thickness_m);
-  out->capacitance_F = dea_disc_capacitance(disc, u);
   return DEA_OK;
 }
 
