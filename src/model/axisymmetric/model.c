@@ -1,5 +1,6 @@
 /* Model "axisymmetric" behind the common interface. */
 #include "model/axisymmetric/disc.h"
+#include "model/make.h"
 #include "model/path.h"
 
 #include <math.h>
@@ -122,9 +123,10 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+                          struct dea_model *model)
 {
-  const struct dea_device *device = model->device;
+  model->device = device;
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
   model->max_stretch = 10 * device->pre_stretch;
@@ -145,18 +147,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          struct dea_model **out)
 {
-  *out = NULL;
-  struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
-  if (model == NULL) {
-    return DEA_E_MEMORY;
-  }
-  model->device = device;
-  dea_status status = prepare(ctx, model);
-  if (status != DEA_OK) {
-    destroy(ctx, model);
-    return status;
-  }
-  *out = model;
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, prepare, destroy, out));
   return DEA_OK;
 }
 

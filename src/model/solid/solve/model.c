@@ -1,7 +1,7 @@
 /* Model "3d" behind the common interface: a quarter of the actuator as a solid. It is the whole of
  * the loadable module that model/solid_module.c opens. */
-#include "model/model.h"
 #include "model/film.h"
+#include "model/make.h"
 #include "model/solid/solve/solid.h"
 
 #include <math.h>
@@ -109,9 +109,11 @@ static size_t nearest_node(const struct dea_grid *grid, double x, double y, doub
   return nearest;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_model *model)
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+                          struct dea_model *model)
 {
-  const struct dea_device *d = model->device;
+  model->device = device;
+  const struct dea_device *d = device;
   double a = d->electrode_radius_m;
   double between =
       acos(-1) / (d->fibre_count > 0 ? d->fibre_count : 4); // half the angle of two fibres
@@ -164,18 +166,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          struct dea_model **out)
 {
-  *out = NULL;
-  struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
-  if (model == NULL) {
-    return DEA_E_MEMORY;
-  }
-  model->device = device;
-  dea_status status = prepare(ctx, model);
-  if (status != DEA_OK) {
-    destroy(ctx, model);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = model;
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, prepare, destroy, out));
   return DEA_OK;
 }
 

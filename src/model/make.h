@@ -1,0 +1,16 @@
+/* What the create functions of all models have in common. */
+#ifndef DEA_MODEL_MAKE_H
+#define DEA_MODEL_MAKE_H
+
+#include "model/model.h"
+
+/* Allocates a zeroed model of `size` bytes, prepares it, and destroys it again when that fails.
+ * *out: NULL then. prepare and destroy: the model's own. */
+dea_status dea_model_make(struct dea_context *ctx, size_t size, const struct dea_device *device,
+                          dea_status (*prepare)(struct dea_context *ctx,
+                                                const struct dea_device *device,
+                                                struct dea_model *model),
+                          void (*destroy)(struct dea_context *ctx, struct dea_model *model),
+                          struct dea_model **out);
+
+#endif
