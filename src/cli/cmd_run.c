@@ -261,8 +261,10 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
     for (size_t i = 0; i < count; i++) {
       print_model(run->result, types[i]->name);
     }
-    printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
-           options->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
+    if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
+      printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
+             options->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
+    }
   }
   return status;
 }
