@@ -7,15 +7,15 @@
 enum { REPEATS = 500 };
 
 static struct dea_hex_shape shape;
-static struct dea_hex_layer layer;
+static struct dea_layer layer;
 static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], pressures[DEA_HEX_PRESSURES_MAX];
-static struct dea_hex_result result;
+static struct dea_element_result result;
 
 static void evaluate(void *user)
 {
   (void)user;
   for (int i = 0; i < REPEATS; i++) {
-    if (dea_hex_evaluate(&shape, &layer, X, u, pressures, 4e3, true, &result) != DEA_OK) {
+    if (dea_hex_evaluate(&shape, &layer, X, u, pressures, 4e3, DEA_TANGENT, &result) != DEA_OK) {
       abort();
     }
   }
@@ -24,13 +24,13 @@ static void evaluate(void *user)
 int main(void)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  layer = (struct dea_hex_layer){.law = dea_law_find("yeoh"),
-                                 .param = yeoh,
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .permittivity_F_per_m = 2.5e-11,
-                                 .thickness_m = 44e-6};
-  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_hex_layer_relax(&layer) != DEA_OK) {
+  layer = (struct dea_layer){.law = dea_law_find("yeoh"),
+                             .param = yeoh,
+                             .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                             .kappa_Pa = 4e7,
+                             .permittivity_F_per_m = 2.5e-11,
+                             .thickness_m = 44e-6};
+  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_layer_relax(&layer) != DEA_OK) {
     return 1;
   }
   for (int n = 0; n < shape.nodes; n++) {

@@ -9,28 +9,28 @@
 #include <stdlib.h>
 
 static struct dea_hex_shape shape;
-static struct dea_hex_result at, up, down;
+static struct dea_element_result at, up, down;
 
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
 /* Pre-stretched film with a field (law), or a compressible solid. */
-static struct dea_hex_layer film(double pre_stretch)
+static struct dea_layer film(double pre_stretch)
 {
   double h = 100e-6 / (pre_stretch * pre_stretch);
-  struct dea_hex_layer layer = {
+  struct dea_layer layer = {
       .law = dea_law_find("yeoh"),
       .param = yeoh,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
       .thickness_m = h};
-  assert_int_equal(dea_hex_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_hex_layer plastic(void)
+static struct dea_layer plastic(void)
 {
-  struct dea_hex_layer layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  struct dea_layer layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
   return layer;
 }
 
@@ -52,12 +52,12 @@ static void sample(double size, double *X, double *u)
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 
-static void check_derivatives(const struct dea_hex_layer *layer)
+static void check_derivatives(const struct dea_layer *layer)
 {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], d = 1e-10, largest_g = 0, largest_K = 0;
   int dofs = 3 * shape.nodes;
   sample(1, X, u);
-  assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &at), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
   for (int i = 0; i < dofs; i++) {
     largest_g = fmax(largest_g, fabs(at.g[i]));
     for (int j = 0; j < dofs; j++) {
@@ -67,9 +67,11 @@ static void check_derivatives(const struct dea_hex_layer *layer)
   for (int j = 0; j < dofs; j++) {
     double keep = u[j];
     u[j] = keep + d;
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &up), DEA_OK);
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &up),
+                     DEA_OK);
     u[j] = keep - d;
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, true, &down), DEA_OK);
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &down),
+                     DEA_OK);
     u[j] = keep;
     assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * largest_g);
     for (int i = 0; i < dofs; i++) {
@@ -84,7 +86,7 @@ static void test_derivatives_of_all_orders(void **state)
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
-      const struct dea_hex_layer soft = film(1.5), hard = plastic();
+      const struct dea_layer soft = film(1.5), hard = plastic();
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
       check_derivatives(&hard);
@@ -98,7 +100,7 @@ static void test_rigid_motion(void **state)
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], turned[DEA_HEX_DOFS_MAX];
-  const struct dea_hex_layer soft = film(1.5);
+  const struct dea_layer soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
   for (int n = 0; n < shape.nodes; n++) {
@@ -110,8 +112,9 @@ static void test_rigid_motion(void **state)
       turned[3 * n + i] = x - X[3 * n + i];
     }
   }
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 4e3, true, &at), DEA_OK);
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, turned, pressures, 4e3, true, &up), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, turned, pressures, 4e3, DEA_TANGENT, &up),
+                   DEA_OK);
   assert_close(up.energy_J, at.energy_J, 1e-10, 0);
   double scale = 0;
   for (int i = 0; i < 3 * shape.nodes; i++) {
@@ -135,7 +138,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   (void)state;
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   double X[DEA_HEX_DOFS_MAX];
-  const struct dea_hex_layer soft = film(1.5);
+  const struct dea_layer soft = film(1.5);
   const double a = 100e-6, h = 22e-6, voltages[] = {0, 5e3};
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   for (int n = 0; n < shape.nodes; n++) {
@@ -145,7 +148,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   }
   for (int k = 0; k < 2; k++) {
     double pull[3] = {0, 0, 0}, field = voltages[k] / soft.thickness_m;
-    assert_int_equal(dea_hex_evaluate(&shape, &soft, X, rest, none, voltages[k], true, &at),
+    assert_int_equal(dea_hex_evaluate(&shape, &soft, X, rest, none, voltages[k], DEA_TANGENT, &at),
                      DEA_OK);
     for (int n = 0; n < shape.nodes; n++) {
       for (int i = 0; i < 3; i++) {
@@ -163,14 +166,16 @@ static void test_inverted_element_and_bad_order(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_hex_layer soft = film(1.5);
+  const struct dea_layer soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_OK);
   u[3 * 13 + 2] = 1e-4; // the middle node out through the top
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_E_DOMAIN);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at),
+                   DEA_E_DOMAIN);
   u[3 * 13 + 2] = NAN;
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, false, &at), DEA_E_DOMAIN);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at),
+                   DEA_E_DOMAIN);
   assert_int_equal(dea_hex_shape_create(0, 1, &shape), DEA_E_ARGUMENT);
   assert_int_equal(dea_hex_shape_create(2, DEA_HEX_ORDER_MAX + 1, &shape), DEA_E_ARGUMENT);
 }
@@ -178,7 +183,7 @@ static void test_inverted_element_and_bad_order(void **state)
 /* ---- meshes ---- */
 
 /* Forces of all elements on the nodes under u = (D - 1) X. */
-static void forces(const struct dea_grid *grid, const struct dea_hex_layer *layer, const double *D,
+static void forces(const struct dea_grid *grid, const struct dea_layer *layer, const double *D,
                    double *g, double *volume)
 {
   static const double none[DEA_HEX_PRESSURES_MAX] = {0};
@@ -195,7 +200,7 @@ static void forces(const struct dea_grid *grid, const struct dea_hex_layer *laye
         u[3 * n + i / 3] += D[i] * X[3 * n + i % 3];
       }
     }
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, none, 2e3, true, &at), DEA_OK);
+    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, none, 2e3, DEA_TANGENT, &at), DEA_OK);
     *volume += at.volume_m3;
     for (int i = 0; i < 3 * shape.nodes; i++) {
       g[3 * nodes[i / 3] + i % 3] += at.g[i];
@@ -211,7 +216,7 @@ static void test_patch_and_area(void **state)
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
     struct dea_grid *grid;
-    const struct dea_hex_layer soft = film(1.5);
+    const struct dea_layer soft = film(1.5);
     double volume, largest = 0;
     assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
     const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
@@ -254,7 +259,7 @@ static void check_joined(int fibres, double width)
   }
   assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
-  const struct dea_hex_layer hard = plastic();
+  const struct dea_layer hard = plastic();
   char *used = calloc(grid->node_count, 1);
   double volume = 0;
   assert_non_null(used);
@@ -267,7 +272,7 @@ static void check_joined(int fibres, double width)
         X[3 * n + i] = grid->X[3 * node + i];
       }
     }
-    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, false, &at), DEA_OK);
+    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &at), DEA_OK);
     volume += grid->sheet[e] == DEA_SHEET_FIBRE ? at.volume_m3 : 0;
   }
   for (size_t n = 0; n < grid->node_count; n++) {

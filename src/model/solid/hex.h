@@ -19,8 +19,7 @@
 #ifndef DEA_MODEL_SOLID_HEX_H
 #define DEA_MODEL_SOLID_HEX_H
 
-#include "material/material.h"
-#include "material/point.h"
+#include "model/solid/layer.h"
 
 enum {
   DEA_HEX_ORDER_MAX = 3,
@@ -28,6 +27,7 @@ enum {
   DEA_HEX_GAUSS_MAX = 64,     // the same rule in each direction
   DEA_HEX_PRESSURES_MAX = 10, // polynomials of total degree order - 1
   DEA_HEX_DOFS_MAX = 3 * DEA_HEX_NODES_MAX,
+  DEA_ELEMENT_DOFS_MAX = 4 * DEA_HEX_NODES_MAX, // with a potential
 };
 
 /* Basis of one element shape: in-plane order and order through the thickness. Nodes: first local
@@ -42,40 +42,25 @@ struct dea_hex_shape {
   double node_at[DEA_HEX_NODES_MAX][3]; // local coordinates in [-1, 1]
 };
 
-/* What an element is made of. */
-struct dea_hex_layer {
-  const struct dea_law *law; // NULL: compressible neo-Hookean solid of the two Lame constants
-  const double *param;
-  double lame_lambda_Pa, lame_mu_Pa;
-  double pre_stretch[3];    // diagonal of G
-  double p0_Pa, kappa_s_Pa; // see above; dea_hex_layer_relax sets them
-  double kappa_Pa;
-  double permittivity_F_per_m; // eps, 0: no electric energy
-  double thickness_m;          // h, over which the voltage stands
-};
-
 /* order, order_z: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
 dea_status dea_hex_shape_create(int order, int order_z, struct dea_hex_shape *out);
 
-/* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
- * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
-dea_status dea_hex_layer_relax(struct dea_hex_layer *layer);
-
-/* Result of one element. g: [3 nodes], K: [3 nodes][3 nodes] row by row, theta: see above. */
-struct dea_hex_result {
+/* Result of one element of any kind. g: [dofs], K: [dofs][dofs] row by row, dofs node by node;
+ * theta: see above, of a hexahedron with a law. */
+struct dea_element_result {
   double energy_J;
-  double g[DEA_HEX_DOFS_MAX];
-  double K[DEA_HEX_DOFS_MAX * DEA_HEX_DOFS_MAX];
+  double g[DEA_ELEMENT_DOFS_MAX];
+  double K[DEA_ELEMENT_DOFS_MAX * DEA_ELEMENT_DOFS_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
   double volume_m3;
 };
 
-/* Energy, and with want_tangent also g and K. X, u: [nodes][3]; multiplier: [pressures] p_k.
- * voltage_V: 0 where there is no electrode. DEA_E_DOMAIN for an inverted element or beyond the
- * law's domain. */
-dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_hex_layer *layer,
+/* X, u: [nodes][3]; multiplier: [pressures] p_k. voltage_V: 0 where there is no electrode. Of *out,
+ * what the level asks for is set, and theta and volume always. DEA_E_DOMAIN for an inverted element
+ * or beyond the law's domain. */
+dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
                             const double *X, const double *u, const double *multiplier,
-                            double voltage_V, bool want_tangent, struct dea_hex_result *out);
+                            double voltage_V, enum dea_level level, struct dea_element_result *out);
 
 /* Membrane state of a film element at its in-plane Gauss points, averaged through the thickness. */
 struct dea_hex_membrane {
@@ -84,9 +69,8 @@ struct dea_hex_membrane {
   double tension[DEA_HEX_GAUSS_MAX]; // smaller principal force per current length [N/m]
 };
 /* Arguments as in dea_hex_evaluate; one element through the thickness of the layer, thickness_m. */
-dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape,
-                                 const struct dea_hex_layer *layer, const double *X,
-                                 const double *u, const double *multiplier, double voltage_V,
-                                 struct dea_hex_membrane *out);
+dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape, const struct dea_layer *layer,
+                                 const double *X, const double *u, const double *multiplier,
+                                 double voltage_V, struct dea_hex_membrane *out);
 
 #endif

@@ -37,90 +37,139 @@ static void gather(const struct dea_solid *s, size_t e, const double *u, struct 
 }
 
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
-                                   bool want_tangent)
+                                   enum dea_level level)
 {
   struct element_place at;
   gather(s, e, u, &at);
   return dea_hex_evaluate(&s->shape, &s->layers[s->layer[e]], at.X, at.u, at.multiplier,
-                          s->active[e] ? voltage_V : 0, want_tangent, s->element);
+                          s->active[e] ? voltage_V : 0, level, s->element);
 }
 
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
-  *energy = 0;
+  *energy = -dea_solid_dot(s, s->force, u);
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    dea_status status = evaluate_element(s, e, u, voltage_V, false);
+    dea_status status = evaluate_element(s, e, u, voltage_V, DEA_ENERGY);
     if (status != DEA_OK) {
       return status;
     }
     *energy += s->element->energy_J;
   }
-  *energy -= dea_solid_dot(s, s->force, u);
+  for (size_t i = 0; i < s->load_count; i++) {
+    for (size_t p = 0; p < s->loads[i].piece_count; p++) {
+      dea_status status = s->loads[i].evaluate(s->loads[i].self, p, u, DEA_ENERGY, s->piece);
+      if (status != DEA_OK) {
+        return status;
+      }
+      *energy += s->piece->node_count > 0 ? s->piece->energy_J : 0;
+    }
+  }
   return DEA_OK;
 }
 
-/* Takes held components out of the element: their rows and columns are those of a spring. */
-static void hold(const struct dea_solid *s, const int *nodes, struct dea_hex_result *element)
+/* Takes held components out of K: their rows and columns are those of a spring. */
+static void hold(const struct dea_solid *s, const int *nodes, int dofs, double *K)
 {
-  int dofs = 3 * s->shape.nodes;
   for (int i = 0; i < dofs; i++) {
     if (s->held[3 * nodes[i / 3] + i % 3]) {
-      double spring = fabs(element->K[i * dofs + i]);
+      double spring = fabs(K[i * dofs + i]);
       for (int j = 0; j < dofs; j++) {
-        element->K[i * dofs + j] = element->K[j * dofs + i] = 0;
+        K[i * dofs + j] = K[j * dofs + i] = 0;
       }
-      element->K[i * dofs + i] = spring;
-      element->g[i] = 0;
+      K[i * dofs + i] = spring;
     }
   }
 }
 
-/* Energy, g and K at u; also theta, the metric (diagonal of K in absolute value) and the force
- * scale. */
-dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                              double *energy)
+/* Adds g and, with DEA_TANGENT, K of a few nodes to those of the whole. K is changed. */
+static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node_count,
+                          const int *nodes, const double *g, double *K, enum dea_level level)
 {
-  double squares = 0;
-  int dofs = 3 * s->shape.nodes;
+  int dofs = 3 * node_count;
+  for (int i = 0; i < dofs; i++) {
+    size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
+    s->squares += g[i] * g[i]; // held or not: the reaction is a force too
+    s->g[at] += s->held[at] ? 0 : g[i];
+  }
+  if (level < DEA_TANGENT) {
+    return DEA_OK;
+  }
   PetscInt block[DEA_HEX_NODES_MAX];
-  *energy = s->energy_scale = 0;
-  memset(s->g, 0, s->dofs * sizeof(double));
-  memset(s->metric, 0, s->dofs * sizeof(double));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(s->K), "MatZeroEntries"));
+  hold(s, nodes, dofs, K);
+  for (int i = 0; i < dofs; i++) {
+    s->metric[3 * nodes[i / 3] + i % 3] += fabs(K[i * dofs + i]);
+  }
+  for (int n = 0; n < node_count; n++) {
+    block[n] = nodes[n];
+  }
+  DEA_TRY(ctx,
+          dea_solid_petsc(
+              ctx, MatSetValuesBlocked(s->K, node_count, block, node_count, block, K, ADD_VALUES),
+              "MatSetValuesBlocked"));
+  return DEA_OK;
+}
+
+static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                               enum dea_level level, double *energy)
+{
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    dea_status status = evaluate_element(s, e, s->u, voltage_V, true);
+    struct dea_element_result *element = s->element;
+    dea_status status = evaluate_element(s, e, s->u, voltage_V, level);
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "element %zu is inverted or beyond its law's domain", e);
     }
-    *energy += s->element->energy_J;
-    s->energy_scale += fabs(s->element->energy_J);
-    memcpy(s->theta + e * (size_t)s->shape.pressures, s->element->theta,
+    *energy += element->energy_J;
+    s->energy_scale += fabs(element->energy_J);
+    memcpy(s->theta + e * (size_t)s->shape.pressures, element->theta,
            (size_t)s->shape.pressures * sizeof(double));
-    for (int i = 0; i < dofs; i++) { // before it is held: the reaction is a force too
-      squares += s->element->g[i] * s->element->g[i];
+    DEA_TRY(ctx, scatter(ctx, s, s->shape.nodes, s->grid->nodes + e * DEA_HEX_NODES_MAX, element->g,
+                         element->K, level));
+  }
+  return DEA_OK;
+}
+
+static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum dea_level level,
+                            double *energy)
+{
+  struct dea_piece *piece = s->piece;
+  for (size_t i = 0; i < s->load_count; i++) {
+    for (size_t p = 0; p < s->loads[i].piece_count; p++) {
+      dea_status status = s->loads[i].evaluate(s->loads[i].self, p, s->u, level, piece);
+      if (status != DEA_OK) {
+        return dea_fail(ctx, status, "a load is not defined at these displacements");
+      }
+      if (piece->node_count > 0) {
+        *energy += piece->energy_J;
+        s->energy_scale += fabs(piece->energy_J);
+        DEA_TRY(ctx, scatter(ctx, s, piece->node_count, piece->nodes, piece->g, piece->K, level));
+      }
     }
-    hold(s, nodes, s->element);
-    for (int i = 0; i < dofs; i++) {
-      s->g[3 * nodes[i / 3] + i % 3] += s->element->g[i];
-      s->metric[3 * nodes[i / 3] + i % 3] += fabs(s->element->K[i * dofs + i]);
-    }
-    for (int n = 0; n < s->shape.nodes; n++) {
-      block[n] = nodes[n];
-    }
-    PetscErrorCode code = MatSetValuesBlocked(s->K, s->shape.nodes, block, s->shape.nodes, block,
-                                              s->element->K, ADD_VALUES);
-    DEA_TRY(ctx, dea_solid_petsc(ctx, code, "MatSetValuesBlocked"));
   }
   *energy -= dea_solid_dot(s, s->force, s->u);
   for (size_t i = 0; i < s->dofs; i++) {
     s->g[i] -= s->held[i] ? 0 : s->force[i];
-    squares += s->force[i] * s->force[i];
+    s->squares += s->force[i] * s->force[i];
   }
-  s->force_scale = sqrt(squares);
-  DEA_TRY(ctx,
-          dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  return DEA_OK;
+}
+
+dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              enum dea_level level, double *energy)
+{
+  *energy = s->energy_scale = s->squares = 0;
+  memset(s->g, 0, s->dofs * sizeof(double));
+  if (level >= DEA_TANGENT) {
+    memset(s->metric, 0, s->dofs * sizeof(double));
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(s->K), "MatZeroEntries"));
+  }
+  DEA_TRY(ctx, add_elements(ctx, s, voltage_V, level, energy));
+  DEA_TRY(ctx, add_loads(ctx, s, level, energy));
+  s->force_scale = sqrt(s->squares);
+  if (level >= DEA_TANGENT) {
+    DEA_TRY(ctx,
+            dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  }
   return DEA_OK;
 }
 
@@ -129,7 +178,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *ma
 {
   *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_hex_layer *layer = &s->layers[s->layer[e]];
+    const struct dea_layer *layer = &s->layers[s->layer[e]];
     struct element_place at;
     struct dea_hex_membrane membrane;
     if (layer->law == NULL) {

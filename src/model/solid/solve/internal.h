@@ -9,7 +9,7 @@
 struct dea_solid {
   const struct dea_grid *grid;
   struct dea_hex_shape shape;
-  struct dea_hex_layer *layers;
+  struct dea_layer *layers;
   size_t dofs;
   int *layer;                                    // [elements]
   bool *active;                                  // [elements]
@@ -20,9 +20,13 @@ struct dea_solid {
       before; // [dofs + pressures] displacements and multipliers of the equilibrium before the last
   double voltage_V, voltage_before_V; // of the last two equilibria
   int solved;                         // how many there are, up to 2
+  double squares;                     // of element forces at the last assembly
   double force_scale;  // root of the sum of squared element forces at the last assembly
   double energy_scale; // sum of absolute element energies there
-  struct dea_hex_result *element;
+  struct dea_element_result *element;
+  struct dea_solid_load *loads; // [load_count]
+  size_t load_count;
+  struct dea_piece *piece;
   Mat K, factor;
   Vec right, solution;
   double last_shift; // that made K positive definite, relative to the metric
@@ -41,9 +45,23 @@ double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b
 /* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
 
-/* Energy, g and K at s->u; also theta, the metric (diagonal of K in absolute value) and the scales.
- */
+/* At s->u: energy and, up to the level, g and K; also theta, the metric (diagonal of K in absolute
+ * value) and the scales. */
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                              double *energy);
+                              enum dea_level level, double *energy);
+
+/* Factor of K (LDL^T); *negative: its negative pivots. */
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
+/* K += amount times the metric. */
+dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount);
+/* out = K^-1 right with the present factor, [dofs] both. */
+dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
+                                  double *out);
+
+/* Minimum of the energy with the multipliers as they are. */
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              struct dea_solid_report *report);
+/* The multipliers take over kappa theta; returns the largest theta. */
+double dea_solid_update_multipliers(struct dea_solid *s);
 
 #endif

@@ -17,7 +17,7 @@ static const double kappa_share = 100;         // kappa over the shear modulus
 
 struct dea_model {
   const struct dea_device *device;
-  struct dea_hex_layer layers[2];
+  struct dea_layer layers[2];
   struct dea_grid *grid;
   struct dea_solid *solid;
   size_t tip, centre, between; // nodes that are reported
@@ -79,7 +79,7 @@ static dea_status fill_layers(struct dea_context *ctx, struct dea_model *model)
   double l = d->pre_stretch, E = d->fibre.young_modulus_Pa, nu = d->fibre.poisson_ratio;
   struct dea_film film;
   DEA_TRY(ctx, dea_film_create(ctx, d, &film));
-  model->layers[0] = (struct dea_hex_layer){
+  model->layers[0] = (struct dea_layer){
       .law = d->film.law,
       .param = d->film.param,
       .pre_stretch = {l, l, 1 / (l * l)},
@@ -87,9 +87,9 @@ static dea_status fill_layers(struct dea_context *ctx, struct dea_model *model)
       .permittivity_F_per_m = DEA_EPSILON_0 * d->film.permittivity.at_rest,
       .thickness_m = d->film_thickness_m,
   };
-  model->layers[1] = (struct dea_hex_layer){.lame_mu_Pa = E / (2 * (1 + nu)),
-                                            .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
-  dea_status status = dea_hex_layer_relax(&model->layers[0]);
+  model->layers[1] = (struct dea_layer){.lame_mu_Pa = E / (2 * (1 + nu)),
+                                        .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  dea_status status = dea_layer_relax(&model->layers[0]);
   return status == DEA_OK ? DEA_OK
                           : dea_fail(ctx, status, "the film's law ends before the pre-stretch");
 }

@@ -129,10 +129,11 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   s->theta = dea_alloc(ctx, elements * pressures, sizeof(double));
   s->before = dea_alloc(ctx, s->dofs + elements * pressures, sizeof(double));
   s->element = dea_alloc(ctx, 1, sizeof *s->element);
+  s->piece = dea_alloc(ctx, 1, sizeof *s->piece);
   if (s->layers == NULL || s->layer == NULL || s->active == NULL || s->held == NULL ||
       s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL || s->metric == NULL ||
       s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->before == NULL ||
-      s->element == NULL) {
+      s->element == NULL || s->piece == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
@@ -180,9 +181,9 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   MatDestroy(&s->K);
   VecDestroy(&s->right);
   VecDestroy(&s->solution);
-  void *const memory[] = {s->layers, s->layer,  s->active, s->held,       s->u,
-                          s->trial,  s->g,      s->step,   s->multiplier, s->theta,
-                          s->metric, s->before, s->force,  s->element};
+  void *const memory[] = {s->layers, s->layer,   s->active,     s->held,  s->u,      s->trial,
+                          s->g,      s->step,    s->multiplier, s->theta, s->metric, s->before,
+                          s->force,  s->element, s->piece,      s->loads};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }
@@ -197,4 +198,17 @@ double *dea_solid_displacement(struct dea_solid *solid)
 double *dea_solid_force(struct dea_solid *solid)
 {
   return solid->force;
+}
+
+dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
+                              const struct dea_solid_load *load)
+{
+  struct dea_solid_load *loads =
+      dea_resize(ctx, solid->loads, solid->load_count + 1, sizeof *loads);
+  if (loads == NULL) {
+    return DEA_E_MEMORY;
+  }
+  solid->loads = loads;
+  loads[solid->load_count++] = *load;
+  return DEA_OK;
 }

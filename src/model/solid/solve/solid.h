@@ -16,7 +16,7 @@ struct dea_solid;
 struct dea_solid_options {
   int order_z;
   size_t layer_count;
-  const struct dea_hex_layer *layers; // copied
+  const struct dea_layer *layers; // copied
   /* Layer of an element, and whether it lies between electrodes. */
   int (*layer_of)(const void *self, int region, int sheet);
   bool (*active)(const void *self, int region, int sheet);
@@ -52,6 +52,29 @@ double *dea_solid_displacement(struct dea_solid *solid);
 
 /* Dead loads on the nodes [node_count][3] [N], lent; at first 0. Set them before a solve. */
 double *dea_solid_force(struct dea_solid *solid);
+
+/* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
+ * pressure. It comes in pieces of a few nodes each (a face of an element, whose nodes are coupled
+ * in K anyway). */
+enum { DEA_PIECE_NODES_MAX = 16, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
+struct dea_piece {
+  int node_count;
+  int nodes[DEA_PIECE_NODES_MAX];
+  double energy_J;
+  double g[DEA_PIECE_DOFS_MAX];                      // [3 node_count]
+  double K[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX]; // [3 node_count][3 node_count], symmetric
+};
+struct dea_solid_load {
+  const void *self; // lent
+  size_t piece_count;
+  /* A piece at displacements u [node_count of the solid][3] up to the level; node_count 0 when
+   * there is nothing. DEA_E_DOMAIN where the energy is not defined. */
+  dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_level level,
+                         struct dea_piece *out);
+};
+/* Adds a load for all solves to come; copied. */
+dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
+                              const struct dea_solid_load *load);
 
 /* Extremes of the film (elements of hyperelastic layers) at the last equilibrium. */
 struct dea_solid_extremes {

@@ -1,0 +1,145 @@
+#include "model/solid/layer.h"
+
+#include <math.h>
+
+double dea_cofactors(const double F[9], double cof[9])
+{
+  cof[0] = F[4] * F[8] - F[5] * F[7];
+  cof[1] = F[5] * F[6] - F[3] * F[8];
+  cof[2] = F[3] * F[7] - F[4] * F[6];
+  cof[3] = F[2] * F[7] - F[1] * F[8];
+  cof[4] = F[0] * F[8] - F[2] * F[6];
+  cof[5] = F[1] * F[6] - F[0] * F[7];
+  cof[6] = F[1] * F[5] - F[2] * F[4];
+  cof[7] = F[2] * F[3] - F[0] * F[5];
+  cof[8] = F[0] * F[4] - F[1] * F[3];
+  return F[0] * cof[0] + F[1] * cof[1] + F[2] * cof[2];
+}
+
+/* A += f d2J/dF2: eps_ikm eps_JLN F_mN. */
+static void add_second_of_J(double f, const double F[9], double A[81])
+{
+  for (int i = 0; i < 3; i++) {
+    int k1 = (i + 1) % 3, k2 = (i + 2) % 3;
+    for (int J = 0; J < 3; J++) {
+      int L1 = (J + 1) % 3, L2 = (J + 2) % 3;
+      double *row = A + 9 * (3 * i + J);
+      row[3 * k1 + L1] += f * F[3 * k2 + L2];
+      row[3 * k1 + L2] -= f * F[3 * k2 + L1];
+      row[3 * k2 + L1] -= f * F[3 * k1 + L2];
+      row[3 * k2 + L2] += f * F[3 * k1 + L1];
+    }
+  }
+}
+
+/* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. */
+static void compressible(const struct dea_layer *layer, const double F[9], const double cof[9],
+                         double J, struct dea_point *out)
+{
+  double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, l = log(J), I1 = 0, inverse[9];
+  for (int a = 0; a < 9; a++) {
+    I1 += F[a] * F[a];
+    inverse[a] = cof[a] / J; // F^-T
+  }
+  out->W = 0.5 * mu * (I1 - 3 - 2 * l) + 0.5 * lambda * l * l;
+  for (int a = 0; a < 9; a++) {
+    out->P[a] = mu * (F[a] - inverse[a]) + lambda * l * inverse[a];
+    for (int b = 0; b < 9; b++) {
+      int crossed_a = 3 * (a / 3) + b % 3, crossed_b = 3 * (b / 3) + a % 3;
+      out->A[9 * a + b] = (a == b ? mu : 0) + lambda * inverse[a] * inverse[b] +
+                          (mu - lambda * l) * inverse[crossed_a] * inverse[crossed_b];
+    }
+  }
+}
+
+/* -(k/2) |F_1 x F_2|^2; |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns. */
+static void add_electric(double k, const double F[9], struct dea_point *out)
+{
+  double c[2][3], m[2][2];
+  for (int J = 0; J < 2; J++) {
+    for (int i = 0; i < 3; i++) {
+      c[J][i] = F[3 * i + J];
+    }
+  }
+  for (int J = 0; J < 2; J++) {
+    for (int L = 0; L < 2; L++) {
+      m[J][L] = c[J][0] * c[L][0] + c[J][1] * c[L][1] + c[J][2] * c[L][2];
+    }
+  }
+  out->W -= 0.5 * k * (m[0][0] * m[1][1] - m[0][1] * m[0][1]);
+  for (int J = 0; J < 2; J++) {
+    int O = 1 - J; // the other column
+    for (int i = 0; i < 3; i++) {
+      out->P[3 * i + J] -= k * (m[O][O] * c[J][i] - m[0][1] * c[O][i]);
+      double *row = out->A + 9 * (3 * i + J);
+      for (int p = 0; p < 3; p++) {
+        row[3 * p + J] -= k * ((i == p ? m[O][O] : 0) - c[O][i] * c[O][p]);
+        row[3 * p + O] -= k * (2 * c[J][i] * c[O][p] - c[O][i] * c[J][p] - (i == p ? m[0][1] : 0));
+      }
+    }
+  }
+}
+
+/* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
+static dea_status elastic(const struct dea_layer *layer, const double F[9], const double cof[9],
+                          double J, struct dea_point *out)
+{
+  if (layer->law == NULL) {
+    compressible(layer, F, cof, J, out);
+    return DEA_OK;
+  }
+  static const double fibre[3] = {1, 0, 0};
+  const double *G = layer->pre_stretch;
+  double FG[9];
+  for (int a = 0; a < 9; a++) {
+    FG[a] = F[a] * G[a % 3];
+  }
+  dea_status status = dea_point_elastic(layer->law, layer->param, FG, fibre, out);
+  for (int a = 0; a < 9; a++) {
+    out->P[a] *= G[a % 3];
+    for (int b = 0; b < 9; b++) {
+      out->A[9 * a + b] *= G[a % 3] * G[b % 3];
+    }
+  }
+  return status;
+}
+
+dea_status dea_layer_relax(struct dea_layer *layer)
+{
+  static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  struct dea_point point;
+  layer->p0_Pa = 0;
+  if (layer->law == NULL) {
+    return DEA_OK;
+  }
+  dea_status status = elastic(layer, one, one, 1, &point);
+  layer->p0_Pa = -point.P[8];
+  layer->kappa_s_Pa =
+      0.5 * fabs(layer->p0_Pa); // above the third that it takes, docs/theory/solid.md
+  return status;
+}
+
+dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], const double cof[9],
+                           double J, double pressure, double field_V_per_m, struct dea_point *point)
+{
+  dea_status status = elastic(layer, F, cof, J, point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  if (layer->law != NULL) {
+    double excess = J - 1, p = layer->p0_Pa + layer->kappa_s_Pa * excess;
+    point->W += layer->p0_Pa * excess + 0.5 * layer->kappa_s_Pa * excess * excess;
+    p += pressure;
+    for (int a = 0; a < 9; a++) {
+      point->P[a] += p * cof[a];
+      for (int b = 0; b < 9; b++) {
+        point->A[9 * a + b] += layer->kappa_s_Pa * cof[a] * cof[b];
+      }
+    }
+    add_second_of_J(p, F, point->A);
+  }
+  if (field_V_per_m != 0 && layer->permittivity_F_per_m > 0) {
+    add_electric(layer->permittivity_F_per_m * field_V_per_m * field_V_per_m, F, point);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,42 @@
+/* What an element is made of, and its energy, stress and tangent at a point.
+ *
+ * Energy per volume of the stretched flat film (docs/theory/solid.md), a film or glue with a law:
+ *
+ *   W(F G) + p0 (J - 1) + kappa_s/2 (J - 1)^2 - (eps/2) E^2 |F_1 x F_2|^2
+ *
+ * and a compressible neo-Hookean solid (fibre) without one. */
+#ifndef DEA_MODEL_SOLID_LAYER_H
+#define DEA_MODEL_SOLID_LAYER_H
+
+#include "material/material.h"
+#include "material/point.h"
+
+/* How much of an energy is wanted; each level has those before it. */
+enum dea_level { DEA_ENERGY, DEA_FORCE, DEA_TANGENT };
+
+struct dea_layer {
+  const struct dea_law *law; // NULL: compressible neo-Hookean solid of the two Lame constants
+  const double *param;
+  double lame_lambda_Pa, lame_mu_Pa;
+  double pre_stretch[3];       // diagonal of G, det G = 1
+  double p0_Pa, kappa_s_Pa;    // dea_layer_relax sets them
+  double kappa_Pa;             // bulk modulus of the projected part, of the element
+  double permittivity_F_per_m; // eps, 0: no electric energy
+  double thickness_m;          // h, over which the voltage stands
+};
+
+/* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
+ * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
+dea_status dea_layer_relax(struct dea_layer *layer);
+
+/* Energy, stress and tangent by F, at cofactors cof and determinant J of F. pressure: added as
+ * p dJ/dF (only with a law; its energy is the caller's). field_V_per_m: reference field E between
+ * the electrodes, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
+dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], const double cof[9],
+                           double J, double pressure, double field_V_per_m,
+                           struct dea_point *point);
+
+/* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
+double dea_cofactors(const double F[9], double cof[9]);
+
+#endif

@@ -1,0 +1,53 @@
+/* Linear algebra: factor, inertia, shift, solve. */
+#include "model/solid/solve/internal.h"
+
+#include <string.h>
+
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  MatFactorInfo info;
+  PetscInt minus, zero, plus;
+  MatFactorInfoInitialize(&info);
+  if (!s->analysed) {
+    DEA_TRY(ctx, dea_solid_petsc(
+                     ctx, MatGetFactor(s->K, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &s->factor),
+                     "MatGetFactor"));
+    MatMumpsSetIcntl(s->factor, 24, 1); // null pivots and
+    MatMumpsSetIcntl(s->factor, 13, 1); // no parallel root, so that the inertia is counted
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(s->factor, s->K, NULL, &info),
+                                 "MatCholeskyFactorSymbolic"));
+    s->analysed = true;
+  }
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorNumeric(s->factor, s->K, &info),
+                               "MatCholeskyFactorNumeric"));
+  DEA_TRY(ctx,
+          dea_solid_petsc(ctx, MatGetInertia(s->factor, &minus, &zero, &plus), "MatGetInertia"));
+  *negative = (int)(minus + zero);
+  return DEA_OK;
+}
+
+dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount)
+{
+  PetscScalar *values;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
+  for (size_t i = 0; i < s->dofs; i++) {
+    values[i] = amount * s->metric[i];
+  }
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatDiagonalSet(s->K, s->right, ADD_VALUES), "MatDiagonalSet"));
+  return DEA_OK;
+}
+
+dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
+                                  double *out)
+{
+  PetscScalar *values;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
+  memcpy(values, right, s->dofs * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->solution, &values), "VecGetArray"));
+  memcpy(out, values, s->dofs * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->solution, &values), "VecRestoreArray"));
+  return DEA_OK;
+}
