@@ -4,7 +4,7 @@
 set -eu
 cd "$1"
 # shellcheck disable=SC2016 # awk's own
-find src bench tests -name '*.[ch]' -exec awk '
+find src bench tests verify -name '*.[ch]' -exec awk '
   FNR == 1 { if (last != "") { file_end() } last = FILENAME; open = 0 }
   { lines = FNR }
   /^{/ { open = FNR; name = before }
