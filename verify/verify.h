@@ -1,4 +1,5 @@
-/* Parts of every verification program: a page on stdout, and a count of numbers out of tolerance. */
+/* Parts of every verification program: a page on stdout, and a count of numbers out of tolerance.
+ */
 #ifndef DEA_VERIFY_H
 #define DEA_VERIFY_H
 
