@@ -89,12 +89,13 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   for (int i = 0; i < dofs; i++) {
     size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
     s->squares += g[i] * g[i]; // held or not: the reaction is a force too
-    s->g[at] += s->held[at] ? 0 : g[i];
+    s->g[at] += g[i];
   }
   if (level < DEA_TANGENT) {
     return DEA_OK;
   }
   PetscInt block[DEA_HEX_NODES_MAX];
+  dea_solid_frame_matrix(s, node_count, nodes, K);
   hold(s, nodes, dofs, K);
   for (int i = 0; i < dofs; i++) {
     s->metric[3 * nodes[i / 3] + i % 3] += fabs(K[i * dofs + i]);
@@ -147,7 +148,7 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
   }
   *energy -= dea_solid_dot(s, s->force, s->u);
   for (size_t i = 0; i < s->dofs; i++) {
-    s->g[i] -= s->held[i] ? 0 : s->force[i];
+    s->g[i] -= s->force[i];
     s->squares += s->force[i] * s->force[i];
   }
   return DEA_OK;
@@ -164,6 +165,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   }
   DEA_TRY(ctx, add_elements(ctx, s, voltage_V, level, energy));
   DEA_TRY(ctx, add_loads(ctx, s, level, energy));
+  dea_solid_release_held(s, s->g);
   s->force_scale = sqrt(s->squares);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx,

@@ -11,9 +11,11 @@ struct dea_solid {
   struct dea_hex_shape shape;
   struct dea_layer *layers;
   size_t dofs;
-  int *layer;                                    // [elements]
-  bool *active;                                  // [elements]
-  unsigned char *held;                           // [dofs]
+  int *layer;          // [elements]
+  bool *active;        // [elements]
+  unsigned char *held; // [dofs], of the node's local components
+  int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
+  double (*frames)[9]; // rows are local axes
   double *u, *trial, *g, *step, *metric, *force; // [dofs]
   double *multiplier, *theta;                    // [elements][shape.pressures]
   double *
@@ -50,11 +52,22 @@ dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               enum dea_level level, double *energy);
 
+/* Nodes with local axes (see options): K, metric and held are in their components, all else is in
+ * global ones. */
+dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
+                                   const struct dea_solid_options *options);
+/* K [3 node_count][3 node_count] of some nodes, from global to local components. */
+void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K);
+/* v [dofs] from global to local components, or back. */
+void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v);
+/* Sets held components of v [dofs], which is in global ones, to 0. */
+void dea_solid_release_held(const struct dea_solid *s, double *v);
+
 /* Factor of K (LDL^T); *negative: its negative pivots. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
 /* K += amount times the metric. */
 dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount);
-/* out = K^-1 right with the present factor, [dofs] both. */
+/* out = K^-1 right with the present factor, [dofs] both, in global components. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
 

@@ -44,10 +44,12 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
   PetscScalar *values;
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
   memcpy(values, right, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, values);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->solution, &values), "VecGetArray"));
   memcpy(out, values, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, true, out);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->solution, &values), "VecRestoreArray"));
   return DEA_OK;
 }

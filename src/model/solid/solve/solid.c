@@ -147,6 +147,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
       s->held[3 * n + (size_t)i] = (bits >> i) & 1;
     }
   }
+  DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
   return create_matrix(ctx, s);
 }
 
@@ -183,7 +184,7 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   VecDestroy(&s->solution);
   void *const memory[] = {s->layers, s->layer,   s->active,     s->held,  s->u,      s->trial,
                           s->g,      s->step,    s->multiplier, s->theta, s->metric, s->before,
-                          s->force,  s->element, s->piece,      s->loads};
+                          s->force,  s->element, s->piece,      s->loads, s->frame,  s->frames};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

@@ -22,6 +22,10 @@ struct dea_solid_options {
   bool (*active)(const void *self, int region, int sheet);
   /* Components of a node that are held, as bits 1, 2, 4. */
   int (*held)(const void *self, const double X[3]);
+  /* Local axes of a node as the rows of the orthonormal Q, which `held` then speaks of: for a
+   * mirror plane that is not x = 0 or y = 0. false: the global axes. NULL: they are those of all
+   * nodes. */
+  bool (*frame)(const void *self, const double X[3], double Q[9]);
   const void *self;
 };
 
