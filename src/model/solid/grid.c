@@ -102,10 +102,12 @@ static dea_status plane_create(struct dea_context *ctx, int order, const struct 
   return DEA_OK;
 }
 
-/* Nodes of all levels through the sheets, and elements between them. */
+/* Nodes of all levels through the sheets, and elements between them. The nodes of a column follow
+ * each other, so that a range of numbers is a part of the plate. */
 static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, size_t sheet_count,
                     bool (*present)(int region, int sheet), double bottom_m, struct dea_grid *grid)
 {
+  size_t levels = grid->node_count / m->node_count;
   int order_z = sheets[0].order_z, per_quad = (grid->order + 1) * (grid->order + 1);
   double at[DEA_HEX_ORDER_MAX + 1], z = bottom_m;
   size_t level = 0, element = 0;
@@ -114,11 +116,11 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
     double step = sheets[s].thickness_m / (double)sheets[s].count;
     for (size_t k = 0; k < sheets[s].count; k++, level += (size_t)order_z, z += step) {
       for (int l = 0; l <= order_z; l++) {
-        double *X = grid->X + 3 * (level + (size_t)l) * m->node_count;
         for (size_t n = 0; n < m->node_count; n++) {
-          X[3 * n] = m->x[2 * n];
-          X[3 * n + 1] = m->x[2 * n + 1];
-          X[3 * n + 2] = z + 0.5 * (1 + at[l]) * step;
+          double *X = grid->X + 3 * (n * levels + level + (size_t)l);
+          X[0] = m->x[2 * n];
+          X[1] = m->x[2 * n + 1];
+          X[2] = z + 0.5 * (1 + at[l]) * step;
         }
       }
       for (size_t e = 0; e < m->quad_count; e++) {
@@ -129,7 +131,7 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
         const int *quad = m->quads + e * (size_t)per_quad;
         for (int l = 0; l <= order_z; l++) {
           for (int n = 0; n < per_quad; n++) {
-            *to++ = quad[n] + (int)((level + (size_t)l) * m->node_count);
+            *to++ = (int)((size_t)quad[n] * levels + level) + l;
           }
         }
         grid->region[element] = m->region[e];

@@ -45,18 +45,20 @@ static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *
                           s->active[e] ? voltage_V : 0, level, s->element);
 }
 
-dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
+/* Energy of this rank's elements and pieces of loads. */
+static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
-  *energy = -dea_solid_dot(s, s->force, u);
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    dea_status status = evaluate_element(s, e, u, voltage_V, DEA_ENERGY);
+  for (size_t k = 0; k < s->own_count; k++) {
+    dea_status status = evaluate_element(s, s->own[k], u, voltage_V, DEA_ENERGY);
     if (status != DEA_OK) {
       return status;
     }
     *energy += s->element->energy_J;
   }
   for (size_t i = 0; i < s->load_count; i++) {
-    for (size_t p = 0; p < s->loads[i].piece_count; p++) {
+    size_t from, to;
+    dea_solid_share(s, s->loads[i].piece_count, &from, &to);
+    for (size_t p = from; p < to; p++) {
       dea_status status = s->loads[i].evaluate(s->loads[i].self, p, u, DEA_ENERGY, s->piece);
       if (status != DEA_OK) {
         return status;
@@ -65,6 +67,17 @@ dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage
     }
   }
   return DEA_OK;
+}
+
+dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
+{
+  *energy = 0;
+  dea_status status = dea_solid_agree(NULL, s, own_energy(s, u, voltage_V, energy));
+  if (status == DEA_OK) {
+    dea_solid_sum(s, energy, 1);
+    *energy -= dea_solid_dot(s, s->force, u);
+  }
+  return status;
 }
 
 /* Takes held components out of K: their rows and columns are those of a spring. */
@@ -113,7 +126,8 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
 static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                enum dea_level level, double *energy)
 {
-  for (size_t e = 0; e < s->grid->element_count; e++) {
+  for (size_t k = 0; k < s->own_count; k++) {
+    size_t e = s->own[k];
     struct dea_element_result *element = s->element;
     dea_status status = evaluate_element(s, e, s->u, voltage_V, level);
     if (status != DEA_OK) {
@@ -134,7 +148,9 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
 {
   struct dea_piece *piece = s->piece;
   for (size_t i = 0; i < s->load_count; i++) {
-    for (size_t p = 0; p < s->loads[i].piece_count; p++) {
+    size_t from, to;
+    dea_solid_share(s, s->loads[i].piece_count, &from, &to);
+    for (size_t p = from; p < to; p++) {
       dea_status status = s->loads[i].evaluate(s->loads[i].self, p, s->u, level, piece);
       if (status != DEA_OK) {
         return dea_fail(ctx, status, "a load is not defined at these displacements");
@@ -146,12 +162,28 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
       }
     }
   }
-  *energy -= dea_solid_dot(s, s->force, s->u);
+  return DEA_OK;
+}
+
+/* Sums over the ranks, then the dead loads, which all ranks know. */
+static void collect(struct dea_solid *s, enum dea_level level, double *energy)
+{
+  double sums[3] = {*energy, s->energy_scale, s->squares};
+  dea_solid_sum(s, sums, 3);
+  dea_solid_sum(s, s->g, s->dofs);
+  dea_solid_sum(s, s->theta, dea_solid_pressure_count(s));
+  if (level >= DEA_TANGENT) {
+    dea_solid_sum(s, s->metric, s->dofs);
+  }
   for (size_t i = 0; i < s->dofs; i++) {
     s->g[i] -= s->force[i];
-    s->squares += s->force[i] * s->force[i];
+    sums[2] += s->force[i] * s->force[i];
   }
-  return DEA_OK;
+  *energy = sums[0] - dea_solid_dot(s, s->force, s->u);
+  s->energy_scale = sums[1];
+  s->squares = sums[2];
+  s->force_scale = sqrt(s->squares);
+  dea_solid_release_held(s, s->g);
 }
 
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
@@ -159,14 +191,17 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
 {
   *energy = s->energy_scale = s->squares = 0;
   memset(s->g, 0, s->dofs * sizeof(double));
+  memset(s->theta, 0, dea_solid_pressure_count(s) * sizeof(double));
   if (level >= DEA_TANGENT) {
     memset(s->metric, 0, s->dofs * sizeof(double));
     DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(s->K), "MatZeroEntries"));
   }
-  DEA_TRY(ctx, add_elements(ctx, s, voltage_V, level, energy));
-  DEA_TRY(ctx, add_loads(ctx, s, level, energy));
-  dea_solid_release_held(s, s->g);
-  s->force_scale = sqrt(s->squares);
+  dea_status status = add_elements(ctx, s, voltage_V, level, energy);
+  if (status == DEA_OK) {
+    status = add_loads(ctx, s, level, energy);
+  }
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, status));
+  collect(s, level, energy);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx,
             dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
@@ -175,35 +210,49 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   return DEA_OK;
 }
 
+/* Takes the film's extremes of one element into *out. */
+static dea_status extremes_of(const struct dea_solid *s, size_t e,
+                              const struct dea_material *material, double pre_stretch,
+                              struct dea_solid_extremes *out)
+{
+  const struct dea_layer *layer = &s->layers[s->layer[e]];
+  double voltage_V = s->active[e] ? s->voltage_V : 0;
+  struct element_place at;
+  struct dea_hex_membrane membrane;
+  gather(s, e, s->u, &at);
+  dea_status status =
+      dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier, voltage_V, &membrane);
+  for (int p = 0; status == DEA_OK && p < membrane.count; p++) {
+    double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
+    double stretch = pre_stretch * sqrt(membrane.area[p]);
+    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
+    if (s->active[e]) {
+      out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+      out->breakdown_margin =
+          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
+    }
+  }
+  return status;
+}
+
 dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
                               double pre_stretch, struct dea_solid_extremes *out)
 {
+  dea_status status = DEA_OK;
   *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_layer *layer = &s->layers[s->layer[e]];
-    struct element_place at;
-    struct dea_hex_membrane membrane;
-    if (layer->law == NULL) {
-      continue;
-    }
-    double voltage_V = s->active[e] ? s->voltage_V : 0;
-    gather(s, e, s->u, &at);
-    dea_status status =
-        dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier, voltage_V, &membrane);
-    if (status != DEA_OK) {
-      return status;
-    }
-    for (int p = 0; p < membrane.count; p++) {
-      double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
-      double stretch = pre_stretch * sqrt(membrane.area[p]);
-      out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
-      if (s->active[e]) {
-        out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
-        out->breakdown_margin =
-            fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
-      }
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    size_t e = s->own[k];
+    if (s->layers[s->layer[e]].law != NULL) {
+      status = extremes_of(s, e, material, pre_stretch, out);
     }
   }
+  status = dea_solid_agree(NULL, s, status);
+  if (status != DEA_OK) {
+    return status;
+  }
+  out->true_field_V_per_m = dea_solid_largest(s, out->true_field_V_per_m);
+  out->breakdown_margin = -dea_solid_largest(s, -out->breakdown_margin);
+  out->min_tension_N_per_m = -dea_solid_largest(s, -out->min_tension_N_per_m);
   if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
     out->breakdown_margin = NAN;
   }

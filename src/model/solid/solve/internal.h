@@ -7,6 +7,9 @@
 #include <petscmat.h>
 
 struct dea_solid {
+  int rank, size;              // of the processes at it
+  size_t first_node, end_node; // rows of K here
+  size_t *own, own_count;      // [own_count] elements here
   const struct dea_grid *grid;
   struct dea_hex_shape shape;
   struct dea_layer *layers;
@@ -37,6 +40,21 @@ struct dea_solid {
 
 /* Turns PETSc's error code into a status. */
 dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const char *what);
+
+/* K, the split of rows and elements over the ranks, and vectors. before: how the creation went up
+ * to here, agreed on with the others. */
+dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before);
+
+/* ---- ranks: each of these is a call that all make ---- */
+
+/* The status and message of the first rank with a failure. ctx: NULL where no message is wanted. */
+dea_status dea_solid_agree(struct dea_context *ctx, const struct dea_solid *s, dea_status status);
+/* values[count] become their sums over the ranks, the same bits on each. */
+void dea_solid_sum(const struct dea_solid *s, double *values, size_t count);
+/* Largest value of all ranks. */
+double dea_solid_largest(const struct dea_solid *s, double value);
+/* This rank's part of `count` things, from *from to before *to (no call of all). */
+void dea_solid_share(const struct dea_solid *s, size_t count, size_t *from, size_t *to);
 
 /* All multipliers of a solid. */
 size_t dea_solid_pressure_count(const struct dea_solid *s);

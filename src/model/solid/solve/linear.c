@@ -30,8 +30,8 @@ dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double 
 {
   PetscScalar *values;
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  for (size_t i = 0; i < s->dofs; i++) {
-    values[i] = amount * s->metric[i];
+  for (size_t i = 3 * s->first_node; i < 3 * s->end_node; i++) {
+    values[i - 3 * s->first_node] = amount * s->metric[i];
   }
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatDiagonalSet(s->K, s->right, ADD_VALUES), "MatDiagonalSet"));
@@ -41,15 +41,19 @@ dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double 
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
+  size_t first = 3 * s->first_node, here = 3 * (s->end_node - s->first_node);
   PetscScalar *values;
+  memmove(out, right, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, out);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  memcpy(values, right, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, false, values);
+  memcpy(values, out + first, here * sizeof(double));
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->solution, &values), "VecGetArray"));
-  memcpy(out, values, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, true, out);
+  memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
+  memcpy(out + first, values, here * sizeof(double));
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->solution, &values), "VecRestoreArray"));
+  dea_solid_sum(s, out, s->dofs);
+  dea_solid_frame_vector(s, true, out);
   return DEA_OK;
 }

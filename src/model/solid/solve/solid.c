@@ -1,42 +1,7 @@
-#define _POSIX_C_SOURCE 200809L // setenv
+/* A solid: creation, what it lends. */
 #include "model/solid/solve/internal.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-/* Outside of mpirun Open MPI need not look for networks: a fifth of the start-up. */
-static void start_mpi_alone(void)
-{
-  if (getenv("OMPI_COMM_WORLD_SIZE") == NULL) {
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    setenv("OMPI_MCA_btl", "self", 0);
-    setenv("OMPI_MCA_pml", "ob1", 0);
-  }
-}
-
-dea_status dea_solid_start(struct dea_context *ctx)
-{
-  // the signals are the caller's: an interrupt has to keep the points that are there
-  char name[] = "dea", option[] = "-no_signal_handler", *words[] = {name, option, NULL};
-  char **argv = words;
-  int argc = 2;
-  PetscBool running = PETSC_FALSE;
-  PetscInitialized(&running);
-  if (running) {
-    return DEA_OK;
-  }
-  start_mpi_alone();
-  if (PetscInitialize(&argc, &argv, NULL, NULL) != 0) {
-    return dea_fail(ctx, DEA_E_TOOL, "PETSc could not be started");
-  }
-  PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-  return DEA_OK;
-}
-
-void dea_solid_stop(void)
-{
-  PetscFinalize();
-}
 
 dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const char *what)
 {
@@ -46,69 +11,6 @@ dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const c
 }
 
 /* ---- creation ---- */
-
-/* Upper block row lengths: neighbours of a node that are not before it. */
-static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *s, PetscInt *counts)
-{
-  const struct dea_grid *grid = s->grid;
-  size_t per = (size_t)s->shape.nodes;
-  size_t *first = dea_alloc(ctx, grid->node_count + 2, sizeof *first);
-  int *elements = dea_alloc(ctx, grid->element_count * per, sizeof *elements);
-  int *seen = dea_alloc(ctx, grid->node_count, sizeof *seen);
-  if (first != NULL && elements != NULL && seen != NULL) {
-    for (size_t e = 0; e < grid->element_count; e++) {
-      for (size_t n = 0; n < per; n++) {
-        first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 2]++;
-      }
-    }
-    for (size_t i = 2; i < grid->node_count + 2; i++) {
-      first[i] += first[i - 1];
-    }
-    for (size_t e = 0; e < grid->element_count; e++) {
-      for (size_t n = 0; n < per; n++) {
-        elements[first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 1]++] = (int)e;
-      }
-    }
-    for (size_t i = 0; i < grid->node_count; i++) {
-      counts[i] = 0;
-      for (size_t k = first[i]; k < first[i + 1]; k++) {
-        const int *nodes = grid->nodes + (size_t)elements[k] * DEA_HEX_NODES_MAX;
-        for (size_t n = 0; n < per; n++) {
-          if ((size_t)nodes[n] >= i && seen[nodes[n]] != (int)i + 1) {
-            seen[nodes[n]] = (int)i + 1;
-            counts[i]++;
-          }
-        }
-      }
-    }
-  }
-  bool done = first != NULL && elements != NULL && seen != NULL;
-  dea_free(ctx, first);
-  dea_free(ctx, elements);
-  dea_free(ctx, seen);
-  return done ? DEA_OK : DEA_E_MEMORY;
-}
-
-static dea_status create_matrix(struct dea_context *ctx, struct dea_solid *s)
-{
-  PetscInt *counts = dea_alloc(ctx, s->grid->node_count, sizeof *counts);
-  if (counts == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = count_blocks(ctx, s, counts);
-  if (status == DEA_OK) {
-    status = dea_solid_petsc(ctx,
-                             MatCreateSeqSBAIJ(PETSC_COMM_SELF, 3, (PetscInt)s->dofs,
-                                               (PetscInt)s->dofs, 0, counts, &s->K),
-                             "MatCreateSeqSBAIJ");
-  }
-  dea_free(ctx, counts);
-  DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(s->K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
-                               "MatSetOption"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCreateVecs(s->K, &s->solution, &s->right), "MatCreateVecs"));
-  return DEA_OK;
-}
 
 static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
                        const struct dea_solid_options *options)
@@ -148,7 +50,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
-  return create_matrix(ctx, s);
+  return DEA_OK;
 }
 
 dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid,
@@ -156,7 +58,8 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
 {
   *out = NULL;
   struct dea_solid *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
+  if (dea_solid_any(s == NULL)) {
+    dea_free(ctx, s);
     return DEA_E_MEMORY;
   }
   s->grid = grid;
@@ -165,6 +68,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   if (status == DEA_OK) {
     status = fill(ctx, s, options);
   }
+  status = dea_solid_create_matrix(ctx, s, status);
   if (status != DEA_OK) {
     dea_solid_destroy(ctx, s);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -182,9 +86,10 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   MatDestroy(&s->K);
   VecDestroy(&s->right);
   VecDestroy(&s->solution);
-  void *const memory[] = {s->layers, s->layer,   s->active,     s->held,  s->u,      s->trial,
-                          s->g,      s->step,    s->multiplier, s->theta, s->metric, s->before,
-                          s->force,  s->element, s->piece,      s->loads, s->frame,  s->frames};
+  void *const memory[] = {s->layers, s->layer,  s->active, s->held,       s->u,
+                          s->trial,  s->g,      s->step,   s->multiplier, s->theta,
+                          s->metric, s->before, s->force,  s->element,    s->piece,
+                          s->loads,  s->own,    s->frame,  s->frames};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

@@ -5,7 +5,8 @@
  * so that every step goes down. Incompressibility is brought in by multipliers: after each minimum
  * they take over the pressure kappa theta, until J - 1 has no projection left.
  *
- * PETSc must be initialised (dea_solid_start). One process for now. */
+ * PETSc must be initialised (dea_solid_start). Under mpirun all ranks make the same calls with the
+ * same arguments and get the same answers; the work is split among them. */
 #ifndef DEA_MODEL_SOLID_SOLVE_SOLID_H
 #define DEA_MODEL_SOLID_SOLVE_SOLID_H
 
@@ -40,6 +41,10 @@ struct dea_solid_report {
 /* PETSc for this process; harmless when it runs already. */
 dea_status dea_solid_start(struct dea_context *ctx);
 void dea_solid_stop(void);
+/* Number of this process among those that mpirun started, from 0. */
+int dea_solid_rank(void);
+/* Whether it is so on any rank; all ranks call it. */
+bool dea_solid_any(bool here);
 
 /* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */
 dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid,

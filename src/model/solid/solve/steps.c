@@ -67,11 +67,12 @@ dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *s, double 
 {
   *report = (struct dea_solid_report){0};
   double *keep = dea_alloc(ctx, s->dofs + dea_solid_pressure_count(s), sizeof *keep);
-  if (keep == NULL) {
-    return DEA_E_MEMORY;
+  dea_status status = dea_solid_agree(ctx, s, keep != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status != DEA_OK) {
+    dea_free(ctx, keep);
+    return status;
   }
   double whole = voltage_V - s->voltage_V, part = whole;
-  dea_status status;
   do {
     bool last = fabs(voltage_V - s->voltage_V) <= fabs(part) * (1 + 1e-9);
     status = solve_at(ctx, s, last ? voltage_V : s->voltage_V + part, keep, report);

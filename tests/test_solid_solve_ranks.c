@@ -1,0 +1,206 @@
+/* Two and three ranks under mpirun find what one finds. The program runs itself again under mpirun
+ * with the argument "ranks" and reads what rank 0 prints. */
+// ctest: solid
+#define _GNU_SOURCE // mkdtemp, popen
+#include "command.h"
+#include "devices.h"
+#include "model/solid/solve/solid.h"
+
+static struct dea_context *ctx;
+static const char *program;
+
+static const double a_m = 3.75e-3, b_m = 15e-3;
+
+static int sheet_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  return sheet;
+}
+
+static bool film_inside(const void *self, int region, int sheet)
+{
+  (void)self;
+  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+}
+
+static int quarter_held(const void *self, const double X[3])
+{
+  (void)self;
+  if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
+    return 1 | 2 | 4;
+  }
+  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
+}
+
+/* What is compared: sums over all displacements, the largest of them, energy, unstable modes. */
+enum { SAMPLES = 9 };
+static const char *const sample_name[SAMPLES] = {"sum ux",     "sum uy",        "sum uz",
+                                                 "largest ux", "largest uy",    "smallest uz",
+                                                 "energy",     "minus tension", "V over h, true"};
+
+struct answer {
+  int status, modes;
+  double samples[SAMPLES];
+};
+
+static void take_samples(struct dea_solid *solid, const struct dea_grid *grid, double energy_J,
+                         struct answer *out)
+{
+  const double *u = dea_solid_displacement(solid);
+  const struct dea_material material = {0};
+  struct dea_solid_extremes extremes;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    for (int i = 0; i < 3; i++) {
+      double sign = i == 2 ? -1 : 1;
+      out->samples[i] += u[3 * n + (size_t)i];
+      out->samples[3 + i] = fmax(out->samples[3 + i], sign * u[3 * n + (size_t)i]);
+    }
+  }
+  out->samples[6] = energy_J;
+  if (dea_solid_extremes(solid, &material, 1.5, &extremes) == DEA_OK) {
+    out->samples[7] = extremes.min_tension_N_per_m;
+    out->samples[8] = extremes.true_field_V_per_m;
+  }
+}
+
+/* A quarter with `fibres` at 1, 2 and 3 kV; inverted: with one element turned inside out. */
+static struct answer solve(int fibres, bool inverted)
+{
+  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+  const double h = 100e-6 / 2.25, E = 2950e6, nu = 0.38;
+  struct dea_layer layers[] = {
+      {.law = dea_law_find("yeoh"),
+       .param = yeoh,
+       .pre_stretch = {1.5, 1.5, 1 / 2.25},
+       .kappa_Pa = 4e7,
+       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+       .thickness_m = h},
+      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  const struct dea_quarter quarter = {2, 2, a_m, b_m, h, fibres, 2e-3, 100e-6, 2, 1, 4e-4};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 2,
+                                            .layers = layers,
+                                            .layer_of = sheet_layer,
+                                            .active = film_inside,
+                                            .held = quarter_held};
+  struct dea_grid *grid = NULL;
+  struct dea_solid *solid = NULL;
+  struct dea_solid_report report = {0};
+  struct answer answer = {0};
+  dea_status status = dea_layer_relax(&layers[0]);
+  status = status == DEA_OK ? dea_grid_quarter(ctx, &quarter, &grid) : status;
+  status = status == DEA_OK ? dea_solid_create(ctx, grid, &options, &solid) : status;
+  if (status == DEA_OK && inverted) {
+    dea_solid_displacement(solid)[3 * (grid->node_count - 1)] = 0.1;
+  }
+  for (int kV = 0; kV <= 3 && status == DEA_OK; kV++) {
+    status = dea_solid_solve(ctx, solid, 1e3 * kV, &report);
+  }
+  answer.status = (int)status;
+  answer.modes = report.unstable_modes;
+  if (solid != NULL) {
+    take_samples(solid, grid, report.energy_J, &answer);
+  }
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+  return answer;
+}
+
+enum { CASES = 3 };
+static struct answer solve_case(int k)
+{
+  return solve(k == 1 ? 4 : 0, k == 2);
+}
+
+/* As a rank: all solve, the first prints. */
+static int run_as_rank(void)
+{
+  if (dea_context_create(NULL, &ctx) != DEA_OK || dea_solid_start(ctx) != DEA_OK) {
+    return 1;
+  }
+  for (int k = 0; k < CASES; k++) {
+    struct answer answer = solve_case(k);
+    if (dea_solid_rank() == 0) {
+      printf("%d %d", answer.status, answer.modes);
+      for (int i = 0; i < SAMPLES; i++) {
+        printf(" %.17g", answer.samples[i]);
+      }
+      puts("");
+    }
+  }
+  dea_solid_stop();
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+static bool have_mpirun(void)
+{
+  return system("mpirun --version >/dev/null 2>&1") == 0;
+}
+
+static void read_answers(int ranks, struct answer answers[CASES])
+{
+  char line[1200];
+  snprintf(line, sizeof line,
+           "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+           "timeout 120 mpirun --oversubscribe --mca mpi_yield_when_idle 1 -n %d '%s' ranks",
+           ranks, program);
+  FILE *pipe = popen(line, "r");
+  assert_non_null(pipe);
+  for (int k = 0; k < CASES; k++) {
+    assert_int_equal(fscanf(pipe, "%d %d", &answers[k].status, &answers[k].modes), 2);
+    for (int i = 0; i < SAMPLES; i++) {
+      assert_int_equal(fscanf(pipe, "%lf", &answers[k].samples[i]), 1);
+    }
+  }
+  assert_int_equal(fgetc(pipe), '\n');
+  assert_int_equal(fgetc(pipe), EOF); // no other rank prints
+  assert_int_equal(pclose(pipe), 0);
+}
+
+/* Same displacements, energy, extremes and inertia to what the solver leaves, and where one rank
+ * fails all do. */
+static void test_ranks_agree(void **state)
+{
+  (void)state;
+  struct answer one[CASES], many[2][CASES];
+  if (!have_mpirun()) {
+    skip();
+  }
+  read_answers(2, many[0]); // before MPI starts here, which mpirun would inherit
+  read_answers(3, many[1]);
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  assert_int_equal(dea_solid_start(ctx), DEA_OK);
+  for (int k = 0; k < CASES; k++) {
+    one[k] = solve_case(k);
+    for (int ranks = 0; ranks < 2; ranks++) {
+      const struct answer *other = &many[ranks][k];
+      assert_int_equal(other->status, one[k].status);
+      assert_int_equal(other->modes, one[k].modes);
+      for (int i = 0; i < SAMPLES && one[k].status == DEA_OK; i++) {
+        if (fabs(other->samples[i] - one[k].samples[i]) > 1e-7 * fabs(one[k].samples[i]) + 1e-13) {
+          fail_msg("case %d, %d ranks, %s: %.10g, not %.10g", k, ranks + 2, sample_name[i],
+                   other->samples[i], one[k].samples[i]);
+        }
+      }
+    }
+  }
+  assert_int_equal(one[0].status, DEA_OK);
+  assert_true(one[1].samples[5] > 1e-6); // it has gone down
+  assert_int_equal(one[2].status, DEA_E_DOMAIN);
+  dea_solid_stop();
+  dea_context_destroy(ctx);
+}
+
+int main(int argc, char **argv)
+{
+  program = argv[0];
+  if (argc > 1 && strcmp(argv[1], "ranks") == 0) {
+    return run_as_rank();
+  }
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ranks_agree),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
