@@ -16,6 +16,7 @@ enum { COMMAND_TEXT_MAX = 1 << 20 };
 static char command_folder[512];
 static char command_out[COMMAND_TEXT_MAX]; // standard output of the last run
 static char command_err[COMMAND_TEXT_MAX]; // standard error of the last run
+static const char *command_before = "";    // what stands before the command: a program that runs it
 
 static inline int command_set_up(void **state)
 {
@@ -52,8 +53,8 @@ static inline void command_read(const char *name, char *out)
 static inline int command_run(const char *arguments)
 {
   static char text[8192];
-  size_t used =
-      (size_t)snprintf(text, sizeof text, "cd '%s' && '%s' ", command_folder, DEA_COMMAND);
+  size_t used = (size_t)snprintf(text, sizeof text, "cd '%s' && %s '%s' ", command_folder,
+                                 command_before, DEA_COMMAND);
   for (const char *c = arguments; *c != '\0' && used + 600 < sizeof text; c++) {
     if (*c == '@') {
       used += (size_t)snprintf(text + used, sizeof text - used, "%s", DEA_SOURCE_DIR);

@@ -6,6 +6,13 @@
 #include "devices.h"
 #include "model/solid/solve/solid.h"
 
+#include <jansson.h>
+
+/* Tests may run as root, and on fewer cores than ranks, beside others. */
+#define MPIRUN                                                                                     \
+  "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 120 "                         \
+  "mpirun --oversubscribe --mca mpi_yield_when_idle 1 "
+
 static struct dea_context *ctx;
 static const char *program;
 
@@ -64,15 +71,15 @@ static void take_samples(struct dea_solid *solid, const struct dea_grid *grid, d
   }
 }
 
-/* A quarter with `fibres` at 1, 2 and 3 kV; inverted: with one element turned inside out. */
-static struct answer solve(int fibres, bool inverted)
+/* A quarter with `fibres` in steps of 1 kV; inverted: with one element turned inside out. */
+static struct answer solve(int fibres, double pre_stretch, int highest_kV, bool inverted)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  const double h = 100e-6 / 2.25, E = 2950e6, nu = 0.38;
+  const double h = 100e-6 / (pre_stretch * pre_stretch), E = 2950e6, nu = 0.38;
   struct dea_layer layers[] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
-       .pre_stretch = {1.5, 1.5, 1 / 2.25},
+       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
        .kappa_Pa = 4e7,
        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
        .thickness_m = h},
@@ -94,7 +101,7 @@ static struct answer solve(int fibres, bool inverted)
   if (status == DEA_OK && inverted) {
     dea_solid_displacement(solid)[3 * (grid->node_count - 1)] = 0.1;
   }
-  for (int kV = 0; kV <= 3 && status == DEA_OK; kV++) {
+  for (int kV = 0; kV <= highest_kV && status == DEA_OK; kV++) {
     status = dea_solid_solve(ctx, solid, 1e3 * kV, &report);
   }
   answer.status = (int)status;
@@ -107,10 +114,11 @@ static struct answer solve(int fibres, bool inverted)
   return answer;
 }
 
-enum { CASES = 3 };
+/* A film without pre-stretch is slack under voltage: flat, it has many unstable modes. */
+enum { DISC, FOUR_FIBRES, SLACK, INVERTED, CASES };
 static struct answer solve_case(int k)
 {
-  return solve(k == 1 ? 4 : 0, k == 2);
+  return solve(k == FOUR_FIBRES ? 4 : 0, k == SLACK ? 1 : 1.5, k == SLACK ? 1 : 3, k == INVERTED);
 }
 
 /* As a rank: all solve, the first prints. */
@@ -142,10 +150,7 @@ static bool have_mpirun(void)
 static void read_answers(int ranks, struct answer answers[CASES])
 {
   char line[1200];
-  snprintf(line, sizeof line,
-           "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-           "timeout 120 mpirun --oversubscribe --mca mpi_yield_when_idle 1 -n %d '%s' ranks",
-           ranks, program);
+  snprintf(line, sizeof line, MPIRUN "-n %d '%s' ranks", ranks, program);
   FILE *pipe = popen(line, "r");
   assert_non_null(pipe);
   for (int k = 0; k < CASES; k++) {
@@ -186,11 +191,54 @@ static void test_ranks_agree(void **state)
       }
     }
   }
-  assert_int_equal(one[0].status, DEA_OK);
-  assert_true(one[1].samples[5] > 1e-6); // it has gone down
-  assert_int_equal(one[2].status, DEA_E_DOMAIN);
+  assert_int_equal(one[DISC].status, DEA_OK);
+  assert_true(one[FOUR_FIBRES].samples[5] > 1e-6); // it has gone down
+  assert_true(one[SLACK].modes > 1);
+  assert_int_equal(one[INVERTED].status, DEA_E_DOMAIN);
   dea_solid_stop();
   dea_context_destroy(ctx);
+}
+
+/* ---- the command ---- */
+
+/* Electrode stretch at the last point of a summary; asserts that it is one JSON text and complete.
+ */
+static double last_stretch(const char *text)
+{
+  json_t *root = json_loads(text, 0, NULL);
+  const json_t *points = json_object_get(root, "points");
+  assert_non_null(root);
+  assert_true(json_is_true(json_object_get(root, "complete")));
+  const json_t *last = json_array_get(points, json_array_size(points) - 1);
+  double stretch = json_number_value(json_object_get(last, "electrode_stretch"));
+  json_decref(root);
+  return stretch;
+}
+
+/* dea run under mpirun: said and written once. */
+static void test_command_on_ranks(void **state)
+{
+  (void)state;
+  static const char *const run = "run @/examples/plain-disc.yaml --model 3d --no-figures -o both "
+                                 "--json --set 'compute.voltage={values: [0 kV, 2 kV]}'";
+  char again[400];
+  if (!have_mpirun()) {
+    skip();
+  }
+  assert_int_equal(command_run(run), 0);
+  double one = last_stretch(command_out);
+  assert_true(one > 1.01);
+  command_before = MPIRUN "-n 2";
+  assert_int_not_equal(command_run(run), 0); // the folder is there: said once, and no rank waits
+  assert_contains(command_err, "--force");
+  assert_null(strstr(strstr(command_err, "--force") + 1, "--force"));
+  snprintf(again, sizeof again, "%s --force", run);
+  assert_int_equal(command_run(again), 0);
+  assert_close(last_stretch(command_out), one, 1e-9, 0);
+  command_before = "";
+  static char written[COMMAND_TEXT_MAX];
+  command_read("both/summary.json", written);
+  assert_string_equal(written, command_out);
 }
 
 int main(int argc, char **argv)
@@ -200,7 +248,8 @@ int main(int argc, char **argv)
     return run_as_rank();
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ranks_agree),
+      cmocka_unit_test(test_command_on_ranks),
+      cmocka_unit_test(test_ranks_agree), // starts MPI, and nothing under mpirun starts after it
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -9,10 +9,11 @@
 /* What all commands share. Results go to stdout, everything else to stderr. */
 struct dea_cli {
   struct dea_context *ctx;
-  bool quiet;               // --quiet: no progress, no notes
-  bool verbose;             // --verbose: with the chain of calls of an error
-  bool terminal;            // stderr is a terminal
-  bool colour;              // stderr takes colours (terminal, no NO_COLOR)
+  bool quiet;    // --quiet: no progress, no notes
+  bool verbose;  // --verbose: with the chain of calls of an error
+  bool terminal; // stderr is a terminal
+  bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
+  bool colour;   // stderr takes colours (terminal, no NO_COLOR)
   const char *command_line; // the whole of it, for provenance
 };
 

@@ -307,6 +307,10 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   if (code != 0) {
     return code;
   }
+  if (cli->follower) { // no folder; its standard output leads nowhere
+    options.json = true;
+    options.directory = NULL;
+  }
   code = cli_report(cli, run_all(cli, &options, &run));
   release(cli, &run);
   return code;

@@ -175,6 +175,9 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
     }
   }
   watch_signals();
+  if (cli->follower && command != &cmd_run) {
+    return 0; // nothing to compute together
+  }
   return command->run(cli, argc, argv);
 }
 
@@ -189,6 +192,24 @@ static void open_standard_files(void)
   if (fd >= 0) {
     close(fd);
   }
+}
+
+/* Whether mpirun started this process beside a first one, which alone prints and writes files. */
+static bool is_follower(void)
+{
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    const char *rank = getenv(names[i]);
+    if (rank != NULL && rank[0] != '\0') {
+      return strcmp(rank, "0") != 0;
+    }
+  }
+  return false;
+}
+
+static bool silence(void)
+{
+  return freopen("/dev/null", "w", stdout) != NULL && freopen("/dev/null", "w", stderr) != NULL;
 }
 
 /* Output that could not be written is a failure; a reader of a pipe that has had enough (head)
@@ -208,7 +229,11 @@ static int finish_output(int code)
 int main(int argc, char **argv)
 {
   open_standard_files();
-  struct dea_cli cli = {.terminal = isatty(STDERR_FILENO) == 1};
+  struct dea_cli cli = {.follower = is_follower()};
+  if (cli.follower && !silence()) {
+    return dea_status_exit_code(DEA_E_IO);
+  }
+  cli.terminal = isatty(STDERR_FILENO) == 1;
   cli.colour = cli.terminal && getenv("NO_COLOR") == NULL;
   if (dea_context_create(NULL, &cli.ctx) != DEA_OK) {
     fputs("dea: out of memory\n", stderr);

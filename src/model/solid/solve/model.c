@@ -222,7 +222,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   int steps = (int)ceil(fabs(way) / step - 1e-9);
   steps = steps < 1 ? 1 : steps;
   for (int i = 1; i <= steps; i++) {
-    if (dea_interrupted(ctx)) {
+    if (dea_solid_any(dea_interrupted(ctx))) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
                       1e-3 * voltage_V);
     }

@@ -35,6 +35,11 @@ dea_status dea_solid_start(struct dea_context *ctx)
     return dea_fail(ctx, DEA_E_TOOL, "PETSc could not be started");
   }
   PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  PetscMPIInt size;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  if (size > 1 && atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
+    return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
+  }
   return DEA_OK;
 }
 
