@@ -35,7 +35,7 @@ struct dea_solid {
   Mat K, factor;
   Vec right, solution;
   double last_shift; // that made K positive definite, relative to the metric
-  bool analysed;
+  bool analysed, checked;
 };
 
 /* Turns PETSc's error code into a status. */
@@ -55,6 +55,10 @@ void dea_solid_sum(const struct dea_solid *s, double *values, size_t count);
 double dea_solid_largest(const struct dea_solid *s, double value);
 /* This rank's part of `count` things, from *from to before *to (no call of all). */
 void dea_solid_share(const struct dea_solid *s, size_t count, size_t *from, size_t *to);
+
+/* Before the first solve: no inverted element, laws that reach the pre-stretch, supports that leave
+ * no rigid motion (not asked where loads may hold). A message says where and what to do. */
+dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s);
 
 /* All multipliers of a solid. */
 size_t dea_solid_pressure_count(const struct dea_solid *s);

@@ -66,6 +66,7 @@ dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *s, double 
                            struct dea_solid_report *report)
 {
   *report = (struct dea_solid_report){0};
+  DEA_TRY(ctx, dea_solid_check(ctx, s));
   double *keep = dea_alloc(ctx, s->dofs + dea_solid_pressure_count(s), sizeof *keep);
   dea_status status = dea_solid_agree(ctx, s, keep != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status != DEA_OK) {

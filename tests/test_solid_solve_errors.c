@@ -1,0 +1,171 @@
+/* Solids that cannot be solved: each says why and where. */
+// ctest: solid
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+#include "context_fixture.h"
+
+#include <string.h>
+
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+static const double gent[DEA_LAW_PARAM_MAX] = {100e3, 3};
+
+static void map_square(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = 1e-2 * s;
+  x[1] = 1e-2 * t;
+}
+
+static int only_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 0;
+}
+
+static bool everywhere(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return true;
+}
+
+/* self: bits held at the edges x = 0 and x = 1 cm, of all nodes there. */
+static int held_at_ends(const void *self, const double X[3])
+{
+  const int *bits = self;
+  return X[0] < 1e-9 ? bits[0] : X[0] > 1e-2 - 1e-9 ? bits[1] : 0;
+}
+
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+
+static dea_status solve(const struct dea_layer *layer, const int *bits, double voltage_V)
+{
+  static const double cuts[] = {0, 0.5, 1};
+  const struct dea_block block = {map_square, NULL, cuts, cuts, 2, 2, 0};
+  const struct dea_sheet sheet = {1e-3, 1, 2};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 1,
+                                            .layers = layer,
+                                            .layer_of = only_layer,
+                                            .active = everywhere,
+                                            .held = held_at_ends,
+                                            .self = bits};
+  struct dea_solid_report report;
+  if (grid == NULL) {
+    assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 1e-2, &grid), DEA_OK);
+  }
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  return dea_solid_solve(ctx, solid, voltage_V, &report);
+}
+
+static void clear(void)
+{
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+  grid = NULL;
+  solid = NULL;
+}
+
+static struct dea_layer film(void)
+{
+  struct dea_layer layer = {.law = dea_law_find("yeoh"),
+                            .param = yeoh,
+                            .pre_stretch = {1, 1, 1},
+                            .kappa_Pa = 4e7,
+                            .permittivity_F_per_m = 2.5e-11,
+                            .thickness_m = 1e-3};
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  return layer;
+}
+
+static void expect(const char *part)
+{
+  if (strstr(dea_context_message(ctx), part) == NULL) {
+    fail_msg("'%s' is not in '%s'", part, dea_context_message(ctx));
+  }
+}
+
+static void test_unconstrained_bodies(void **state)
+{
+  (void)state;
+  const struct dea_layer layer = film();
+  static const int free_ends[] = {0, 0}, slides[] = {1, 1 | 4}, turns[] = {4, 4}, held[] = {7, 0};
+  const int *const loose[] = {free_ends, slides, turns};
+  for (size_t i = 0; i < 3; i++) {
+    assert_int_equal(solve(&layer, loose[i], 0), DEA_E_ARGUMENT);
+    expect("is not held");
+    clear();
+  }
+  assert_int_equal(solve(&layer, held, 0), DEA_OK);
+  clear();
+}
+
+static void test_inverted_element(void **state)
+{
+  (void)state;
+  const struct dea_layer layer = film();
+  static const int held[] = {7, 7};
+  assert_int_equal(solve(&layer, held, 0), DEA_OK);
+  struct dea_grid *folded = grid;
+  dea_solid_destroy(ctx, solid);
+  for (size_t n = 0; n < folded->node_count; n++) { // the middle of the plate far out
+    double *X = folded->X + 3 * n;
+    if (fabs(X[0] - 5e-3) < 1e-9 && fabs(X[1] - 5e-3) < 1e-9) {
+      X[0] = 9e-3;
+    }
+  }
+  assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
+  expect("is inverted in the mesh");
+  clear();
+}
+
+static void test_law_that_ends(void **state)
+{
+  (void)state;
+  struct dea_layer layer = film();
+  static const int held[] = {7, 7};
+  layer.law = dea_law_find("gent"); // I1 - 3 below 3
+  layer.param = gent;
+  layer.pre_stretch[0] = layer.pre_stretch[1] = 2;
+  layer.pre_stretch[2] = 0.25;
+  assert_int_equal(solve(&layer, held, 0), DEA_E_DOMAIN);
+  expect("'gent' ends before the pre-stretch 2");
+  clear();
+}
+
+/* Held at one end only, the film pulls in; the state before stays. */
+static void test_voltage_beyond_any_equilibrium(void **state)
+{
+  (void)state;
+  const struct dea_layer layer = film();
+  static const int held[] = {7, 0};
+  struct dea_solid_report report;
+  assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
+  double *u = dea_solid_displacement(solid);
+  double before = u[3 * (grid->node_count - 1)];
+  assert_true(before > 0);
+  assert_int_equal(dea_solid_solve(ctx, solid, 400e3, &report), DEA_E_NOT_CONVERGED);
+  assert_true(u[3 * (grid->node_count - 1)] >= before); // as far as it got
+  clear();
+}
+
+static int start(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_unconstrained_bodies),
+      cmocka_unit_test(test_inverted_element),
+      cmocka_unit_test(test_law_that_ends),
+      cmocka_unit_test(test_voltage_beyond_any_equilibrium),
+  };
+  return cmocka_run_group_tests(tests, start, context_tear_down);
+}
