@@ -6,7 +6,9 @@
 
 #include "base/context.h"
 #include "device/device.h"
+#include "model/field_mesh.h"
 #include "model/load_point.h"
+#include "model/state.h"
 
 struct dea_model; // state of one solve: device, last equilibrium
 
@@ -43,6 +45,9 @@ struct dea_profile {
   const double *tension_r_N_per_m, *tension_t_N_per_m;
 };
 
+/* What `fields` hands out: all of the device, or the middle surface of its film. */
+enum dea_fields_part { DEA_FIELDS_VOLUME, DEA_FIELDS_SURFACE };
+
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
@@ -63,6 +68,16 @@ struct dea_model_type {
                      dea_event_sink events, void *user);
   /* Profile at the last point solved; NULL when the model has none. */
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
+  /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
+   * (dea_field_mesh_destroy), NULL on failure. */
+  dea_status (*fields)(struct dea_context *ctx, struct dea_model *model, enum dea_fields_part part,
+                       struct dea_field_mesh **out);
+  /* State at the last point solved, and back into a model made for the same device. load: marks are
+   * not looked at; DEA_E_ARGUMENT when an array is missing or of another length, the model is then
+   * as it was. Both NULL when the model does not need that. */
+  dea_status (*save)(struct dea_context *ctx, struct dea_model *model, struct dea_state *out);
+  dea_status (*load)(struct dea_context *ctx, struct dea_model *model,
+                     const struct dea_state *state);
 };
 
 /* Path of the module that holds the 3D engine, into out[size]; false when it is not here. */

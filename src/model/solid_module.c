@@ -81,10 +81,33 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
+static dea_status fields(struct dea_context *ctx, struct dea_model *model,
+                         enum dea_fields_part part, struct dea_field_mesh **out)
+{
+  DEA_TRY(ctx, model->type->fields(ctx, model->inner, part, out));
+  return DEA_OK;
+}
+
+static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
+{
+  DEA_TRY(ctx, model->type->save(ctx, model->inner, out));
+  return DEA_OK;
+}
+
+static dea_status load(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_state *state)
+{
+  DEA_TRY(ctx, model->type->load(ctx, model->inner, state));
+  return DEA_OK;
+}
+
 const struct dea_model_type dea_model_3d = {
     .name = "3d",
     .long_name = "3D solid (preview: a quarter, coarse)",
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .fields = fields,
+    .save = save,
+    .load = load,
 };

@@ -2,7 +2,8 @@
  * the loadable module that model/solid_module.c opens. */
 #include "model/film.h"
 #include "model/make.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/solve/fields.h"
+#include "model/solid/solve/state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -237,6 +238,38 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
+static dea_status fields(struct dea_context *ctx, struct dea_model *model,
+                         enum dea_fields_part part, struct dea_field_mesh **out)
+{
+  DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
+                   ? dea_solid_volume(ctx, model->solid, out)
+                   : dea_solid_surface(ctx, model->solid, DEA_SHEET_FILM, out));
+  (*out)->fold = 2; // a quarter
+  (*out)->fibres = model->device->fibre_count;
+  return DEA_OK;
+}
+
+static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
+{
+  const double own[] = {model->voltage_V};
+  *out = (struct dea_state){0};
+  DEA_TRY(ctx, dea_solid_save(ctx, model->solid, out));
+  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "model", own, 1));
+  return DEA_OK;
+}
+
+static dea_status load(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_state *state)
+{
+  const double *own = dea_state_find(state, "model", 1);
+  if (own == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
+  }
+  DEA_TRY(ctx, dea_solid_load(ctx, model->solid, state));
+  model->voltage_V = own[0];
+  return DEA_OK;
+}
+
 extern const struct dea_model_type dea_solid_module;
 
 const struct dea_model_type dea_solid_module = {
@@ -245,4 +278,7 @@ const struct dea_model_type dea_solid_module = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .fields = fields,
+    .save = save,
+    .load = load,
 };

@@ -1,0 +1,71 @@
+/* A mesh with named fields: what a model hands out of its inside after a solve.
+ *
+ * Points carry their place in the stretched flat film; where the parts of a device meet there is
+ * one point a part, so that a value that jumps there has both its sides. */
+#ifndef DEA_MODEL_FIELD_MESH_H
+#define DEA_MODEL_FIELD_MESH_H
+
+#include "base/context.h"
+
+enum { DEA_MESH_ORDER_MAX = 3, DEA_MESH_FIELDS_MAX = 16, DEA_MESH_BLOCKS_MAX = 4 };
+
+/* How a field goes over to a mirrored copy of the mesh. */
+enum dea_mesh_kind {
+  DEA_MESH_VALUES, // numbers that do not know directions
+  DEA_MESH_VECTOR, // three components, x y z
+  DEA_MESH_AXIS,   // the same, of length one, its sign without meaning
+};
+
+/* values: [points or cells][components], owned by the mesh. The name ends in the unit as elsewhere
+ * ("displacement_m"). */
+struct dea_mesh_field {
+  char name[32], unit[16], meaning[128];
+  enum dea_mesh_kind kind;
+  int components;
+  bool of_cells;
+  double *values;
+};
+
+/* Elements of one kind. order: in the plane, 1 to DEA_MESH_ORDER_MAX; order_z: through the
+ * thickness, 0 for flat ones. nodes: [count][(order + 1)^2 (order_z + 1)], first local axis
+ * fastest, at the Gauss-Lobatto places; owned by the mesh. */
+struct dea_mesh_block {
+  int order, order_z;
+  size_t count;
+  int *nodes;
+};
+
+struct dea_field_mesh {
+  size_t point_count;
+  double *X;         // [point_count][3] places in the stretched flat film [m]
+  size_t cell_count; // of all blocks; values of cells come block by block
+  size_t block_count;
+  struct dea_mesh_block blocks[DEA_MESH_BLOCKS_MAX];
+  size_t field_count;
+  struct dea_mesh_field fields[DEA_MESH_FIELDS_MAX];
+  /* The whole is made of 2 * fold copies of this part, which lies between the planes of symmetry
+   * through the z axis at angle `symmetry_angle` and pi/fold further; fold 0: this is the whole. */
+  int fold;
+  double symmetry_angle; // [rad]
+  int fibres;            // of the whole, the first along +x; 0: none
+};
+
+/* An empty mesh with room for points; out: owned by the caller. */
+dea_status dea_field_mesh_create(struct dea_context *ctx, size_t point_count,
+                                 struct dea_field_mesh **out);
+void dea_field_mesh_destroy(struct dea_context *ctx, struct dea_field_mesh *mesh);
+/* Nodes of an element of a block. */
+int dea_mesh_block_nodes(const struct dea_mesh_block *block);
+/* Adds a block, its nodes 0; *nodes lent. */
+dea_status dea_field_mesh_add_block(struct dea_context *ctx, struct dea_field_mesh *mesh, int order,
+                                    int order_z, size_t count, int **nodes);
+/* Adds a field after all blocks, its values 0; field->values is not read. *values lent. */
+dea_status dea_field_mesh_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                              const struct dea_mesh_field *field, double **values);
+/* Field of that name, NULL when there is none; lent. */
+const struct dea_mesh_field *dea_field_mesh_find(const struct dea_field_mesh *mesh,
+                                                 const char *name);
+/* Points or cells that a field has values of. */
+size_t dea_mesh_field_count(const struct dea_field_mesh *mesh, const struct dea_mesh_field *field);
+
+#endif

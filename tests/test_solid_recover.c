@@ -1,0 +1,350 @@
+/* What elements tell of themselves: closed forms of homogeneous states, bending, interfaces. */
+#include "devices.h"
+#include "failing_allocator.h"
+#include "material/plane.h"
+#include "model/solid/recover.h"
+#include "testing.h"
+
+#include <stdlib.h>
+
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+/* ---- a strip: two regions side by side, a film and a fibre on the second ---- */
+
+static const double h_m = 44e-6, fibre_m = 80e-6, length_m = 1e-3, l_pre = 1.5;
+
+/* Region 0 from x = 0 to 1 mm, region 1 from there to 2 mm; skewed a little. */
+static void map_strip(const void *self, double s, double t, double x[2])
+{
+  x[0] = length_m * (s + *(const double *)self + 0.2 * s * (1 - s) * t);
+  x[1] = length_m * t;
+}
+
+static bool fibre_on_second(int region, int sheet)
+{
+  return sheet == 0 || region == 1;
+}
+
+struct strip {
+  struct dea_grid *grid;
+  struct dea_hex_shape shape;
+  struct dea_layer layers[2];
+  int *layer;
+  bool *active;
+  double *u, *multiplier;
+  struct dea_recover_input in;
+};
+
+static struct dea_material film;
+
+static struct strip *strip_create(int order, int order_z, size_t film_elements)
+{
+  static const double left = 0, right = 1, cuts[3] = {0, 0.4, 1};
+  struct dea_block blocks[2] = {{map_strip, &left, cuts, cuts, 2, 2, 0},
+                                {map_strip, &right, cuts, cuts, 2, 2, 1}};
+  struct dea_sheet sheets[2] = {{h_m, film_elements, order_z}, {fibre_m, 1, order_z}};
+  struct strip *s = calloc(1, sizeof *s);
+  film = test_yeoh();
+  assert_int_equal(dea_grid_create(ctx, order, blocks, 2, sheets, 2, fibre_on_second, -0.5 * h_m,
+                                   length_m, &s->grid),
+                   DEA_OK);
+  assert_int_equal(dea_hex_shape_create(order, order_z, &s->shape), DEA_OK);
+  s->layers[0] = (struct dea_layer){.law = film.law,
+                                    .param = film.param,
+                                    .pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
+                                    .kappa_Pa = 4e7,
+                                    .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                    .thickness_m = h_m};
+  s->layers[1] = (struct dea_layer){.lame_mu_Pa = 1e9, .lame_lambda_Pa = 2e9};
+  assert_int_equal(dea_layer_relax(&s->layers[0]), DEA_OK);
+  size_t count = s->grid->element_count;
+  s->layer = calloc(count, sizeof *s->layer);
+  s->active = calloc(count, sizeof *s->active);
+  s->u = calloc(3 * s->grid->node_count, sizeof *s->u);
+  s->multiplier = calloc(count * (size_t)s->shape.pressures, sizeof *s->multiplier);
+  for (size_t e = 0; e < count; e++) {
+    s->layer[e] = s->grid->sheet[e];
+    s->active[e] = s->grid->sheet[e] == 0 && s->grid->region[e] == 0;
+  }
+  s->in = (struct dea_recover_input){s->grid,   &s->shape, s->layers,     s->layer,
+                                     s->active, s->u,      s->multiplier, 0};
+  return s;
+}
+
+static void strip_destroy(struct strip *s)
+{
+  dea_grid_destroy(ctx, s->grid);
+  free(s->layer);
+  free(s->active);
+  free(s->u);
+  free(s->multiplier);
+  free(s);
+}
+
+/* x = F X. */
+static void deform(struct strip *s, const double F[9])
+{
+  for (size_t n = 0; n < s->grid->node_count; n++) {
+    const double *X = s->grid->X + 3 * n;
+    for (int i = 0; i < 3; i++) {
+      s->u[3 * n + (size_t)i] = F[3 * i] * X[0] + F[3 * i + 1] * X[1] + F[3 * i + 2] * X[2] - X[i];
+    }
+  }
+}
+
+/* Multipliers that take the stress through the thickness out of the film. R: rotation of F. */
+static void relax(struct strip *s, const double F[9])
+{
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    struct dea_point point;
+    double cof[9], J = dea_cofactors(F, cof);
+    if (s->layer[e] == 0) {
+      double field = s->active[e] ? s->in.voltage_V / h_m : 0;
+      assert_int_equal(dea_layer_point(&s->layers[0], F, cof, J, 0, field, &point), DEA_OK);
+      double push = 0, size = 0; // along the current normal
+      for (int i = 0; i < 3; i++) {
+        push += point.P[3 * i + 2] * cof[3 * i + 2];
+        size += cof[3 * i + 2] * cof[3 * i + 2];
+      }
+      s->multiplier[e * (size_t)s->shape.pressures] = -push / size;
+    }
+  }
+}
+
+static const double *values(const struct dea_field_mesh *mesh, const char *name)
+{
+  const struct dea_mesh_field *field = dea_field_mesh_find(mesh, name);
+  assert_non_null(field);
+  return field->values;
+}
+
+static void multiply(const double A[9], const double B[9], double out[9])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+    }
+  }
+}
+
+/* Film stretched by a and b in its plane at a voltage, in closed form. */
+struct flat {
+  double stress[2], tension[2], field, energy;
+};
+
+static struct flat flat_film(double a, double b, double voltage_V)
+{
+  struct dea_plane plane;
+  struct flat f;
+  double thickness = h_m / (a * b), eps = 2.8 * DEA_EPSILON_0;
+  assert_int_equal(dea_plane_elastic(&film, l_pre * a, l_pre * b, &plane), DEA_OK);
+  f.field = voltage_V / thickness;
+  f.stress[0] = l_pre * a * plane.s1 - eps * f.field * f.field; // paper eqs 1, 5
+  f.stress[1] = l_pre * b * plane.s2 - eps * f.field * f.field;
+  f.tension[0] = f.stress[0] * thickness;
+  f.tension[1] = f.stress[1] * thickness;
+  f.energy = plane.W;
+  return f;
+}
+
+static void check_axis(const double *axis, const double *R, int column)
+{
+  double along = axis[0] * R[column] + axis[1] * R[3 + column] + axis[2] * R[6 + column];
+  assert_close(fabs(along), 1, 1e-10, 0);
+}
+
+/* A film stretched by 1.1 and 0.95 at 3 kV and then turned: stress, tension, field and energy of
+ * the closed form, directions turned too; and at its joint the fibre has its own. */
+static void check_turned(int order, int order_z, size_t film_elements)
+{
+  const double a = 1.1, b = 0.95, c = cos(0.5), d = sin(0.5), e = cos(0.3), f = sin(0.3);
+  const double U[9] = {a, 0, 0, 0, b, 0, 0, 0, 1 / (a * b)};
+  const double about_y[9] = {c, 0, d, 0, 1, 0, -d, 0, c}, about_x[9] = {1, 0, 0, 0, e, -f, 0, f, e};
+  double R[9], F[9];
+  struct strip *s = strip_create(order, order_z, film_elements);
+  struct dea_field_mesh *mesh, *surface;
+  s->in.voltage_V = -3e3; // the sign has no say
+  multiply(about_x, about_y, R);
+  multiply(R, U, F);
+  deform(s, F);
+  relax(s, F);
+  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
+  assert_int_equal(dea_recover_surface(ctx, &s->in, 0, &surface), DEA_OK);
+  const double *stress = values(mesh, "principal_stress_Pa"),
+               *field = values(mesh, "true_field_V_per_m");
+  const double *tension = values(mesh, "tension_N_per_m"),
+               *energy = values(mesh, "energy_J_per_m3");
+  const double *stretch = values(mesh, "principal_stretch"), *plane = values(mesh, "plane_stretch");
+  const double *axes[3] = {values(mesh, "stress_axis_1"), values(mesh, "stress_axis_2"),
+                           values(mesh, "stress_axis_3")};
+  const double *sheet = values(mesh, "sheet"), *region = values(mesh, "region");
+  // compressible neo-Hookean: sigma_i = mu (l_i^2 - 1) + lambda ln J, with J = 1
+  const double fibre[3] = {1e9 * (a * a - 1), 1e9 * (b * b - 1), 1e9 * (1 / (a * a * b * b) - 1)};
+  size_t per = (size_t)s->shape.nodes;
+  for (size_t k = 0; k < mesh->cell_count * per; k++) {
+    size_t p = (size_t)mesh->blocks[0].nodes[k], cell = k / per;
+    if (sheet[cell] == 1) {
+      assert_close(stress[3 * p], fibre[0], 1e-9, 0);
+      assert_close(stress[3 * p + 1], fibre[2], 1e-9, 0); // the thickness, 0.957, above 0.95
+      assert_close(stress[3 * p + 2], fibre[1], 1e-9, 0);
+      check_axis(axes[2] + 3 * p, R, 1);
+      assert_close(stretch[3 * p], a, 1e-10, 0);
+      assert_close(plane[3 * p + 1], b, 1e-10, 0);
+      assert_close(tension[2 * p], fibre[0] * fibre_m / (a * b), 1e-9, 0);
+      assert_close(field[p], 0, 0, 0);
+      continue;
+    }
+    struct flat wanted = flat_film(a, b, region[cell] == 0 ? 3e3 : 0);
+    assert_close(stress[3 * p], wanted.stress[0], 1e-9, 0);
+    assert_close(stress[3 * p + 1], wanted.stress[1], 1e-9, 0);
+    assert_close(stress[3 * p + 2], 0, 0, 1e-3);
+    check_axis(axes[0] + 3 * p, R, 0);
+    check_axis(axes[1] + 3 * p, R, 1);
+    check_axis(axes[2] + 3 * p, R, 2);
+    assert_close(tension[2 * p], wanted.tension[0], 1e-9, 0);
+    assert_close(tension[2 * p + 1], wanted.tension[1], 1e-9, 0);
+    assert_close(field[p], wanted.field, 1e-10, 0);
+    assert_close(energy[p], wanted.energy, 1e-9, 0);
+    assert_close(stretch[3 * p], l_pre * a, 1e-10, 0);
+    assert_close(stretch[3 * p + 2], 1 / (l_pre * l_pre * a * b), 1e-10, 0);
+    assert_close(plane[3 * p], l_pre * a, 1e-10, 0);
+    assert_close(plane[3 * p + 1], l_pre * b, 1e-10, 0);
+    assert_close(plane[3 * p + 2], 1 / (l_pre * l_pre * a * b), 1e-10, 0);
+  }
+  const double *moved = values(surface, "displacement_m"),
+               *pull = values(surface, "tension_N_per_m");
+  const double *under = values(surface, "under_fibre"), *on = values(surface, "between_electrodes");
+  per = (size_t)dea_mesh_block_nodes(&surface->blocks[0]);
+  for (size_t k = 0; k < surface->cell_count * per; k++) {
+    size_t p = (size_t)surface->blocks[0].nodes[k], cell = k / per;
+    const double *X = surface->X + 3 * p;
+    assert_close(X[2], 0, 0, 1e-12);
+    for (int i = 0; i < 3; i++) {
+      double x = F[3 * i] * X[0] + F[3 * i + 1] * X[1];
+      assert_close(X[i] + moved[3 * p + (size_t)i], x, 0, 1e-12);
+    }
+    struct flat wanted = flat_film(a, b, on[cell] != 0 ? 3e3 : 0);
+    assert_close(on[cell] + under[cell], 1, 0, 0); // region 0 has electrodes, region 1 a fibre
+    assert_close(pull[2 * p], wanted.tension[0], 1e-9, 0);
+    assert_close(pull[2 * p + 1], wanted.tension[1], 1e-9, 0);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+  dea_field_mesh_destroy(ctx, surface);
+  strip_destroy(s);
+}
+
+static void test_turned_film(void **state)
+{
+  (void)state;
+  for (int order = 1; order <= 3; order++) {
+    for (int order_z = 1; order_z <= 3; order_z++) {
+      check_turned(order, order_z, 1);
+    }
+  }
+  check_turned(2, 2, 2);
+  check_turned(2, 1, 3);
+}
+
+/* Bending, u_x = k x z: the stretch along x is 1 + k z, also at the faces. */
+static void test_bending(void **state)
+{
+  (void)state;
+  const double k = 2000;
+  for (int order_z = 1; order_z <= 3; order_z++) {
+    struct strip *s = strip_create(2, order_z, 1);
+    struct dea_field_mesh *mesh;
+    for (size_t n = 0; n < s->grid->node_count; n++) {
+      s->u[3 * n] = k * s->grid->X[3 * n] * s->grid->X[3 * n + 2];
+    }
+    assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
+    const double *plane = values(mesh, "plane_stretch"), *sheet = values(mesh, "sheet");
+    const double *error = values(mesh, "volume_error");
+    size_t per = (size_t)s->shape.nodes;
+    for (size_t i = 0; i < mesh->cell_count * per; i++) {
+      size_t p = (size_t)mesh->blocks[0].nodes[i];
+      double stretch = 1 + k * mesh->X[3 * p + 2], pre = sheet[i / per] == 0 ? l_pre : 1;
+      assert_close(plane[3 * p], pre * fmax(stretch, 1), 1e-9, 0);
+      assert_close(plane[3 * p + 1], pre * fmin(stretch, 1), 1e-9, 0);
+      assert_true(error[i / per] > 0.5 * k * h_m / 2 && error[i / per] < k * (h_m + fibre_m));
+    }
+    dea_field_mesh_destroy(ctx, mesh);
+    strip_destroy(s);
+  }
+}
+
+/* Points of the joint of the two regions and of the two sheets are there once a part. */
+static void test_parts_do_not_share_points(void **state)
+{
+  (void)state;
+  struct strip *s = strip_create(2, 2, 1);
+  struct dea_field_mesh *mesh, *surface;
+  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
+  assert_int_equal(mesh->point_count, 3 * 5 * 5 * 3); // two parts of film, one of fibre
+  assert_int_equal(s->grid->node_count, 9 * 5 * 3 + 5 * 5 * 2);
+  assert_int_equal(dea_recover_surface(ctx, &s->in, 0, &surface), DEA_OK);
+  assert_int_equal(surface->point_count, 2 * 5 * 5);
+  assert_int_equal(surface->cell_count, 8);
+  dea_field_mesh_destroy(ctx, mesh);
+  dea_field_mesh_destroy(ctx, surface);
+  strip_destroy(s);
+}
+
+static void test_inverted_element(void **state)
+{
+  (void)state;
+  const double flat[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
+  struct strip *s = strip_create(2, 2, 1);
+  struct dea_field_mesh *mesh;
+  deform(s, flat);
+  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_E_DOMAIN);
+  assert_null(mesh);
+  assert_int_equal(dea_recover_surface(ctx, &s->in, 0, &mesh), DEA_E_DOMAIN);
+  assert_null(mesh);
+  strip_destroy(s);
+}
+
+static struct strip *memory_strip;
+
+static void recover_both(struct dea_context *failing)
+{
+  struct dea_field_mesh *mesh;
+  dea_status status = dea_recover_volume(failing, &memory_strip->in, &mesh);
+  failing_check(failing, status);
+  dea_field_mesh_destroy(failing, mesh);
+  status = dea_recover_surface(failing, &memory_strip->in, 0, &mesh);
+  failing_check(failing, status);
+  dea_field_mesh_destroy(failing, mesh);
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  memory_strip = strip_create(2, 1, 1);
+  assert_true(failing_each(recover_both) > 20);
+  strip_destroy(memory_strip);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_turned_film),
+      cmocka_unit_test(test_bending),
+      cmocka_unit_test(test_parts_do_not_share_points),
+      cmocka_unit_test(test_inverted_element),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
