@@ -102,44 +102,82 @@ static dea_status plane_create(struct dea_context *ctx, int order, const struct 
   return DEA_OK;
 }
 
+/* Level of nodes at the bottom of a sheet, the first level of its own (one above), and its z. A
+ * level counts through all sheets: 0 is the bottom of the first, then order_z for each element. */
+struct sheet_place {
+  size_t bottom, own;
+  double z;
+};
+
+static struct sheet_place sheet_place(const struct dea_sheet *sheets, const size_t *skips, size_t s,
+                                      double bottom_m)
+{
+  struct sheet_place at = {0, 1, bottom_m};
+  for (size_t k = 0; k < s; k++) {
+    at.own += sheets[k].count * (size_t)sheets[k].order_z;
+  }
+  size_t passed = skips != NULL ? skips[s] : 0;
+  if (s > passed) { // on the top of another one
+    size_t under = s - 1 - passed;
+    size_t levels = sheets[under].count * (size_t)sheets[under].order_z;
+    struct sheet_place below = sheet_place(sheets, skips, under, bottom_m);
+    at.bottom = levels > 0 ? below.own + levels - 1 : below.bottom;
+    at.z = below.z + sheets[under].thickness_m;
+  }
+  return at;
+}
+
+/* Elements of one layer of a sheet; level[]: of their nodes, from bottom to top; levels: of all. */
+static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_t *level,
+                          int order_z, int sheet, bool (*present)(int region, int sheet),
+                          struct dea_grid *grid)
+{
+  int per_quad = (grid->order + 1) * (grid->order + 1);
+  for (size_t e = 0; e < m->quad_count; e++) {
+    if (present != NULL && !present(m->region[e], sheet)) {
+      continue;
+    }
+    int *to = grid->nodes + grid->element_count * DEA_HEX_NODES_MAX;
+    const int *quad = m->quads + e * (size_t)per_quad;
+    for (int l = 0; l <= order_z; l++) {
+      for (int n = 0; n < per_quad; n++) {
+        *to++ = (int)((size_t)quad[n] * levels + level[l]);
+      }
+    }
+    grid->region[grid->element_count] = m->region[e];
+    grid->sheet[grid->element_count++] = sheet;
+  }
+}
+
 /* Nodes of all levels through the sheets, and elements between them. The nodes of a column follow
  * each other, so that a range of numbers is a part of the plate. */
 static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, size_t sheet_count,
-                    bool (*present)(int region, int sheet), double bottom_m, struct dea_grid *grid)
+                    const size_t *skips, bool (*present)(int region, int sheet), double bottom_m,
+                    struct dea_grid *grid)
 {
   size_t levels = grid->node_count / m->node_count;
-  int order_z = sheets[0].order_z, per_quad = (grid->order + 1) * (grid->order + 1);
-  double at[DEA_HEX_ORDER_MAX + 1], z = bottom_m;
-  size_t level = 0, element = 0;
-  dea_lobatto_nodes((size_t)order_z, at);
+  double at[DEA_HEX_ORDER_MAX + 1];
+  grid->element_count = 0;
   for (size_t s = 0; s < sheet_count; s++) {
-    double step = sheets[s].thickness_m / (double)sheets[s].count;
-    for (size_t k = 0; k < sheets[s].count; k++, level += (size_t)order_z, z += step) {
+    int order_z = sheets[s].order_z;
+    struct sheet_place place = sheet_place(sheets, skips, s, bottom_m);
+    dea_lobatto_nodes((size_t)order_z, at);
+    for (size_t k = 0; k < sheets[s].count; k++) {
+      size_t level[DEA_HEX_ORDER_MAX + 1];
+      double step = sheets[s].thickness_m / (double)sheets[s].count;
       for (int l = 0; l <= order_z; l++) {
+        size_t up = k * (size_t)order_z + (size_t)l;
+        level[l] = up == 0 ? place.bottom : place.own + up - 1;
         for (size_t n = 0; n < m->node_count; n++) {
-          double *X = grid->X + 3 * (n * levels + level + (size_t)l);
+          double *X = grid->X + 3 * (n * levels + level[l]);
           X[0] = m->x[2 * n];
           X[1] = m->x[2 * n + 1];
-          X[2] = z + 0.5 * (1 + at[l]) * step;
+          X[2] = place.z + ((double)k + 0.5 * (1 + at[l])) * step;
         }
       }
-      for (size_t e = 0; e < m->quad_count; e++) {
-        if (present != NULL && !present(m->region[e], (int)s)) {
-          continue;
-        }
-        int *to = grid->nodes + element * DEA_HEX_NODES_MAX;
-        const int *quad = m->quads + e * (size_t)per_quad;
-        for (int l = 0; l <= order_z; l++) {
-          for (int n = 0; n < per_quad; n++) {
-            *to++ = (int)((size_t)quad[n] * levels + level) + l;
-          }
-        }
-        grid->region[element] = m->region[e];
-        grid->sheet[element++] = (int)s;
-      }
+      extrude_layer(m, levels, level, order_z, (int)s, present, grid);
     }
   }
-  grid->element_count = element;
 }
 
 /* Takes out the nodes that no element has. */
@@ -177,6 +215,16 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
                            bool (*present)(int region, int sheet), double bottom_m, double length_m,
                            struct dea_grid **out)
 {
+  return dea_grid_create_skipping(ctx, order, blocks, block_count, sheets, sheet_count, NULL,
+                                  present, bottom_m, length_m, out);
+}
+
+dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
+                                    const struct dea_block *blocks, size_t block_count,
+                                    const struct dea_sheet *sheets, size_t sheet_count,
+                                    const size_t *skips, bool (*present)(int region, int sheet),
+                                    double bottom_m, double length_m, struct dea_grid **out)
+{
   struct plane_mesh m = {0};
   size_t through = 0;
   *out = NULL;
@@ -200,7 +248,7 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
     plane_release(&m);
     return DEA_E_MEMORY;
   }
-  extrude(&m, sheets, sheet_count, present, bottom_m, grid);
+  extrude(&m, sheets, sheet_count, skips, present, bottom_m, grid);
   int per_element = (order + 1) * (order + 1) * (sheets[0].order_z + 1);
   status = compact(ctx, per_element, grid);
   plane_release(&m);

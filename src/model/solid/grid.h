@@ -18,7 +18,7 @@ struct dea_block {
 /* One layer of a stack, from bottom to top. */
 struct dea_sheet {
   double thickness_m;
-  size_t count; // elements through it
+  size_t count; // elements through it; 0: the sheet is not there
   int order_z;
 };
 
@@ -38,7 +38,18 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
                            size_t block_count, const struct dea_sheet *sheets, size_t sheet_count,
                            bool (*present)(int region, int sheet), double bottom_m, double length_m,
                            struct dea_grid **out);
+/* The same where a sheet need not lie on the one before it in the list: skips[] says how many it
+ * passes over, [sheet_count]; NULL: none. */
+dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
+                                    const struct dea_block *blocks, size_t block_count,
+                                    const struct dea_sheet *sheets, size_t sheet_count,
+                                    const size_t *skips, bool (*present)(int region, int sheet),
+                                    double bottom_m, double length_m, struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
+
+/* Least of all elements' smallest Jacobian in the plane (at the nodes) over the mean one of the
+ * element: 1 for a parallelogram, 0 or less for an element that is folded. */
+double dea_grid_smallest_jacobian(const struct dea_grid *grid);
 
 /* Quarter (x, y >= 0) of a film in a ring, its middle plane at z = 0, with electrodes inside the
  * circle a and fibres from there to the frame, on top of the film: with 4 half a fibre along each

@@ -1,0 +1,63 @@
+/* Mesh of an actuator: a disc of film in its frame, electrodes, radial fibres on the upper face
+ * (docs/theory/mesh.md). Lengths in m, of the stretched flat film; its middle plane is z = 0 and
+ * the axis of the first fibre is y = 0, x > 0. */
+#ifndef DEA_MODEL_SOLID_PLATE_H
+#define DEA_MODEL_SOLID_PLATE_H
+
+#include "device/device.h"
+#include "model/solid/grid.h"
+
+/* How the frame holds the outer ends of fibres that reach it. */
+enum dea_plate_end { DEA_PLATE_CLAMPED, DEA_PLATE_HINGED };
+
+struct dea_plate {
+  int order, order_z; // of the elements
+  int fibres;         // N, evenly spread; 0: none
+  /* Domain: so many sectors of pi/N (pi/4 without fibres) from the first fibre's axis; each second
+   * one is the mirror image of that before it. 2 N (8): the whole disc. Less: its two straight
+   * edges lie on mirror planes. */
+  int sectors;
+  double electrode_radius, frame_radius;
+  double tip_radius, outer_radius; // ends of the fibres: arcs about the centre; outer <= frame
+  double tip_width, outer_width;   // there; the long edges are straight
+  double film_thickness, electrode_thickness, glue_thickness, fibre_thickness; // last three: or 0
+  enum dea_plate_end end; // what holds at the frame when outer_radius is frame_radius
+  double
+      size; // of elements in the plane, up to which they grow; twice of that outside the electrode
+  double
+      edge; // of elements at the electrode edge and the ends of fibres; about doubling from there
+};
+
+/* Bits of an element's region: inside the electrode circle, under a fibre. */
+enum { DEA_PLATE_ELECTRODE = 1, DEA_PLATE_FIBRE = 2 };
+
+/* Sheets from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
+ * DEA_PLATE_TOP then goes on under the rest of the fibre as a filler of glue or fibre, so that the
+ * fibre is flat. */
+enum {
+  DEA_PLATE_BOTTOM, // electrode below
+  DEA_PLATE_FILM,
+  DEA_PLATE_TOP, // electrode above
+  DEA_PLATE_GLUE,
+  DEA_PLATE_FIBRE_SHEET,
+  DEA_PLATE_SHEETS
+};
+
+/* Angle of the domain, from 0 to 2 pi. */
+double dea_plate_angle(const struct dea_plate *plate);
+/* Sectors of the whole disc. */
+int dea_plate_sectors(const struct dea_plate *plate);
+
+/* DEA_E_ARGUMENT for parts that do not fit together, or more than DEA_PLATE_LINE_MAX elements in a
+ * row. out: owned by the caller (dea_grid_destroy), NULL on failure. */
+dea_status dea_plate_create(struct dea_context *ctx, const struct dea_plate *plate,
+                            struct dea_grid **out);
+enum { DEA_PLATE_LINE_MAX = 256 };
+
+/* Components of a node that frame and mirror planes hold, as bits 1, 2, 4 of its local axes. */
+int dea_plate_held(const struct dea_plate *plate, const double X[3]);
+/* Local axes of a node as the rows of Q: normal of its mirror plane, along it, z. false where the
+ * global axes do; Q is not touched then. */
+bool dea_plate_frame(const struct dea_plate *plate, const double X[3], double Q[9]);
+
+#endif

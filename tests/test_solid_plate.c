@@ -1,0 +1,366 @@
+/* Meshes of actuators: no folded element, no hanging node, exact areas, the right nodes held. */
+#include "failing_allocator.h"
+#include "model/solid/cuts.h"
+#include "model/solid/plate.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double a = 3.75e-3, b = 15e-3, h = 44e-6;
+
+static struct dea_plate plate(int fibres, double overlap, double width)
+{
+  struct dea_plate p = {.order = 2,
+                        .order_z = 2,
+                        .fibres = fibres,
+                        .sectors = 1,
+                        .electrode_radius = a,
+                        .frame_radius = b,
+                        .film_thickness = h,
+                        .size = 0.2 * a,
+                        .edge = 0.05 * a};
+  if (fibres > 0) {
+    p.tip_radius = a - overlap;
+    p.outer_radius = b;
+    p.tip_width = p.outer_width = width;
+    p.fibre_thickness = 100e-6;
+  }
+  return p;
+}
+
+static bool close(double x, double y)
+{
+  return fabs(x - y) < 1e-9 * b;
+}
+
+/* ---- faces ---- */
+
+struct face {
+  int corner[4]; // ascending
+  bool open;     // has no second element yet
+};
+
+static void sort4(int v[4])
+{
+  for (int i = 1; i < 4; i++) {
+    for (int j = i; j > 0 && v[j - 1] > v[j]; j--) {
+      int keep = v[j];
+      v[j] = v[j - 1];
+      v[j - 1] = keep;
+    }
+  }
+}
+
+static int compare_faces(const void *x, const void *y)
+{
+  return memcmp(((const struct face *)x)->corner, ((const struct face *)y)->corner,
+                4 * sizeof(int));
+}
+
+/* Every side face of the film that only one element has lies on the frame or on a mirror plane, and
+ * none has three. With order 2 a face is shared as a whole when its corners are. */
+static void check_conforming(const struct dea_plate *p, const struct dea_grid *grid)
+{
+  static const int sides[4][2] = {{0, 2}, {2, 8}, {8, 6}, {6, 0}}; // corners of the lower face
+  struct face *faces = calloc(4 * grid->element_count, sizeof *faces);
+  size_t count = 0, open = 0;
+  double beta = dea_plate_angle(p);
+  assert_non_null(faces);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    for (int k = 0; k < 4 && grid->sheet[e] == DEA_PLATE_FILM; k++) {
+      int *corner = faces[count++].corner;
+      for (int i = 0; i < 2; i++) {
+        corner[i] = nodes[sides[k][i]];
+        corner[2 + i] = nodes[18 + sides[k][i]];
+      }
+      sort4(corner);
+    }
+  }
+  qsort(faces, count, sizeof *faces, compare_faces);
+  for (size_t i = 0; i < count; i++) {
+    bool same_before = i > 0 && compare_faces(&faces[i - 1], &faces[i]) == 0;
+    bool same_after = i + 1 < count && compare_faces(&faces[i], &faces[i + 1]) == 0;
+    assert_false(same_before && same_after);
+    if (same_before || same_after) {
+      continue;
+    }
+    bool frame = true, first = true, last = true;
+    for (int c = 0; c < 4; c++) {
+      const double *X = grid->X + 3 * faces[i].corner[c];
+      frame = frame && close(hypot(X[0], X[1]), b);
+      first = first && close(X[1], 0) && X[0] > -1e-9;
+      last = last && close(-sin(beta) * X[0] + cos(beta) * X[1], 0);
+    }
+    bool whole = p->sectors == dea_plate_sectors(p);
+    assert_true(frame || (!whole && (first || last)));
+    open++;
+  }
+  assert_true(open > 2);
+  free(faces);
+}
+
+/* ---- areas ---- */
+
+static struct dea_hex_shape shape;
+static struct dea_element_result result;
+
+/* Volume of the elements of a sheet whose region has all the bits. */
+static double volume(const struct dea_grid *grid, int sheet, int bits)
+{
+  static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
+  const struct dea_layer hard = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  double X[DEA_HEX_DOFS_MAX], sum = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < shape.nodes; n++) {
+      memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
+             3 * sizeof(double));
+    }
+    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
+                     DEA_OK);
+    sum += grid->sheet[e] == sheet && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
+  }
+  return sum;
+}
+
+/* Half of what a fibre covers between two circles where its half width is y1 and y2: Green's
+ * theorem along the axis, the outer arc, the straight edge and the inner arc. */
+static double half_strip(double r1, double y1, double r2, double y2)
+{
+  double x1 = sqrt(r1 * r1 - y1 * y1), x2 = sqrt(r2 * r2 - y2 * y2);
+  return 0.5 * (r2 * r2 * asin(y2 / r2) + x2 * y1 - y2 * x1 - r1 * r1 * asin(y1 / r1));
+}
+
+static void check_areas(const struct dea_plate *p, const struct dea_grid *grid, double tolerance)
+{
+  double beta = dea_plate_angle(p), whole = 0.5 * beta * h;
+  assert_int_equal(dea_hex_shape_create(p->order, p->order_z, &shape), DEA_OK);
+  assert_close(volume(grid, DEA_PLATE_FILM, 0), whole * b * b, tolerance, 0);
+  assert_close(volume(grid, DEA_PLATE_FILM, DEA_PLATE_ELECTRODE), whole * a * a, tolerance, 0);
+  if (p->fibres > 0) {
+    double half =
+        half_strip(p->tip_radius, 0.5 * p->tip_width, p->outer_radius, 0.5 * p->outer_width);
+    double thickness = p->fibre_thickness * p->sectors;
+    assert_close(volume(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE), thickness * half, tolerance,
+                 0);
+    assert_close(volume(grid, DEA_PLATE_GLUE, 0), p->glue_thickness * p->sectors * half, tolerance,
+                 0);
+  }
+}
+
+/* ---- supports ---- */
+
+/* What is held follows from the place alone; each node that is held is on an edge, and each on an
+ * edge is held across it. */
+static void check_held(const struct dea_plate *p, const struct dea_grid *grid)
+{
+  double beta = dea_plate_angle(p);
+  bool whole = p->sectors == dea_plate_sectors(p);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    double Q[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, r = hypot(X[0], X[1]);
+    int bits = dea_plate_held(p, X);
+    dea_plate_frame(p, X, Q);
+    bool frame = close(r, b) && (p->end == DEA_PLATE_CLAMPED || X[2] < 0.51 * h);
+    assert_int_equal(frame, bits == 7);
+    if (frame) {
+      continue;
+    }
+    bool first = !whole && close(X[1], 0) && X[0] > -1e-9;
+    bool last = !whole && close(-sin(beta) * X[0] + cos(beta) * X[1], 0) &&
+                cos(beta) * X[0] + sin(beta) * X[1] > -1e-9;
+    assert_true((bits & 4) == 0 && (first || last || bits == 0));
+    // the held components span the normals
+    const double normals[2][3] = {{0, 1, 0}, {-sin(beta), cos(beta), 0}};
+    for (int k = 0; k < 2; k++) {
+      double left[3] = {normals[k][0], normals[k][1], 0};
+      for (int i = 0; i < 3; i++) {
+        double along = Q[3 * i] * normals[k][0] + Q[3 * i + 1] * normals[k][1];
+        for (int c = 0; c < 3 && (bits >> i) & 1; c++) {
+          left[c] -= along * Q[3 * i + c];
+        }
+      }
+      assert_true(!(k == 0 ? first : last) || hypot(left[0], left[1]) < 1e-9);
+    }
+    int held = (bits & 1) + ((bits >> 1) & 1);
+    bool parallel = fabs(sin(beta)) < 1e-9;
+    assert_int_equal(held, first && last && !parallel ? 2 : first || last ? 1 : 0);
+  }
+}
+
+static void check(const struct dea_plate *p, double tolerance)
+{
+  struct dea_grid *grid;
+  assert_int_equal(dea_plate_create(ctx, p, &grid), DEA_OK);
+  assert_true(dea_grid_smallest_jacobian(grid) > 0.05);
+  check_conforming(p, grid);
+  check_areas(p, grid, tolerance);
+  check_held(p, grid);
+  dea_grid_destroy(ctx, grid);
+}
+
+static void test_sectors_of_all_counts(void **state)
+{
+  (void)state;
+  static const int fibres[] = {0, 1, 2, 3, 4, 5, 6, 8, 12};
+  static const double overlap[] = {-1e-3, 0, 0.75e-3};
+  for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
+    for (size_t k = 0; k < (fibres[i] > 0 ? 3 : 1); k++) {
+      struct dea_plate p = plate(fibres[i], overlap[k], 1e-3);
+      check(&p, 1e-4);
+      p.sectors = 2;
+      check(&p, 1e-4);
+    }
+  }
+}
+
+static void test_whole_discs(void **state)
+{
+  (void)state;
+  static const int fibres[] = {0, 1, 3, 4, 6};
+  for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
+    struct dea_plate p = plate(fibres[i], 0.5e-3, 2e-3);
+    p.sectors = dea_plate_sectors(&p);
+    check(&p, 1e-4);
+  }
+}
+
+/* Taper, glue, electrode layers, free ends, hinges, finer meshes; order 3 is far more exact. */
+static void test_all_that_a_design_can_ask_for(void **state)
+{
+  (void)state;
+  for (int bits = 0; bits < 64; bits++) {
+    struct dea_plate p = plate(bits & 1 ? 4 : 3, bits & 2 ? 1e-3 : -0.5e-3, 2e-3);
+    p.tip_width = bits & 4 ? 0.6e-3 : 2e-3;
+    p.glue_thickness = bits & 8 ? 50e-6 : 0;
+    p.electrode_thickness = bits & 16 ? 5e-6 : 0;
+    p.outer_radius = bits & 32 ? b - 1e-3 : b;
+    p.end = bits & 8 ? DEA_PLATE_HINGED : DEA_PLATE_CLAMPED;
+    check(&p, 1e-4);
+  }
+  struct dea_plate p = plate(4, 1e-3, 2e-3);
+  p.size /= 4;
+  p.edge /= 4;
+  check(&p, 1e-6);
+}
+
+/* ---- sheets ---- */
+
+static void heights(const struct dea_grid *grid, int sheet, int bits, double *low, double *high)
+{
+  *low = INFINITY;
+  *high = -INFINITY;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < 27 && grid->sheet[e] == sheet && grid->region[e] == bits; n++) {
+      double z = grid->X[3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n] + 2];
+      *low = fmin(*low, z);
+      *high = fmax(*high, z);
+    }
+  }
+}
+
+/* Over electrodes of 5 um a fibre with 50 um of glue lies on them, and on a filler beside them; a
+ * fibre that ends before them lies on the film, and shares no node with the electrode's upper side.
+ */
+static void test_what_fibres_lie_on(void **state)
+{
+  (void)state;
+  for (int on = 0; on < 2; on++) {
+    struct dea_plate p = plate(4, on ? 1e-3 : 0, 2e-3);
+    struct dea_grid *grid;
+    double low, high, below = 0.5 * h + (on ? 5e-6 : 0);
+    p.glue_thickness = 50e-6;
+    p.electrode_thickness = 5e-6;
+    assert_int_equal(dea_plate_create(ctx, &p, &grid), DEA_OK);
+    heights(grid, DEA_PLATE_BOTTOM, DEA_PLATE_ELECTRODE, &low, &high);
+    assert_close(low, -0.5 * h - 5e-6, 0, 1e-12);
+    assert_close(high, -0.5 * h, 0, 1e-12);
+    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE, &low, &high);
+    assert_close(low, 0.5 * h, 0, 1e-12);
+    assert_close(high, 0.5 * h + 5e-6, 0, 1e-12);
+    heights(grid, DEA_PLATE_TOP, DEA_PLATE_FIBRE, &low, &high);
+    assert_true(on ? low < high : low > high); // the filler
+    heights(grid, DEA_PLATE_GLUE, DEA_PLATE_FIBRE, &low, &high);
+    assert_close(low, below, 0, 1e-12);
+    heights(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE, &low, &high);
+    assert_close(low, below + 50e-6, 0, 1e-12);
+    assert_close(high, below + 150e-6, 0, 1e-12);
+    dea_grid_destroy(ctx, grid);
+  }
+}
+
+/* ---- what cannot be ---- */
+
+static void test_plates_that_cannot_be(void **state)
+{
+  (void)state;
+  const struct dea_plate good = plate(8, 0, 2e-3);
+  struct dea_plate bad[8];
+  for (size_t i = 0; i < 8; i++) {
+    bad[i] = good;
+  }
+  bad[0].tip_width = bad[0].outer_width = 3e-3; // meet: 3.75 mm sin(22.5 degrees) = 1.435 mm
+  bad[1].tip_radius = 0;
+  bad[2].tip_radius = b;
+  bad[3].electrode_radius = b;
+  bad[4].sectors = 17;
+  bad[5].size = 1e-7;
+  bad[6].edge = 0;
+  bad[7].outer_radius = 1.1 * b;
+  for (size_t i = 0; i < 8; i++) {
+    struct dea_grid *grid;
+    assert_int_equal(dea_plate_create(ctx, &bad[i], &grid), DEA_E_ARGUMENT);
+    assert_null(grid);
+  }
+}
+
+static void make_plate(struct dea_context *failing)
+{
+  struct dea_plate p = plate(4, 0, 2e-3);
+  struct dea_grid *grid = NULL;
+  p.sectors = 8;
+  failing_check(failing, dea_plate_create(failing, &p, &grid));
+  dea_grid_destroy(failing, grid);
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  assert_true(failing_each(make_plate) > 8);
+}
+
+static void test_graded_cuts(void **state)
+{
+  (void)state;
+  double cuts[101];
+  size_t n = dea_cuts_graded(1, 0.01, 0.02, 0.1, 100, cuts);
+  assert_true(n > 10 && n < 25);
+  assert_close(cuts[0], 0, 0, 0);
+  assert_close(cuts[n], 1, 0, 0);
+  assert_close(cuts[1], 0.01, 0.2, 0);
+  assert_close(1 - cuts[n - 1], 0.02, 0.2, 0);
+  for (size_t i = 0; i < n; i++) {
+    double width = cuts[i + 1] - cuts[i];
+    assert_true(width > 0 && width < 0.101);
+    assert_true(i == 0 || fabs(log2(width / (cuts[i] - cuts[i - 1]))) < 1.1);
+  }
+  assert_int_equal(dea_cuts_graded(1, 2, 2, 2, 100, cuts), 1);
+  assert_int_equal(dea_cuts_graded(1, 1e-3, 1e-3, 1e-3, 100, cuts), 0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_graded_cuts),
+      cmocka_unit_test(test_sectors_of_all_counts),
+      cmocka_unit_test(test_whole_discs),
+      cmocka_unit_test(test_all_that_a_design_can_ask_for),
+      cmocka_unit_test(test_what_fibres_lie_on),
+      cmocka_unit_test(test_plates_that_cannot_be),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}

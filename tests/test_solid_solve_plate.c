@@ -1,0 +1,151 @@
+/* The actuator on its sector, on two sectors and as a whole disc: one answer. */
+// ctest: solid
+#include "model/solid/plate.h"
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+
+static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 100e-6 / 2.25;
+
+static int layer_of(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  return sheet == DEA_PLATE_FILM ? 0 : 1;
+}
+
+static bool active(const void *self, int region, int sheet)
+{
+  (void)self;
+  return (region & DEA_PLATE_ELECTRODE) != 0 && sheet == DEA_PLATE_FILM;
+}
+
+static int held(const void *self, const double X[3])
+{
+  return dea_plate_held(self, X);
+}
+
+static bool frame(const void *self, const double X[3], double Q[9])
+{
+  return dea_plate_frame(self, X, Q);
+}
+
+struct answer {
+  double tip, centre, between, energy; // z, z, outwards; of the whole actuator
+  size_t nodes;
+};
+
+static size_t node_near(const struct dea_grid *grid, double x, double y, double z)
+{
+  size_t nearest = 0;
+  double best = INFINITY;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
+    if (distance < best) {
+      best = distance;
+      nearest = n;
+    }
+  }
+  assert_true(best < 1e-9);
+  return nearest;
+}
+
+/* As built at 3 kV with N fibres on a coarse mesh. */
+static struct answer run(int fibres, int sectors)
+{
+  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+  const double E = 2950e6, nu = 0.38, pi = acos(-1);
+  struct dea_layer layers[] = {
+      {.law = dea_law_find("yeoh"),
+       .param = yeoh,
+       .pre_stretch = {1.5, 1.5, 1 / 2.25},
+       .kappa_Pa = 4e7,
+       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+       .thickness_m = h_m},
+      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  const struct dea_plate plate = {.order = 2,
+                                  .order_z = 2,
+                                  .fibres = fibres,
+                                  .sectors = sectors,
+                                  .electrode_radius = a_m,
+                                  .frame_radius = b_m,
+                                  .tip_radius = a_m,
+                                  .outer_radius = b_m,
+                                  .tip_width = 2e-3,
+                                  .outer_width = 2e-3,
+                                  .film_thickness = h_m,
+                                  .fibre_thickness = 100e-6,
+                                  .size = 0.5 * a_m,
+                                  .edge = 0.2 * a_m};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 2,
+                                            .layers = layers,
+                                            .layer_of = layer_of,
+                                            .active = active,
+                                            .held = held,
+                                            .frame = frame,
+                                            .self = &plate};
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report rest, report;
+  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_plate_create(ctx, &plate, &grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 3e3, &report), DEA_OK);
+  assert_int_equal(report.unstable_modes, 0);
+  const double *u = dea_solid_displacement(solid);
+  double half = pi / fibres;
+  size_t between = 3 * node_near(grid, a_m * cos(half), a_m * sin(half), 0);
+  struct answer answer = {
+      u[3 * node_near(grid, a_m, 0, 0.5 * h_m) + 2], u[3 * node_near(grid, 0, 0, 0) + 2],
+      u[between] * cos(half) + u[between + 1] * sin(half),
+      (report.energy_J - rest.energy_J) * 2 * fibres / sectors, grid->node_count};
+  assert_close(u[between + 1] * cos(half) - u[between] * sin(half), 0, 0, 1e-12);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+  return answer;
+}
+
+/* Four fibres: 45 degrees with a plane of its own axes, the quarter, and all of it; three fibres:
+ * 60 and 120 degrees. */
+static void test_domains_agree(void **state)
+{
+  (void)state;
+  static const int domains[][2] = {{4, 1}, {4, 2}, {4, 8}, {3, 1}, {3, 2}};
+  struct answer first = {0};
+  for (size_t i = 0; i < sizeof domains / sizeof domains[0]; i++) {
+    struct answer answer = run(domains[i][0], domains[i][1]);
+    if (domains[i][1] == 1) {
+      first = answer;
+      assert_true(first.tip < -1e-6 && first.centre < -1e-6 && first.between > 5e-5);
+      continue;
+    }
+    assert_true(answer.nodes > 1.7 * (double)first.nodes);
+    assert_close(answer.tip, first.tip, 1e-7, 0);
+    assert_close(answer.centre, first.centre, 1e-7, 0);
+    assert_close(answer.between, first.between, 1e-7, 0);
+    assert_close(answer.energy, first.energy, 1e-7, 0);
+  }
+}
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_domains_agree)};
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
