@@ -2,6 +2,7 @@
 #include "model/solid/solve/internal.h"
 
 #include "material/plane.h"
+#include "model/solid/hex_coupled.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,10 +40,21 @@ static void gather(const struct dea_solid *s, size_t e, const double *u, struct 
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
                                    enum dea_level level)
 {
+  const struct dea_layer *layer = &s->layers[s->layer[e]];
   struct element_place at;
   gather(s, e, u, &at);
-  return dea_hex_evaluate(&s->shape, &s->layers[s->layer[e]], at.X, at.u, at.multiplier,
-                          s->active[e] ? voltage_V : 0, level, s->element);
+  if (s->field != NULL && layer->permittivity_F_per_m > 0) {
+    return dea_solid_coupled_element(s, e, at.X, at.u, at.multiplier, u + 3 * s->grid->node_count,
+                                     level);
+  }
+  dea_status status =
+      dea_hex_evaluate(&s->shape, layer, at.X, at.u, at.multiplier,
+                       s->field == NULL && s->active[e] ? voltage_V : 0, level, s->element);
+  if (status == DEA_OK && s->field != NULL && level >= DEA_FORCE) {
+    dea_hex_spread(s->shape.nodes, s->element->g, level >= DEA_TANGENT ? s->element->K : NULL,
+                   s->element->g, s->element->K);
+  }
+  return status;
 }
 
 /* Energy of this rank's elements and pieces of loads. */
@@ -83,9 +95,13 @@ dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage
 /* Takes held components out of K: their rows and columns are those of a spring. */
 static void hold(const struct dea_solid *s, const int *nodes, int dofs, double *K)
 {
+  int per = s->per_node;
   for (int i = 0; i < dofs; i++) {
-    if (s->held[3 * nodes[i / 3] + i % 3]) {
+    if (s->held[dea_solid_at(s, nodes[i / per], i % per)]) {
       double spring = fabs(K[i * dofs + i]);
+      if (i % per == 3 && spring == 0) { // no dielectric here
+        spring = fabs(K[(i - 1) * dofs + i - 1]);
+      }
       for (int j = 0; j < dofs; j++) {
         K[i * dofs + j] = K[j * dofs + i] = 0;
       }
@@ -98,9 +114,9 @@ static void hold(const struct dea_solid *s, const int *nodes, int dofs, double *
 static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node_count,
                           const int *nodes, const double *g, double *K, enum dea_level level)
 {
-  int dofs = 3 * node_count;
+  int per = s->per_node, dofs = per * node_count;
   for (int i = 0; i < dofs; i++) {
-    size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
+    size_t at = dea_solid_at(s, nodes[i / per], i % per);
     s->squares += g[i] * g[i]; // held or not: the reaction is a force too
     s->g[at] += g[i];
   }
@@ -111,7 +127,8 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   dea_solid_frame_matrix(s, node_count, nodes, K);
   hold(s, nodes, dofs, K);
   for (int i = 0; i < dofs; i++) {
-    s->metric[3 * nodes[i / 3] + i % 3] += fabs(K[i * dofs + i]);
+    s->metric[dea_solid_at(s, nodes[i / per], i % per)] +=
+        i % per < 3 ? fabs(K[i * dofs + i]) : 0; // the potential is not shifted
   }
   for (int n = 0; n < node_count; n++) {
     block[n] = nodes[n];
@@ -158,7 +175,13 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
       if (piece->node_count > 0) {
         *energy += piece->energy_J;
         s->energy_scale += fabs(piece->energy_J);
-        DEA_TRY(ctx, scatter(ctx, s, piece->node_count, piece->nodes, piece->g, piece->K, level));
+        double *g = piece->g, *K = piece->K;
+        if (s->per_node == 4) {
+          g = s->element->g;
+          K = s->element->K;
+          dea_hex_spread(piece->node_count, piece->g, level >= DEA_TANGENT ? piece->K : NULL, g, K);
+        }
+        DEA_TRY(ctx, scatter(ctx, s, piece->node_count, piece->nodes, g, K, level));
       }
     }
   }

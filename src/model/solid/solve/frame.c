@@ -50,15 +50,15 @@ static void turn(const double Q[9], bool back, double *v, size_t apart)
 
 void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K)
 {
-  size_t dofs = 3 * (size_t)node_count;
+  size_t per = (size_t)s->per_node, dofs = per * (size_t)node_count;
   for (size_t n = 0; n < (size_t)node_count; n++) {
     const double *Q = frame_of(s, (size_t)nodes[n]);
     if (Q != NULL) {
       for (size_t j = 0; j < dofs; j++) {
-        turn(Q, false, K + 3 * n * dofs + j, dofs);
+        turn(Q, false, K + per * n * dofs + j, dofs);
       }
       for (size_t i = 0; i < dofs; i++) {
-        turn(Q, false, K + i * dofs + 3 * n, 1);
+        turn(Q, false, K + i * dofs + per * n, 1);
       }
     }
   }

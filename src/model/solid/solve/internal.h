@@ -6,6 +6,10 @@
 
 #include <petscmat.h>
 
+struct dea_solid_field;
+
+/* Unknowns of the whole: displacements [nodes][3], then, of a coupled field, psi [nodes]. In K they
+ * stand node by node, per_node to each. */
 struct dea_solid {
   int rank, size;              // of the processes at it
   size_t first_node, end_node; // rows of K here
@@ -13,10 +17,13 @@ struct dea_solid {
   const struct dea_grid *grid;
   struct dea_hex_shape shape;
   struct dea_layer *layers;
-  size_t dofs;
-  int *layer;          // [elements]
-  bool *active;        // [elements]
-  unsigned char *held; // [dofs], of the node's local components
+  int per_node;                  // 3, or 4 with a potential
+  size_t dofs;                   // per_node * nodes
+  struct dea_solid_field *field; // NULL: thin film
+  size_t free_potentials;        // negative pivots that are none of a mode
+  int *layer;                    // [elements]
+  bool *active;                  // [elements]
+  unsigned char *held;           // [dofs], of the node's local components
   int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
   double (*frames)[9]; // rows are local axes
   double *u, *trial, *g, *step, *metric, *force; // [dofs]
@@ -35,7 +42,7 @@ struct dea_solid {
   Mat K, factor;
   Vec right, solution;
   double last_shift; // that made K positive definite, relative to the metric
-  bool analysed, checked;
+  bool checked;
 };
 
 /* Turns PETSc's error code into a status. */
@@ -63,6 +70,12 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s);
 /* All multipliers of a solid. */
 size_t dea_solid_pressure_count(const struct dea_solid *s);
 
+/* Place of an unknown of a node. */
+static inline size_t dea_solid_at(const struct dea_solid *s, int node, int i)
+{
+  return i < 3 ? 3 * (size_t)node + (size_t)i : 3 * s->grid->node_count + (size_t)node;
+}
+
 /* Scalar product over all degrees of freedom. */
 double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b);
 
@@ -78,20 +91,38 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
  * global ones. */
 dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
                                    const struct dea_solid_options *options);
-/* K [3 node_count][3 node_count] of some nodes, from global to local components. */
+/* K [per_node node_count] squared of some nodes, from global to local components. */
 void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K);
 /* v [dofs] from global to local components, or back. */
 void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v);
 /* Sets held components of v [dofs], which is in global ones, to 0. */
 void dea_solid_release_held(const struct dea_solid *s, double *v);
 
-/* Factor of K (LDL^T); *negative: its negative pivots. */
+/* LDL^T of A into *factor, which is analysed when it is NULL. */
+dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
+/* Factor of K; *negative: its negative pivots beyond those of free potentials. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
 /* K += amount times the metric. */
 dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount);
 /* out = K^-1 right with the present factor, [dofs] both, in global components. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
+
+/* Of a coupled field (field.c): electrodes; then its matrix, with row lengths as those of K.
+ * Nothing to do for a thin film. */
+dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_options *options);
+dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s, const PetscInt *own,
+                                  const PetscInt *others);
+void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s);
+/* s->element of an element with potential: arguments as in dea_hex_evaluate; psi: of the whole. */
+dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double *X,
+                                     const double *u, const double *multiplier, const double *psi,
+                                     enum dea_level level);
+/* Sets the potentials in u [dofs] to those that belong to its displacements: the maximum of the
+ * energy over them. Nothing to do for a thin film. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_solid_settle(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                            double *u);
 
 /* Minimum of the energy with the multipliers as they are. */
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,

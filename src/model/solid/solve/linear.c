@@ -3,37 +3,63 @@
 
 #include <string.h>
 
-dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
   MatFactorInfo info;
-  PetscInt minus, zero, plus;
   MatFactorInfoInitialize(&info);
-  if (!s->analysed) {
-    DEA_TRY(ctx, dea_solid_petsc(
-                     ctx, MatGetFactor(s->K, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &s->factor),
-                     "MatGetFactor"));
-    MatMumpsSetIcntl(s->factor, 24, 1); // null pivots and
-    MatMumpsSetIcntl(s->factor, 13, 1); // no parallel root, so that the inertia is counted
-    DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(s->factor, s->K, NULL, &info),
-                                 "MatCholeskyFactorSymbolic"));
-    s->analysed = true;
+  if (*factor == NULL) {
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor),
+                                 "MatGetFactor"));
+    MatMumpsSetIcntl(*factor, 24, 1); // null pivots and
+    MatMumpsSetIcntl(*factor, 13, 1); // no parallel root, so that the inertia is counted
+    dea_status status = dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info),
+                                        "MatCholeskyFactorSymbolic");
+    if (status != DEA_OK) {
+      MatDestroy(factor); // sets it to NULL: not analysed
+      return status;
+    }
   }
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorNumeric(s->factor, s->K, &info),
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorNumeric(*factor, A, &info),
                                "MatCholeskyFactorNumeric"));
+  return DEA_OK;
+}
+
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  PetscInt minus, zero, plus;
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->K, &s->factor));
   DEA_TRY(ctx,
           dea_solid_petsc(ctx, MatGetInertia(s->factor, &minus, &zero, &plus), "MatGetInertia"));
-  *negative = (int)(minus + zero);
+  *negative = (int)(minus + zero) - (int)s->free_potentials;
   return DEA_OK;
+}
+
+/* This rank's unknowns as K has them, node by node, from where the solid has them. */
+static void to_nodes(const struct dea_solid *s, const double *solid, double *nodes)
+{
+  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
+    for (int i = 0; i < s->per_node; i++) {
+      nodes[k++] = solid[dea_solid_at(s, (int)n, i)];
+    }
+  }
+}
+
+static void from_nodes(const struct dea_solid *s, const double *nodes, double *solid)
+{
+  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
+    for (int i = 0; i < s->per_node; i++) {
+      solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
+    }
+  }
 }
 
 dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount)
 {
   PetscScalar *values;
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  for (size_t i = 3 * s->first_node; i < 3 * s->end_node; i++) {
-    values[i - 3 * s->first_node] = amount * s->metric[i];
-  }
+  to_nodes(s, s->metric, values);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecScale(s->right, amount), "VecScale"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatDiagonalSet(s->K, s->right, ADD_VALUES), "MatDiagonalSet"));
   return DEA_OK;
 }
@@ -41,17 +67,16 @@ dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double 
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
-  size_t first = 3 * s->first_node, here = 3 * (s->end_node - s->first_node);
   PetscScalar *values;
   memmove(out, right, s->dofs * sizeof(double));
   dea_solid_frame_vector(s, false, out);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  memcpy(values, out + first, here * sizeof(double));
+  to_nodes(s, out, values);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->solution, &values), "VecGetArray"));
   memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
-  memcpy(out + first, values, here * sizeof(double));
+  from_nodes(s, values, out);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->solution, &values), "VecRestoreArray"));
   dea_solid_sum(s, out, s->dofs);
   dea_solid_frame_vector(s, true, out);

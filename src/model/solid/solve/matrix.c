@@ -97,10 +97,14 @@ dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s,
   dea_status status = before == DEA_OK ? prepare(ctx, s, &own, &others) : before;
   status = dea_solid_agree(ctx, s, status); // from here on all ranks have to take part
   if (status == DEA_OK) {
-    PetscInt rows = 3 * (PetscInt)(s->end_node - s->first_node), all = (PetscInt)s->dofs;
+    PetscInt per = s->per_node, all = (PetscInt)s->dofs;
+    PetscInt rows = per * (PetscInt)(s->end_node - s->first_node);
     status = dea_solid_petsc(
-        ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, 3, rows, rows, all, all, 0, own, 0, others, &s->K),
+        ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, per, rows, rows, all, all, 0, own, 0, others, &s->K),
         "MatCreateSBAIJ");
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_field_matrix(ctx, s, own, others);
   }
   dea_free(ctx, own);
   dea_free(ctx, others);

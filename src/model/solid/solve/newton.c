@@ -11,7 +11,8 @@ static const double energy_small = 1e-11;  // change of the energy that rounding
 
 /* Moves u along the step as far as the energy falls enough (Armijo). A fall that the energy cannot
  * resolve is not looked for: the whole step is taken. */
-static dea_status line_search(struct dea_solid *s, double voltage_V, double energy)
+static dea_status line_search(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              double energy)
 {
   double slope = dea_solid_dot(s, s->g, s->step), length = 1;
   bool resolved = -slope > energy_small * s->energy_scale;
@@ -20,7 +21,8 @@ static dea_status line_search(struct dea_solid *s, double voltage_V, double ener
     for (size_t k = 0; k < s->dofs; k++) {
       s->trial[k] = s->u[k] + length * s->step[k];
     }
-    if (dea_solid_energy(s, s->trial, voltage_V, &trial_energy) == DEA_OK &&
+    if (dea_solid_settle(ctx, s, voltage_V, s->trial) == DEA_OK &&
+        dea_solid_energy(s, s->trial, voltage_V, &trial_energy) == DEA_OK &&
         (!resolved || trial_energy <= energy + 1e-4 * length * slope)) {
       memcpy(s->u, s->trial, s->dofs * sizeof(double));
       return DEA_OK;
@@ -56,6 +58,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               struct dea_solid_report *report)
 {
+  DEA_TRY(ctx, dea_solid_settle(ctx, s, voltage_V, s->u));
   for (int i = 0; i < NEWTON_MAX; i++) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, voltage_V, DEA_TANGENT, &report->energy_J));
     report->residual =
@@ -69,7 +72,7 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, doub
     }
     DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
     report->iterations++;
-    if (line_search(s, voltage_V, report->energy_J) != DEA_OK) {
+    if (line_search(ctx, s, voltage_V, report->energy_J) != DEA_OK) {
       return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
     }
   }

@@ -50,6 +50,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
+  DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
   return DEA_OK;
 }
 
@@ -63,7 +64,8 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
     return DEA_E_MEMORY;
   }
   s->grid = grid;
-  s->dofs = 3 * grid->node_count;
+  s->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
+  s->dofs = (size_t)s->per_node * grid->node_count;
   dea_status status = dea_hex_shape_create(grid->order, options->order_z, &s->shape);
   if (status == DEA_OK) {
     status = fill(ctx, s, options);
@@ -82,6 +84,7 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   if (s == NULL) {
     return;
   }
+  dea_solid_field_destroy(ctx, s);
   MatDestroy(&s->factor);
   MatDestroy(&s->K);
   VecDestroy(&s->right);

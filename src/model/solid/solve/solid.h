@@ -14,8 +14,13 @@
 
 struct dea_solid;
 
+/* Where the field comes from: V/h in every active element, or a potential as a fourth unknown of
+ * every node (docs/theory/coupled.md). */
+enum dea_solid_field_kind { DEA_SOLID_FIELD_THIN, DEA_SOLID_FIELD_COUPLED };
+
 struct dea_solid_options {
   int order_z;
+  enum dea_solid_field_kind field;
   size_t layer_count;
   const struct dea_layer *layers; // copied
   /* Layer of an element, and whether it lies between electrodes. */
@@ -27,6 +32,9 @@ struct dea_solid_options {
    * mirror plane that is not x = 0 or y = 0. false: the global axes. NULL: they are those of all
    * nodes. */
   bool (*frame)(const void *self, const double X[3], double Q[9]);
+  /* Of a coupled field: whether a node is on an electrode, and the share of the voltage that this
+   * one is at (0 on the ground). */
+  bool (*electrode)(const void *self, const double X[3], double *share);
   const void *self;
 };
 
@@ -61,6 +69,12 @@ double *dea_solid_displacement(struct dea_solid *solid);
 
 /* Dead loads on the nodes [node_count][3] [N], lent; at first 0. Set them before a solve. */
 double *dea_solid_force(struct dea_solid *solid);
+
+/* Potentials [node_count] of a coupled field; NAN of a thin film. */
+void dea_solid_potential(const struct dea_solid *solid, double *potential_V);
+
+/* Free charges on the nodes [node_count] of a coupled field; at first 0. */
+void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C);
 
 /* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
  * pressure. It comes in pieces of a few nodes each (a face of an element, whose nodes are coupled

@@ -1,0 +1,281 @@
+/* Hexahedra with a potential: derivatives, invariance, the plate capacitor, the thin-film energy.
+ */
+#include "model/solid/hex_coupled.h"
+#include "testing.h"
+
+static struct dea_hex_shape shape;
+static struct dea_element_result at, up, down;
+
+static const double scale = 2e8; // V/m
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
+                                                        2e3, 1e3,  -4e2, 7e2, 1e2};
+
+struct sample {
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], psi[DEA_HEX_NODES_MAX];
+};
+
+static struct dea_layer film(double pre_stretch)
+{
+  double z = 1 / (pre_stretch * pre_stretch);
+  struct dea_layer layer = {.law = dea_law_find("yeoh"),
+                            .param = yeoh,
+                            .pre_stretch = {pre_stretch, pre_stretch, z},
+                            .kappa_Pa = 4e7,
+                            .permittivity_F_per_m = 2.5e-11,
+                            .thickness_m = 44e-6};
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  return layer;
+}
+
+static struct dea_layer plastic(void)
+{
+  struct dea_layer layer = {
+      .lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5, .permittivity_F_per_m = 4e-11};
+  return layer;
+}
+
+/* A distorted element, about 200 um wide and 44 um thick, with displacements and potentials
+ * (thousands of volts). */
+static struct sample distorted(void)
+{
+  struct sample s;
+  for (int n = 0; n < shape.nodes; n++) {
+    const double *x = shape.node_at[n];
+    s.X[3 * n] = 100e-6 * x[0] + 1e-5 * x[0] * x[1];
+    s.X[3 * n + 1] = 100e-6 * x[1] + 1e-5 * x[0] - 5e-6 * x[1] * x[1];
+    s.X[3 * n + 2] = 22e-6 * x[2] + 1e-6 * x[0] * x[2];
+    for (int i = 0; i < 3; i++) {
+      s.u[3 * n + i] = (i == 2 ? 2e-6 : 1e-5) * sin(1.3 * n + i);
+    }
+    s.psi[n] = 2e3 / scale * (x[2] + 0.3 * sin(1.7 * n));
+  }
+  return s;
+}
+
+static dea_status evaluate(const struct dea_layer *layer, const struct sample *s,
+                           enum dea_level level, struct dea_element_result *out)
+{
+  return dea_hex_coupled_evaluate(&shape, layer, s->X, s->u, s->psi, pressures, scale, level, out);
+}
+
+/* Unknown j of a sample. */
+static double *unknown(struct sample *s, int j)
+{
+  return j % 4 < 3 ? &s->u[3 * (j / 4) + j % 4] : &s->psi[j / 4];
+}
+
+static double largest(const double *values, int count)
+{
+  double most = 0;
+  for (int i = 0; i < count; i++) {
+    most = fmax(most, fabs(values[i]));
+  }
+  return most;
+}
+
+static void check_derivatives(const struct dea_layer *layer)
+{
+  int dofs = 4 * shape.nodes;
+  const double d = 1e-10;
+  struct sample s = distorted();
+  assert_int_equal(evaluate(layer, &s, DEA_TANGENT, &at), DEA_OK);
+  double most_g = largest(at.g, dofs), most_K = largest(at.K, dofs * dofs);
+  for (int j = 0; j < dofs; j++) {
+    double *x = unknown(&s, j), keep = *x;
+    *x = keep + d;
+    assert_int_equal(evaluate(layer, &s, DEA_FORCE, &up), DEA_OK);
+    *x = keep - d;
+    assert_int_equal(evaluate(layer, &s, DEA_FORCE, &down), DEA_OK);
+    *x = keep;
+    assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * most_g);
+    for (int i = 0; i < dofs; i++) {
+      assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * d), 0, 1e-8 * most_K);
+      assert_close(at.K[i * dofs + j], at.K[j * dofs + i], 0, 1e-13 * most_K);
+    }
+  }
+}
+
+static void test_derivatives_of_all_orders(void **state)
+{
+  (void)state;
+  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    for (int order_z = 1; order_z <= (order < 3 ? 2 : 1); order_z++) {
+      const struct dea_layer soft = film(1.5), hard = plastic();
+      assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
+      check_derivatives(&soft);
+      check_derivatives(&hard);
+    }
+  }
+}
+
+/* The electric part alone is -(1/2) phi L phi, and the tangent's block of the potentials is -c^2 L.
+ */
+static void test_capacity_is_the_electric_energy(void **state)
+{
+  (void)state;
+  static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+  static const double none[DEA_HEX_NODES_MAX] = {0};
+  const struct dea_layer soft = film(1.5);
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  struct sample s = distorted();
+  int n = shape.nodes;
+  assert_int_equal(evaluate(&soft, &s, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(
+      dea_hex_coupled_evaluate(&shape, &soft, s.X, s.u, none, pressures, scale, DEA_ENERGY, &up),
+      DEA_OK);
+  assert_int_equal(dea_hex_capacity(&shape, &soft, s.X, s.u, L), DEA_OK);
+  double energy = 0, most = largest(L, n * n);
+  for (int a = 0; a < n; a++) {
+    for (int b = 0; b < n; b++) {
+      energy -= 0.5 * scale * scale * s.psi[a] * L[a * n + b] * s.psi[b];
+      assert_close(at.K[(4 * a + 3) * 4 * n + 4 * b + 3], -scale * scale * L[a * n + b], 0,
+                   1e-12 * scale * scale * most);
+    }
+  }
+  assert_close(at.energy_J - up.energy_J, energy, 1e-9, 0);
+}
+
+/* Turned and moved as a whole, and with a potential added everywhere, the element keeps its energy;
+ * its forces turn with it and its charges stay. */
+static void test_rigid_motion_and_added_potential(void **state)
+{
+  (void)state;
+  static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
+  const struct dea_layer soft = film(1.5);
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  struct sample s = distorted(), turned = s;
+  for (int n = 0; n < shape.nodes; n++) {
+    turned.psi[n] += 5e3 / scale;
+    for (int i = 0; i < 3; i++) {
+      double x = 1e-3 * (i + 1);
+      for (int j = 0; j < 3; j++) {
+        x += Q[3 * i + j] * (s.X[3 * n + j] + s.u[3 * n + j]);
+      }
+      turned.u[3 * n + i] = x - s.X[3 * n + i];
+    }
+  }
+  assert_int_equal(evaluate(&soft, &s, DEA_FORCE, &at), DEA_OK);
+  assert_int_equal(evaluate(&soft, &turned, DEA_FORCE, &up), DEA_OK);
+  assert_close(up.energy_J, at.energy_J, 1e-10, 0);
+  double most = largest(at.g, 4 * shape.nodes);
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      double g = 0;
+      for (int j = 0; j < 3; j++) {
+        g += Q[3 * i + j] * at.g[4 * n + j];
+      }
+      assert_close(up.g[4 * n + i], g, 0, 1e-9 * most);
+    }
+    assert_close(up.g[4 * n + 3], at.g[4 * n + 3], 0, 1e-9 * most);
+  }
+}
+
+/* A potential that is linear in the reference thickness is the thin film's field, whatever the
+ * displacements: energy, forces and tangent by u are those of dea_hex_evaluate. */
+static void test_linear_potential_is_the_thin_film(void **state)
+{
+  (void)state;
+  const struct dea_layer soft = film(1.5);
+  const double V = 4e3;
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  struct sample s = distorted();
+  int n = shape.nodes;
+  for (int a = 0; a < n; a++) {
+    s.psi[a] = V / scale * s.X[3 * a + 2] / soft.thickness_m;
+  }
+  assert_int_equal(evaluate(&soft, &s, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &soft, s.X, s.u, pressures, V, DEA_TANGENT, &up),
+                   DEA_OK);
+  double most_g = largest(up.g, 3 * n), most_K = largest(up.K, 9 * n * n);
+  assert_close(at.energy_J, up.energy_J, 1e-12, 0);
+  for (int i = 0; i < 3 * n; i++) {
+    int row = 4 * (i / 3) + i % 3;
+    assert_close(at.g[row], up.g[i], 0, 1e-12 * most_g);
+    for (int j = 0; j < 3 * n; j++) {
+      assert_close(at.K[row * 4 * n + 4 * (j / 3) + j % 3], up.K[i * 3 * n + j], 0, 1e-12 * most_K);
+    }
+  }
+}
+
+/* Plate capacitor of a stretched, sheared block: charge eps (V/h) |F_1 x F_2|^2 a face, the
+ * opposite on the other and none inside. */
+static void test_plate_capacitor(void **state)
+{
+  (void)state;
+  static const double D[9] = {1.2, 0.1, 0.2, -0.1, 0.95, 0.1, 0.3, 0, 0.9};
+  const struct dea_layer soft = film(1.5);
+  const double a = 100e-6, h = 44e-6, V = 3e3;
+  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    struct sample s;
+    double top = 0, bottom = 0, inside = 0, cof[9];
+    assert_int_equal(dea_hex_shape_create(order, order, &shape), DEA_OK);
+    for (int n = 0; n < shape.nodes; n++) {
+      for (int i = 0; i < 3; i++) {
+        s.X[3 * n + i] = (i == 2 ? 0.5 * h : a) * shape.node_at[n][i];
+      }
+      for (int i = 0; i < 3; i++) {
+        const double *X = s.X + 3 * n;
+        s.u[3 * n + i] = D[3 * i] * X[0] + D[3 * i + 1] * X[1] + D[3 * i + 2] * X[2] - X[i];
+      }
+      s.psi[n] = 0.5 * V / scale * (1 + shape.node_at[n][2]);
+    }
+    assert_int_equal(evaluate(&soft, &s, DEA_FORCE, &at), DEA_OK);
+    for (int n = 0; n < shape.nodes; n++) {
+      double charge = -at.g[4 * n + 3] / scale, z = shape.node_at[n][2];
+      *(z > 0.99 ? &top : z < -0.99 ? &bottom : &inside) += charge;
+    }
+    dea_cofactors(D, cof);
+    double area = cof[2] * cof[2] + cof[5] * cof[5] + cof[8] * cof[8];
+    double charge = soft.permittivity_F_per_m * V / h * 4 * a * a * area;
+    assert_close(top, charge, 1e-10, 0);
+    assert_close(bottom, -charge, 1e-10, 0);
+    assert_close(inside, 0, 0, 1e-10 * charge);
+  }
+}
+
+static void test_spread_in_place(void **state)
+{
+  (void)state;
+  enum { NODES = 3, SMALL = 9, WIDE = 12 };
+  static double g3[SMALL], K3[SMALL * SMALL], g[WIDE], K[WIDE * WIDE];
+  for (int i = 0; i < SMALL * SMALL; i++) {
+    g3[i % SMALL] = g[i % SMALL] = 1 + i % SMALL;
+    K3[i] = K[i] = 100 + i;
+  }
+  dea_hex_spread(NODES, g, K, g, K);
+  for (int i = 0; i < WIDE; i++) {
+    int row = 3 * (i / 4) + i % 4;
+    assert_close(g[i], i % 4 < 3 ? g3[row] : 0, 0, 0);
+    for (int j = 0; j < WIDE; j++) {
+      bool both = i % 4 < 3 && j % 4 < 3;
+      assert_close(K[WIDE * i + j], both ? K3[SMALL * row + 3 * (j / 4) + j % 4] : 0, 0, 0);
+    }
+  }
+}
+
+static void test_inverted_element(void **state)
+{
+  (void)state;
+  static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+  const struct dea_layer soft = film(1.5);
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  struct sample s = distorted();
+  s.u[3 * 13 + 2] = 1e-4; // the middle node out through the top
+  assert_int_equal(evaluate(&soft, &s, DEA_ENERGY, &at), DEA_E_DOMAIN);
+  assert_int_equal(dea_hex_capacity(&shape, &soft, s.X, s.u, L), DEA_E_DOMAIN);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_derivatives_of_all_orders),
+      cmocka_unit_test(test_capacity_is_the_electric_energy),
+      cmocka_unit_test(test_rigid_motion_and_added_potential),
+      cmocka_unit_test(test_linear_potential_is_the_thin_film),
+      cmocka_unit_test(test_plate_capacitor),
+      cmocka_unit_test(test_spread_in_place),
+      cmocka_unit_test(test_inverted_element),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
