@@ -1,0 +1,438 @@
+/* Solids with a coupled field: against the thin-film field, fringes, unstable modes, fibres. */
+// ctest: solid
+#include "failing_allocator.h"
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_solid_stop();
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+static const double epsilon = 2.8 * DEA_EPSILON_0;
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+
+static struct dea_layer film(double pre_stretch, double thickness_m)
+{
+  struct dea_layer layer = {
+      .law = dea_law_find("yeoh"),
+      .param = yeoh,
+      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
+      .kappa_Pa = 4e7,
+      .permittivity_F_per_m = epsilon,
+      .thickness_m = thickness_m};
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  return layer;
+}
+
+/* What the callbacks of this file see. */
+struct place {
+  double a, b, h; // radius of the electrode, of the frame or length of a strip, thickness
+};
+
+static int sheet_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  return sheet;
+}
+
+static bool electrode_film(const void *self, int region, int sheet)
+{
+  (void)self;
+  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+}
+
+/* Ground below, voltage on top of the film, inside the radius a. */
+static bool faces(const void *self, const double X[3], double *share)
+{
+  const struct place *p = self;
+  *share = X[2] > 0 ? 1 : 0;
+  return hypot(X[0], X[1]) < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
+}
+
+static int disc_held(const void *self, const double X[3])
+{
+  const struct place *p = self;
+  if (hypot(X[0], X[1]) > p->b * (1 - 1e-9)) {
+    return 1 | 2 | 4;
+  }
+  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
+}
+
+struct body {
+  struct place place;
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+};
+
+static void body_destroy(struct body *body)
+{
+  dea_solid_destroy(ctx, body->solid);
+  dea_grid_destroy(ctx, body->grid);
+}
+
+static size_t node_near(const struct dea_grid *grid, double x, double y, double z)
+{
+  size_t nearest = 0;
+  double best = INFINITY;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
+    nearest = distance < best ? n : nearest;
+    best = fmin(distance, best);
+  }
+  assert_true(best < 1e-9);
+  return nearest;
+}
+
+/* ---- plain disc ---- */
+
+static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, double edge)
+{
+  struct body body = {.place = {3.75e-3, 15e-3, h}};
+  const struct dea_layer soft = film(1.5, h);
+  const struct dea_quarter quarter = {2,           2, body.place.a, body.place.b, h, .fine = fine,
+                                      .edge = edge};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .field = field,
+                                            .layer_count = 1,
+                                            .layers = &soft,
+                                            .layer_of = sheet_layer,
+                                            .active = electrode_film,
+                                            .held = disc_held,
+                                            .electrode = faces,
+                                            .self = &body.place};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
+  return body;
+}
+
+static void solve(struct body *body, double voltage_V)
+{
+  assert_int_equal(dea_solid_solve(ctx, body->solid, voltage_V, &body->report), DEA_OK);
+  assert_true(body->report.residual < 1e-8 && body->report.theta_max < 1e-6);
+}
+
+/* Strain of the electrode at the same fields; what is left between the two is the fringe. */
+static double strain(enum dea_solid_field_kind field, double h)
+{
+  struct body body = disc(field, h, 2, 2 * h);
+  solve(&body, 0);
+  for (int kV = 2; kV <= 4; kV += 2) {
+    solve(&body, 1e3 * kV * h / 44e-6);
+    assert_int_equal(body.report.unstable_modes, 0);
+  }
+  size_t n = node_near(body.grid, body.place.a, 0, 0);
+  double out = dea_solid_displacement(body.solid)[3 * n] / body.place.a;
+  body_destroy(&body);
+  return out;
+}
+
+static void test_fringe_of_a_disc_goes_with_its_thickness(void **state)
+{
+  (void)state;
+  double difference[2];
+  for (int i = 0; i < 2; i++) {
+    double h = 44e-6 / (1 + i);
+    difference[i] = strain(DEA_SOLID_FIELD_COUPLED, h) / strain(DEA_SOLID_FIELD_THIN, h) - 1;
+    assert_true(fabs(difference[i]) < h / 3.75e-3);
+  }
+  assert_close(difference[1] / difference[0], 0.5, 0, 0.02);
+}
+
+/* ---- strips ---- */
+
+static void map_strip(const void *self, double s, double t, double x[2])
+{
+  const struct place *p = self;
+  x[0] = p->b * s;
+  x[1] = p->h * t;
+}
+
+/* Plane strain; the plane x = 0 and the end are held. */
+static int strip_held(const void *self, const double X[3])
+{
+  const struct place *p = self;
+  bool end = X[0] < 1e-9 * p->b || X[0] > p->b * (1 - 1e-9);
+  return 2 | (end ? 1 | 4 : 0);
+}
+
+static bool strip_faces(const void *self, const double X[3], double *share)
+{
+  const struct place *p = self;
+  *share = X[2] > 0 ? 1 : 0;
+  return X[0] < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
+}
+
+static int only_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 0;
+}
+
+static bool everywhere(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return true;
+}
+
+/* Strip of a film, length b, electrodes up to x = a; cuts: [count + 1] ascending from 0 to 1;
+ * sheets: [sheet_count], together as thick as the film. */
+static struct body strip(enum dea_solid_field_kind field, const struct place *place,
+                         const double *cuts, size_t count, const struct dea_sheet *sheets,
+                         size_t sheet_count)
+{
+  static const double one[] = {0, 1};
+  struct body body = {.place = *place};
+  const struct dea_layer soft = film(1, place->h);
+  const struct dea_block block = {map_strip, &body.place, cuts, one, count, 1, 0};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .field = field,
+                                            .layer_count = 1,
+                                            .layers = &soft,
+                                            .layer_of = only_layer,
+                                            .active = everywhere,
+                                            .held = strip_held,
+                                            .electrode = strip_faces,
+                                            .self = &body.place};
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, sheets, sheet_count, NULL, -0.5 * place->h,
+                                   place->b, &body.grid),
+                   DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
+  return body;
+}
+
+/* Between two plates that end at the same x inside of a wide film, the field that goes on beyond
+ * them adds a length of h ln 4/(2 pi) to the capacitor (exact, by conformal mapping of the
+ * half-film over the plane of symmetry: w = exp(2 pi z/h), t = sqrt(1 + w)). So little voltage that
+ * nothing moves. Elements shrink towards the end of the plates, where the field is singular. */
+static void test_fringe_of_a_plate_is_exact(void **state)
+{
+  (void)state;
+  enum { SIDE = 6, COUNT = 2 * SIDE };
+  const double h = 1e-4, V = 20;
+  const struct place place = {2 * h, 4 * h, h};
+  static const double part[SIDE] = {0.5, 0.2, 0.08, 0.025, 0.006, 0}; // of the length
+  static const struct dea_sheet sheets[] = {{0.02e-4, 1, 2}, {0.06e-4, 1, 2}, {0.17e-4, 1, 2},
+                                            {0.25e-4, 1, 2}, {0.25e-4, 1, 2}, {0.17e-4, 1, 2},
+                                            {0.06e-4, 1, 2}, {0.02e-4, 1, 2}};
+  double cuts[COUNT - 1];
+  for (int i = 0; i < SIDE; i++) {
+    cuts[i] = 0.5 - part[i];
+    cuts[COUNT - 2 - i] = 0.5 + part[i];
+  }
+  struct body body = strip(DEA_SOLID_FIELD_COUPLED, &place, cuts, COUNT - 2, sheets, 8);
+  solve(&body, 0);
+  double rest = body.report.energy_J;
+  solve(&body, V);
+  double length = -2 * (body.report.energy_J - rest) / (epsilon * V * V); // the strip is h wide
+  assert_close(length / h - 2, log(4) / (2 * acos(-1)), 1e-2, 0);
+  body_destroy(&body);
+}
+
+/* A stress-free film held at its ends buckles under a field, with the same number of unstable modes
+ * of the flat state with both fields. (Between two of these voltages the coupled one has one less:
+ * a free potential makes the bent film stiffer by a part of the order eps E^2/mu.) */
+static void test_unstable_modes_are_those_of_the_thin_film(void **state)
+{
+  (void)state;
+  enum { COUNT = 12, VOLTAGES = 6 };
+  static const int wanted[VOLTAGES] = {0, 0, 1, 2, 3, 4};
+  static const double voltages[VOLTAGES] = {0, 1000, 1500, 2500, 3100, 3800};
+  const double h = 1e-4;
+  const struct place place = {30 * h, 30 * h, h};
+  const struct dea_sheet sheet = {h, 1, 2};
+  double cuts[COUNT + 1];
+  for (int i = 0; i <= COUNT; i++) {
+    cuts[i] = (double)i / COUNT;
+  }
+  for (int i = 0; i < VOLTAGES; i++) {
+    for (int field = 0; field < 2; field++) {
+      struct body body = strip(field == 0 ? DEA_SOLID_FIELD_THIN : DEA_SOLID_FIELD_COUPLED, &place,
+                               cuts, COUNT, &sheet, 1);
+      solve(&body, voltages[i]);
+      assert_int_equal(body.report.unstable_modes, wanted[i]);
+      body_destroy(&body);
+    }
+  }
+}
+
+/* ---- fibres, local axes, springs ---- */
+
+/* Local axes on x = 0: y before x, so that the held component is the second. */
+static bool swapped(const void *self, const double X[3], double Q[9])
+{
+  static const double axes[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
+  (void)self;
+  memcpy(Q, axes, sizeof axes);
+  return X[0] < 1e-12;
+}
+
+static int swapped_held(const void *self, const double X[3])
+{
+  int bits = disc_held(self, X);
+  return X[0] < 1e-12 ? (bits & 4) | (bits & 1) << 1 | (bits & 2) >> 1 : bits;
+}
+
+/* Spring of 1 N/m between a node and the ground, upwards. */
+static dea_status spring(const void *self, size_t piece, const double *u, enum dea_level level,
+                         struct dea_piece *out)
+{
+  const size_t *node = self;
+  double way = u[3 * *node + 2];
+  (void)piece;
+  (void)level;
+  memset(out, 0, sizeof *out);
+  out->node_count = 1;
+  out->nodes[0] = (int)*node;
+  out->energy_J = 0.5 * way * way;
+  out->g[2] = way;
+  out->K[8] = 1;
+  return DEA_OK;
+}
+
+/* Four fibres, which have no permittivity, with a spring at the tip and a dead load in the centre:
+ * the lift of the tip. */
+static double lift(enum dea_solid_field_kind field, bool axes)
+{
+  const double h = 44e-6, E = 2950e6, nu = 0.38;
+  struct body body = {.place = {3.75e-3, 15e-3, h}};
+  const struct dea_layer layers[] = {
+      film(1.5, h),
+      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, h, 4, 2e-3, 100e-6, 1, 1, 1e-4};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .field = field,
+                                            .layer_count = 2,
+                                            .layers = layers,
+                                            .layer_of = sheet_layer,
+                                            .active = electrode_film,
+                                            .held = axes ? swapped_held : disc_held,
+                                            .frame = axes ? swapped : NULL,
+                                            .electrode = faces,
+                                            .self = &body.place};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
+  size_t tip = node_near(body.grid, 3.75e-3, 0, 0.5 * h), centre = node_near(body.grid, 0, 0, 0);
+  const struct dea_solid_load load = {.self = &tip, .piece_count = 1, .evaluate = spring};
+  assert_int_equal(dea_solid_add_load(ctx, body.solid, &load), DEA_OK);
+  dea_solid_force(body.solid)[3 * centre + 2] = -1e-5;
+  for (int kV = 0; kV <= 4; kV += 2) {
+    solve(&body, 1e3 * kV);
+    assert_int_equal(body.report.unstable_modes, 0);
+  }
+  double out = dea_solid_displacement(body.solid)[3 * tip + 2];
+  body_destroy(&body);
+  return out;
+}
+
+/* The tip is at the electrode's edge and feels the fringe: 4 % less lift here, 5.4 % on a finer
+ * mesh, 3.0 % with half the thickness. The axes at the nodes of a mirror plane change nothing. */
+static void test_fibres_loads_and_axes(void **state)
+{
+  (void)state;
+  double thin = lift(DEA_SOLID_FIELD_THIN, false), coupled = lift(DEA_SOLID_FIELD_COUPLED, false);
+  assert_true(thin < -5e-6);
+  assert_close(coupled / thin, 0.96, 0, 0.02);
+  assert_close(lift(DEA_SOLID_FIELD_COUPLED, true), coupled, 1e-6, 0);
+}
+
+/* ---- what cannot be ---- */
+
+static bool no_electrode(const void *self, const double X[3], double *share)
+{
+  (void)self;
+  (void)X;
+  *share = 1;
+  return false;
+}
+
+static void test_a_field_needs_electrodes(void **state)
+{
+  (void)state;
+  struct body body = {.place = {3.75e-3, 15e-3, 44e-6}};
+  const struct dea_layer soft = film(1.5, 44e-6);
+  const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
+  struct dea_solid_options options = {.order_z = 2,
+                                      .field = DEA_SOLID_FIELD_COUPLED,
+                                      .layer_count = 1,
+                                      .layers = &soft,
+                                      .layer_of = sheet_layer,
+                                      .active = electrode_film,
+                                      .held = disc_held,
+                                      .electrode = no_electrode,
+                                      .self = &body.place};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
+  options.electrode = NULL;
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "electrodes"));
+  body_destroy(&body);
+}
+
+static struct dea_grid *small_grid;
+static const struct place small_place = {3.75e-3, 15e-3, 44e-6};
+
+static void make_solid(struct dea_context *failing)
+{
+  const struct dea_layer soft = film(1.5, 44e-6);
+  const struct dea_solid_options options = {.order_z = 1,
+                                            .field = DEA_SOLID_FIELD_COUPLED,
+                                            .layer_count = 1,
+                                            .layers = &soft,
+                                            .layer_of = sheet_layer,
+                                            .active = electrode_film,
+                                            .held = disc_held,
+                                            .electrode = faces,
+                                            .self = &small_place};
+  struct dea_solid *solid = NULL;
+  struct dea_solid_report report;
+  dea_status status = dea_solid_create(failing, small_grid, &options, &solid);
+  if (status == DEA_OK) {
+    status = dea_solid_solve(failing, solid, 100, &report);
+  }
+  failing_check(failing, status);
+  dea_solid_destroy(failing, solid);
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  const struct dea_quarter quarter = {1, 1, 3.75e-3, 15e-3, 44e-6, .fine = 1};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &small_grid), DEA_OK);
+  assert_true(failing_each(make_solid) > 18);
+  dea_grid_destroy(ctx, small_grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_fringe_of_a_disc_goes_with_its_thickness),
+      cmocka_unit_test(test_fringe_of_a_plate_is_exact),
+      cmocka_unit_test(test_unstable_modes_are_those_of_the_thin_film),
+      cmocka_unit_test(test_fibres_loads_and_axes),
+      cmocka_unit_test(test_a_field_needs_electrodes),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
