@@ -172,6 +172,8 @@ static void test_sweeps(void **state)
       {"{to: 1 kV, step: 300 V}", 4, 900},
       {"{from: 0 kV, to: 0.9 kV, step: 0.1 kV}", 10, 900},
       {"{values: [3 kV, 1 kV, 500 V]}", 3, 500},
+      {"{to: 2 kV, step: 1 kV, back: yes}", 5, 0},
+      {"{values: [1 kV, 3 kV], back: yes}", 3, 1000},
   };
   for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++) {
     const struct dea_override set = {"compute.voltage", sweeps[i].voltage};

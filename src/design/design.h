@@ -14,6 +14,7 @@ enum {
   DEA_DESIGN_MODELS_MAX = 4,
   DEA_DESIGN_MATERIALS_MAX = 16,
   DEA_DESIGN_VOLTAGES_MAX = 10000,
+  DEA_DESIGN_STOPS_MAX = 32,
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
@@ -64,8 +65,15 @@ struct dea_design {
     size_t voltage_count;
     struct dea_place voltages_place;
     struct dea_quantity path_max_stretch; // of the electrode, total; DEA_DEFAULT: or beyond
-    struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
-    struct dea_quantity coverage;         // R itself; absent: from coverage_by
+    struct { // force on a rigid tip; without depths and preloads nothing is computed
+      struct dea_choice tip;  // enum dea_tip_shape
+      struct dea_choice side; // 0: it comes from the fibres' side, 1: from the other
+      struct dea_quantity radius_m, edge_radius_m;
+      struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
+      size_t depth_count, preload_count;
+    } force;
+    struct dea_choice coverage_by; // enum dea_coverage_by, paper eq 17
+    struct dea_quantity coverage;  // R itself; absent: from coverage_by
   } compute;
 
   struct { // report

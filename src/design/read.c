@@ -46,7 +46,26 @@ static dea_status make_sweep(struct dea_context *ctx, struct dea_design_raw *raw
   return DEA_OK;
 }
 
-static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
+/* The same way back, without the last voltage twice. */
+static dea_status add_way_back(struct dea_context *ctx, struct dea_design *design)
+{
+  size_t count = design->compute.voltage_count;
+  if (count < 2) {
+    return DEA_OK;
+  }
+  double *both = dea_resize(ctx, design->compute.voltages_V, 2 * count - 1, sizeof *both);
+  if (both == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i + 1 < count; i++) {
+    both[count + i] = both[count - 2 - i];
+  }
+  design->compute.voltages_V = both;
+  design->compute.voltage_count = 2 * count - 1;
+  return DEA_OK;
+}
+
+static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   struct dea_design *design = &raw->design;
   if (raw->voltage_count == 0) {
@@ -64,6 +83,12 @@ static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *
     design->compute.voltages_V[i] = raw->voltages_V[i].si;
   }
   return DEA_OK;
+}
+
+static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
+{
+  DEA_TRY(ctx, read_voltages(ctx, raw));
+  return raw->back.value == 1 ? add_way_back(ctx, &raw->design) : DEA_OK;
 }
 
 /* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films,

@@ -212,6 +212,8 @@ static const struct dea_field fibre_fields[] = {
      .example = "clamped"},
 };
 
+static const char *const no_yes[] = {"no", "yes", NULL};
+
 static const struct dea_field voltage_fields[] = {
     {.key = "from",
      .kind = DEA_FIELD_NUMBER,
@@ -244,6 +246,13 @@ static const struct dea_field voltage_fields[] = {
      .option = 1,
      .doc = "step between voltages",
      .example = "0.1 kV"},
+    {.key = "back",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = RAW(back),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc = "whether the sweep goes back the same way: snap-through shows as hysteresis",
+     .example = "yes"},
     {.key = "values",
      .kind = DEA_FIELD_NUMBER,
      .offset = RAW(voltages_V),
@@ -296,6 +305,10 @@ static const struct dea_field compute_fields[] = {
      .record = &voltage_record,
      .doc = "voltages of the sweep"},
     {.key = "path", .kind = DEA_FIELD_RECORD, .record = &path_record, .doc = "equilibrium path"},
+    {.key = "force",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_force_record,
+     .doc = "force on a rigid tip against the middle of the film (3d)"},
     {.key = "coverage_by",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(compute.coverage_by),

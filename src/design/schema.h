@@ -11,12 +11,16 @@ struct dea_design_raw {
   struct dea_design design;
   struct dea_quantity version;
   struct dea_quantity from_V, to_V, step_V;
+  struct dea_choice back; // 1: the sweep returns
   struct dea_quantity voltages_V[DEA_DESIGN_VOLTAGES_MAX];
   size_t voltage_count;
   struct dea_choice figures[DEA_FIGURE_COUNT];
   size_t figure_count;
   struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
 };
+
+/* Parts of the table that have files of their own; base as below. */
+extern const struct dea_record dea_force_record;
 
 /* Table of a design file; base: a struct dea_design_raw. */
 extern const struct dea_record dea_design_record;

@@ -18,7 +18,10 @@
   X(fibre_tip_z_m, "m", "um", 1e6, "z fibre tip", "displacement of the fibre tip")                 \
   X(electrode_edge_u_m, "m", "um", 1e6, "u electrode edge",                                        \
     "radial displacement of the electrode edge between fibres")                                    \
-  X(force_N, "N", "mN", 1e3, "force", "out-of-plane force (largest along the load line)")          \
+  X(tip_depth_m, "m", "um", 1e6, "tip depth",                                                      \
+    "how far a tip is pressed beyond touching the flat film; negative: a gap")                     \
+  X(force_N, "N", "mN", 1e3, "force",                                                              \
+    "out-of-plane force: on the tip, or the largest along the load line")                          \
   X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field",                                   \
     "V over the unstretched thickness")                                                            \
   X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \

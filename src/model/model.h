@@ -48,6 +48,15 @@ struct dea_profile {
 /* What `fields` hands out: all of the device, or the middle surface of its film. */
 enum dea_fields_part { DEA_FIELDS_VOLUME, DEA_FIELDS_SURFACE };
 
+/* A rigid tip without friction that is pressed against the middle of the film. */
+enum dea_tip_shape { DEA_TIP_SPHERE, DEA_TIP_FLAT, DEA_TIP_CYLINDER };
+struct dea_tip {
+  enum dea_tip_shape shape; // cylinder: lying on its side, along x
+  double radius_m;
+  double edge_radius_m; // of the flat end's rounded edge
+  bool from_fibre_side; // comes from +z
+};
+
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
@@ -68,6 +77,11 @@ struct dea_model_type {
                      dea_event_sink events, void *user);
   /* Profile at the last point solved; NULL when the model has none. */
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
+  /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
+   * solved, in steps of its own; later solves keep it there and their points have its force. The
+   * tip of the first call stays. NULL when the model knows no tips. */
+  dea_status (*press)(struct dea_context *ctx, struct dea_model *model, const struct dea_tip *tip,
+                      double depth_m, struct dea_load_point *out);
   /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
    * (dea_field_mesh_destroy), NULL on failure. */
   dea_status (*fields)(struct dea_context *ctx, struct dea_model *model, enum dea_fields_part part,

@@ -3,4 +3,5 @@
 // X(name of the `const struct dea_study`)
 #define DEA_STUDY_LIST(X)                                                                          \
   X(dea_study_path)                                                                                \
-  X(dea_study_sweep)
+  X(dea_study_sweep)                                                                               \
+  X(dea_study_force)

@@ -1,0 +1,128 @@
+/* Study "force" with a model of one spring: F = k d + c d^3 - b V^2 on a tip at depth d. */
+#include "design_text.h"
+#include "study/study.h"
+
+#include "context_fixture.h"
+
+struct dea_model {
+  double depth_m, voltage_V;
+  int presses;
+};
+
+static const double k = 50, c = 5e6, b = 2e-9;
+
+static double force(const struct dea_model *model)
+{
+  double d = model->depth_m;
+  return d > 0 ? k * d + c * d * d * d - b * model->voltage_V * model->voltage_V : 0;
+}
+
+static dea_status create(struct dea_context *context, const struct dea_device *device,
+                         struct dea_model **out)
+{
+  (void)device;
+  *out = dea_alloc(context, 1, sizeof **out);
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+static void destroy(struct dea_context *context, struct dea_model *model)
+{
+  dea_free(context, model);
+}
+
+static dea_status report(const struct dea_model *model, struct dea_load_point *out)
+{
+  *out = dea_load_point_empty();
+  out->voltage_V = model->voltage_V;
+  out->tip_depth_m = model->depth_m;
+  out->force_N = force(model);
+  return DEA_OK;
+}
+
+static dea_status solve(struct dea_context *context, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  (void)context;
+  model->voltage_V = voltage_V;
+  return report(model, out);
+}
+
+static dea_status press(struct dea_context *context, struct dea_model *model,
+                        const struct dea_tip *tip, double depth_m, struct dea_load_point *out)
+{
+  (void)context;
+  assert_close(tip->radius_m, 2e-3, 1e-12, 0);
+  assert_true(tip->shape == DEA_TIP_FLAT && !tip->from_fibre_side);
+  assert_close(model->voltage_V, 0, 0, 0); // pressed first, voltage after
+  model->depth_m = depth_m;
+  model->presses++;
+  return report(model, out);
+}
+
+static const struct dea_model_type spring = {.name = "spring",
+                                             .long_name = "one spring",
+                                             .create = create,
+                                             .destroy = destroy,
+                                             .solve = solve,
+                                             .press = press};
+
+static void test_depths_and_preloads(void **state)
+{
+  (void)state;
+  static const struct dea_override sets[] = {
+      {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
+      {"compute.force",
+       "{tip: flat, radius: 2 mm, side: back, depth: [-1 mm, 1 mm], preload: [180 mN]}"}};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &spring, result), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+  assert_non_null(curve);
+  assert_true(curve->complete);
+  assert_int_equal(curve->count, 9); // three stops of three voltages
+  static const double depths_m[] = {-1e-3, 1e-3};
+  for (size_t i = 0; i < 6; i++) {
+    struct dea_model wanted = {.depth_m = depths_m[i / 3], .voltage_V = 1e3 * (double)(i % 3)};
+    assert_close(curve->points[i].tip_depth_m, wanted.depth_m, 1e-12, 0);
+    assert_close(curve->points[i].force_N, force(&wanted), 1e-12, 1e-15);
+  }
+  assert_close(curve->points[6].force_N, 0.18, 1e-3, 0);
+  assert_close(curve->points[6].force_N - curve->points[8].force_N, b * 4e6, 1e-9, 0);
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+/* Without the section nothing is computed. */
+static void test_nothing_asked(void **state)
+{
+  (void)state;
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), NULL, 0, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &spring, result), DEA_OK);
+  assert_null(dea_result_find(result, "spring", "force"));
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_depths_and_preloads),
+      cmocka_unit_test(test_nothing_asked),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
