@@ -110,6 +110,18 @@ static void hold(const struct dea_solid *s, const int *nodes, int dofs, double *
   }
 }
 
+/* g += K times the way of the held components. */
+static void add_drive(struct dea_solid *s, const int *nodes, int dofs, const double *K)
+{
+  int per = s->per_node;
+  for (int j = 0; j < dofs; j++) {
+    double way = s->drive[dea_solid_at(s, nodes[j / per], j % per)];
+    for (int i = 0; i < dofs && way != 0; i++) {
+      s->g[dea_solid_at(s, nodes[i / per], i % per)] += K[i * dofs + j] * way;
+    }
+  }
+}
+
 /* Adds g and, with DEA_TANGENT, K of a few nodes to those of the whole. K is changed. */
 static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node_count,
                           const int *nodes, const double *g, double *K, enum dea_level level)
@@ -124,6 +136,9 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
     return DEA_OK;
   }
   PetscInt block[DEA_HEX_NODES_MAX];
+  if (s->driven) {
+    add_drive(s, nodes, dofs, K);
+  }
   dea_solid_frame_matrix(s, node_count, nodes, K);
   hold(s, nodes, dofs, K);
   for (int i = 0; i < dofs; i++) {
@@ -188,6 +203,18 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
   return DEA_OK;
 }
 
+/* On the way back to a state without stress the scales would fall to what rounding leaves: they
+ * stay above a share of the largest ones. */
+static void keep_scales(struct dea_solid *s)
+{
+  static const double share = 1e-3;
+  double force = sqrt(s->squares);
+  s->force_largest = fmax(s->force_largest, force);
+  s->energy_largest = fmax(s->energy_largest, s->energy_scale);
+  s->force_scale = fmax(force, share * s->force_largest);
+  s->energy_scale = fmax(s->energy_scale, share * s->energy_largest);
+}
+
 /* Sums over the ranks, then the dead loads, which all ranks know. */
 static void collect(struct dea_solid *s, enum dea_level level, double *energy)
 {
@@ -205,8 +232,12 @@ static void collect(struct dea_solid *s, enum dea_level level, double *energy)
   *energy = sums[0] - dea_solid_dot(s, s->force, s->u);
   s->energy_scale = sums[1];
   s->squares = sums[2];
-  s->force_scale = sqrt(s->squares);
+  keep_scales(s);
+  memcpy(s->reaction, s->g, s->dofs * sizeof(double));
   dea_solid_release_held(s, s->g);
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->reaction[i] -= s->g[i];
+  }
 }
 
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,

@@ -260,6 +260,6 @@ void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C)
 {
   size_t nodes = solid->grid->node_count;
   for (size_t n = 0; n < nodes && solid->field != NULL; n++) {
-    solid->force[3 * nodes + n] = -solid->field->scale_V_per_m * charge_C[n];
+    solid->force_goal[3 * nodes + n] = -solid->field->scale_V_per_m * charge_C[n];
   }
 }

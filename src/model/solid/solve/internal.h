@@ -8,6 +8,18 @@
 
 struct dea_solid_field;
 
+/* Two equilibria and a goal. State: displacements and multipliers; controls: what an equilibrium is
+ * asked for at, see controls.c. */
+struct dea_solid_path {
+  int solved; // how many equilibria there are, up to 2
+  size_t state_count, control_count;
+  double *before, *keep;                      // [state_count] last but one; last
+  double *controls_before, *controls;         // [control_count] of the same two
+  double *controls_from, *controls_goal, *at; // start and end of a solve, and where it is
+};
+
+enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED }; // held: where it is; prescribed: at its place
+
 /* Unknowns of the whole: displacements [nodes][3], then, of a coupled field, psi [nodes]. In K they
  * stand node by node, per_node to each. */
 struct dea_solid {
@@ -23,18 +35,22 @@ struct dea_solid {
   size_t free_potentials;        // negative pivots that are none of a mode
   int *layer;                    // [elements]
   bool *active;                  // [elements]
-  unsigned char *held;           // [dofs], of the node's local components
+  unsigned char *held;           // [dofs] DEA_FREE, ..., of the node's local components
   int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
   double (*frames)[9]; // rows are local axes
   double *u, *trial, *g, *step, *metric, *force; // [dofs]
   double *multiplier, *theta;                    // [elements][shape.pressures]
-  double *
-      before; // [dofs + pressures] displacements and multipliers of the equilibrium before the last
-  double voltage_V, voltage_before_V; // of the last two equilibria
-  int solved;                         // how many there are, up to 2
-  double squares;                     // of element forces at the last assembly
+  double *force_goal; // [dofs] dead loads that were asked for; force: as they stand
+  double *place;      // [dofs] displacements that were asked for of prescribed (local) components
+  double *reaction;   // [dofs] forces of the supports at the last assembly
+  double *drive;      // [dofs] how far held components go in the next linear step, else 0
+  bool driven;        // whether they do
+  struct dea_solid_path path;
+  double voltage_V;    // of the last equilibrium
+  double squares;      // of element forces at the last assembly
   double force_scale;  // root of the sum of squared element forces at the last assembly
   double energy_scale; // sum of absolute element energies there
+  double force_largest, energy_largest; // of those two at any assembly
   struct dea_element_result *element;
   struct dea_solid_load *loads; // [load_count]
   size_t load_count;
@@ -124,9 +140,33 @@ dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double
 dea_status dea_solid_settle(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                             double *u);
 
+/* ---- controls: voltage, dead loads, places of held components, parameters of loads ---- */
+
+/* Memory for states and controls of the solid as it is now. */
+dea_status dea_solid_path_prepare(struct dea_context *ctx, struct dea_solid *s);
+void dea_solid_path_release(struct dea_context *ctx, struct dea_solid_path *path);
+/* Displacements and all multipliers, to and from one vector [state_count]. */
+void dea_solid_state_get(const struct dea_solid *s, double *state);
+void dea_solid_state_set(struct dea_solid *s, const double *state);
+/* As they stand, and as the next solve wants them. */
+void dea_solid_controls_get(struct dea_solid *s, double *controls);
+void dea_solid_controls_goal(struct dea_solid *s, double voltage_V, double *controls);
+/* Voltage, dead loads and parameters; the held components stay where they are. */
+void dea_solid_controls_set(struct dea_solid *s, const double *controls);
+/* drive: from the held components' displacements to those of the controls. false: they are there.
+ */
+bool dea_solid_controls_drive(struct dea_solid *s, const double *controls);
+/* Whether the way from `now` to `next` is `factor` times that from `before` to `now` (the voltage
+ * by its square). */
+bool dea_solid_controls_extend(const struct dea_solid *s, const double *before, const double *now,
+                               const double *next, double *factor);
+
 /* Minimum of the energy with the multipliers as they are. */
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               struct dea_solid_report *report);
+/* One linear step in which the held components go the whole of s->drive and the rest follows. */
+dea_status dea_solid_drive(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                           struct dea_solid_report *report);
 /* The multipliers take over kappa theta; returns the largest theta. */
 double dea_solid_update_multipliers(struct dea_solid *s);
 

@@ -80,6 +80,34 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, doub
                   NEWTON_MAX, report->residual);
 }
 
+dea_status dea_solid_drive(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                           struct dea_solid_report *report)
+{
+  double energy;
+  int unshifted;
+  DEA_TRY(ctx, dea_solid_settle(ctx, s, voltage_V, s->u));
+  s->driven = true;
+  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_TANGENT, &energy);
+  s->driven = false;
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, factorise_definite(ctx, s, &unshifted, report));
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->trial[i] = -s->g[i];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  // where the whole of the linear step leads too far the held components go their way all the same
+  for (double length = 1; length > 0.1; length /= 2) {
+    for (size_t i = 0; i < s->dofs; i++) {
+      s->trial[i] = s->u[i] + s->drive[i] + length * s->step[i];
+    }
+    if (dea_solid_energy(s, s->trial, voltage_V, &energy) == DEA_OK) {
+      memcpy(s->u, s->trial, s->dofs * sizeof(double));
+      return DEA_OK;
+    }
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the prescribed displacements invert an element");
+}
+
 double dea_solid_update_multipliers(struct dea_solid *s)
 {
   double largest = 0;

@@ -29,13 +29,17 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   s->force = dea_alloc(ctx, s->dofs, sizeof(double));
   s->multiplier = dea_alloc(ctx, elements * pressures, sizeof(double));
   s->theta = dea_alloc(ctx, elements * pressures, sizeof(double));
-  s->before = dea_alloc(ctx, s->dofs + elements * pressures, sizeof(double));
+  s->force_goal = dea_alloc(ctx, s->dofs, sizeof(double));
+  s->place = dea_alloc(ctx, s->dofs, sizeof(double));
+  s->reaction = dea_alloc(ctx, s->dofs, sizeof(double));
+  s->drive = dea_alloc(ctx, s->dofs, sizeof(double));
   s->element = dea_alloc(ctx, 1, sizeof *s->element);
   s->piece = dea_alloc(ctx, 1, sizeof *s->piece);
   if (s->layers == NULL || s->layer == NULL || s->active == NULL || s->held == NULL ||
       s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL || s->metric == NULL ||
-      s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->before == NULL ||
-      s->element == NULL || s->piece == NULL) {
+      s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL ||
+      s->place == NULL || s->reaction == NULL || s->drive == NULL || s->element == NULL ||
+      s->piece == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
@@ -89,10 +93,11 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   MatDestroy(&s->K);
   VecDestroy(&s->right);
   VecDestroy(&s->solution);
-  void *const memory[] = {s->layers, s->layer,  s->active, s->held,       s->u,
-                          s->trial,  s->g,      s->step,   s->multiplier, s->theta,
-                          s->metric, s->before, s->force,  s->element,    s->piece,
-                          s->loads,  s->own,    s->frame,  s->frames};
+  dea_solid_path_release(ctx, &s->path);
+  void *const memory[] = {s->layers,     s->layer, s->active,     s->held,  s->u,       s->trial,
+                          s->g,          s->step,  s->multiplier, s->theta, s->metric,  s->force,
+                          s->force_goal, s->place, s->reaction,   s->drive, s->element, s->piece,
+                          s->loads,      s->own,   s->frame,      s->frames};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }
@@ -106,7 +111,42 @@ double *dea_solid_displacement(struct dea_solid *solid)
 
 double *dea_solid_force(struct dea_solid *solid)
 {
-  return solid->force;
+  return solid->force_goal;
+}
+
+const double *dea_solid_reaction(const struct dea_solid *solid)
+{
+  return solid->reaction;
+}
+
+dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                               int components, const double displacement_m[3])
+{
+  if (node >= solid->grid->node_count || (components & ~7) != 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
+  }
+  for (size_t i = 0; i < 3; i++) {
+    if ((components >> i) & 1) {
+      solid->held[3 * node + i] = DEA_PRESCRIBED;
+      solid->place[3 * node + i] = displacement_m[i];
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                             int components)
+{
+  if (node >= solid->grid->node_count || (components & ~7) != 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
+  }
+  for (size_t i = 0; i < 3; i++) {
+    if ((components >> i) & 1) {
+      solid->held[3 * node + i] = DEA_FREE;
+    }
+  }
+  solid->checked = false;
+  return DEA_OK;
 }
 
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,

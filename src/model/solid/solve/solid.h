@@ -11,6 +11,7 @@
 #define DEA_MODEL_SOLID_SOLVE_SOLID_H
 
 #include "model/solid/grid.h"
+#include "model/solid/load.h"
 
 struct dea_solid;
 
@@ -44,6 +45,8 @@ struct dea_solid_report {
   int unstable_modes;                      // negative pivots of the unshifted tangent at the end
   double energy_J, residual;               // residual: relative to the sum of element forces
   double theta_max;                        // largest projected J - 1 left
+  double load_error; // largest constraint violation of a load over the one it allows
+  double way;        // share of the way to what was asked for; 1 unless the solve failed
 };
 
 /* PETSc for this process; harmless when it runs already. */
@@ -59,15 +62,18 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
                             const struct dea_solid_options *options, struct dea_solid **out);
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
 
-/* Equilibrium at a voltage, from the last one; where the whole step fails it goes there in smaller
- * ones. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found. */
+/* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
+ * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
+ * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
+ * report->way of the way. */
 dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                            struct dea_solid_report *report);
 
-/* Displacements [node_count][3], lent; they may be written to set a start. */
+/* Displacements [node_count][3], lent; they may be written to set a start. What the options hold
+ * stays where it is. */
 double *dea_solid_displacement(struct dea_solid *solid);
 
-/* Dead loads on the nodes [node_count][3] [N], lent; at first 0. Set them before a solve. */
+/* Dead loads on the nodes [node_count][3] [N] that the next solve goes to, lent; at first 0. */
 double *dea_solid_force(struct dea_solid *solid);
 
 /* Potentials [node_count] of a coupled field; NAN of a thin film. */
@@ -76,25 +82,17 @@ void dea_solid_potential(const struct dea_solid *solid, double *potential_V);
 /* Free charges on the nodes [node_count] of a coupled field; at first 0. */
 void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C);
 
-/* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
- * pressure. It comes in pieces of a few nodes each (a face of an element, whose nodes are coupled
- * in K anyway). */
-enum { DEA_PIECE_NODES_MAX = 16, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
-struct dea_piece {
-  int node_count;
-  int nodes[DEA_PIECE_NODES_MAX];
-  double energy_J;
-  double g[DEA_PIECE_DOFS_MAX];                      // [3 node_count]
-  double K[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX]; // [3 node_count][3 node_count], symmetric
-};
-struct dea_solid_load {
-  const void *self; // lent
-  size_t piece_count;
-  /* A piece at displacements u [node_count of the solid][3] up to the level; node_count 0 when
-   * there is nothing. DEA_E_DOMAIN where the energy is not defined. */
-  dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_level level,
-                         struct dea_piece *out);
-};
+/* Holds components (bits 1, 2, 4) of a node; the next solve moves them to these displacements.
+ * Components are those of the node's local axes. */
+dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                               int components, const double displacement_m[3]);
+/* Frees components of a node. */
+dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                             int components);
+/* Forces of the supports on the nodes at the last equilibrium [node_count][3] [N], along the global
+ * axes; 0 along what is free. Lent. */
+const double *dea_solid_reaction(const struct dea_solid *solid);
+
 /* Adds a load for all solves to come; copied. */
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);

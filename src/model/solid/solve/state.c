@@ -41,11 +41,14 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
   return DEA_OK;
 }
 
-dea_status dea_solid_save(struct dea_context *ctx, const struct dea_solid *s, struct dea_state *out)
+dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct dea_state *out)
 {
   const struct dea_grid *grid = s->grid;
-  size_t pressures = dea_solid_pressure_count(s);
-  const double own[] = {s->voltage_V, s->voltage_before_V, s->solved, s->last_shift};
+  struct dea_solid_path *path = &s->path;
+  DEA_TRY(ctx, dea_solid_path_prepare(ctx, s));
+  dea_solid_state_get(s, path->keep);
+  dea_solid_controls_get(s, path->controls);
+  const double own[] = {path->solved, s->last_shift, s->force_largest, s->energy_largest};
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "mesh", grid->X, s->dofs * sizeof(double)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
                                   grid->element_count * DEA_HEX_NODES_MAX * sizeof(int)));
@@ -55,9 +58,11 @@ dea_status dea_solid_save(struct dea_context *ctx, const struct dea_solid *s, st
                                   grid->element_count * sizeof *s->active));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", s->held, s->dofs));
   DEA_TRY(ctx, mark_materials(ctx, s, out));
-  DEA_TRY(ctx, dea_state_add(ctx, out, "displacement", s->u, s->dofs));
-  DEA_TRY(ctx, dea_state_add(ctx, out, "multiplier", s->multiplier, pressures));
-  DEA_TRY(ctx, dea_state_add(ctx, out, "before", s->before, s->dofs + pressures));
+  DEA_TRY(ctx, dea_state_add(ctx, out, "state", path->keep, path->state_count));
+  DEA_TRY(ctx, dea_state_add(ctx, out, "state before", path->before, path->state_count));
+  DEA_TRY(ctx, dea_state_add(ctx, out, "controls", path->controls, path->control_count));
+  DEA_TRY(ctx,
+          dea_state_add(ctx, out, "controls before", path->controls_before, path->control_count));
   DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
   return DEA_OK;
 }
@@ -65,20 +70,24 @@ dea_status dea_solid_save(struct dea_context *ctx, const struct dea_solid *s, st
 dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
                           const struct dea_state *state)
 {
-  size_t pressures = dea_solid_pressure_count(s);
-  const double *u = dea_state_find(state, "displacement", s->dofs);
-  const double *multiplier = dea_state_find(state, "multiplier", pressures);
-  const double *before = dea_state_find(state, "before", s->dofs + pressures);
+  struct dea_solid_path *path = &s->path;
+  DEA_TRY(ctx, dea_solid_path_prepare(ctx, s));
+  const double *now = dea_state_find(state, "state", path->state_count);
+  const double *before = dea_state_find(state, "state before", path->state_count);
+  const double *controls = dea_state_find(state, "controls", path->control_count);
+  const double *controls_before = dea_state_find(state, "controls before", path->control_count);
   const double *own = dea_state_find(state, "solid", 4);
-  if (u == NULL || multiplier == NULL || before == NULL || own == NULL) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh");
+  if (now == NULL || before == NULL || controls == NULL || controls_before == NULL || own == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh and these loads");
   }
-  memcpy(s->u, u, s->dofs * sizeof *u);
-  memcpy(s->multiplier, multiplier, pressures * sizeof *multiplier);
-  memcpy(s->before, before, (s->dofs + pressures) * sizeof *before);
-  s->voltage_V = own[0];
-  s->voltage_before_V = own[1];
-  s->solved = (int)own[2];
-  s->last_shift = own[3];
+  dea_solid_state_set(s, now);
+  dea_solid_controls_set(s, controls);
+  memcpy(s->force_goal, s->force, s->dofs * sizeof(double));
+  memcpy(path->before, before, path->state_count * sizeof *before);
+  memcpy(path->controls_before, controls_before, path->control_count * sizeof *controls_before);
+  path->solved = (int)own[0];
+  s->last_shift = own[1];
+  s->force_largest = own[2];
+  s->energy_largest = own[3];
   return DEA_OK;
 }

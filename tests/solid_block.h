@@ -1,0 +1,72 @@
+/* A block of one material as a solid, for tests of loads and supports. */
+#ifndef DEA_TESTS_SOLID_BLOCK_H
+#define DEA_TESTS_SOLID_BLOCK_H
+
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+static inline int block_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 0;
+}
+
+static inline bool block_passive(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return false;
+}
+
+/* Size from the origin, elements along each edge, orders. */
+struct block {
+  double size[3];
+  size_t count[3];
+  int order, order_z;
+};
+
+static inline void block_map(const void *self, double s, double t, double x[2])
+{
+  const struct block *block = self;
+  x[0] = block->size[0] * s;
+  x[1] = block->size[1] * t;
+}
+
+static inline struct dea_grid *block_grid(struct dea_context *ctx, const struct block *block)
+{
+  double cuts[2][33];
+  for (int a = 0; a < 2; a++) {
+    assert_true(block->count[a] <= 32);
+    for (size_t i = 0; i <= block->count[a]; i++) {
+      cuts[a][i] = (double)i / (double)block->count[a];
+    }
+  }
+  const struct dea_block quad = {block_map,       block,           cuts[0], cuts[1],
+                                 block->count[0], block->count[1], 0};
+  const struct dea_sheet sheet = {block->size[2], block->count[2], block->order_z};
+  struct dea_grid *grid;
+  assert_int_equal(dea_grid_create(ctx, block->order, &quad, 1, &sheet, 1, NULL, 0,
+                                   fmax(block->size[0], block->size[1]), &grid),
+                   DEA_OK);
+  return grid;
+}
+
+static inline struct dea_solid *block_solid(struct dea_context *ctx, const struct dea_grid *grid,
+                                            int order_z, const struct dea_layer *layer,
+                                            int (*held)(const void *self, const double X[3]))
+{
+  const struct dea_solid_options options = {.order_z = order_z,
+                                            .layer_count = 1,
+                                            .layers = layer,
+                                            .layer_of = block_layer,
+                                            .active = block_passive,
+                                            .held = held};
+  struct dea_solid *solid;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  return solid;
+}
+
+#endif

@@ -1,0 +1,221 @@
+/* Supports that move, their reactions, and a way that cannot be gone at once. */
+// ctest: solid
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+static const double mu = 1e5, length = 2;
+static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
+static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+
+/* Slides on the three planes through the origin. */
+static int on_planes(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
+}
+
+/* Along the bar only, so that it cannot buckle. */
+static int along(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 ? 1 : 0) | 2 | 4;
+}
+
+static bool at_end(const struct dea_grid *grid, size_t n)
+{
+  return grid->X[3 * n] > length - 1e-9;
+}
+
+static void pull_end(struct dea_solid *solid, const struct dea_grid *grid, double way)
+{
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (at_end(grid, n)) {
+      assert_int_equal(dea_solid_prescribe(ctx, solid, n, 1, (const double[3]){way, 0, 0}), DEA_OK);
+    }
+  }
+}
+
+static double reaction(const struct dea_solid *solid, const struct dea_grid *grid)
+{
+  double sum = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    sum += at_end(grid, n) ? dea_solid_reaction(solid)[3 * n] : 0;
+  }
+  return sum;
+}
+
+/* Nominal stress of a bar of W = mu/2 (I1 - 3 - 2 ln J), which keeps its width. */
+static double stress(double stretch)
+{
+  return mu * (stretch - 1 / stretch);
+}
+
+/* Pulled to twice its length and pushed back to half of it, each in one call: the end is where it
+ * was asked to be, its reaction is the closed form, and the rest follows at once. */
+static void test_bar_is_pulled_and_pushed(void **state)
+{
+  (void)state;
+  static const double stretch[] = {1.001, 2, 0.5, 1};
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
+  struct dea_solid_report report;
+  for (size_t i = 0; i < 4; i++) {
+    pull_end(solid, grid, length * (stretch[i] - 1));
+    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_close(report.way, 1, 0, 0);
+    assert_close(reaction(solid, grid), stress(stretch[i]), 1e-8, 1e-8 * mu);
+    assert_true(report.iterations <= 12);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      const double *u = dea_solid_displacement(solid) + 3 * n;
+      assert_close(u[0], (stretch[i] - 1) * grid->X[3 * n], 0, 1e-8);
+      assert_close(u[1], 0, 0, 1e-8);
+    }
+  }
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Local axes of the end: -y, x, z. */
+static bool turned_end(const void *self, const double X[3], double Q[9])
+{
+  static const double turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  (void)self;
+  memcpy(Q, turn, sizeof turn);
+  return X[0] > length - 1e-9;
+}
+
+static int on_planes_turned(const void *self, const double X[3])
+{
+  int held = on_planes(self, X);
+  return X[0] > length - 1e-9 ? (held & 2) >> 1 | (held & 4) : held;
+}
+
+/* The same with the end in local axes, of which the second is the bar's. */
+static void test_prescribed_in_local_axes(void **state)
+{
+  (void)state;
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  const struct dea_solid_options options = {.order_z = bar.order_z,
+                                            .layer_count = 1,
+                                            .layers = &soft,
+                                            .layer_of = block_layer,
+                                            .active = block_passive,
+                                            .held = on_planes_turned,
+                                            .frame = turned_end};
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  for (int step = 1; step <= 3; step++) {
+    for (size_t n = 0; n < grid->node_count; n++) {
+      if (at_end(grid, n)) {
+        assert_int_equal(dea_solid_prescribe(ctx, solid, n, 2, (const double[3]){0, 0.5 * step, 0}),
+                         DEA_OK);
+      }
+    }
+    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_close(reaction(solid, grid), stress(1 + 0.5 * step / length), 1e-8, 0);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      const double *u = dea_solid_displacement(solid) + 3 * n;
+      assert_close(u[0], 0.5 * step * grid->X[3 * n] / length, 0, 1e-8);
+    }
+  }
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* What was prescribed is released: the bar goes back. A dead load in its place holds as much. */
+static void test_release_and_dead_load(void **state)
+{
+  (void)state;
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
+  struct dea_solid_report report;
+  pull_end(solid, grid, 1);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  double *pulled = calloc(3 * grid->node_count, sizeof *pulled);
+  assert_non_null(pulled);
+  memcpy(pulled, dea_solid_displacement(solid), 3 * grid->node_count * sizeof *pulled);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (at_end(grid, n)) {
+      dea_solid_force(solid)[3 * n] = dea_solid_reaction(solid)[3 * n];
+      assert_int_equal(dea_solid_release(ctx, solid, n, 1), DEA_OK);
+    }
+  }
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    assert_close(dea_solid_displacement(solid)[i], pulled[i], 0, 1e-7);
+  }
+  memset(dea_solid_force(solid), 0, 3 * grid->node_count * sizeof(double));
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    assert_close(dea_solid_displacement(solid)[i], 0, 0, 1e-7);
+  }
+  free(pulled);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Through itself: no equilibrium there, and the solid stays at the last one on the way, where
+ * reaction and displacement belong together. */
+static void test_way_that_ends(void **state)
+{
+  (void)state;
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, along);
+  struct dea_solid_report report;
+  pull_end(solid, grid, -1.5 * length);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_E_NOT_CONVERGED);
+  assert_true(report.way > 0.3 && report.way < 2 / 3.0);
+  size_t end = 0;
+  while (!at_end(grid, end)) {
+    end++;
+  }
+  double way = dea_solid_displacement(solid)[3 * end];
+  assert_close(way, -1.5 * length * report.way, 1e-9, 0);
+  // and it goes on from there
+  pull_end(solid, grid, way);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_close(reaction(solid, grid), stress(1 + way / length), 1e-7, 0);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+static void test_arguments(void **state)
+{
+  (void)state;
+  static const double none[3] = {0, 0, 0};
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
+  assert_int_equal(dea_solid_prescribe(ctx, solid, grid->node_count, 1, none), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_prescribe(ctx, solid, 0, 8, none), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_release(ctx, solid, grid->node_count, 1), DEA_E_ARGUMENT);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_bar_is_pulled_and_pushed),
+      cmocka_unit_test(test_prescribed_in_local_axes),
+      cmocka_unit_test(test_release_and_dead_load),
+      cmocka_unit_test(test_way_that_ends),
+      cmocka_unit_test(test_arguments),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
