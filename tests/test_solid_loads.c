@@ -1,0 +1,498 @@
+/* Loads on surfaces: derivatives against differences, resultants, distances to tips. */
+#include "model/solid/loads.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dea_hex_shape shape;
+static struct dea_grid *grid;
+static double *u;
+
+/* A block of 3 x 2 x 1.5 that is bent and moved by u, about a tenth of its size. */
+static const double size[3] = {3, 2, 1.5};
+
+static void map_block(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = size[0] * s + 0.2 * t * t;
+  x[1] = size[1] * t - 0.1 * s * t;
+}
+
+static void block_create(int order, int order_z, double amount)
+{
+  static const double cuts[] = {0, 0.4, 1};
+  const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 7};
+  const struct dea_sheet sheet = {size[2], 2, order_z};
+  assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, 0.3, 3, &grid), DEA_OK);
+  u = calloc(3 * grid->node_count, sizeof *u);
+  assert_non_null(u);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    u[3 * n] = amount * (sin(X[1]) + 0.3 * X[2]);
+    u[3 * n + 1] = amount * (0.5 * X[0] * X[2] - 0.2 * X[1]);
+    u[3 * n + 2] = amount * (cos(X[0]) + 0.4 * X[1] * X[2]);
+  }
+}
+
+static void block_destroy(void)
+{
+  free(u);
+  dea_grid_destroy(ctx, grid);
+}
+
+static bool all(const void *self, int region, int sheet, const double middle[3])
+{
+  (void)self;
+  (void)middle;
+  assert_int_equal(region, 7);
+  return sheet == 0;
+}
+
+static struct dea_surface *side_create(enum dea_side side)
+{
+  struct dea_surface *surface;
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, side, all, NULL, &surface), DEA_OK);
+  return surface;
+}
+
+/* Exact derivatives of each piece, K symmetric. */
+static void check_derivatives(const struct dea_solid_load *load)
+{
+  static struct dea_piece at, up, down;
+  double d = 1e-6, largest_g = 0, largest_K = 0;
+  bool any = false;
+  for (size_t p = 0; p < load->piece_count; p++) {
+    assert_int_equal(load->evaluate(load->self, p, u, DEA_TANGENT, &at), DEA_OK);
+    int dofs = 3 * at.node_count;
+    for (int i = 0; i < dofs * dofs; i++) {
+      largest_g = fmax(largest_g, fabs(at.g[i / dofs]));
+      largest_K = fmax(largest_K, fabs(at.K[i]));
+      assert_close(at.K[i], at.K[i % dofs * dofs + i / dofs], 0, 1e-12 * largest_K);
+    }
+    for (int j = 0; j < dofs; j++) {
+      double *v = u + 3 * at.nodes[j / 3] + j % 3, keep = *v;
+      *v = keep + d;
+      assert_int_equal(load->evaluate(load->self, p, u, DEA_FORCE, &up), DEA_OK);
+      *v = keep - d;
+      assert_int_equal(load->evaluate(load->self, p, u, DEA_FORCE, &down), DEA_OK);
+      *v = keep;
+      assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-7 * largest_g);
+      for (int i = 0; i < dofs; i++) {
+        assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * d), 0, 1e-7 * largest_K);
+      }
+      any = true;
+    }
+    assert_int_equal(load->evaluate(load->self, p, u, DEA_ENERGY, &up), DEA_OK);
+    assert_close(up.energy_J, at.energy_J, 1e-14, 0);
+  }
+  assert_true(any && largest_g > 0 && largest_K > 0);
+}
+
+static void set_parameters(const struct dea_solid_load *load)
+{
+  memcpy(load->now, load->goal, load->parameter_count * sizeof *load->now);
+}
+
+static void test_derivatives(void **state)
+{
+  (void)state;
+  static const double stiffness[3] = {2, 0, 5}, origin[3] = {0.1, -0.2, 0.3};
+  for (int order = 1; order <= 3; order++) {
+    block_create(order, order < 3 ? 2 : 1, 0.1);
+    for (int side = DEA_SIDE_FIRST_LOW; side <= DEA_SIDE_TOP; side++) {
+      struct dea_surface *surface = side_create((enum dea_side)side);
+      struct dea_foundation *springs;
+      struct dea_pressure *pressure;
+      assert_int_equal(dea_foundation_create(ctx, surface, stiffness, &springs), DEA_OK);
+      assert_int_equal(dea_pressure_create(ctx, surface, origin, &pressure), DEA_OK);
+      struct dea_solid_load load = dea_foundation_load(springs);
+      check_derivatives(&load);
+      dea_pressure_set(pressure, 3);
+      load = dea_pressure_load(pressure);
+      set_parameters(&load);
+      check_derivatives(&load);
+      dea_pressure_destroy(ctx, pressure);
+      dea_foundation_destroy(ctx, springs);
+      dea_surface_destroy(ctx, surface);
+    }
+    block_destroy();
+  }
+}
+
+static const struct dea_tip tips[] = {
+    {.shape = DEA_TIP_SPHERE, .radius_m = 1},
+    {.shape = DEA_TIP_FLAT, .radius_m = 0.9, .axis = {0.1, 0.2, 1}, .edge_radius_m = 0.4},
+    {.shape = DEA_TIP_CYLINDER, .radius_m = 0.7, .axis = {2, 1, 0.2}, .half_length_m = 0.6},
+    {.shape = DEA_TIP_CYLINDER, .radius_m = 0.7, .axis = {2, 1, 0.2}, .half_length_m = INFINITY},
+};
+
+/* Pressed about 0.2 into the top, with pressures there already. */
+static void test_derivatives_of_contact(void **state)
+{
+  (void)state;
+  block_create(2, 2, 0.1);
+  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
+    const struct dea_contact_options options = {
+        .tip = tips[i],
+        .place_m = {1.4, 1, 1.7 + (tips[i].shape == DEA_TIP_FLAT ? 0 : tips[i].radius_m)},
+        .stiffness_Pa_per_m = 40};
+    struct dea_contact *contact;
+    assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_OK);
+    struct dea_solid_load load = dea_contact_load(contact);
+    check_derivatives(&load);
+    assert_true(load.update(load.self, u) > 1);
+    assert_true(dea_contact_area(contact) > 0.1);
+    check_derivatives(&load);
+    dea_contact_destroy(ctx, contact);
+  }
+  dea_surface_destroy(ctx, surface);
+  block_destroy();
+}
+
+/* The force on the tip is that which moves it: the derivative of the energy by its place. */
+static void test_force_by_place_of_tip(void **state)
+{
+  (void)state;
+  static struct dea_piece piece;
+  block_create(2, 2, 0.1);
+  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  const struct dea_contact_options options = {
+      .tip = tips[1], .place_m = {1.4, 1, 1.7}, .stiffness_Pa_per_m = 40};
+  struct dea_contact *contact;
+  assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_OK);
+  struct dea_solid_load load = dea_contact_load(contact);
+  for (int i = 0; i < 3; i++) {
+    double energy[2] = {0, 0}, d = 1e-6, force[3];
+    for (int side = 0; side < 2; side++) {
+      memcpy(load.now, options.place_m, sizeof options.place_m);
+      load.now[i] += side ? d : -d;
+      for (size_t p = 0; p < load.piece_count; p++) {
+        load.evaluate(load.self, p, u, DEA_ENERGY, &piece);
+        energy[side] += piece.energy_J;
+      }
+    }
+    memcpy(load.now, options.place_m, sizeof options.place_m);
+    memset(load.multiplier, 0, load.multiplier_count * sizeof *load.multiplier);
+    load.update(load.self, u); // from none: pressure k times depth
+    dea_contact_force(contact, u, force);
+    memset(load.multiplier, 0, load.multiplier_count * sizeof *load.multiplier);
+    assert_close(force[i], -(energy[1] - energy[0]) / (2 * d), 1e-7, 1e-9);
+    assert_true(fabs(force[i]) > 1e-3);
+  }
+  dea_contact_destroy(ctx, contact);
+  dea_surface_destroy(ctx, surface);
+  block_destroy();
+}
+
+/* Sum of nodal forces and of their moments about the origin, at places X + scale u. */
+static void resultant(const double *force, double scale, double sum[6])
+{
+  memset(sum, 0, 6 * sizeof *sum);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *f = force + 3 * n;
+    double x[3];
+    for (int i = 0; i < 3; i++) {
+      x[i] = grid->X[3 * n + (size_t)i] + scale * u[3 * n + (size_t)i];
+    }
+    for (int i = 0; i < 3; i++) {
+      int j = (i + 1) % 3, k = (i + 2) % 3;
+      sum[i] += f[i];
+      sum[3 + i] += x[j] * f[k] - x[k] * f[j];
+    }
+  }
+}
+
+static double density(const void *self, int region, int sheet)
+{
+  (void)self;
+  return region == 7 && sheet == 0 ? 1200 : 0;
+}
+
+/* Weight of the block in a slanted field, and its moment: the block is straight here. */
+static void straight(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = size[0] * s;
+  x[1] = size[1] * t;
+}
+
+static bool upmost(const void *self, int region, int sheet, const double middle[3])
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return middle[2] > size[2] - 1e-9;
+}
+
+static void test_weight_and_traction(void **state)
+{
+  (void)state;
+  static const double cuts[] = {0, 0.4, 1}, free_fall[3] = {1, -2, -9};
+  const struct dea_block block = {straight, NULL, cuts, cuts, 2, 2, 7};
+  const struct dea_sheet sheet = {size[2], 2, 2};
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 3, &grid), DEA_OK);
+  u = calloc(3 * grid->node_count, sizeof *u);
+  double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], middle[3], total[3];
+  assert_true(u != NULL && force != NULL);
+  for (int kind = 0; kind < 2; kind++) {
+    memset(force, 0, 3 * grid->node_count * sizeof *force);
+    for (int i = 0; i < 3; i++) {
+      middle[i] = 0.5 * size[i];
+      total[i] = 1200 * size[0] * size[1] * size[2] * free_fall[i];
+    }
+    if (kind == 0) {
+      dea_load_gravity(grid, &shape, density, NULL, free_fall, force);
+    } else {
+      struct dea_surface *top;
+      assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, upmost, NULL, &top),
+                       DEA_OK);
+      assert_close(dea_surface_area(top), size[0] * size[1], 1e-12, 0);
+      dea_load_traction(top, free_fall, force);
+      middle[2] = size[2];
+      for (int i = 0; i < 3; i++) {
+        total[i] = size[0] * size[1] * free_fall[i];
+      }
+      dea_surface_destroy(ctx, top);
+    }
+    resultant(force, 0, sum);
+    for (int i = 0; i < 3; i++) {
+      int j = (i + 1) % 3, k = (i + 2) % 3;
+      assert_close(sum[i], total[i], 1e-12, 0);
+      assert_close(sum[3 + i], middle[j] * total[k] - middle[k] * total[j], 1e-11, 0);
+    }
+  }
+  free(force);
+  block_destroy();
+}
+
+/* Volume of the deformed block. */
+static double volume(void)
+{
+  double sum = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    for (int q = 0; q < shape.gauss; q++) {
+      double map[9] = {0}, cof[9];
+      for (int n = 0; n < shape.nodes; n++) {
+        for (int i = 0; i < 9; i++) {
+          size_t at = 3 * (size_t)nodes[n] + (size_t)(i / 3);
+          map[i] += (grid->X[at] + u[at]) * shape.slope[q][i % 3][n];
+        }
+      }
+      sum += shape.weight[q] * dea_cofactors(map, cof);
+    }
+  }
+  return sum;
+}
+
+/* Pressure on all sides of all elements: between two of them it cancels, and is left all around the
+ * deformed block. Its energy is p V, and it has no resultant and no moment. */
+static void test_pressure_all_around(void **state)
+{
+  (void)state;
+  static const double origin[3] = {5, -3, 2};
+  static struct dea_piece piece;
+  for (int order = 1; order <= 3; order++) {
+    block_create(order, order < 3 ? order : 2, 0.1);
+    double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], energy = 0, largest = 0;
+    assert_non_null(force);
+    for (int side = DEA_SIDE_FIRST_LOW; side <= DEA_SIDE_TOP; side++) {
+      struct dea_surface *surface = side_create((enum dea_side)side);
+      struct dea_pressure *pressure;
+      assert_int_equal(dea_pressure_create(ctx, surface, origin, &pressure), DEA_OK);
+      dea_pressure_set(pressure, 3);
+      struct dea_solid_load load = dea_pressure_load(pressure);
+      set_parameters(&load);
+      for (size_t p = 0; p < load.piece_count; p++) {
+        assert_int_equal(load.evaluate(load.self, p, u, DEA_FORCE, &piece), DEA_OK);
+        energy += piece.energy_J;
+        for (int i = 0; i < 3 * piece.node_count; i++) {
+          force[3 * piece.nodes[i / 3] + i % 3] += piece.g[i];
+          largest = fmax(largest, fabs(piece.g[i]));
+        }
+      }
+      dea_pressure_destroy(ctx, pressure);
+      dea_surface_destroy(ctx, surface);
+    }
+    resultant(force, 1, sum);
+    for (int i = 0; i < 6; i++) {
+      assert_close(sum[i], 0, 0, 1e-11 * largest);
+    }
+    // Gauss points of an element of order 3 are a degree short of its volume
+    assert_close(energy, 3 * volume(), order < 3 ? 1e-12 : 1e-7, 0);
+    free(force);
+    block_destroy();
+  }
+}
+
+/* Inside a surface that is held at its edge the forces are those of p n dA, and do not depend on
+ * the origin where they should not. */
+static void test_pressure_does_not_know_its_origin(void **state)
+{
+  (void)state;
+  static const double origin[2][3] = {{0, 0, 0}, {5, -3, 2}};
+  static struct dea_piece piece;
+  block_create(2, 2, 0.1);
+  double *force[2];
+  struct dea_surface *top = side_create(DEA_SIDE_TOP);
+  for (int k = 0; k < 2; k++) {
+    struct dea_pressure *pressure;
+    force[k] = calloc(3 * grid->node_count, sizeof **force);
+    assert_non_null(force[k]);
+    assert_int_equal(dea_pressure_create(ctx, top, origin[k], &pressure), DEA_OK);
+    dea_pressure_set(pressure, 3);
+    struct dea_solid_load load = dea_pressure_load(pressure);
+    set_parameters(&load);
+    for (size_t p = 0; p < load.piece_count; p++) {
+      assert_int_equal(load.evaluate(load.self, p, u, DEA_FORCE, &piece), DEA_OK);
+      for (int i = 0; i < 3 * piece.node_count; i++) {
+        force[k][3 * piece.nodes[i / 3] + i % 3] += piece.g[i];
+      }
+    }
+    dea_pressure_destroy(ctx, pressure);
+  }
+  size_t inside = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    double s = grid->X[3 * n], t = grid->X[3 * n + 1];
+    if (t > 0.01 && t < 1.85 && s > 0.21 && s < 2.99) {
+      for (size_t i = 0; i < 3; i++, inside++) {
+        assert_close(force[1][3 * n + i], force[0][3 * n + i], 0, 1e-12);
+      }
+    }
+  }
+  assert_true(inside > 20);
+  free(force[0]);
+  free(force[1]);
+  dea_surface_destroy(ctx, top);
+  block_destroy();
+}
+
+/* ---- tips ---- */
+
+/* Distances by hand. */
+static void test_distances(void **state)
+{
+  (void)state;
+  static const double place[3] = {1, 2, 3};
+  static const struct {
+    struct dea_tip tip;
+    double from_place[3], distance;
+  } cases[] = {
+      {{.shape = DEA_TIP_SPHERE, .radius_m = 2}, {3, 0, 4}, 3},
+      {{.shape = DEA_TIP_SPHERE, .radius_m = 2}, {0, 0, -0.5}, -1.5},
+      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, -0.7}, 0.7},     // under the end
+      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, 0.2}, -0.2},     // in it
+      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 2.25, 7}, 0.25},    // beside
+      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 1.5, 0}, 0},        // where the edge begins
+      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 4.5, -3.5}, 4.5},   // off the edge: 3, 4
+      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 4, 4}, 4},        // beside
+      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 9, 0}, 4},        // beyond its end
+      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, INFINITY}, {3, 9, 0}, 2}, // which this one lacks
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_tip tip = cases[i].tip;
+    double x[3], normal[3];
+    assert_int_equal(dea_tip_check(ctx, &tip), DEA_OK);
+    for (int k = 0; k < 3; k++) {
+      x[k] = place[k] + cases[i].from_place[k];
+    }
+    assert_close(dea_tip_distance(&tip, place, x, normal, NULL), cases[i].distance, 1e-12, 1e-12);
+  }
+}
+
+/* Everywhere about the tips: the normal is the gradient, of length one, the Hessian its slope
+ * (except across a seam), and the distance is really one: the foot x - g n is on the surface. */
+static void test_slopes_of_distances(void **state)
+{
+  (void)state;
+  static const double place[3] = {0.1, -0.2, 0.3};
+  for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
+    struct dea_tip tip = tips[i];
+    int seams = 0, points = 0;
+    assert_int_equal(dea_tip_check(ctx, &tip), DEA_OK);
+    for (int k = 0; k < 2000; k++) {
+      double x[3], n[3], H[9], up[3], down[3], foot[3], none[3], length = 0, d = 1e-6;
+      for (int a = 0; a < 3; a++) {
+        x[a] = place[a] + 2.5 * sin(1.7 * k + 2.1 * a + 0.37 * k * a); // all about
+      }
+      double g = dea_tip_distance(&tip, place, x, n, H);
+      if (g < -0.3) { // deeper the flat end has a ridge
+        continue;
+      }
+      points++;
+      for (int a = 0; a < 3; a++) {
+        double keep = x[a];
+        foot[a] = x[a] - g * n[a];
+        length += n[a] * n[a];
+        x[a] = keep + d;
+        double gu = dea_tip_distance(&tip, place, x, up, NULL);
+        x[a] = keep - d;
+        double gd = dea_tip_distance(&tip, place, x, down, NULL);
+        x[a] = keep;
+        assert_close(n[a], (gu - gd) / (2 * d), 0, 1e-6);
+        for (int b = 0; b < 3; b++) {
+          seams += fabs(H[3 * b + a] - (up[b] - down[b]) / (2 * d)) > 1e-6;
+        }
+      }
+      assert_close(length, 1, 1e-12, 0);
+      assert_close(dea_tip_distance(&tip, place, foot, none, NULL), 0, 0, 1e-12);
+    }
+    assert_true(seams <= 9 && points > 500);
+  }
+}
+
+static void test_arguments(void **state)
+{
+  (void)state;
+  static const struct dea_tip bad[] = {
+      {.shape = DEA_TIP_SPHERE, .radius_m = 0},
+      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 0},
+      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 2},
+      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 0}, .edge_radius_m = 0.1},
+      {.shape = DEA_TIP_CYLINDER, .radius_m = 1, .axis = {0, 0, 1}, .half_length_m = -1},
+  };
+  static const double negative[3] = {1, -1, 1}, far[3] = {9, 9, 9}, origin[3] = {0, 0, 0};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    struct dea_tip tip = bad[i];
+    assert_int_equal(dea_tip_check(ctx, &tip), DEA_E_ARGUMENT);
+  }
+  block_create(1, 1, 0);
+  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  struct dea_foundation *springs;
+  struct dea_contact *contact;
+  const struct dea_contact_options options = {.tip = tips[0]};
+  assert_int_equal(dea_foundation_create(ctx, surface, negative, &springs), DEA_E_ARGUMENT);
+  assert_null(springs);
+  assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_E_ARGUMENT);
+  assert_null(contact);
+  assert_int_equal(dea_load_point(ctx, grid, far, 0.1, origin, u), DEA_E_ARGUMENT);
+  const double at[3] = {0, 0, 0.3}, push[3] = {1, 2, 3};
+  assert_int_equal(dea_load_point(ctx, grid, at, 0.1, push, u), DEA_OK);
+  double sum[6];
+  resultant(u, 0, sum);
+  assert_close(sum[2], 3, 0, 0);
+  dea_surface_destroy(ctx, surface);
+  block_destroy();
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_derivatives),
+      cmocka_unit_test(test_derivatives_of_contact),
+      cmocka_unit_test(test_force_by_place_of_tip),
+      cmocka_unit_test(test_weight_and_traction),
+      cmocka_unit_test(test_pressure_all_around),
+      cmocka_unit_test(test_pressure_does_not_know_its_origin),
+      cmocka_unit_test(test_distances),
+      cmocka_unit_test(test_slopes_of_distances),
+      cmocka_unit_test(test_arguments),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
