@@ -69,8 +69,11 @@ static void random_direction(uint64_t *seed, double a[3])
 static void check_steps_at(const struct dea_law *law, const double *param, const double F[9],
                            const double fibre[3])
 {
-  struct dea_point point;
+  struct dea_point point, plain;
   assert_int_equal(dea_point_elastic(law, param, F, fibre, &point), DEA_OK);
+  assert_int_equal(dea_point_stress(law, param, F, fibre, &plain), DEA_OK);
+  assert_true(plain.W == point.W);
+  assert_all_close(law->name, plain.P, point.P, 9, 1e-15, largest(point.P, 9));
   const double scale = largest(point.A, 81); // of the tangent, and of the stress times a strain
   for (size_t n = 0; n < 9; n++) {
     double complex Z[9], W, P[9], A[81];

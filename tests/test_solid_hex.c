@@ -94,6 +94,30 @@ static void test_derivatives_of_all_orders(void **state)
   }
 }
 
+/* Each level gives what the next one gives, to the bits: decisions of the line search hang on it.
+ */
+static void test_levels_agree(void **state)
+{
+  (void)state;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  const struct dea_layer layers[] = {film(1.5), plastic()};
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+    sample(1, X, u);
+    assert_int_equal(dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3, DEA_TANGENT, &at),
+                     DEA_OK);
+    for (int level = DEA_ENERGY; level <= DEA_FORCE; level++) {
+      assert_int_equal(
+          dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3, (enum dea_level)level, &up),
+          DEA_OK);
+      assert_true(up.energy_J == at.energy_J && up.volume_m3 == at.volume_m3);
+      for (int i = 0; i < 3 * shape.nodes && level >= DEA_FORCE; i++) {
+        assert_close(up.g[i], at.g[i], 1e-13, 1e-13 * fabs(at.g[0]));
+      }
+    }
+  }
+}
+
 /* Turned and moved as a whole the element keeps its energy; its forces turn with it. */
 static void test_rigid_motion(void **state)
 {
@@ -330,6 +354,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_derivatives_of_all_orders),
+      cmocka_unit_test(test_levels_agree),
       cmocka_unit_test(test_rigid_motion),
       cmocka_unit_test(test_flat_film_has_the_true_pre_stress),
       cmocka_unit_test(test_inverted_element_and_bad_order),

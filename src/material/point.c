@@ -43,7 +43,7 @@ static void right_cauchy_green(const dea_scalar F[9], dea_scalar C[3][3])
  * S = 2 (W1 1 + W2 B + W4 M), D = 4 (sum of second derivatives + W2 dB/dC),
  * dB/dC = 1 x 1 - (symmetric identity). */
 static dea_status from_invariants(const struct dea_law *law, const double *param,
-                                  dea_scalar C[3][3], const double fibre[3],
+                                  dea_scalar C[3][3], const double fibre[3], bool tangent,
                                   struct referential *out)
 {
   static const double one[PAIR_COUNT] = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
@@ -69,6 +69,8 @@ static dea_status from_invariants(const struct dea_law *law, const double *param
   out->W = e.W;
   for (int p = 0; p < PAIR_COUNT; p++) {
     out->S[p] = 2.0 * (e.W1 * one[p] + e.W2 * B[p] + e.W4 * M[p]);
+  }
+  for (int p = 0; p < PAIR_COUNT && tangent; p++) {
     const dea_scalar row1 = (e.W11 + e.W2) * one[p] + e.W12 * B[p] + e.W14 * M[p];
     const dea_scalar row2 = e.W12 * one[p] + e.W22 * B[p] + e.W24 * M[p];
     const dea_scalar row4 = e.W14 * one[p] + e.W24 * B[p] + e.W44 * M[p];
@@ -181,7 +183,7 @@ static dea_status pair_modulus(const struct dea_law *law, const double *param, d
  *   + sum_{a<b} 4 m_ab G_ab x G_ab, with G_ab the symmetric part of N_a N_b and m_ab the divided
  * difference of S over x. */
 static dea_status from_principal(const struct dea_law *law, const double *param, dea_scalar C[3][3],
-                                 struct referential *out)
+                                 bool tangent, struct referential *out)
 {
   dea_scalar N[3][3], S[3], modulus[PAIR_COUNT], G[PAIR_COUNT][PAIR_COUNT];
   spectral(C, N);
@@ -195,7 +197,7 @@ static dea_status from_principal(const struct dea_law *law, const double *param,
     out->W += w;
     modulus[a] = 2.0 * dS;
   }
-  for (int p = 3; p < PAIR_COUNT; p++) {
+  for (int p = 3; p < PAIR_COUNT && tangent; p++) {
     const int a = pair_first[p], b = pair_second[p];
     const dea_status status = pair_modulus(law, param, C[a][a], C[b][b], S[a], S[b], &modulus[p]);
     if (status != DEA_OK) {
@@ -212,7 +214,7 @@ static dea_status from_principal(const struct dea_law *law, const double *param,
   }
   for (int q = 0; q < PAIR_COUNT; q++) {
     out->S[q] = S[0] * G[0][q] + S[1] * G[1][q] + S[2] * G[2][q];
-    for (int r = 0; r < PAIR_COUNT; r++) {
+    for (int r = 0; r < PAIR_COUNT && tangent; r++) {
       dea_scalar sum = 0.0;
       for (int p = 0; p < PAIR_COUNT; p++) {
         sum += modulus[p] * G[p][q] * G[p][r];
@@ -254,9 +256,8 @@ static void push_tangent(const dea_scalar F[9], const struct referential *ref, d
   }
 }
 
-dea_status DEA_NAME(dea_point_elastic)(const struct dea_law *law, const double *param,
-                                       const dea_scalar F[9], const double fibre[3],
-                                       struct dea_point *out)
+static dea_status evaluate(const struct dea_law *law, const double *param, const dea_scalar F[9],
+                           const double fibre[3], bool tangent, struct dea_point *out)
 {
   if (law->anisotropic && fibre == NULL) {
     return DEA_E_ARGUMENT;
@@ -267,18 +268,38 @@ dea_status DEA_NAME(dea_point_elastic)(const struct dea_law *law, const double *
   dea_scalar C[3][3];
   right_cauchy_green(F, C);
   struct referential ref;
-  const dea_status status = law->invariants != NULL ? from_invariants(law, param, C, fibre, &ref)
-                                                    : from_principal(law, param, C, &ref);
+  const dea_status status = law->invariants != NULL
+                                ? from_invariants(law, param, C, fibre, tangent, &ref)
+                                : from_principal(law, param, C, tangent, &ref);
   if (status != DEA_OK) {
     return status;
   }
   out->W = ref.W;
   push_stress(F, &ref, out->P);
-  push_tangent(F, &ref, out->A);
   // Entries of F that are infinite, or so large that a power of them overflows.
   dea_scalar sum = out->W;
-  for (int i = 0; i < 81; i += 10) {
-    sum += out->A[i];
+  for (int i = 0; i < 9; i++) {
+    sum += out->P[i];
+  }
+  if (tangent) {
+    push_tangent(F, &ref, out->A);
+    for (int i = 0; i < 81; i += 10) {
+      sum += out->A[i];
+    }
   }
   return isfinite(DEA_RE(sum)) ? DEA_OK : DEA_E_DOMAIN;
+}
+
+dea_status DEA_NAME(dea_point_elastic)(const struct dea_law *law, const double *param,
+                                       const dea_scalar F[9], const double fibre[3],
+                                       struct dea_point *out)
+{
+  return evaluate(law, param, F, fibre, true, out);
+}
+
+dea_status DEA_NAME(dea_point_stress)(const struct dea_law *law, const double *param,
+                                      const dea_scalar F[9], const double fibre[3],
+                                      struct dea_point *out)
+{
+  return evaluate(law, param, F, fibre, false, out);
 }

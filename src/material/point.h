@@ -22,4 +22,9 @@ dea_status DEA_NAME(dea_point_elastic)(const struct dea_law *law, const double *
                                        const dea_scalar F[9], const double fibre[3],
                                        struct dea_point *out);
 
+/* The same without the tangent: out->A is not set. */
+dea_status DEA_NAME(dea_point_stress)(const struct dea_law *law, const double *param,
+                                      const dea_scalar F[9], const double fibre[3],
+                                      struct dea_point *out);
+
 #endif

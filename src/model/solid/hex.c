@@ -1,170 +1,55 @@
 #include "model/solid/hex_points.h"
+#include "model/solid/hex_tensor.h"
 
-#include <cblas.h>
-#include <math.h>
 #include <string.h>
 
-enum { G_ROWS_MAX = 3 * DEA_HEX_GAUSS_MAX };
-
-dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, const double *u,
-                              double (*gradient)[3][DEA_HEX_NODES_MAX], struct dea_hex_point *state)
-{
-  for (int q = 0; q < s->gauss; q++) {
-    double map[9] = {0}, cof[9];
-    for (int a = 0; a < 3; a++) {
-      for (int n = 0; n < s->nodes; n++) {
-        for (int i = 0; i < 3; i++) {
-          map[3 * i + a] += X[3 * n + i] * s->slope[q][a][n];
-        }
-      }
-    }
-    double volume = dea_cofactors(map, cof);
-    if (!(volume > 0)) {
-      return DEA_E_DOMAIN;
-    }
-    for (int J = 0; J < 3; J++) {
-      const double *c = cof + 3 * J; // dxi_a/dX_J = cof_Ja / det
-      for (int n = 0; n < s->nodes; n++) {
-        gradient[q][J][n] =
-            (c[0] * s->slope[q][0][n] + c[1] * s->slope[q][1][n] + c[2] * s->slope[q][2][n]) /
-            volume;
-      }
-    }
-    struct dea_hex_point *at = &state[q];
-    memset(at->F, 0, sizeof at->F);
-    at->F[0] = at->F[4] = at->F[8] = 1;
-    for (int J = 0; J < 3; J++) {
-      for (int n = 0; n < s->nodes; n++) {
-        for (int i = 0; i < 3; i++) {
-          at->F[3 * i + J] += u[3 * n + i] * gradient[q][J][n];
-        }
-      }
-    }
-    at->J = dea_cofactors(at->F, at->cof);
-    at->weight = s->weight[q] * volume;
-    if (!(at->J > 0)) {
-      return DEA_E_DOMAIN;
-    }
-  }
-  return DEA_OK;
-}
-
-dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_point *state,
-                           double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
-                           double *moment, double *theta)
-{
-  int m = s->pressures;
-  memset(moment, 0, (size_t)m * sizeof *moment);
-  for (int a = 0; a < m; a++) {
-    memset(factor[a], 0, sizeof factor[a]);
-  }
-  for (int q = 0; q < s->gauss; q++) {
-    for (int a = 0; a < m; a++) {
-      double f = state[q].weight * s->pressure[q][a];
-      moment[a] += f * (state[q].J - 1);
-      for (int b = 0; b <= a; b++) {
-        factor[a][b] += f * s->pressure[q][b];
-      }
-    }
-  }
-  for (int a = 0; a < m; a++) { // Cholesky of a matrix of at most ten rows
-    for (int b = 0; b <= a; b++) {
-      double sum = factor[a][b];
-      for (int c = 0; c < b; c++) {
-        sum -= factor[a][c] * factor[b][c];
-      }
-      if (a == b && !(sum > 0)) {
-        return DEA_E_DOMAIN;
-      }
-      factor[a][b] = a == b ? sqrt(sum) : sum / factor[b][b];
-    }
-  }
-  memcpy(theta, moment, (size_t)m * sizeof *theta);
-  cblas_dtrsv(CblasRowMajor, CblasLower, CblasNoTrans, CblasNonUnit, m, factor[0],
-              DEA_HEX_PRESSURES_MAX, theta, 1);
-  cblas_dtrsv(CblasRowMajor, CblasLower, CblasTrans, CblasNonUnit, m, factor[0],
-              DEA_HEX_PRESSURES_MAX, theta, 1);
-  return DEA_OK;
-}
-
-/* Work space of a tangent: rows (q, J). */
-struct tangent_work {
-  double D[6][G_ROWS_MAX][DEA_HEX_NODES_MAX]; // w A_aJkL g_L for the pairs a <= k
-  double block[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  double b[DEA_HEX_PRESSURES_MAX][DEA_HEX_DOFS_MAX]; // int phi cof : grad N
+/* Work space of one evaluation. flux: [3][gauss][columns] of the weighted stress by the local axes
+ * (columns 0 to 2), and with a tangent of phi_m dJ/dF (three columns for each pressure). */
+struct hex_work {
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
+  int columns;
+  double flux[3 * DEA_HEX_GAUSS_MAX * DEA_HEX_COLUMNS_MAX];
+  double sums[DEA_HEX_NODES_MAX * DEA_HEX_COLUMNS_MAX]; // [nodes][columns]
+  double A[DEA_HEX_GAUSS_MAX][9][DEA_HEX_PAIRS];
+  double b[DEA_HEX_PRESSURES_MAX * DEA_HEX_DOFS_MAX]; // [pressures][dofs], L^-1 int phi_m dJ/du
+  double kappa_b[DEA_HEX_PRESSURES_MAX * DEA_HEX_DOFS_MAX]; // [dofs][pressures], kappa times it
 };
 
-static const int block_row[6] = {0, 0, 0, 1, 1, 2}, block_column[6] = {0, 1, 2, 1, 2, 2};
-
-static void tangent_point(const struct dea_hex_shape *s, int q, const struct dea_hex_point *at,
-                          const double A[81], double gradient[3][DEA_HEX_NODES_MAX],
-                          struct tangent_work *work)
+/* weight T_iJ dxi_a/dX_J of one Gauss point, T in the columns from `column`. */
+static void set_flux(const struct dea_hex_shape *s, int q, double weight, const double T[9],
+                     int column, struct hex_work *work)
 {
-  for (int pair = 0; pair < 6; pair++) {
-    int a = block_row[pair], k = block_column[pair];
-    for (int J = 0; J < 3; J++) {
-      const double *row = A + 9 * (3 * a + J) + 3 * k;
-      double *to = work->D[pair][3 * q + J];
-      double c0 = at->weight * row[0], c1 = at->weight * row[1], c2 = at->weight * row[2];
-      for (int n = 0; n < s->nodes; n++) {
-        to[n] = c0 * gradient[0][n] + c1 * gradient[1][n] + c2 * gradient[2][n];
-      }
-    }
-  }
-}
-
-static void tangent_collect(const struct dea_hex_shape *s, const struct dea_layer *layer,
-                            double (*gradient)[3][DEA_HEX_NODES_MAX],
-                            double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
-                            struct tangent_work *work, double *K)
-{
-  int n = s->nodes, dofs = 3 * n;
-  for (int pair = 0; pair < 6; pair++) {
-    int a = block_row[pair], k = block_column[pair];
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 3 * s->gauss, 1, gradient[0][0],
-                DEA_HEX_NODES_MAX, work->D[pair][0], DEA_HEX_NODES_MAX, 0, work->block, n);
-    for (int i = 0; i < n; i++) {
-      for (int j = 0; j < n; j++) {
-        K[(3 * i + a) * dofs + 3 * j + k] = work->block[i * n + j];
-        K[(3 * j + k) * dofs + 3 * i + a] = work->block[i * n + j];
-      }
-    }
-  }
-  if (layer->law != NULL && layer->kappa_Pa > 0) { // kappa b^T M^-1 b
-    cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, s->pressures,
-                dofs, 1, factor[0], DEA_HEX_PRESSURES_MAX, work->b[0], DEA_HEX_DOFS_MAX);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, dofs, dofs, s->pressures, layer->kappa_Pa,
-                work->b[0], DEA_HEX_DOFS_MAX, work->b[0], DEA_HEX_DOFS_MAX, 1, K, dofs);
-  }
-}
-
-/* Adds one Gauss point to g. */
-static void add_force(const struct dea_hex_shape *s, const struct dea_hex_point *at,
-                      const double P[9], double gradient[3][DEA_HEX_NODES_MAX], double *g)
-{
-  for (int n = 0; n < s->nodes; n++) {
+  const double *local = work->points[q].local;
+  for (int a = 0; a < 3; a++) {
+    double *to = work->flux + (a * s->gauss + q) * work->columns + column;
     for (int i = 0; i < 3; i++) {
-      double push = 0;
-      for (int J = 0; J < 3; J++) {
-        push += P[3 * i + J] * gradient[J][n];
-      }
-      g[3 * n + i] += at->weight * push;
+      to[i] = weight * (T[3 * i] * local[3 * a] + T[3 * i + 1] * local[3 * a + 1] +
+                        T[3 * i + 2] * local[3 * a + 2]);
     }
   }
 }
 
-/* Adds one Gauss point to b. */
-static void add_squeeze(const struct dea_hex_shape *s, int q, const struct dea_hex_point *at,
-                        double gradient[3][DEA_HEX_NODES_MAX], struct tangent_work *work)
+/* weight dxi_a/dX_J A_iJkL dxi_b/dX_L of one Gauss point for i <= k. */
+static void set_tangent(int q, const double A[81], struct hex_work *work)
 {
-  for (int n = 0; n < s->nodes; n++) {
-    for (int i = 0; i < 3; i++) {
-      double squeeze = 0;
+  const struct dea_hex_point *at = &work->points[q];
+  const double *local = at->local;
+  for (int i = 0, pair = 0; i < 3; i++) {
+    for (int k = i; k < 3; k++, pair++) {
+      double half[9]; // A_iJkL dxi_b/dX_L as [3 J + b]
       for (int J = 0; J < 3; J++) {
-        squeeze += at->cof[3 * i + J] * gradient[J][n];
+        const double *row = A + 9 * (3 * i + J) + 3 * k;
+        for (int b = 0; b < 3; b++) {
+          half[3 * J + b] = at->weight * (row[0] * local[3 * b] + row[1] * local[3 * b + 1] +
+                                          row[2] * local[3 * b + 2]);
+        }
       }
-      for (int m = 0; m < s->pressures; m++) {
-        work->b[m][3 * n + i] += at->weight * s->pressure[q][m] * squeeze;
+      for (int a = 0; a < 3; a++) {
+        const double *l = local + 3 * a;
+        for (int b = 0; b < 3; b++) {
+          work->A[q][3 * a + b][pair] = l[0] * half[b] + l[1] * half[3 + b] + l[2] * half[6 + b];
+        }
       }
     }
   }
@@ -181,49 +66,91 @@ static double pressure_at(const struct dea_hex_shape *s, const struct dea_layer 
   return pressure;
 }
 
+/* One Gauss point: its energy, and what the sums over the points take. */
+static dea_status evaluate_point(const struct dea_hex_shape *s, const struct dea_layer *layer,
+                                 int q, double pressure, double field, enum dea_level level,
+                                 struct hex_work *work, double *energy)
+{
+  const struct dea_hex_point *at = &work->points[q];
+  struct dea_point point;
+  dea_status status = level >= DEA_TANGENT
+                          ? dea_layer_point(layer, at->F, at->cof, at->J, pressure, field, &point)
+                          : dea_layer_stress(layer, at->F, at->cof, at->J, pressure, field, &point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  *energy += at->weight * point.W;
+  if (level >= DEA_FORCE) {
+    set_flux(s, q, at->weight, point.P, 0, work);
+  }
+  if (level >= DEA_TANGENT) {
+    set_tangent(q, point.A, work);
+    for (int m = 0; 3 * m + 3 < work->columns; m++) {
+      set_flux(s, q, at->weight * s->pressure[q][m], at->cof, 3 * m + 3, work);
+    }
+  }
+  return DEA_OK;
+}
+
+/* K = kappa b^T M^-1 b with M = L L^T, b_m = int phi_m dJ/du. */
+static void set_projected(const struct dea_hex_shape *s, double kappa, struct hex_work *work,
+                          double *K)
+{
+  int dofs = 3 * s->nodes, pressures = work->columns / 3 - 1;
+  for (int m = 0; m < pressures; m++) {
+    double *b = work->b + m * dofs, inverse = 1 / work->factor[m][m]; // b = L^-1 b row by row
+    for (int j = 0; j < dofs; j++) {
+      b[j] = work->sums[j / 3 * work->columns + 3 * m + 3 + j % 3];
+    }
+    for (int c = 0; c < m; c++) {
+      for (int j = 0; j < dofs; j++) {
+        b[j] -= work->factor[m][c] * work->b[c * dofs + j];
+      }
+    }
+    for (int j = 0; j < dofs; j++) {
+      b[j] *= inverse;
+      work->kappa_b[j * pressures + m] = kappa * b[j];
+    }
+  }
+  if (pressures == 0) {
+    memset(K, 0, (size_t)(dofs * dofs) * sizeof *K);
+    return;
+  }
+  dea_hex_combine((size_t)dofs, (size_t)pressures, work->kappa_b, (size_t)pressures, (size_t)dofs,
+                  work->b, K);
+}
+
 dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
                             const double *X, const double *u, const double *multiplier,
                             double voltage_V, enum dea_level level, struct dea_element_result *out)
 {
-  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
-  struct tangent_work work;
+  struct hex_work work;
   bool projected = layer->law != NULL;
   double field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
-  dea_status status = dea_hex_kinematics(shape, X, u, gradient, points);
+  dea_status status = dea_hex_find_points(shape, X, u, work.points);
   if (status == DEA_OK && projected) {
-    status = dea_hex_project(shape, points, factor, moment, out->theta);
+    status = dea_hex_project(shape, work.points, work.factor, work.moment, out->theta);
   }
-  if (status != DEA_OK) {
+  out->energy_J = out->volume_m3 = 0;
+  for (int m = 0; status == DEA_OK && m < shape->pressures && projected; m++) {
+    out->energy_J += (multiplier[m] + 0.5 * layer->kappa_Pa * out->theta[m]) * work.moment[m];
+  }
+  work.columns = level >= DEA_TANGENT && projected ? 3 + 3 * shape->pressures : 3;
+  for (int q = 0; status == DEA_OK && q < shape->gauss; q++) {
+    double pressure = projected ? pressure_at(shape, layer, q, multiplier, out->theta) : 0;
+    out->volume_m3 += work.points[q].weight;
+    status = evaluate_point(shape, layer, q, pressure, field, level, &work, &out->energy_J);
+  }
+  if (status != DEA_OK || level < DEA_FORCE) {
     return status;
   }
-  memset(out->g, 0, 3 * (size_t)shape->nodes * sizeof out->g[0]);
-  memset(work.b, 0, level == DEA_TANGENT ? sizeof work.b : 0);
-  out->energy_J = out->volume_m3 = 0;
-  for (int m = 0; m < shape->pressures && projected; m++) {
-    out->energy_J += (multiplier[m] + 0.5 * layer->kappa_Pa * out->theta[m]) * moment[m];
-  }
-  for (int q = 0; q < shape->gauss; q++) {
-    const struct dea_hex_point *at = &points[q];
-    struct dea_point point;
-    double pressure = projected ? pressure_at(shape, layer, q, multiplier, out->theta) : 0;
-    status = dea_layer_point(layer, at->F, at->cof, at->J, pressure, field, &point);
-    if (status != DEA_OK) {
-      return status;
-    }
-    out->energy_J += at->weight * point.W;
-    out->volume_m3 += at->weight;
-    if (level >= DEA_FORCE) {
-      add_force(shape, at, point.P, gradient[q], out->g);
-    }
-    if (level >= DEA_TANGENT) {
-      add_squeeze(shape, q, at, gradient[q], &work);
-      tangent_point(shape, q, at, point.A, gradient[q], &work);
-    }
+  dea_hex_sum_flux(shape, work.columns, work.flux, work.sums);
+  for (int i = 0; i < 3 * shape->nodes; i++) {
+    out->g[i] = work.sums[i / 3 * work.columns + i % 3];
   }
   if (level >= DEA_TANGENT) {
-    tangent_collect(shape, layer, gradient, factor, &work, out->K);
+    set_projected(shape, layer->kappa_Pa, &work, out->K);
+    dea_hex_add_tangent(shape, work.A, out->K);
   }
   return DEA_OK;
 }

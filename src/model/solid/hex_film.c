@@ -39,11 +39,10 @@ dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape, const struct
                                  const double *X, const double *u, const double *multiplier,
                                  double voltage_V, struct dea_hex_membrane *out)
 {
-  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   struct dea_hex_point state[DEA_HEX_GAUSS_MAX];
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
-  dea_status status = dea_hex_kinematics(shape, X, u, gradient, state);
+  dea_status status = dea_hex_find_points(shape, X, u, state);
   if (status == DEA_OK) {
     status = dea_hex_project(shape, state, factor, moment, theta);
   }
@@ -57,8 +56,8 @@ dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape, const struct
       for (int m = 0; m < shape->pressures; m++) {
         pressure += shape->pressure[q][m] * (multiplier[m] + layer->kappa_Pa * theta[m]);
       }
-      status = dea_layer_point(layer, at->F, at->cof, at->J, pressure,
-                               voltage_V / layer->thickness_m, &point);
+      status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure,
+                                voltage_V / layer->thickness_m, &point);
       for (int i = 0; i < 3; i++) {
         N[2 * i] += w * layer->thickness_m * point.P[3 * i];
         N[2 * i + 1] += w * layer->thickness_m * point.P[3 * i + 1];

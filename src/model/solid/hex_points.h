@@ -6,10 +6,14 @@
 
 struct dea_hex_point {
   double F[9], cof[9], J, weight; // weight: reference volume of the point [m^3]
+  double local[9];                // dxi_a/dX_J as [3 a + J]
 };
 
-/* Gradients by X at every Gauss point, as rows [q][J][node], and the state there. DEA_E_DOMAIN for
- * an inverted element. */
+/* State at every Gauss point. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_hex_find_points(const struct dea_hex_shape *shape, const double *X, const double *u,
+                               struct dea_hex_point *points);
+
+/* The same, and gradients by X at every Gauss point, as rows [q][J][node]. */
 dea_status dea_hex_kinematics(const struct dea_hex_shape *shape, const double *X, const double *u,
                               double (*gradient)[3][DEA_HEX_NODES_MAX],
                               struct dea_hex_point *points);

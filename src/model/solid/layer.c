@@ -34,7 +34,7 @@ static void add_second_of_J(double f, const double F[9], double A[81])
 
 /* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. */
 static void compressible(const struct dea_layer *layer, const double F[9], const double cof[9],
-                         double J, struct dea_point *out)
+                         double J, bool tangent, struct dea_point *out)
 {
   double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, l = log(J), I1 = 0, inverse[9];
   for (int a = 0; a < 9; a++) {
@@ -44,7 +44,7 @@ static void compressible(const struct dea_layer *layer, const double F[9], const
   out->W = 0.5 * mu * (I1 - 3 - 2 * l) + 0.5 * lambda * l * l;
   for (int a = 0; a < 9; a++) {
     out->P[a] = mu * (F[a] - inverse[a]) + lambda * l * inverse[a];
-    for (int b = 0; b < 9; b++) {
+    for (int b = 0; b < 9 && tangent; b++) {
       int crossed_a = 3 * (a / 3) + b % 3, crossed_b = 3 * (b / 3) + a % 3;
       out->A[9 * a + b] = (a == b ? mu : 0) + lambda * inverse[a] * inverse[b] +
                           (mu - lambda * l) * inverse[crossed_a] * inverse[crossed_b];
@@ -53,7 +53,7 @@ static void compressible(const struct dea_layer *layer, const double F[9], const
 }
 
 /* -(k/2) |F_1 x F_2|^2; |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns. */
-static void add_electric(double k, const double F[9], struct dea_point *out)
+static void add_electric(double k, const double F[9], bool tangent, struct dea_point *out)
 {
   double c[2][3], m[2][2];
   for (int J = 0; J < 2; J++) {
@@ -72,7 +72,7 @@ static void add_electric(double k, const double F[9], struct dea_point *out)
     for (int i = 0; i < 3; i++) {
       out->P[3 * i + J] -= k * (m[O][O] * c[J][i] - m[0][1] * c[O][i]);
       double *row = out->A + 9 * (3 * i + J);
-      for (int p = 0; p < 3; p++) {
+      for (int p = 0; p < 3 && tangent; p++) {
         row[3 * p + J] -= k * ((i == p ? m[O][O] : 0) - c[O][i] * c[O][p]);
         row[3 * p + O] -= k * (2 * c[J][i] * c[O][p] - c[O][i] * c[J][p] - (i == p ? m[0][1] : 0));
       }
@@ -82,10 +82,10 @@ static void add_electric(double k, const double F[9], struct dea_point *out)
 
 /* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
 static dea_status elastic(const struct dea_layer *layer, const double F[9], const double cof[9],
-                          double J, struct dea_point *out)
+                          double J, bool tangent, struct dea_point *out)
 {
   if (layer->law == NULL) {
-    compressible(layer, F, cof, J, out);
+    compressible(layer, F, cof, J, tangent, out);
     return DEA_OK;
   }
   static const double fibre[3] = {1, 0, 0};
@@ -94,10 +94,11 @@ static dea_status elastic(const struct dea_layer *layer, const double F[9], cons
   for (int a = 0; a < 9; a++) {
     FG[a] = F[a] * G[a % 3];
   }
-  dea_status status = dea_point_elastic(layer->law, layer->param, FG, fibre, out);
-  for (int a = 0; a < 9; a++) {
+  dea_status status = tangent ? dea_point_elastic(layer->law, layer->param, FG, fibre, out)
+                              : dea_point_stress(layer->law, layer->param, FG, fibre, out);
+  for (int a = 0; a < 9 && status == DEA_OK; a++) {
     out->P[a] *= G[a % 3];
-    for (int b = 0; b < 9; b++) {
+    for (int b = 0; b < 9 && tangent; b++) {
       out->A[9 * a + b] *= G[a % 3] * G[b % 3];
     }
   }
@@ -112,17 +113,18 @@ dea_status dea_layer_relax(struct dea_layer *layer)
   if (layer->law == NULL) {
     return DEA_OK;
   }
-  dea_status status = elastic(layer, one, one, 1, &point);
+  dea_status status = elastic(layer, one, one, 1, false, &point);
   layer->p0_Pa = -point.P[8];
   layer->kappa_s_Pa =
       0.5 * fabs(layer->p0_Pa); // above the third that it takes, docs/theory/solid.md
   return status;
 }
 
-dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], const double cof[9],
-                           double J, double pressure, double field_V_per_m, struct dea_point *point)
+static dea_status evaluate(const struct dea_layer *layer, const double F[9], const double cof[9],
+                           double J, double pressure, double field_V_per_m, bool tangent,
+                           struct dea_point *point)
 {
-  dea_status status = elastic(layer, F, cof, J, point);
+  dea_status status = elastic(layer, F, cof, J, tangent, point);
   if (status != DEA_OK) {
     return status;
   }
@@ -132,14 +134,29 @@ dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], con
     p += pressure;
     for (int a = 0; a < 9; a++) {
       point->P[a] += p * cof[a];
-      for (int b = 0; b < 9; b++) {
+      for (int b = 0; b < 9 && tangent; b++) {
         point->A[9 * a + b] += layer->kappa_s_Pa * cof[a] * cof[b];
       }
     }
-    add_second_of_J(p, F, point->A);
+    if (tangent) {
+      add_second_of_J(p, F, point->A);
+    }
   }
   if (field_V_per_m != 0 && layer->permittivity_F_per_m > 0) {
-    add_electric(layer->permittivity_F_per_m * field_V_per_m * field_V_per_m, F, point);
+    add_electric(layer->permittivity_F_per_m * field_V_per_m * field_V_per_m, F, tangent, point);
   }
   return DEA_OK;
+}
+
+dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], const double cof[9],
+                           double J, double pressure, double field_V_per_m, struct dea_point *point)
+{
+  return evaluate(layer, F, cof, J, pressure, field_V_per_m, true, point);
+}
+
+dea_status dea_layer_stress(const struct dea_layer *layer, const double F[9], const double cof[9],
+                            double J, double pressure, double field_V_per_m,
+                            struct dea_point *point)
+{
+  return evaluate(layer, F, cof, J, pressure, field_V_per_m, false, point);
 }

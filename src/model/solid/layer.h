@@ -36,6 +36,11 @@ dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], con
                            double J, double pressure, double field_V_per_m,
                            struct dea_point *point);
 
+/* The same without the tangent: point->A is not set. */
+dea_status dea_layer_stress(const struct dea_layer *layer, const double F[9], const double cof[9],
+                            double J, double pressure, double field_V_per_m,
+                            struct dea_point *point);
+
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);
 
