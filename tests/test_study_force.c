@@ -48,11 +48,11 @@ static dea_status solve(struct dea_context *context, struct dea_model *model, do
 }
 
 static dea_status press(struct dea_context *context, struct dea_model *model,
-                        const struct dea_tip *tip, double depth_m, struct dea_load_point *out)
+                        const struct dea_probe *tip, double depth_m, struct dea_load_point *out)
 {
   (void)context;
   assert_close(tip->radius_m, 2e-3, 1e-12, 0);
-  assert_true(tip->shape == DEA_TIP_FLAT && !tip->from_fibre_side);
+  assert_true(tip->shape == DEA_PROBE_FLAT && !tip->from_fibre_side);
   assert_close(model->voltage_V, 0, 0, 0); // pressed first, voltage after
   model->depth_m = depth_m;
   model->presses++;

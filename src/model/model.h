@@ -49,9 +49,9 @@ struct dea_profile {
 enum dea_fields_part { DEA_FIELDS_VOLUME, DEA_FIELDS_SURFACE };
 
 /* A rigid tip without friction that is pressed against the middle of the film. */
-enum dea_tip_shape { DEA_TIP_SPHERE, DEA_TIP_FLAT, DEA_TIP_CYLINDER };
-struct dea_tip {
-  enum dea_tip_shape shape; // cylinder: lying on its side, along x
+enum dea_probe_shape { DEA_PROBE_SPHERE, DEA_PROBE_FLAT, DEA_PROBE_CYLINDER };
+struct dea_probe {
+  enum dea_probe_shape shape; // cylinder: lying on its side, along x
   double radius_m;
   double edge_radius_m; // of the flat end's rounded edge
   bool from_fibre_side; // comes from +z
@@ -80,7 +80,7 @@ struct dea_model_type {
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
    * solved, in steps of its own; later solves keep it there and their points have its force. The
    * tip of the first call stays. NULL when the model knows no tips. */
-  dea_status (*press)(struct dea_context *ctx, struct dea_model *model, const struct dea_tip *tip,
+  dea_status (*press)(struct dea_context *ctx, struct dea_model *model, const struct dea_probe *tip,
                       double depth_m, struct dea_load_point *out);
   /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
    * (dea_field_mesh_destroy), NULL on failure. */

@@ -13,8 +13,8 @@ static const double preload_close = 1e-3; // of the preload
 /* Depth at which the tip feels the preload at 0 V: secant steps from two touches. Leaves the tip
  * there. */
 static dea_status find_preload(struct dea_context *ctx, const struct dea_model_type *type,
-                               struct dea_model *model, const struct dea_tip *tip, double preload_N,
-                               double first_m)
+                               struct dea_model *model, const struct dea_probe *tip,
+                               double preload_N, double first_m)
 {
   struct dea_load_point point;
   double depth_m = first_m, last_m = 0, last_N = 0;
@@ -35,7 +35,7 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
 
 /* One depth, or the preload where it is above 0: press at 0 V, then all voltages. */
 static dea_status load_line(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_result *result, const struct dea_tip *tip,
+                            const struct dea_result *result, const struct dea_probe *tip,
                             double depth_m, double preload_N, struct dea_curve *curve)
 {
   const struct dea_design *design = result->design;
@@ -69,10 +69,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "force", &curve));
-  const struct dea_tip tip = {.shape = (enum dea_tip_shape)design->compute.force.tip.value,
-                              .radius_m = design->compute.force.radius_m.si,
-                              .edge_radius_m = design->compute.force.edge_radius_m.si,
-                              .from_fibre_side = design->compute.force.side.value == 0};
+  const struct dea_probe tip = {.shape = (enum dea_probe_shape)design->compute.force.tip.value,
+                                .radius_m = design->compute.force.radius_m.si,
+                                .edge_radius_m = design->compute.force.edge_radius_m.si,
+                                .from_fibre_side = design->compute.force.side.value == 0};
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = DEA_OK;
   for (size_t i = 0; i < stops && status == DEA_OK; i++) {
