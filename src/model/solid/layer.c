@@ -32,16 +32,26 @@ static void add_second_of_J(double f, const double F[9], double A[81])
   }
 }
 
-/* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. */
+/* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. From the displacement gradient D = F - 1, so that
+ * at small strains no difference of numbers near 3 hides the energy from a line search: I1 - 3 = 2
+ * tr D + D:D, J - 1 = tr D + (tr^2 D - D:D^T)/2 + det D. */
 static void compressible(const struct dea_layer *layer, const double F[9], const double cof[9],
                          double J, bool tangent, struct dea_point *out)
 {
-  double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, l = log(J), I1 = 0, inverse[9];
+  double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, D[9], none[9], inverse[9];
+  double trace = 0, square = 0, crossed = 0;
   for (int a = 0; a < 9; a++) {
-    I1 += F[a] * F[a];
+    D[a] = F[a] - (a % 4 == 0 ? 1 : 0);
     inverse[a] = cof[a] / J; // F^-T
   }
-  out->W = 0.5 * mu * (I1 - 3 - 2 * l) + 0.5 * lambda * l * l;
+  for (int a = 0; a < 9; a++) {
+    trace += a % 4 == 0 ? D[a] : 0;
+    square += D[a] * D[a];
+    crossed += D[a] * D[3 * (a % 3) + a / 3];
+  }
+  double excess = trace + 0.5 * (trace * trace - crossed) + dea_cofactors(D, none);
+  double l = log1p(excess);
+  out->W = mu * (trace + 0.5 * square - l) + 0.5 * lambda * l * l;
   for (int a = 0; a < 9; a++) {
     out->P[a] = mu * (F[a] - inverse[a]) + lambda * l * inverse[a];
     for (int b = 0; b < 9 && tangent; b++) {

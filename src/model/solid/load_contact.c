@@ -5,11 +5,14 @@
 #include <math.h>
 #include <string.h>
 
+static const double tolerance_default = 1e-3;
+static const double gap_none = 1e-9; // of the tip's radius
+
 struct dea_contact {
   const struct dea_surface *surface;
   struct dea_face_shape shape;
   struct dea_tip tip;
-  double stiffness, tolerance; // k, of the gap
+  double stiffness, tolerance; // k, of the pressure
   double now[3], goal[3];      // place of the tip
   double *weight, *pressure;   // [face_count][points] areas; p
 };
@@ -20,7 +23,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   struct dea_tip tip = options->tip;
   *out = NULL;
   DEA_TRY(ctx, dea_tip_check(ctx, &tip));
-  if (!(options->stiffness_Pa_per_m > 0) || !(options->tolerance_m >= 0)) {
+  if (!(options->stiffness_Pa_per_m > 0) || !(options->tolerance >= 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "contact needs a stiffness above 0 and a tolerance of 0 or more");
   }
@@ -31,7 +34,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   c->surface = surface;
   c->tip = tip;
   c->stiffness = options->stiffness_Pa_per_m;
-  c->tolerance = options->tolerance_m > 0 ? options->tolerance_m : 1e-5 * tip.radius_m;
+  c->tolerance = options->tolerance > 0 ? options->tolerance : tolerance_default;
   memcpy(c->now, options->place_m, sizeof c->now);
   memcpy(c->goal, options->place_m, sizeof c->goal);
   dea_face_shape_create(surface, DEA_FACE_AT_NODES, &c->shape);
@@ -109,18 +112,22 @@ static dea_status evaluate(const void *self, size_t piece, const double *u, enum
   return DEA_OK;
 }
 
-/* The pressures take over the penalty; how far they had to go, as a gap over the tolerance. */
+/* The pressures take over the penalty. How far they went, in the mean over the contact, over what
+ * is allowed; where a contact ends there is none to compare with, and a round more is asked for. */
 static double update(void *self, const double *u)
 {
   struct dea_contact *c = self;
   size_t points = (size_t)c->shape.points;
-  double largest = 0, n[3];
+  double way = 0, whole = 0, largest = 0, n[3];
   for (size_t at = 0; at < c->surface->face_count * points; at++) {
     double p = c->pressure[at], gap = gap_at(c, at / points, (int)(at % points), u, n, NULL);
     c->pressure[at] = fmax(p - c->stiffness * gap, 0);
+    way += c->weight[at] * fabs(c->pressure[at] - p);
     largest = fmax(largest, fabs(c->pressure[at] - p));
+    whole += c->weight[at] * c->pressure[at];
   }
-  return largest / (c->stiffness * c->tolerance);
+  double gap_error = largest / (c->stiffness * gap_none * c->tip.radius_m);
+  return whole > 0 ? fmin(gap_error, way / (c->tolerance * whole)) : gap_error;
 }
 
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3])

@@ -55,7 +55,7 @@ struct dea_contact_options {
   /* Penalty: the answer does not depend on it, the number of rounds does. Some ten times the
    * stiffness per area behind the surface is good: a modulus over an element's size. */
   double stiffness_Pa_per_m;
-  double tolerance_m; // of the gap; 0: 1e-5 of the tip's radius
+  double tolerance; // of the pressure, relative, in the mean over the contact; 0: 1e-3
 };
 /* out: owned by the caller. DEA_E_ARGUMENT for a tip that cannot be. */
 dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface *surface,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { OUTER_MAX = 12 };
+enum { OUTER_MAX = 30 };
 
 static const double theta_small = 1e-7;       // of J - 1
 static const double step_smallest = 1.0 / 64; // of the way asked for

@@ -1,0 +1,212 @@
+/* Rigid tips on a soft block and on a film under tension, against closed forms. */
+// ctest: solid
+#include "model/solid/loads.h"
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+#include <string.h>
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- Hertz ---- */
+
+static const double side = 20, radius = 100;
+
+static void map_square(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = side * s;
+  x[1] = side * t;
+}
+
+/* Bonded at the bottom; mirror planes x = 0 and y = 0. */
+static int bonded(const void *self, const double X[3])
+{
+  (void)self;
+  return X[2] < 1e-9 ? 7 : (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0);
+}
+
+static bool upmost(const void *self, int region, int sheet, const double middle[3])
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return middle[2] > side - 1e-9;
+}
+
+/* Elements of 1/4 under the contact, which is about 1 wide. */
+static struct dea_grid *hertz_grid(void)
+{
+  static const double at[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 2.5, 6, 20};
+  static const double thick[] = {12, 5, 2, 0.7, 0.3};
+  enum { CUTS = sizeof at / sizeof at[0], SHEETS = sizeof thick / sizeof thick[0] };
+  double cuts[CUTS];
+  struct dea_sheet sheets[SHEETS];
+  struct dea_grid *grid;
+  for (int i = 0; i < CUTS; i++) {
+    cuts[i] = at[i] / side;
+  }
+  for (int i = 0; i < SHEETS; i++) {
+    sheets[i] = (struct dea_sheet){thick[i], 1, 2};
+  }
+  const struct dea_block quad = {map_square, NULL, cuts, cuts, CUTS - 1, CUTS - 1, 0};
+  assert_int_equal(dea_grid_create(ctx, 2, &quad, 1, sheets, SHEETS, NULL, 0, side, &grid), DEA_OK);
+  return grid;
+}
+
+/* Force on a sphere pressed d into a bonded layer of thickness h over that into a half space
+ * (Dimitriadis et al. 2002). */
+static double layer_factor(double d, double h, double nu)
+{
+  double chi = sqrt(radius * d) / h;
+  double alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1 - nu);
+  double beta = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1 - nu);
+  double a3 = alpha * alpha * alpha, pi2 = pi * pi;
+  return 1 - 2 * alpha / pi * chi + 4 * alpha * alpha / pi2 * chi * chi -
+         8 / (pi * pi2) * (a3 + 4 * pi2 / 15 * beta) * pow(chi, 3) +
+         16 * alpha / (pi2 * pi2) * (a3 + 3 * pi2 / 5 * beta) * pow(chi, 4);
+}
+
+/* Gaps are closed where there is pressure and open elsewhere; returns the pressure nearest to the
+ * axis. */
+static double check_gaps(const struct dea_surface *top, const struct dea_contact *contact,
+                         const struct dea_tip *tip, const double *u, double close)
+{
+  double place[3], middle = 0;
+  dea_contact_place(contact, place);
+  for (size_t f = 0; f < top->face_count; f++) {
+    for (int q = 0; q < top->face_nodes; q++) {
+      size_t n = (size_t)top->nodes[f * DEA_FACE_NODES_MAX + (size_t)q];
+      const double *X = top->grid->X + 3 * n;
+      double p = dea_contact_pressure(contact)[f * (size_t)top->face_nodes + (size_t)q], normal[3];
+      double x[3] = {X[0] + u[3 * n], X[1] + u[3 * n + 1], X[2] + u[3 * n + 2]};
+      double gap = dea_tip_distance(tip, place, x, normal, NULL);
+      assert_true(p >= 0 && gap > -close && (p == 0 || gap < close));
+      middle = hypot(X[0], X[1]) < 1e-9 ? p : middle;
+    }
+  }
+  return middle;
+}
+
+/* The block is 20 contact radii wide and deep; a half space would give 4 % less force, which the
+ * layer's factor knows. */
+static void test_hertz(void **state)
+{
+  (void)state;
+  const double E = 1e6, nu = 0.3, d = 0.01;
+  const struct dea_layer soft = {.lame_mu_Pa = E / (2 * (1 + nu)),
+                                 .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  struct dea_grid *grid = hertz_grid();
+  struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
+  struct dea_hex_shape shape;
+  struct dea_surface *top;
+  struct dea_contact *contact;
+  struct dea_solid_report report;
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, upmost, NULL, &top), DEA_OK);
+  const struct dea_contact_options options = {.tip = {.shape = DEA_TIP_SPHERE, .radius_m = radius},
+                                              .place_m = {0, 0, side + radius},
+                                              .stiffness_Pa_per_m = 10 * E / 0.25};
+  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
+  const struct dea_solid_load load = dea_contact_load(contact);
+  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  dea_contact_move(contact, (const double[3]){0, 0, side + radius - d});
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  double force[3], hertz = 4.0 / 3 * E / (1 - nu * nu) * sqrt(radius) * pow(d, 1.5);
+  dea_contact_force(contact, dea_solid_displacement(solid), force);
+  assert_close(4 * force[2], hertz * layer_factor(d, side, nu), 1e-2, 0);
+  assert_close(4 * force[2], hertz, 6e-2, 0);
+  double middle = check_gaps(top, contact, &options.tip, dea_solid_displacement(solid), 1e-3 * d);
+  assert_close(middle, 1.5 * 4 * force[2] / (pi * radius * d), 3e-2, 0);
+  assert_close(4 * dea_contact_area(contact), pi * radius * d, 0.2, 0);
+  dea_solid_destroy(ctx, solid);
+  dea_contact_destroy(ctx, contact);
+  dea_surface_destroy(ctx, top);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* ---- flat punch on a film under tension ---- */
+
+static const double film_h = 100e-6 / 2.25, punch_m = 1.5e-3, frame_m = 15e-3;
+
+static int disc_held(const void *self, const double X[3])
+{
+  (void)self;
+  if (hypot(X[0], X[1]) > frame_m * (1 - 1e-9)) {
+    return 1 | 2 | 4;
+  }
+  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
+}
+
+/* A membrane under tension T on a rigid disc of radius a, clamped at b: F = 2 pi T d / ln(b/a)
+ * while d is small. The force is the slope of the energy, and a tip that has gone leaves none. */
+static void test_flat_punch_on_film(void **state)
+{
+  (void)state;
+  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+  struct dea_layer film = {.law = dea_law_find("yeoh"),
+                           .param = yeoh,
+                           .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                           .kappa_Pa = 4e7,
+                           .thickness_m = film_h};
+  assert_int_equal(dea_layer_relax(&film), DEA_OK);
+  const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = 2, .edge = 2e-4};
+  struct dea_grid *grid;
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  struct dea_solid *solid = block_solid(ctx, grid, 2, &film, disc_held);
+  struct dea_hex_shape shape;
+  struct dea_surface *top;
+  struct dea_contact *contact;
+  struct dea_solid_report report;
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, NULL, NULL, &top), DEA_OK);
+  const double edge = 1e-4, tension = 797.745e3 * film_h;
+  const struct dea_contact_options options = {.tip = {.shape = DEA_TIP_FLAT,
+                                                      .radius_m = punch_m + edge,
+                                                      .edge_radius_m = edge,
+                                                      .axis = {0, 0, 1}},
+                                              .place_m = {0, 0, 0.5 * film_h},
+                                              .stiffness_Pa_per_m = 1e11};
+  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
+  const struct dea_solid_load load = dea_contact_load(contact);
+  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  double energy[4], force[4][3];
+  for (int i = 0; i < 4; i++) {
+    double d = 25e-6 * i;
+    dea_contact_move(contact, (const double[3]){0, 0, 0.5 * film_h - d});
+    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    dea_contact_force(contact, dea_solid_displacement(solid), force[i]);
+    energy[i] = report.energy_J;
+    assert_close(4 * force[i][2], 2 * pi * tension * d / log(frame_m / punch_m), 5e-3, 1e-12);
+  }
+  assert_close(force[2][2], (energy[3] - energy[1]) / 50e-6, 1e-3, 0);
+  dea_contact_move(contact, (const double[3]){0, 0, film_h});
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  dea_contact_force(contact, dea_solid_displacement(solid), force[0]);
+  assert_close(force[0][2], 0, 0, 0);
+  dea_solid_destroy(ctx, solid);
+  dea_contact_destroy(ctx, contact);
+  dea_surface_destroy(ctx, top);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_hertz),
+      cmocka_unit_test(test_flat_punch_on_film),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

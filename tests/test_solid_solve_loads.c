@@ -1,0 +1,189 @@
+/* Loads in a solve, against closed forms: weight, foundation, pressure. */
+// ctest: solid
+#include "model/solid/loads.h"
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+static const struct block slab = {{1, 1, 2}, {1, 1, 4}, 2, 2};
+static const double mu = 1e5;
+static struct dea_hex_shape shape;
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+static struct dea_solid_report report;
+
+/* Up and down only. */
+static int sideways(const void *self, const double X[3])
+{
+  (void)self;
+  (void)X;
+  return 1 | 2;
+}
+
+static int hangs(const void *self, const double X[3])
+{
+  (void)self;
+  return 1 | 2 | (X[2] > 2 - 1e-9 ? 4 : 0);
+}
+
+static int on_planes(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
+}
+
+static void slab_create(const struct dea_layer *layer,
+                        int (*held)(const void *self, const double X[3]))
+{
+  grid = block_grid(ctx, &slab);
+  solid = block_solid(ctx, grid, slab.order_z, layer, held);
+  assert_int_equal(dea_hex_shape_create(slab.order, slab.order_z, &shape), DEA_OK);
+}
+
+static void slab_destroy(void)
+{
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Faces on the outside of the slab. */
+static bool outside(const void *self, int region, int sheet, const double middle[3])
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  bool inside = true;
+  for (int i = 0; i < 3; i++) {
+    inside = inside && middle[i] > 1e-9 && middle[i] < slab.size[i] - 1e-9;
+  }
+  return !inside;
+}
+
+static struct dea_surface *side_create(enum dea_side side)
+{
+  struct dea_surface *surface;
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, side, outside, NULL, &surface), DEA_OK);
+  return surface;
+}
+
+static double top_displacement(double z)
+{
+  size_t n = 0;
+  while (grid->X[3 * n + 2] < z - 1e-9 || grid->X[3 * n + 2] > z + 1e-9) {
+    n++;
+  }
+  return dea_solid_displacement(solid)[3 * n + 2];
+}
+
+/* Stretch of a bar that keeps its width, at a nominal stress: mu (l - 1/l) = P. */
+static double stretch(double P)
+{
+  double half = P / (2 * mu);
+  return half + sqrt(half * half + 1);
+}
+
+/* A block on springs, pressed down: the springs give way by traction over stiffness, whatever the
+ * block does, and the block gets shorter. */
+static void test_slab_on_a_foundation(void **state)
+{
+  (void)state;
+  static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+  static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
+  slab_create(&soft, sideways);
+  struct dea_surface *bottom = side_create(DEA_SIDE_BOTTOM), *top = side_create(DEA_SIDE_TOP);
+  struct dea_foundation *springs;
+  assert_int_equal(dea_foundation_create(ctx, bottom, stiffness, &springs), DEA_OK);
+  const struct dea_solid_load load = dea_foundation_load(springs);
+  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  dea_load_traction(top, traction, dea_solid_force(solid));
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(report.unstable_modes, 0);
+  double down = top_displacement(0);
+  assert_close(down, traction[2] / stiffness[2], 1e-8, 0);
+  assert_close(top_displacement(2) - down, 2 * (stretch(traction[2]) - 1), 1e-8, 0);
+  slab_destroy();
+  dea_foundation_destroy(ctx, springs);
+  dea_surface_destroy(ctx, bottom);
+  dea_surface_destroy(ctx, top);
+}
+
+static double density(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 1000;
+}
+
+/* Hangs by its top and stretches under its weight: at a height z it carries what is below. */
+static void test_hanging_block(void **state)
+{
+  (void)state;
+  static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+  static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
+  double way = 0;
+  slab_create(&soft, hangs);
+  dea_load_gravity(grid, &shape, density, NULL, g, dea_solid_force(solid));
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  for (int i = 0; i < 1000; i++) { // midpoint rule
+    way -= 2.0 / 1000 * (stretch(1000 * 60 * 2.0 * (i + 0.5) / 1000) - 1);
+  }
+  assert_close(top_displacement(0), way, 1e-5, 0);
+  slab_destroy();
+}
+
+/* All around, with three mirror planes through the origin of the pressure's volume: a cube stays
+ * one of stretch l, and the Cauchy stress (mu (l^2 - 1) + lambda ln l^3)/l^3 is -p. */
+static void test_pressure_all_around(void **state)
+{
+  (void)state;
+  static const struct dea_layer soft = {.lame_mu_Pa = 1e5, .lame_lambda_Pa = 2e5};
+  static const double origin[3] = {0, 0, 0}, p = 1.5e5;
+  static const enum dea_side sides[] = {DEA_SIDE_FIRST_HIGH, DEA_SIDE_SECOND_HIGH, DEA_SIDE_TOP};
+  struct dea_surface *surface[3];
+  struct dea_pressure *pressure[3];
+  slab_create(&soft, on_planes);
+  for (int i = 0; i < 3; i++) {
+    surface[i] = side_create(sides[i]);
+    assert_int_equal(dea_pressure_create(ctx, surface[i], origin, &pressure[i]), DEA_OK);
+    dea_pressure_set(pressure[i], p);
+    const struct dea_solid_load load = dea_pressure_load(pressure[i]);
+    assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  }
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  double l = 1;
+  for (int i = 0; i < 50; i++) { // Newton
+    double f = 1e5 * (l * l - 1) + 6e5 * log(l) + p * l * l * l;
+    l -= f / (2e5 * l + 6e5 / l + 3 * p * l * l);
+  }
+  for (size_t n = 0; n < 3 * grid->node_count; n++) {
+    assert_close(dea_solid_displacement(solid)[n], (l - 1) * grid->X[n], 1e-7, 1e-8);
+  }
+  slab_destroy();
+  for (int i = 0; i < 3; i++) {
+    assert_close(dea_pressure_get(pressure[i]), p, 0, 0);
+    dea_pressure_destroy(ctx, pressure[i]);
+    dea_surface_destroy(ctx, surface[i]);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_slab_on_a_foundation),
+      cmocka_unit_test(test_hanging_block),
+      cmocka_unit_test(test_pressure_all_around),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
