@@ -223,7 +223,8 @@ static void test_four_fibres_as_built(void **state)
        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
        .thickness_m = h},
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
-  const struct dea_quarter quarter = {2, 2, a_m, b_m, h, 4, 2e-3, 100e-6, 3, 2, 2e-4};
+  const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           4,
+                                      2e-3, 100e-6, .fine = 3, .across = 2, .edge = 2e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
                                             .layers = layers,

@@ -320,7 +320,8 @@ static double lift(enum dea_solid_field_kind field, bool axes)
   const struct dea_layer layers[] = {
       film(1.5, h),
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
-  const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, h, 4, 2e-3, 100e-6, 1, 1, 1e-4};
+  const struct dea_quarter quarter = {2,    2,      3.75e-3,   15e-3,       h,           4,
+                                      2e-3, 100e-6, .fine = 1, .across = 1, .edge = 1e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
                                             .layer_count = 2,

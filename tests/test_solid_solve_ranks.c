@@ -84,7 +84,8 @@ static struct answer solve(int fibres, double pre_stretch, int highest_kV, bool 
        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
        .thickness_m = h},
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
-  const struct dea_quarter quarter = {2, 2, a_m, b_m, h, fibres, 2e-3, 100e-6, 2, 1, 4e-4};
+  const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           fibres,
+                                      2e-3, 100e-6, .fine = 2, .across = 1, .edge = 4e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
                                             .layers = layers,

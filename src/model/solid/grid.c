@@ -102,6 +102,12 @@ static dea_status plane_create(struct dea_context *ctx, int order, const struct 
   return DEA_OK;
 }
 
+/* Levels that a sheet has above its bottom: none without thickness. */
+static size_t sheet_levels(const struct dea_sheet *sheet)
+{
+  return sheet->thickness_m > 0 ? sheet->count * (size_t)sheet->order_z : 0;
+}
+
 /* Level of nodes at the bottom of a sheet, the first level of its own (one above), and its z. A
  * level counts through all sheets: 0 is the bottom of the first, then order_z for each element. */
 struct sheet_place {
@@ -114,12 +120,12 @@ static struct sheet_place sheet_place(const struct dea_sheet *sheets, const size
 {
   struct sheet_place at = {0, 1, bottom_m};
   for (size_t k = 0; k < s; k++) {
-    at.own += sheets[k].count * (size_t)sheets[k].order_z;
+    at.own += sheet_levels(&sheets[k]);
   }
   size_t passed = skips != NULL ? skips[s] : 0;
   if (s > passed) { // on the top of another one
     size_t under = s - 1 - passed;
-    size_t levels = sheets[under].count * (size_t)sheets[under].order_z;
+    size_t levels = sheet_levels(&sheets[under]);
     struct sheet_place below = sheet_place(sheets, skips, under, bottom_m);
     at.bottom = levels > 0 ? below.own + levels - 1 : below.bottom;
     at.z = below.z + sheets[under].thickness_m;
@@ -127,7 +133,20 @@ static struct sheet_place sheet_place(const struct dea_sheet *sheets, const size
   return at;
 }
 
-/* Elements of one layer of a sheet; level[]: of their nodes, from bottom to top; levels: of all. */
+/* Nodes of a level. */
+static void place_level(const struct plane_mesh *m, size_t levels, size_t level, double z,
+                        struct dea_grid *grid)
+{
+  for (size_t n = 0; n < m->node_count; n++) {
+    double *X = grid->X + 3 * (n * levels + level);
+    X[0] = m->x[2 * n];
+    X[1] = m->x[2 * n + 1];
+    X[2] = z;
+  }
+}
+
+/* Elements of one layer of a sheet, flat ones with order_z 0; level[]: of their nodes, from bottom
+ * to top; levels: of all. */
 static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_t *level,
                           int order_z, int sheet, bool (*present)(int region, int sheet),
                           struct dea_grid *grid)
@@ -144,6 +163,7 @@ static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_
         *to++ = (int)((size_t)quad[n] * levels + level[l]);
       }
     }
+    grid->flat[grid->element_count] = order_z == 0;
     grid->region[grid->element_count] = m->region[e];
     grid->sheet[grid->element_count++] = sheet;
   }
@@ -159,21 +179,20 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
   double at[DEA_HEX_ORDER_MAX + 1];
   grid->element_count = 0;
   for (size_t s = 0; s < sheet_count; s++) {
-    int order_z = sheets[s].order_z;
+    bool flat = sheet_levels(&sheets[s]) == 0;
+    int order_z = flat ? 0 : sheets[s].order_z;
     struct sheet_place place = sheet_place(sheets, skips, s, bottom_m);
-    dea_lobatto_nodes((size_t)order_z, at);
+    at[0] = -1;
+    if (!flat) {
+      dea_lobatto_nodes((size_t)order_z, at);
+    }
     for (size_t k = 0; k < sheets[s].count; k++) {
       size_t level[DEA_HEX_ORDER_MAX + 1];
       double step = sheets[s].thickness_m / (double)sheets[s].count;
       for (int l = 0; l <= order_z; l++) {
         size_t up = k * (size_t)order_z + (size_t)l;
         level[l] = up == 0 ? place.bottom : place.own + up - 1;
-        for (size_t n = 0; n < m->node_count; n++) {
-          double *X = grid->X + 3 * (n * levels + level[l]);
-          X[0] = m->x[2 * n];
-          X[1] = m->x[2 * n + 1];
-          X[2] = place.z + ((double)k + 0.5 * (1 + at[l])) * step;
-        }
+        place_level(m, levels, level[l], place.z + ((double)k + 0.5 * (1 + at[l])) * step, grid);
       }
       extrude_layer(m, levels, level, order_z, (int)s, present, grid);
     }
@@ -181,14 +200,14 @@ static void extrude(const struct plane_mesh *m, const struct dea_sheet *sheets, 
 }
 
 /* Takes out the nodes that no element has. */
-static dea_status compact(struct dea_context *ctx, int per_element, struct dea_grid *grid)
+static dea_status compact(struct dea_context *ctx, int solid, struct dea_grid *grid)
 {
   int *number = dea_alloc(ctx, grid->node_count, sizeof *number);
   if (number == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < per_element; n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, solid); n++) {
       number[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 1;
     }
   }
@@ -201,13 +220,18 @@ static dea_status compact(struct dea_context *ctx, int per_element, struct dea_g
   }
   grid->node_count = count;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < per_element; n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, solid); n++) {
       int *node = &grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
       *node = number[*node];
     }
   }
   dea_free(ctx, number);
   return DEA_OK;
+}
+
+int dea_grid_nodes_of(const struct dea_grid *grid, size_t element, int solid)
+{
+  return grid->flat[element] ? (grid->order + 1) * (grid->order + 1) : solid;
 }
 
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
@@ -226,31 +250,32 @@ dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
                                     double bottom_m, double length_m, struct dea_grid **out)
 {
   struct plane_mesh m = {0};
-  size_t through = 0;
+  size_t through = 0, levels = 1;
   *out = NULL;
   for (size_t s = 0; s < sheet_count; s++) {
     through += sheets[s].count;
+    levels += sheet_levels(&sheets[s]);
   }
   dea_status status = plane_create(ctx, order, blocks, block_count, length_m, &m);
   struct dea_grid *grid = status == DEA_OK ? dea_alloc(ctx, 1, sizeof *grid) : NULL;
   if (grid != NULL) {
     grid->order = order;
-    grid->node_count = m.node_count * (through * (size_t)sheets[0].order_z + 1);
+    grid->node_count = m.node_count * levels;
     grid->element_count = m.quad_count * through;
     grid->X = dea_alloc(ctx, grid->node_count, 3 * sizeof(double));
     grid->nodes = dea_alloc(ctx, grid->element_count, DEA_HEX_NODES_MAX * sizeof(int));
     grid->region = dea_alloc(ctx, grid->element_count, sizeof(int));
     grid->sheet = dea_alloc(ctx, grid->element_count, sizeof(int));
+    grid->flat = dea_alloc(ctx, grid->element_count, sizeof(bool));
   }
   if (grid == NULL || grid->X == NULL || grid->nodes == NULL || grid->region == NULL ||
-      grid->sheet == NULL) {
+      grid->sheet == NULL || grid->flat == NULL) {
     dea_grid_destroy(ctx, grid);
     plane_release(&m);
     return DEA_E_MEMORY;
   }
   extrude(&m, sheets, sheet_count, skips, present, bottom_m, grid);
-  int per_element = (order + 1) * (order + 1) * (sheets[0].order_z + 1);
-  status = compact(ctx, per_element, grid);
+  status = compact(ctx, (order + 1) * (order + 1) * (sheets[0].order_z + 1), grid);
   plane_release(&m);
   if (status != DEA_OK) {
     dea_grid_destroy(ctx, grid);
@@ -267,6 +292,7 @@ void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
     dea_free(ctx, grid->nodes);
     dea_free(ctx, grid->region);
     dea_free(ctx, grid->sheet);
+    dea_free(ctx, grid->flat);
     dea_free(ctx, grid);
   }
 }

@@ -15,10 +15,11 @@ struct dea_block {
   int region;                    // of its elements
 };
 
-/* One layer of a stack, from bottom to top. */
+/* One layer of a stack, from bottom to top. A sheet of thickness 0 is a surface: flat elements of
+ * (order + 1)^2 nodes at its level, whose nodes are those of the solid elements there. */
 struct dea_sheet {
   double thickness_m;
-  size_t count; // elements through it; 0: the sheet is not there
+  size_t count; // elements through it, 1 of a surface; 0: the sheet is not there
   int order_z;
 };
 
@@ -28,7 +29,11 @@ struct dea_grid {
   double *X;           // [node_count][3]
   int *nodes;          // [element_count][DEA_HEX_NODES_MAX], the first shape.nodes of each used
   int *region, *sheet; // [element_count]
+  bool *flat;          // [element_count] of (order + 1)^2 nodes
 };
+
+/* Nodes of an element; solid: those of a hexahedron. */
+int dea_grid_nodes_of(const struct dea_grid *grid, size_t element, int solid);
 
 /* Plate of blocks (joined where their edge nodes coincide) through sheets that start at z =
  * bottom_m. All sheets have the same order_z. present: whether a region has a sheet; NULL: all have
@@ -64,9 +69,13 @@ struct dea_quarter {
   size_t across; // elements across half a fibre
   double edge;   // width of the elements on both sides of the circle a, from where they double
                  // up to about square; 0 for no grading
+  bool membrane; // the film is a surface, see the sheets below
 };
 enum { DEA_REGION_ELECTRODE, DEA_REGION_FILM, DEA_REGION_FIBRE };
 enum { DEA_SHEET_FILM, DEA_SHEET_FIBRE };
+/* The sheets with a membrane: the film as a surface at z = 0; under fibres only the layer from
+ * there to h/2 that joins them to it (dea_membrane_bond); fibres. */
+enum { DEA_SHEET_SURFACE, DEA_SHEET_BOND, DEA_SHEET_FIBRE_ON_BOND };
 dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *quarter,
                             struct dea_grid **out);
 

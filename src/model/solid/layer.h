@@ -23,6 +23,7 @@ struct dea_layer {
   double kappa_Pa;             // bulk modulus of the projected part, of the element
   double permittivity_F_per_m; // eps, 0: no electric energy
   double thickness_m;          // h, over which the voltage stands
+  bool relaxed;                // flat elements wrinkle instead of taking pressure (tension.h)
 };
 
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that

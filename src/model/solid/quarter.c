@@ -79,9 +79,10 @@ static void reverse_cuts(double *cuts, size_t count)
   memcpy(cuts, turned, (count + 1) * sizeof *cuts);
 }
 
-static bool fibre_only_on_fibres(int region, int sheet)
+/* The first sheet is the film, solid or not; the others are there for the fibres. */
+static bool film_everywhere(int region, int sheet)
 {
-  return sheet == DEA_SHEET_FILM || region == DEA_REGION_FIBRE;
+  return sheet == 0 || region == DEA_REGION_FIBRE;
 }
 
 /* Elements between two angles of the circle a, as shares of pi/4, and where their lines meet the
@@ -201,10 +202,14 @@ dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *q
   blocks[2] =
       (struct dea_block){map_inner_ring, &second, ring, back, rings, turns, DEA_REGION_ELECTRODE};
   outer_blocks(q, sectors, sector_count, rest, rests, even, outer, blocks + INNER_BLOCKS);
-  const struct dea_sheet sheets[] = {{q->film_thickness, 1, q->order_z},
-                                     {q->fibre_thickness, 1, q->order_z}};
-  DEA_TRY(ctx, dea_grid_create(ctx, q->order, blocks, INNER_BLOCKS + 2 * sector_count, sheets,
-                               q->fibres > 0 ? 2 : 1, fibre_only_on_fibres,
-                               -0.5 * q->film_thickness, q->b, out));
+  const struct dea_sheet film[] = {{q->film_thickness, 1, q->order_z},
+                                   {q->fibre_thickness, 1, q->order_z}};
+  const struct dea_sheet surface[] = {{0, 1, q->order_z},
+                                      {0.5 * q->film_thickness, 1, q->order_z},
+                                      {q->fibre_thickness, 1, q->order_z}};
+  size_t on_fibres = q->fibres > 0 ? (q->membrane ? 2 : 1) : 0;
+  DEA_TRY(ctx, dea_grid_create(ctx, q->order, blocks, INNER_BLOCKS + 2 * sector_count,
+                               q->membrane ? surface : film, 1 + on_fibres, film_everywhere,
+                               q->membrane ? 0 : -0.5 * q->film_thickness, q->b, out));
   return DEA_OK;
 }

@@ -156,6 +156,16 @@ void dea_recover_plane(const struct dea_layer *layer, const double F[9], const d
   principal(T[0][0], T[1][1], 0.5 * (T[0][1] + T[1][0]), out->tension);
 }
 
+dea_status dea_recover_check(struct dea_context *ctx, const struct dea_recover_input *in)
+{
+  for (size_t e = 0; e < in->grid->element_count; e++) {
+    if (in->grid->flat[e]) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "there are no fields of a membrane yet");
+    }
+  }
+  return DEA_OK;
+}
+
 void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
                      const struct dea_mesh_field *field, double **values, dea_status *status)
 {

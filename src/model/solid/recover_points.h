@@ -17,6 +17,9 @@ struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
                               bool by_sheet);
 
+/* DEA_E_UNSUPPORTED where there are flat elements. */
+dea_status dea_recover_check(struct dea_context *ctx, const struct dea_recover_input *in);
+
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out);

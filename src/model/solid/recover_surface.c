@@ -225,6 +225,7 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
 {
   struct work work = {.ctx = ctx, .in = in, .sheet = sheet};
   *out = NULL;
+  DEA_TRY(ctx, dea_recover_check(ctx, in));
   dea_status status = prepare(&work);
   if (status == DEA_OK) {
     status = add_columns(&work);

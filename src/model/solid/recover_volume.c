@@ -282,6 +282,7 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
 {
   struct work work = {.ctx = ctx, .in = in};
   *out = NULL;
+  DEA_TRY(ctx, dea_recover_check(ctx, in));
   dea_status status = number_points(&work);
   if (status == DEA_OK) {
     status = take_means(&work);

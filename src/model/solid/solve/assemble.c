@@ -30,7 +30,7 @@ struct element_place {
 static void gather(const struct dea_solid *s, size_t e, const double *u, struct element_place *out)
 {
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  for (int n = 0; n < s->shape.nodes; n++) {
+  for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
     memcpy(out->X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
     memcpy(out->u + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
   }
@@ -43,6 +43,10 @@ static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *
   const struct dea_layer *layer = &s->layers[s->layer[e]];
   struct element_place at;
   gather(s, e, u, &at);
+  if (s->grid->flat[e]) {
+    return dea_membrane_evaluate(&s->flat, layer, at.X, at.u, s->active[e] ? voltage_V : 0, level,
+                                 s->element);
+  }
   if (s->field != NULL && layer->permittivity_F_per_m > 0) {
     return dea_solid_coupled_element(s, e, at.X, at.u, at.multiplier, u + 3 * s->grid->node_count,
                                      level);
@@ -169,8 +173,8 @@ static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, dou
     s->energy_scale += fabs(element->energy_J);
     memcpy(s->theta + e * (size_t)s->shape.pressures, element->theta,
            (size_t)s->shape.pressures * sizeof(double));
-    DEA_TRY(ctx, scatter(ctx, s, s->shape.nodes, s->grid->nodes + e * DEA_HEX_NODES_MAX, element->g,
-                         element->K, level));
+    DEA_TRY(ctx, scatter(ctx, s, dea_grid_nodes_of(s->grid, e, s->shape.nodes),
+                         s->grid->nodes + e * DEA_HEX_NODES_MAX, element->g, element->K, level));
   }
   return DEA_OK;
 }
@@ -260,6 +264,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
     DEA_TRY(ctx,
             dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
     DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+    DEA_TRY(ctx, dea_solid_add_springs(ctx, s));
   }
   return DEA_OK;
 }
@@ -274,8 +279,10 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   struct element_place at;
   struct dea_hex_membrane membrane;
   gather(s, e, s->u, &at);
-  dea_status status =
-      dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier, voltage_V, &membrane);
+  dea_status status = s->grid->flat[e]
+                          ? dea_membrane_state(&s->flat, layer, at.X, at.u, voltage_V, &membrane)
+                          : dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier,
+                                                  voltage_V, &membrane);
   for (int p = 0; status == DEA_OK && p < membrane.count; p++) {
     double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
     double stretch = pre_stretch * sqrt(membrane.area[p]);

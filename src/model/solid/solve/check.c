@@ -12,10 +12,11 @@ enum { RIGID = 6 }; // motions of a rigid body
 static void middle(const struct dea_solid *s, size_t e, double x[3])
 {
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
   x[0] = x[1] = x[2] = 0;
-  for (int n = 0; n < s->shape.nodes; n++) {
+  for (int n = 0; n < count; n++) {
     for (int i = 0; i < 3; i++) {
-      x[i] += 1e3 * s->grid->X[3 * nodes[n] + i] / s->shape.nodes;
+      x[i] += 1e3 * s->grid->X[3 * nodes[n] + i] / count;
     }
   }
 }
@@ -26,11 +27,13 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double X[DEA_HEX_DOFS_MAX], x[3];
-  for (int n = 0; n < s->shape.nodes; n++) {
+  double X[DEA_HEX_DOFS_MAX], x[3], stiffness[DEA_FLAT_NODES_MAX];
+  for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
     memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
   }
-  if (dea_hex_kinematics(&s->shape, X, rest, gradient, points) == DEA_OK) {
+  if (DEA_OK == (s->grid->flat[e]
+                     ? dea_membrane_stiffness(&s->flat, &s->layers[s->layer[e]], X, stiffness)
+                     : dea_hex_kinematics(&s->shape, X, rest, gradient, points))) {
     return DEA_OK;
   }
   middle(s, e, x);
@@ -136,7 +139,7 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
   }
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    for (int n = 1; n < s->shape.nodes; n++) {
+    for (int n = 1; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
       parent[root_of(parent, nodes[n])] = root_of(parent, nodes[0]);
     }
   }

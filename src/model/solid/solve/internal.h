@@ -2,6 +2,7 @@
 #ifndef DEA_MODEL_SOLID_SOLVE_INTERNAL_H
 #define DEA_MODEL_SOLID_SOLVE_INTERNAL_H
 
+#include "model/solid/membrane.h"
 #include "model/solid/solve/solid.h"
 
 #include <petscmat.h>
@@ -28,6 +29,8 @@ struct dea_solid {
   size_t *own, own_count;      // [own_count] elements here
   const struct dea_grid *grid;
   struct dea_hex_shape shape;
+  struct dea_flat_shape flat;
+  double *spring; // [dofs] M of docs/theory/membrane.md, 0 off the flat elements; NULL without any
   struct dea_layer *layers;
   int per_node;                  // 3, or 4 with a potential
   size_t dofs;                   // per_node * nodes
@@ -113,6 +116,12 @@ void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int
 void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v);
 /* Sets held components of v [dofs], which is in global ones, to 0. */
 void dea_solid_release_held(const struct dea_solid *s, double *v);
+
+/* Makes s->spring for the flat elements, if there are any. DEA_E_UNSUPPORTED for what they cannot
+ * be: anisotropic or without a law, in a coupled field. */
+dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
+/* What K and the metric get for modes without stiffness; nothing without flat elements. */
+dea_status dea_solid_add_springs(struct dea_context *ctx, struct dea_solid *s);
 
 /* LDL^T of A into *factor, which is analysed when it is NULL. */
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);

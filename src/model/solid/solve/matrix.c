@@ -12,7 +12,9 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
   }
   s->own_count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    size_t node = (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)s->shape.nodes / 2];
+    size_t node =
+        (size_t)grid
+            ->nodes[e * DEA_HEX_NODES_MAX + (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes) / 2];
     if (node >= s->first_node && node < s->end_node) {
       s->own[s->own_count++] = e;
     }
@@ -25,9 +27,8 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
 static void list_elements(const struct dea_solid *s, size_t *first, int *elements)
 {
   const struct dea_grid *grid = s->grid;
-  size_t per = (size_t)s->shape.nodes;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < per; n++) {
+    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes); n++) {
       first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 2]++;
     }
   }
@@ -35,7 +36,7 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
     first[i] += first[i - 1];
   }
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < per; n++) {
+    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes); n++) {
       elements[first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 1]++] = (int)e;
     }
   }
@@ -59,7 +60,8 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
       own[row] = others[row] = 0;
       for (size_t k = first[i]; k < first[i + 1]; k++) {
         const int *nodes = grid->nodes + (size_t)elements[k] * DEA_HEX_NODES_MAX;
-        for (size_t n = 0; n < per; n++) {
+        int count = dea_grid_nodes_of(grid, (size_t)elements[k], s->shape.nodes);
+        for (int n = 0; n < count; n++) {
           size_t column = (size_t)nodes[n];
           if (column >= i && seen[column] != (int)i + 1) {
             seen[column] = (int)i + 1;

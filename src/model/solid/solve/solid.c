@@ -54,6 +54,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
+  DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
   return DEA_OK;
 }
@@ -71,6 +72,9 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   s->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   s->dofs = (size_t)s->per_node * grid->node_count;
   dea_status status = dea_hex_shape_create(grid->order, options->order_z, &s->shape);
+  if (status == DEA_OK) {
+    status = dea_flat_shape_create(grid->order, &s->flat);
+  }
   if (status == DEA_OK) {
     status = fill(ctx, s, options);
   }
@@ -94,10 +98,10 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   VecDestroy(&s->right);
   VecDestroy(&s->solution);
   dea_solid_path_release(ctx, &s->path);
-  void *const memory[] = {s->layers,     s->layer, s->active,     s->held,  s->u,       s->trial,
-                          s->g,          s->step,  s->multiplier, s->theta, s->metric,  s->force,
-                          s->force_goal, s->place, s->reaction,   s->drive, s->element, s->piece,
-                          s->loads,      s->own,   s->frame,      s->frames};
+  void *const memory[] = {s->layers,     s->layer, s->active,     s->held,   s->u,       s->trial,
+                          s->g,          s->step,  s->multiplier, s->theta,  s->metric,  s->force,
+                          s->force_goal, s->place, s->reaction,   s->drive,  s->element, s->piece,
+                          s->loads,      s->own,   s->frame,      s->frames, s->spring};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

@@ -1,0 +1,399 @@
+/* Membrane elements: derivatives, invariance, known tensions, meshes. */
+#include "complex_material.h"
+#include "failing_allocator.h"
+#include "membrane_samples.h"
+#include "model/solid/grid.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <stdlib.h>
+
+static struct dea_flat_shape shape;
+static struct dea_element_result at, up, down;
+
+/* ---- against the law in three dimensions ---- */
+
+/* P of the film from the material point of a solid, its third column the normal over |F1 x F2|^2;
+ * for complex F. */
+static double complex solid_film(const struct dea_layer *layer, double field,
+                                 const double complex F[6], double complex P[6])
+{
+  const double *G = layer->pre_stretch;
+  double complex N[3], full[9], W, solid[9], A[81], n = 0;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    N[i] = F[2 * j] * F[2 * k + 1] - F[2 * k] * F[2 * j + 1];
+    n += N[i] * N[i];
+  }
+  for (int i = 0; i < 3; i++) {
+    full[3 * i] = F[2 * i] * G[0];
+    full[3 * i + 1] = F[2 * i + 1] * G[1];
+    full[3 * i + 2] = N[i] / n * G[2];
+  }
+  assert_int_equal(complex_point(layer->law->name, layer->param, full, NULL, &W, solid, A), DEA_OK);
+  double k = layer->permittivity_F_per_m * field * field;
+  for (int a = 0; a < 6; a++) {
+    int i = a / 2, J = a % 2, j = (i + 1) % 3, l = (i + 2) % 3, O = 1 - J;
+    double sign = J == 0 ? 1 : -1;
+    double complex d[3] = {0, 0, 0}, dn = 0; // dN/dF_iJ: e_i x F_2 or F_1 x e_i
+    d[l] = sign * F[2 * j + O];
+    d[j] = -sign * F[2 * l + O];
+    for (int b = 0; b < 3; b++) {
+      dn += 2 * N[b] * d[b];
+    }
+    P[a] = G[J] * solid[3 * i + J] - 0.5 * k * dn;
+    for (int b = 0; b < 3; b++) {
+      P[a] += G[2] * solid[3 * b + 2] * (d[b] / n - N[b] * dn / (n * n));
+    }
+  }
+  return W - 0.5 * k * n;
+}
+
+/* W, P and A of the film against the solid: A by complex step of P, P by complex step of W too. */
+static void check_point(const struct dea_layer *layer, double field, const double F[6],
+                        double tolerance)
+{
+  static const double step = 1e-30;
+  struct dea_membrane_point point;
+  double wanted[36], P[6], scale;
+  assert_int_equal(dea_membrane_point(layer, F, field, &point), DEA_OK);
+  scale = largest(point.A, 36);
+  for (int b = 0; b < 6; b++) {
+    double complex z[6], stepped[6];
+    for (int a = 0; a < 6; a++) {
+      z[a] = F[a];
+    }
+    z[b] += step * _Complex_I;
+    double complex W = solid_film(layer, field, z, stepped);
+    P[b] = cimag(W) / step;
+    assert_close(point.W, creal(W), 0, 1e-12 * scale);
+    assert_close(point.P[b], creal(stepped[b]), 0, 1e-12 * scale);
+    for (int a = 0; a < 6; a++) {
+      wanted[6 * a + b] = cimag(stepped[a]) / step;
+    }
+  }
+  assert_all_close(layer->law->name, point.P, P, 6, 1e-12, scale);
+  assert_all_close(layer->law->name, point.A, wanted, 36, tolerance, scale);
+  for (size_t i = 0; i < 36; i++) {
+    wanted[i] = point.A[6 * (i % 6) + i / 6];
+  }
+  assert_all_close("symmetry", point.A, wanted, 36, 1e-14, scale);
+}
+
+static void check_law(const struct dea_law *law, const double *param)
+{
+  uint64_t seed = 11;
+  for (int n = 0; n < 20 && !law->anisotropic; n++) {
+    double m1 = uniform(&seed, 0.8, 1.3), m2 = uniform(&seed, 0.8, 1.3), F[6];
+    const struct dea_layer layer =
+        film(law, param, uniform(&seed, 0.9, 1.4), uniform(&seed, 0.9, 1.4));
+    compose(m1, m2, uniform(&seed, 0, 6), F);
+    check_point(&layer, uniform(&seed, 0, 5e7), F, 1e-11);
+  }
+}
+
+static void test_point_is_the_solid_in_plane_stress(void **state)
+{
+  (void)state;
+  for_each_law(check_law);
+}
+
+/* Stretches that are equal or nearly. A complex step through eigenvectors loses digits there, so
+ * laws in principal form are compared by terms that have an invariant form too: sum l^2 = I1, and
+ * sum l^4 = I1^2 - 2 I2 (a complex step at a gap of 1e-3 is good to 1e-9). */
+static void test_equal_stretches(void **state)
+{
+  (void)state;
+  static const double gaps[] = {0, 1e-16, 1e-12, 1e-8, 1e-5, 1e-3, 9e-3, 1.1e-2, 2e-2};
+  static const double square[DEA_LAW_PARAM_MAX] = {80e3, 2}, fourth[DEA_LAW_PARAM_MAX] = {40e3, 4};
+  static const double neo[DEA_LAW_PARAM_MAX] = {80e3};
+  for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
+    for (int turn = 0; turn < 4; turn++) {
+      double F[6], scale;
+      struct dea_membrane_point a, b;
+      compose(1.2 * (1 + gaps[g]), 1.2, 0.3 * turn, F);
+      const struct dea_layer invariant = yeoh_film(1.5);
+      check_point(&invariant, 3e7, F, 1e-12);
+      const struct dea_layer principal = film(dea_law_find("ogden"), square, 1.1, 1.1);
+      const struct dea_layer the_same = film(dea_law_find("neo-hookean"), neo, 1.1, 1.1);
+      assert_int_equal(dea_membrane_point(&principal, F, 2e7, &a), DEA_OK);
+      assert_int_equal(dea_membrane_point(&the_same, F, 2e7, &b), DEA_OK);
+      scale = largest(b.A, 36);
+      assert_all_close("alpha = 2", a.P, b.P, 6, 1e-12, scale);
+      assert_all_close("alpha = 2", a.A, b.A, 36, 1e-12, scale);
+      if (gaps[g] > 1e-4) {
+        const struct dea_layer higher = film(dea_law_find("ogden"), fourth, 1.1, 1.1);
+        check_point(&higher, 2e7, F, 1e-9);
+      }
+    }
+  }
+}
+
+static void test_laws_that_are_refused(void **state)
+{
+  (void)state;
+  const struct dea_layer plastic = {.lame_mu_Pa = 1}, soft = yeoh_film(1.5);
+  const struct dea_layer fibrous = film(dea_law_find("holzapfel-gasser-ogden"), yeoh, 1, 1);
+  assert_int_equal(dea_membrane_check(&soft), DEA_OK);
+  assert_int_equal(dea_membrane_check(&plastic), DEA_E_UNSUPPORTED);
+  assert_int_equal(dea_membrane_check(&fibrous), DEA_E_UNSUPPORTED);
+}
+
+/* The bond has the shear modulus of the film across it, 2 W'(I1)/l^4, three halves of it. */
+static void test_bond(void **state)
+{
+  (void)state;
+  struct dea_layer soft = yeoh_film(1.5), bond;
+  double area = 2.25, I1 = 2 * area + 1 / (area * area) - 3;
+  double W1 = yeoh[0] + 2 * yeoh[1] * I1 + 3 * yeoh[2] * I1 * I1;
+  assert_int_equal(dea_layer_relax(&soft), DEA_OK);
+  assert_int_equal(dea_membrane_bond(&soft, &bond), DEA_OK);
+  assert_null(bond.law);
+  assert_close(bond.lame_mu_Pa, 1.5 * 2 * W1 / (area * area), 1e-12, 0);
+  assert_true(bond.lame_lambda_Pa > 40 * bond.lame_mu_Pa);
+  const struct dea_layer plastic = {.lame_mu_Pa = 1};
+  assert_int_equal(dea_membrane_bond(&plastic, &bond), DEA_E_UNSUPPORTED);
+}
+
+/* Held flat the film pulls with the true stress of benchmark 1; a field takes eps E^2 of it. At
+ * rest its energy is that of the stretched film. */
+static void test_flat_film_has_the_true_pre_stress(void **state)
+{
+  (void)state;
+  static const double flat[6] = {1, 0, 0, 1, 0, 0};
+  static const double stretch[] = {1.1, 1.2, 1.3, 1.4, 1.5, 2.0};
+  static const double nominal[] = {169.879e3, 280.470e3, 363.529e3,
+                                   441.409e3, 531.830e3, 1734.761e3};
+  for (int i = 0; i < 6; i++) {
+    for (int k = 0; k < 2; k++) {
+      double field = k * 1e8, l = stretch[i], I1 = 2 * l * l + pow(l, -4) - 3;
+      const struct dea_layer layer = yeoh_film(l);
+      struct dea_membrane_point point;
+      assert_int_equal(dea_membrane_point(&layer, flat, field, &point), DEA_OK);
+      double stress = nominal[i] * l - permittivity * field * field;
+      assert_close(point.P[0], stress, 2e-6, 1);
+      assert_close(point.P[3], stress, 2e-6, 1);
+      assert_close(point.tension_Pa[1], stress, 2e-6, 1);
+      double W = yeoh[0] * I1 + yeoh[1] * I1 * I1 + yeoh[2] * I1 * I1 * I1;
+      assert_close(point.W, W - 0.5 * permittivity * field * field, 1e-12, 0);
+    }
+  }
+}
+
+/* ---- element ---- */
+
+/* A distorted element about 200 um wide and displacements of given size. */
+static void sample(double size, double *X, double *u)
+{
+  for (int n = 0; n < shape.nodes; n++) {
+    const double *x = shape.node_at[n];
+    X[3 * n] = 100e-6 * x[0] + 1e-5 * x[0] * x[1];
+    X[3 * n + 1] = 100e-6 * x[1] + 1e-5 * x[0] - 5e-6 * x[1] * x[1];
+    X[3 * n + 2] = 7e-6;
+    for (int i = 0; i < 3; i++) {
+      u[3 * n + i] = size * 1e-5 * sin(1.3 * n + i);
+    }
+  }
+}
+
+static void check_element(const struct dea_layer *layer)
+{
+  double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], d = 1e-10;
+  int dofs = 3 * shape.nodes;
+  sample(1, X, u);
+  assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_TANGENT, &at), DEA_OK);
+  double largest_g = largest(at.g, (size_t)dofs), largest_K = largest(at.K, (size_t)(dofs * dofs));
+  for (int j = 0; j < dofs; j++) {
+    double keep = u[j];
+    u[j] = keep + d;
+    assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_FORCE, &up), DEA_OK);
+    u[j] = keep - d;
+    assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_FORCE, &down), DEA_OK);
+    u[j] = keep;
+    assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * largest_g);
+    for (int i = 0; i < dofs; i++) {
+      assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * d), 0, 1e-8 * largest_K);
+      assert_close(at.K[i * dofs + j], at.K[j * dofs + i], 0, 1e-13 * largest_K);
+    }
+  }
+}
+
+static void test_derivatives_of_all_orders(void **state)
+{
+  (void)state;
+  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    const struct dea_layer layer = yeoh_film(1.5);
+    assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
+    check_element(&layer);
+  }
+}
+
+/* Turned and moved as a whole the element keeps its energy; its forces turn with it. */
+static void test_rigid_motion(void **state)
+{
+  (void)state;
+  static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
+  double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], turned[DEA_FLAT_DOFS_MAX];
+  const struct dea_layer soft = yeoh_film(1.5);
+  assert_int_equal(dea_flat_shape_create(2, &shape), DEA_OK);
+  sample(1, X, u);
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      double x = 1e-3 * (i + 1);
+      for (int j = 0; j < 3; j++) {
+        x += Q[3 * i + j] * (X[3 * n + j] + u[3 * n + j]);
+      }
+      turned[3 * n + i] = x - X[3 * n + i];
+    }
+  }
+  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 4e3, DEA_FORCE, &at), DEA_OK);
+  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, turned, 4e3, DEA_FORCE, &up), DEA_OK);
+  assert_close(up.energy_J, at.energy_J, 1e-10, 0);
+  double scale = largest(at.g, 3 * (size_t)shape.nodes);
+  for (int n = 0; n < shape.nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      double g = 0;
+      for (int j = 0; j < 3; j++) {
+        g += Q[3 * i + j] * at.g[3 * n + j];
+      }
+      assert_close(up.g[3 * n + i], g, 0, 1e-9 * scale);
+    }
+  }
+}
+
+static void test_bad_elements(void **state)
+{
+  (void)state;
+  double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
+  const struct dea_layer soft = yeoh_film(1.5);
+  assert_int_equal(dea_flat_shape_create(0, &shape), DEA_E_ARGUMENT);
+  assert_int_equal(dea_flat_shape_create(DEA_HEX_ORDER_MAX + 1, &shape), DEA_E_ARGUMENT);
+  assert_int_equal(dea_flat_shape_create(1, &shape), DEA_OK);
+  sample(0, X, u);
+  u[0] = NAN;
+  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
+  X[0] = 5e-4; // through the opposite corner
+  X[1] = 5e-4;
+  u[0] = 0;
+  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
+}
+
+/* ---- meshes ---- */
+
+/* Patch test: a homogeneous deformation of a distorted mesh, out of its plane too, leaves no force
+ * on the inner nodes. */
+static void test_patch_and_area(void **state)
+{
+  (void)state;
+  static const double D[6] = {1.1, 0.05, -0.02, 0.95, 0.3, -0.2};
+  const double a = 3.75e-3, b = 15e-3, h = 44e-6;
+  for (int order = 1; order <= 3; order++) {
+    struct dea_grid *grid;
+    const struct dea_layer soft = yeoh_film(1.5);
+    double volume = 0;
+    assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
+    const struct dea_quarter quarter = {order,           2, a, b, h, .fine = 3, .edge = 5e-4,
+                                        .membrane = true};
+    assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+    double *g = calloc(3 * grid->node_count, sizeof *g);
+    assert_non_null(g);
+    for (size_t e = 0; e < grid->element_count; e++) {
+      const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+      double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
+      assert_true(grid->flat[e]);
+      for (int i = 0; i < 3 * shape.nodes; i++) {
+        const double *x = grid->X + 3 * nodes[i / 3];
+        X[i] = x[i % 3];
+        u[i] = D[2 * (i % 3)] * x[0] + D[2 * (i % 3) + 1] * x[1] - x[i % 3];
+      }
+      assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 2e3, DEA_FORCE, &at), DEA_OK);
+      volume += at.volume_m3;
+      for (int i = 0; i < 3 * shape.nodes; i++) {
+        g[3 * nodes[i / 3] + i % 3] += at.g[i];
+      }
+    }
+    double most = largest(g, 3 * grid->node_count);
+    size_t inner = 0;
+    for (size_t n = 0; n < grid->node_count; n++) {
+      const double *X = grid->X + 3 * n;
+      bool edge = hypot(X[0], X[1]) > 0.98 * b || X[0] < 1e-9 || X[1] < 1e-9;
+      for (int i = 0; i < 3 && !edge; i++, inner++) {
+        assert_close(g[3 * n + (size_t)i], 0, 0, 1e-9 * most);
+      }
+    }
+    assert_true(inner > 20);
+    double exact = 0.25 * acos(-1) * b * b * soft.thickness_m, error = fabs(volume / exact - 1);
+    assert_true(error < (order == 1 ? 2e-2 : order == 2 ? 2e-4 : 2e-6));
+    free(g);
+    dea_grid_destroy(ctx, grid);
+  }
+}
+
+/* With fibres: one surface everywhere, the bond and the fibre on top of it where there is one, all
+ * joined. */
+static void test_membrane_with_fibres(void **state)
+{
+  (void)state;
+  const double h = 1e-4, t = 2e-4;
+  struct dea_grid *grid;
+  const struct dea_quarter quarter = {
+      2, 2, 2e-3, 9e-3, h, 4, 2e-3, t, .fine = 3, .across = 2, .membrane = true};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  size_t sheets[3] = {0, 0, 0}, under = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    int sheet = grid->sheet[e];
+    sheets[sheet]++;
+    under += sheet == DEA_SHEET_SURFACE && grid->region[e] == DEA_REGION_FIBRE;
+    assert_int_equal(grid->flat[e], sheet == DEA_SHEET_SURFACE);
+    assert_int_equal(dea_grid_nodes_of(grid, e, 27), grid->flat[e] ? 9 : 27);
+    assert_true(sheet == DEA_SHEET_SURFACE || grid->region[e] == DEA_REGION_FIBRE);
+    double bottom = sheet == DEA_SHEET_FIBRE_ON_BOND ? 0.5 * h : 0;
+    assert_close(grid->X[3 * nodes[0] + 2], bottom, 0, 1e-12);
+    if (!grid->flat[e]) {
+      double top = sheet == DEA_SHEET_BOND ? 0.5 * h : 0.5 * h + t;
+      assert_close(grid->X[3 * nodes[26] + 2], top, 0, 1e-12);
+    }
+  }
+  assert_true(under > 0 && sheets[1] == under && sheets[2] == under && sheets[0] > under);
+  for (size_t i = 0; i < grid->node_count; i++) {
+    for (size_t j = 0; j < i; j++) {
+      const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
+      assert_true(fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) > 1e-6);
+    }
+  }
+  dea_grid_destroy(ctx, grid);
+}
+
+static void make_grid(struct dea_context *failing)
+{
+  const struct dea_quarter quarter = {
+      2, 2, 2e-3, 9e-3, 1e-4, 8, 1e-3, 1e-4, .fine = 1, .across = 1, .membrane = true};
+  struct dea_grid *grid = NULL;
+  failing_check(failing, dea_grid_quarter(failing, &quarter, &grid));
+  dea_grid_destroy(failing, grid);
+}
+
+static void test_each_allocation_of_a_mesh(void **state)
+{
+  (void)state;
+  assert_true(failing_each(make_grid) > 5);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_point_is_the_solid_in_plane_stress),
+      cmocka_unit_test(test_equal_stretches),
+      cmocka_unit_test(test_laws_that_are_refused),
+      cmocka_unit_test(test_bond),
+      cmocka_unit_test(test_flat_film_has_the_true_pre_stress),
+      cmocka_unit_test(test_derivatives_of_all_orders),
+      cmocka_unit_test(test_rigid_motion),
+      cmocka_unit_test(test_bad_elements),
+      cmocka_unit_test(test_patch_and_area),
+      cmocka_unit_test(test_membrane_with_fibres),
+      cmocka_unit_test(test_each_allocation_of_a_mesh),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
