@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "base/yaml.h"
 #include "cli/models.h"
+#include "output/keep.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -22,7 +23,7 @@ struct run_options {
   size_t model_count;
   struct dea_override overrides[OVERRIDES_MAX];
   size_t override_count;
-  bool json, force, no_figures;
+  bool json, force, resume, no_figures;
 };
 
 /* Everything of one run that has to be given back. */
@@ -31,17 +32,16 @@ struct run {
   struct dea_device *device;
   struct dea_result *result;
   struct dea_text directory;
+  struct dea_keep *keep;
 };
 
 static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_options *out)
 {
-  static const struct option longs[] = {{"model", required_argument, NULL, 'm'},
-                                        {"set", required_argument, NULL, 's'},
-                                        {"output", required_argument, NULL, 'o'},
-                                        {"json", no_argument, NULL, 'j'},
-                                        {"force", no_argument, NULL, 'f'},
-                                        {"no-figures", no_argument, NULL, 'n'},
-                                        {NULL, 0, NULL, 0}};
+  static const struct option longs[] = {
+      {"model", required_argument, NULL, 'm'},  {"set", required_argument, NULL, 's'},
+      {"output", required_argument, NULL, 'o'}, {"json", no_argument, NULL, 'j'},
+      {"force", no_argument, NULL, 'f'},        {"resume", no_argument, NULL, 'r'},
+      {"no-figures", no_argument, NULL, 'n'},   {NULL, 0, NULL, 0}};
   opterr = 0;
   int option;
   while ((option = getopt_long(argc, argv, ":m:s:o:f", longs, NULL)) != -1) {
@@ -71,6 +71,9 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
     case 'f':
       out->force = true;
       break;
+    case 'r':
+      out->resume = true;
+      break;
     case 'n':
       out->no_figures = true;
       break;
@@ -81,6 +84,12 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
   if (argc - optind != 1) {
     return cli_usage_error(
         cli, &cmd_run, argc == optind ? "a design file is needed" : "one design file at a time");
+  }
+  if (out->resume && out->force) {
+    return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
+  }
+  if (out->resume && out->json && out->directory == NULL) {
+    return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
   }
   out->file = argv[optind];
   return 0;
@@ -156,6 +165,7 @@ static void release(struct dea_cli *cli, struct run *run)
   if (run->directory.ctx != NULL) {
     dea_text_free(&run->directory);
   }
+  dea_keep_destroy(cli->ctx, run->keep);
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
@@ -252,7 +262,7 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
   const char *directory = dea_text_get(&run->directory);
   dea_status status = DEA_OK;
   if (directory[0] != '\0') {
-    const struct dea_run_folder_options folder = {.force = true, // prepare has asked
+    const struct dea_run_folder_options folder = {.started = true,
                                                   .no_figures = options->no_figures};
     status = dea_run_folder_write(ctx, run->result, directory, &folder);
   }
@@ -269,6 +279,29 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
   return status;
 }
 
+/* Makes the folder ready, and what is to be kept in it while the run goes. */
+static dea_status open_folder(struct dea_cli *cli, const struct run_options *options,
+                              struct run *run)
+{
+  struct dea_context *ctx = cli->ctx;
+  run->directory.ctx = ctx;
+  choose_directory(options, &run->directory);
+  const char *directory = dea_text_get(&run->directory);
+  if (directory[0] == '\0') {
+    return DEA_OK;
+  }
+  if (options->resume) {
+    DEA_TRY(ctx, dea_keep_restore(ctx, directory, run->result));
+  }
+  DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, options->force || options->resume));
+  if (options->force) {
+    dea_run_folder_clear(ctx, directory);
+  }
+  DEA_TRY(ctx, dea_keep_create(ctx, directory, &run->keep));
+  run->result->keeper = dea_keep_keeper(run->keep);
+  return DEA_OK;
+}
+
 static dea_status run_all(struct dea_cli *cli, const struct run_options *options, struct run *run)
 {
   const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
@@ -277,11 +310,7 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   struct timespec start, end;
   DEA_TRY(ctx, prepare(cli, options, run));
   DEA_TRY(ctx, choose_models(cli, options, run->design, types, &count));
-  run->directory.ctx = ctx;
-  choose_directory(options, &run->directory);
-  if (run->directory.length > 0) {
-    DEA_TRY(ctx, dea_run_folder_prepare(ctx, dea_text_get(&run->directory), options->force));
-  }
+  DEA_TRY(ctx, open_folder(cli, options, run));
   dea_status first = DEA_OK;
   char message[1024] = "";
   clock_gettime(CLOCK_MONOTONIC, &start);
@@ -324,6 +353,7 @@ const struct dea_command cmd_run = {
              "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
              "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
              "  -f, --force           replace the results in an existing run folder\n"
+             "      --resume          go on where the run in the folder stopped (model 3d)\n"
              "      --no-figures      no figures\n"
              "      --json            summary as JSON on stdout; a folder only with -o\n",
     .run = run,

@@ -15,9 +15,12 @@ enum {
   DEA_DESIGN_MATERIALS_MAX = 16,
   DEA_DESIGN_VOLTAGES_MAX = 10000,
   DEA_DESIGN_STOPS_MAX = 32,
+  DEA_DESIGN_FIELDS_MAX = 100,
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
+enum dea_fields_at { DEA_FIELDS_ALL, DEA_FIELDS_LAST, DEA_FIELDS_NONE };
+enum dea_fields_of { DEA_FIELDS_WHOLE, DEA_FIELDS_SECTOR };
 enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
 
 struct dea_design {
@@ -79,6 +82,10 @@ struct dea_design {
   struct { // report
     bool svg, pdf, png;
     struct dea_quantity width_m; // of a figure
+    struct dea_choice fields;    // enum dea_fields_at; absent: at the voltages that follow
+    double fields_at_V[DEA_DESIGN_FIELDS_MAX]; // voltages of the sweep
+    size_t fields_at_count;
+    struct dea_choice fields_of; // enum dea_fields_of
   } report;
 
   struct dea_listing values; // every value as written or by default, in the order of the schema

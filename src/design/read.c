@@ -135,6 +135,27 @@ static void take_figures(struct dea_design_raw *raw)
   }
 }
 
+/* Voltages at which fields are wanted must be among those of the sweep. */
+static dea_status take_fields(struct dea_context *ctx, struct dea_design_raw *raw)
+{
+  struct dea_design *design = &raw->design;
+  for (size_t i = 0; i < raw->fields_at_count; i++) {
+    double wanted = raw->fields_at_V[i].si;
+    bool found = isnan(wanted); // already an error
+    for (size_t k = 0; k < design->compute.voltage_count && !found; k++) {
+      found = fabs(design->compute.voltages_V[k] - wanted) <= 1e-9 * (1 + fabs(wanted));
+    }
+    if (!found) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, raw->fields_at_V[i].place,
+                                   "fields_at: %g V is not a voltage of the sweep "
+                                   "(compute.voltage)",
+                                   wanted));
+    }
+    design->report.fields_at_V[design->report.fields_at_count++] = wanted;
+  }
+  return DEA_OK;
+}
+
 static dea_status take_materials(const struct dea_reader *reader, struct dea_design_raw *raw)
 {
   struct dea_context *ctx = reader->ctx;
@@ -188,6 +209,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *name, const char
     DEA_TRY(ctx, take_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
     take_figures(raw);
+    DEA_TRY(ctx, take_fields(ctx, raw));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {

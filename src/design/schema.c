@@ -7,7 +7,7 @@
 #define AT(member) offsetof(struct dea_design_raw, design.member)
 #define RAW(member) offsetof(struct dea_design_raw, member)
 
-enum { RADIUS_GROUP = 1, TIP_GROUP, VOLTAGE_GROUP };
+enum { RADIUS_GROUP = 1, TIP_GROUP, VOLTAGE_GROUP, FIELDS_GROUP };
 
 static const struct dea_field film_fields[] = {
     {.key = "material",
@@ -331,6 +331,10 @@ static const struct dea_field compute_fields[] = {
 // In the order of the DEA_FIGURE_* constants.
 static const char *const figure_formats[] = {"svg", "pdf", "png", NULL};
 
+// In the order of enum dea_fields_at and enum dea_fields_of.
+static const char *const fields_at[] = {"all", "last", "none", NULL};
+static const char *const fields_of[] = {"whole", "sector", NULL};
+
 static const struct dea_field report_fields[] = {
     {.key = "figures",
      .kind = DEA_FIELD_CHOICE,
@@ -352,6 +356,36 @@ static const struct dea_field report_fields[] = {
      .default_text = "85 mm",
      .doc = "width of a figure",
      .example = "85 mm"},
+    {.key = "fields",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(report.fields),
+     .choices = fields_at,
+     .default_text = "last",
+     .group = FIELDS_GROUP,
+     .option = 1,
+     .doc =
+         "voltages of the sweep at which a 3D model leaves its fields, for ParaView (some MB each)",
+     .example = "all"},
+    {.key = "fields_at",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = RAW(fields_at_V),
+     .unit = "V",
+     .max = 1e6,
+     .group = FIELDS_GROUP,
+     .option = 2,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_FIELDS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = RAW(fields_at_count),
+     .doc = "these voltages themselves",
+     .example = "[4 kV, 6 kV]"},
+    {.key = "fields_of",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(report.fields_of),
+     .choices = fields_of,
+     .default_text = "whole",
+     .doc = "fields of the whole actuator, with mirrored copies, or of the part that was computed",
+     .example = "sector"},
 };
 
 static const struct dea_record film_record = {"film", "the dielectric film", film_fields,

@@ -16,6 +16,8 @@ struct dea_design_raw {
   size_t voltage_count;
   struct dea_choice figures[DEA_FIGURE_COUNT];
   size_t figure_count;
+  struct dea_quantity fields_at_V[DEA_DESIGN_FIELDS_MAX];
+  size_t fields_at_count;
   struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
 };
 

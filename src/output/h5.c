@@ -1,5 +1,7 @@
 #include "output/h5.h"
 
+#include "output/file.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -48,6 +50,54 @@ static hid_t checked(struct h5 *h, hid_t id, const char *what)
     dea_h5_fail(h, what);
   }
   return id;
+}
+
+hid_t dea_h5_file_make(struct h5 *h)
+{
+  hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, 1 << 18, false);
+  hid_t file = H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  dea_h5_close(access);
+  return checked(h, file, cannot_write);
+}
+
+/* The whole file as bytes; owned by the caller. */
+static char *file_image(struct h5 *h, hid_t file, size_t *length)
+{
+  *length = 0;
+  ssize_t size = -1;
+  if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0) {
+    size = H5Fget_file_image(file, NULL, 0);
+  }
+  if (size < 0) {
+    dea_h5_fail(h, cannot_write);
+    return NULL;
+  }
+  char *bytes = dea_alloc(h->ctx, (size_t)size, 1);
+  if (bytes == NULL) {
+    h->status = DEA_E_MEMORY;
+  } else if (H5Fget_file_image(file, bytes, (size_t)size) != size) {
+    dea_h5_fail(h, cannot_write);
+  }
+  *length = (size_t)size;
+  return bytes;
+}
+
+void dea_h5_file_write(struct h5 *h, hid_t file)
+{
+  size_t length;
+  char *bytes = file_image(h, file, &length);
+  dea_h5_close(file);
+  if (h->status == DEA_OK) {
+    h->status = dea_file_write(h->ctx, h->path, bytes, length);
+  }
+  dea_free(h->ctx, bytes);
+}
+
+hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name)
+{
+  return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
+                                     : dea_h5_group_make(h, parent, name);
 }
 
 hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name)
@@ -141,6 +191,21 @@ void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_
   dea_h5_put_text(h, set, "meaning", meaning);
   dea_h5_close(set);
   dea_h5_close(space);
+}
+
+hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
+{
+  if (h->status != DEA_OK) {
+    return H5I_INVALID_HID;
+  }
+  return checked(h, H5Dopen2(group, name, H5P_DEFAULT), cannot_read);
+}
+
+void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)
+{
+  if (h->status == DEA_OK && H5Lcreate_hard(from, name, to, name, H5P_DEFAULT, H5P_DEFAULT) < 0) {
+    dea_h5_fail(h, cannot_write);
+  }
 }
 
 void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text)

@@ -1,4 +1,4 @@
-/* Small things on the HDF5 C API for store_write.c and store_read.c.
+/* Small things on the HDF5 C API for the files that write and read HDF5.
  *
  * A struct h5 remembers the first failure, after which all calls do nothing, so that a row of calls
  * is checked once at its end. Its error stack is turned into the message of dea_fail. */
@@ -23,7 +23,14 @@ void dea_h5_end(struct h5 *h);
 /* Records the failure with the innermost text of HDF5's error stack; what: "cannot write". */
 void dea_h5_fail(struct h5 *h, const char *what);
 
-/* Handles are negative after a failure; dea_h5_close takes any. */
+/* A file is made in memory (core driver) and written as a whole or not at all, so that a full disk
+ * is an ordinary error; writing closes it. */
+hid_t dea_h5_file_make(struct h5 *h);
+void dea_h5_file_write(struct h5 *h, hid_t file);
+
+/* Handles are negative after a failure; dea_h5_close takes any. group_get: opened, or made when it
+ * is not there. */
+hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name);
 hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name);
 hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name);
 void dea_h5_close(hid_t object);
@@ -35,6 +42,10 @@ void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
 void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
                       hid_t file_type, size_t count, const void *values, const char *unit,
                       const char *meaning);
+/* A dataset by name, for its attributes. */
+hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name);
+/* Gives an object of `from` the same name in `to` as well. */
+void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to);
 /* Text of any length as a scalar dataset. */
 void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
 

@@ -3,6 +3,7 @@
 #include "output/csv.h"
 #include "output/figure.h"
 #include "output/file.h"
+#include "output/keep.h"
 #include "output/store.h"
 #include "output/summary.h"
 
@@ -27,7 +28,7 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
 {
   // Also a user's own file of such a name would be lost.
   static const char *const names[] = {"results.h5", "summary.json", "design.yaml",
-                                      DEA_FIGURE_FOLDER};
+                                      DEA_FIGURE_FOLDER, DEA_FIELD_FOLDER};
   for (size_t i = 0; i < sizeof names / sizeof names[0] && !force; i++) {
     bool there;
     DEA_TRY(ctx, exists(ctx, directory, names[i], &there));
@@ -69,9 +70,7 @@ static void forget_figures(struct dea_context *ctx, const char *directory)
   }
 }
 
-/* Removes the files of the run that results.h5 describes, so that none of them is taken for one of
- * the new run. What cannot be read is left: the writer replaces the names it uses. */
-static void forget_run(struct dea_context *ctx, const char *directory)
+void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
 {
   struct dea_run *old;
   if (dea_run_read(ctx, directory, &old) == DEA_OK) {
@@ -84,6 +83,7 @@ static void forget_run(struct dea_context *ctx, const char *directory)
       forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
       forget(ctx, directory, name);
+      dea_keep_forget(ctx, directory, curve->model, curve->count);
     }
     dea_run_destroy(ctx, old);
   }
@@ -169,9 +169,11 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
 {
   const struct dea_run_folder_options standard = {.force = false};
   const struct dea_run_folder_options *o = options != NULL ? options : &standard;
-  DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, o->force));
-  if (o->force) {
-    forget_run(ctx, directory);
+  if (!o->started) {
+    DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, o->force));
+    if (o->force) {
+      dea_run_folder_clear(ctx, directory);
+    }
   }
   DEA_TRY(ctx, write_tables(ctx, result, directory));
   if (result->provenance.input != NULL) {

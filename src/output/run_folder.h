@@ -1,4 +1,4 @@
-/* The run folder: results.h5, summary.json, CSV tables, design.yaml, figures/. */
+/* The run folder: results.h5, summary.json, CSV tables, design.yaml, figures/, fields/. */
 #ifndef DEA_OUTPUT_RUN_FOLDER_H
 #define DEA_OUTPUT_RUN_FOLDER_H
 
@@ -7,11 +7,17 @@
 struct dea_run_folder_options {
   bool force;      // replace results that are there
   bool no_figures; // neither scripts nor pictures
+  bool started;    // the folder was prepared and cleared for this run; what it has kept stays
 };
 
 /* To be asked before a long run: DEA_E_IO when the folder holds results, or other files of
  * their names, and force is not set, or when it cannot be made. Makes the folder. */
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force);
+
+/* Removes the files of the run that results.h5 in the folder describes, so that none of them is
+ * taken for one of a new run. What cannot be read is left: the writer replaces the names it uses.
+ */
+void dea_run_folder_clear(struct dea_context *ctx, const char *directory);
 
 /* Writes everything of a result, each file as a whole; with force the files of the run that was
  * there go first (other files stay). options: NULL for none. The tables are written before the

@@ -3,6 +3,7 @@
 
 #include "output/file.h"
 #include "output/h5.h"
+#include "output/store_surface.h"
 #include "result/columns.h"
 
 #include <stdio.h>
@@ -225,6 +226,24 @@ static void get_profiles(struct h5 *h, hid_t file, struct dea_result *result)
   dea_h5_close(parent);
 }
 
+/* A run of models without surfaces, or of before there were any, has none. */
+static void get_surfaces(struct h5 *h, hid_t file, struct dea_result *result)
+{
+  if (!dea_h5_has(h, file, "surfaces")) {
+    return;
+  }
+  hid_t parent = dea_h5_group_open(h, file, "surfaces");
+  size_t count;
+  struct entry *entries = list_entries(h, parent, &count);
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    hid_t group = open_entry(h, parent, &entries[i]);
+    dea_store_get_surface(h, group, entries[i].model, result);
+    dea_h5_close(group);
+  }
+  dea_free(h->ctx, entries);
+  dea_h5_close(parent);
+}
+
 static void get_rest(struct h5 *h, hid_t file, struct dea_run *run)
 {
   struct dea_provenance *p = &run->result->provenance;
@@ -271,6 +290,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
   check_schema(&h, file);
   get_curves(&h, file, run->result);
   get_profiles(&h, file, run->result);
+  get_surfaces(&h, file, run->result);
   get_rest(&h, file, run);
   dea_h5_close(file);
   dea_h5_end(&h);

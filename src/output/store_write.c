@@ -1,9 +1,8 @@
-/* Writer of results.h5. The file is made in memory by HDF5's core driver and written in one go, so
- * that a full disk is an ordinary error. */
+/* Writer of results.h5. */
 #include "output/store.h"
 
-#include "output/file.h"
 #include "output/h5.h"
+#include "output/store_surface.h"
 #include "result/columns.h"
 
 #include <math.h>
@@ -84,19 +83,12 @@ static void put_events(struct h5 *h, hid_t parent, const struct dea_curve *curve
   dea_h5_close(group);
 }
 
-/* Opens a group of that name, made if it is not there. */
-static hid_t group_get(struct h5 *h, hid_t parent, const char *name)
-{
-  return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
-                                     : dea_h5_group_make(h, parent, name);
-}
-
 static void put_curves(struct h5 *h, hid_t file, const struct dea_result *result)
 {
   hid_t curves = dea_h5_group_make(h, file, "curves");
   for (size_t i = 0; i < result->curve_count && h->status == DEA_OK; i++) {
     const struct dea_curve *curve = &result->curves[i];
-    hid_t model = group_get(h, curves, curve->model);
+    hid_t model = dea_h5_group_get(h, curves, curve->model);
     hid_t kind = dea_h5_group_make(h, model, curve->kind);
     dea_h5_put_int(h, kind, "index", (long long)i);
     dea_h5_put_int(h, kind, "complete", curve->complete);
@@ -115,7 +107,7 @@ static void put_profiles(struct h5 *h, hid_t file, const struct dea_result *resu
   hid_t profiles = dea_h5_group_make(h, file, "profiles");
   for (size_t i = 0; i < result->profile_count && h->status == DEA_OK; i++) {
     const struct dea_profile_record *record = &result->profiles[i];
-    hid_t model = group_get(h, profiles, record->model);
+    hid_t model = dea_h5_group_get(h, profiles, record->model);
     char name[24];
     snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
     hid_t group = dea_h5_group_make(h, model, name);
@@ -132,6 +124,58 @@ static void put_profiles(struct h5 *h, hid_t file, const struct dea_result *resu
     dea_h5_close(model);
   }
   dea_h5_close(profiles);
+}
+
+static bool same_mesh(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
+{
+  bool same = a->point_count == b->point_count && a->block_count == b->block_count &&
+              memcmp(a->X, b->X, 3 * a->point_count * sizeof *a->X) == 0;
+  for (size_t i = 0; i < a->block_count && same; i++) {
+    const struct dea_mesh_block *p = &a->blocks[i], *q = &b->blocks[i];
+    same = p->order == q->order && p->order_z == q->order_z && p->count == q->count &&
+           memcmp(p->nodes, q->nodes,
+                  p->count * (size_t)dea_mesh_block_nodes(p) * sizeof *p->nodes) == 0;
+  }
+  return same;
+}
+
+/* The first group of a model with the same mesh as the i-th surface; none: negative. */
+static hid_t open_same(struct h5 *h, hid_t model, const struct dea_result *result, size_t i)
+{
+  const struct dea_surface_record *record = &result->surfaces[i];
+  for (size_t k = 0, number = 0; k < i; k++) {
+    if (strcmp(result->surfaces[k].model, record->model) == 0) {
+      if (same_mesh(result->surfaces[k].mesh, record->mesh)) {
+        char name[24];
+        snprintf(name, sizeof name, "%04zu", number);
+        return dea_h5_group_open(h, model, name);
+      }
+      number++;
+    }
+  }
+  return H5I_INVALID_HID;
+}
+
+static void put_surfaces(struct h5 *h, hid_t file, const struct dea_result *result)
+{
+  if (result->surface_count == 0) {
+    return;
+  }
+  hid_t surfaces = dea_h5_group_make(h, file, "surfaces");
+  for (size_t i = 0; i < result->surface_count && h->status == DEA_OK; i++) {
+    const struct dea_surface_record *record = &result->surfaces[i];
+    hid_t model = dea_h5_group_get(h, surfaces, record->model);
+    hid_t same = open_same(h, model, result, i);
+    char name[24];
+    snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
+    hid_t group = dea_h5_group_make(h, model, name);
+    dea_h5_put_int(h, group, "index", (long long)i);
+    dea_store_put_surface(h, group, record, same);
+    dea_h5_close(group);
+    dea_h5_close(same);
+    dea_h5_close(model);
+  }
+  dea_h5_close(surfaces);
 }
 
 static void put_design(struct h5 *h, hid_t file, const struct dea_result *result)
@@ -164,53 +208,20 @@ static void put_provenance(struct h5 *h, hid_t file, const struct dea_provenance
   dea_h5_close(group);
 }
 
-/* The whole file as bytes; owned by the caller. */
-static char *file_image(struct h5 *h, hid_t file, size_t *length)
-{
-  *length = 0;
-  ssize_t size = -1;
-  if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0) {
-    size = H5Fget_file_image(file, NULL, 0);
-  }
-  if (size < 0) {
-    dea_h5_fail(h, "cannot write");
-    return NULL;
-  }
-  char *bytes = dea_alloc(h->ctx, (size_t)size, 1);
-  if (bytes == NULL) {
-    h->status = DEA_E_MEMORY;
-  } else if (H5Fget_file_image(file, bytes, (size_t)size) != size) {
-    dea_h5_fail(h, "cannot write");
-  }
-  *length = (size_t)size;
-  return bytes;
-}
-
 dea_status dea_store_write(struct dea_context *ctx, const struct dea_result *result,
                            const char *path)
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
-  hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_fapl_core(access, 1 << 18, false);
-  hid_t file = H5Fcreate("results.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  if (file < 0) {
-    dea_h5_fail(&h, "cannot write");
-  }
+  hid_t file = dea_h5_file_make(&h);
   dea_h5_put_text(&h, file, "format", "libdea results");
   dea_h5_put_int(&h, file, "schema", DEA_STORE_SCHEMA);
   put_curves(&h, file, result);
   put_profiles(&h, file, result);
+  put_surfaces(&h, file, result);
   put_design(&h, file, result);
   put_provenance(&h, file, &result->provenance);
-  size_t length;
-  char *bytes = file_image(&h, file, &length);
-  dea_h5_close(file);
-  dea_h5_close(access);
+  dea_h5_file_write(&h, file);
   dea_h5_end(&h);
-  if (h.status == DEA_OK) {
-    h.status = dea_file_write(ctx, path, bytes, length);
-  }
-  dea_free(ctx, bytes);
   return h.status;
 }

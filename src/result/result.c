@@ -29,6 +29,10 @@ void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
     dea_free(ctx, result->profiles[i].columns);
   }
   dea_free(ctx, result->profiles);
+  for (size_t i = 0; i < result->surface_count; i++) {
+    dea_field_mesh_destroy(ctx, result->surfaces[i].mesh);
+  }
+  dea_free(ctx, result->surfaces);
   dea_free(ctx, result->provenance.input);
   dea_free(ctx, result->provenance.overrides);
   dea_free(ctx, result->provenance.command);
@@ -127,6 +131,36 @@ dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *re
     memcpy(record.columns + c * profile->count, columns[c], profile->count * sizeof(double));
   }
   result->profiles[result->profile_count++] = record;
+  return DEA_OK;
+}
+
+dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
+                                const char *model, const char *kind, struct dea_curve **out)
+{
+  const struct dea_curve *there = dea_result_find(result, model, kind);
+  if (there != NULL) {
+    *out = &result->curves[there - result->curves];
+    return DEA_OK;
+  }
+  return dea_result_add_curve(ctx, result, model, kind, out);
+}
+
+dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, double voltage_V, struct dea_field_mesh *mesh)
+{
+  struct dea_surface_record record = {.voltage_V = voltage_V, .mesh = mesh};
+  void *surfaces = result->surfaces;
+  dea_status status = name_set(ctx, "model", model, record.model);
+  if (status == DEA_OK) {
+    status = make_room(ctx, &surfaces, result->surface_count, &result->surface_room,
+                       sizeof *result->surfaces);
+  }
+  if (status != DEA_OK) {
+    dea_field_mesh_destroy(ctx, mesh);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  result->surfaces = surfaces;
+  result->surfaces[result->surface_count++] = record;
   return DEA_OK;
 }
 

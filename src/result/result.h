@@ -28,6 +28,28 @@ struct dea_profile_record {
   double *columns;
 };
 
+/* Middle surface of the film at a voltage of a sweep. */
+struct dea_surface_record {
+  char model[DEA_NAME_SIZE];
+  double voltage_V;
+  struct dea_field_mesh *mesh; // owned
+};
+
+struct dea_result;
+
+/* Told of a sweep as it goes, so that what is there can be kept before it ends (output/keep.h). A
+ * failure ends the sweep. */
+struct dea_keeper {
+  void *user;
+  /* Before the first solve; the curve may have points already, from which the model is to go on. */
+  dea_status (*start)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
+                      struct dea_model *model, const struct dea_curve *curve);
+  /* After a point was added to the curve of the result. */
+  dea_status (*point)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
+                      struct dea_model *model, const struct dea_result *result,
+                      const struct dea_curve *curve);
+};
+
 /* Where a result comes from. */
 struct dea_provenance {
   char program[DEA_NAME_SIZE];   // "dea 0.1.0"
@@ -48,6 +70,9 @@ struct dea_result {
   size_t curve_count;
   struct dea_profile_record *profiles;
   size_t profile_count, profile_room;
+  struct dea_surface_record *surfaces;
+  size_t surface_count, surface_room;
+  const struct dea_keeper *keeper; // lent, NULL for none
   struct dea_provenance provenance;
 };
 
@@ -65,6 +90,12 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
 dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
                                   const char *model, double voltage_V,
                                   const struct dea_profile *profile);
+/* The curve of that model and kind, a new empty one when there is none; *out as above. */
+dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
+                                const char *model, const char *kind, struct dea_curve **out);
+/* Takes the mesh, also when it fails. */
+dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, double voltage_V, struct dea_field_mesh *mesh);
 /* Curve of that model and kind, or NULL; lent. */
 const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,
                                         const char *kind);

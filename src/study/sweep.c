@@ -1,4 +1,5 @@
-/* Study "sweep": stable equilibria at the asked voltages, in their order, each from the one before.
+/* Study "sweep": stable equilibria at the asked voltages, in their order, each from the one before;
+ * a curve that has points already goes on after them.
  */
 #include "study/study.h"
 
@@ -31,7 +32,19 @@ static dea_status add_profile(struct dea_context *ctx, const struct dea_model_ty
   return DEA_OK;
 }
 
-/* Solves one voltage and adds its point and profile. */
+static dea_status add_surface(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, double voltage_V, struct dea_result *result)
+{
+  struct dea_field_mesh *mesh;
+  if (type->fields == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, type->fields(ctx, model, DEA_FIELDS_SURFACE, &mesh));
+  DEA_TRY(ctx, dea_result_add_surface(ctx, result, type->name, voltage_V, mesh));
+  return DEA_OK;
+}
+
+/* Solves one voltage and adds its point, profile and surface. */
 static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, double voltage_V, struct dea_result *result,
                               struct dea_curve *curve)
@@ -46,7 +59,19 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
+  DEA_TRY(ctx, add_surface(ctx, type, model, voltage_V, result));
+  if (result->keeper != NULL) {
+    DEA_TRY(ctx, result->keeper->point(ctx, result->keeper->user, type, model, result, curve));
+  }
   return DEA_OK;
+}
+
+/* What a curve says of itself until its sweep has come to an end: it is kept on the way. */
+static void open_curve(struct dea_curve *curve)
+{
+  curve->complete = false;
+  curve->status = DEA_E_INTERRUPTED;
+  snprintf(curve->stopped, sizeof curve->stopped, "the run was ended before the sweep");
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
@@ -56,10 +81,14 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   size_t total = design->compute.voltage_count;
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
-  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "sweep", &curve));
+  DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
   snprintf(what, sizeof what, "%s sweep", type->name);
+  open_curve(curve);
   dea_status status = DEA_OK;
-  for (size_t i = 0; i < total && status == DEA_OK; i++) {
+  if (result->keeper != NULL) {
+    status = result->keeper->start(ctx, result->keeper->user, type, model, curve);
+  }
+  for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
     status = sweep_point(ctx, type, model, design->compute.voltages_V[i], result, curve);
     if (status == DEA_OK) {
       dea_progress(ctx, what, i + 1, total);
@@ -67,6 +96,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   curve->complete = status == DEA_OK;
   curve->status = status;
+  curve->stopped[0] = '\0';
   if (status != DEA_OK) {
     snprintf(curve->stopped, sizeof curve->stopped, "%s", dea_context_message(ctx));
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
