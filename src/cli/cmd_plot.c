@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "base/units.h"
 #include "cli/figure_options.h"
 #include "output/figure.h"
 #include "output/file.h"
@@ -19,16 +20,16 @@ struct request {
   const char *names[NAMES_MAX];
   size_t name_count;
   bool has_format, has_width;
+  double voltage_V;
   struct dea_plot_format format;
 };
 
 static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
 {
-  static const struct option options[] = {{"figure", required_argument, NULL, 'F'},
-                                          {"format", required_argument, NULL, 'f'},
-                                          {"width", required_argument, NULL, 'w'},
-                                          {"output", required_argument, NULL, 'o'},
-                                          {0}};
+  static const struct option options[] = {
+      {"figure", required_argument, NULL, 'F'}, {"format", required_argument, NULL, 'f'},
+      {"width", required_argument, NULL, 'w'},  {"voltage", required_argument, NULL, 'V'},
+      {"output", required_argument, NULL, 'o'}, {0}};
   int letter;
   opterr = 0;
   while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
@@ -43,6 +44,12 @@ static int read_options(struct dea_cli *cli, int argc, char **argv, struct reque
       request->has_format = true;
       if (!cli_read_formats(optarg, &request->format)) {
         return cli_usage_error(cli, &cmd_plot, "'%s' is not a list of svg, pdf, png", optarg);
+      }
+    } else if (letter == 'V') {
+      char why[DEA_WHY_SIZE];
+      const struct dea_measure volts = {"V", "6 kV"};
+      if (!dea_units_read(cli->ctx, optarg, volts, &request->voltage_V, why)) {
+        return cli_usage_error(cli, &cmd_plot, "--voltage: %s", why);
       }
     } else if (letter == 'w') {
       request->has_width = true;
@@ -86,7 +93,7 @@ static void complete_format(struct request *request, const struct dea_run *run)
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  struct request request = {.run = NULL};
+  struct request request = {.run = NULL, .voltage_V = NAN};
   struct dea_run *data = NULL;
   int code = read_options(cli, argc, argv, &request);
   if (code != 0) {
@@ -99,7 +106,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     complete_format(&request, data);
     struct dea_figure_options options = {.names = request.name_count > 0 ? request.names : NULL,
                                          .name_count = request.name_count,
-                                         .format = request.format};
+                                         .format = request.format,
+                                         .voltage_V = request.voltage_V};
     status = dea_figures_write(cli->ctx, data->result, target, &options);
   }
   if (status == DEA_OK && !cli->quiet) {
@@ -117,12 +125,16 @@ const struct dea_command cmd_plot = {
     .usage =
         "dea plot RUN [--figure NAME]... [--format LIST] [--width MM] [-o DIR]\n"
         "\n"
-        "Figures: displacement, stretch, field, tension, force, profile. Beside each picture lie\n"
-        "its gnuplot script and data, for other styles: gnuplot NAME.gp\n"
+        "Figures: displacement, stretch, field, tension, force, profile; of model 3d map, "
+        "surface,\n"
+        "section and animation too. Beside each picture lie its gnuplot script and data, for "
+        "other\n"
+        "styles: gnuplot NAME.gp\n"
         "\n"
         "  RUN               folder of a run\n"
         "  --figure NAME     only this figure; can be repeated\n"
         "  --format LIST     formats such as svg,pdf,png; as in the design if not given\n"
+        "  --voltage V       voltage of the map and the surface, as '6 kV'; the last if not given\n"
         "  --width MM        width, 85 for one column or 170 for two\n"
         "  -o, --output DIR  folder for the figures; RUN/figures if not given\n",
     .run = run,

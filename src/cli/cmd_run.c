@@ -314,7 +314,7 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   dea_status first = DEA_OK;
   char message[1024] = "";
   clock_gettime(CLOCK_MONOTONIC, &start);
-  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED; i++) {
+  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_keep_refused(run->keep); i++) {
     dea_status status = dea_study_run(ctx, types[i], run->result);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
@@ -324,7 +324,9 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   clock_gettime(CLOCK_MONOTONIC, &end);
   run->result->provenance.wall_s =
       (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-  DEA_TRY(ctx, deliver(cli, options, run, types, count));
+  if (!dea_keep_refused(run->keep)) {
+    DEA_TRY(ctx, deliver(cli, options, run, types, count));
+  }
   return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
 }
 

@@ -61,10 +61,9 @@ static bool is_wanted(const struct dea_figure_options *options, const char *name
   return options->names == NULL;
 }
 
-/* Writes script and data of one figure; *drawn tells whether there was something to show. */
-static dea_status write_one(struct dea_context *ctx, const struct dea_result *result,
-                            const char *directory, const struct dea_figure_options *options,
-                            const struct dea_figure *figure, bool *drawn)
+static dea_status write_plot(struct dea_context *ctx, const struct dea_result *result,
+                             const char *directory, const struct dea_figure_options *options,
+                             const struct dea_figure *figure, bool *drawn)
 {
   struct dea_plot *plot;
   DEA_TRY(ctx, dea_plot_create(ctx, figure->name, figure->caption, &plot));
@@ -72,11 +71,23 @@ static dea_status write_one(struct dea_context *ctx, const struct dea_result *re
   *drawn = status == DEA_OK && dea_plot_shows(plot);
   if (*drawn) {
     status = dea_plot_write(ctx, plot, &options->format, directory);
-  } else if (status == DEA_OK && options->names != NULL) {
+  }
+  dea_plot_destroy(ctx, plot);
+  return status;
+}
+
+/* Writes script and data of one figure; *drawn tells whether there was something to show. */
+static dea_status write_one(struct dea_context *ctx, const struct dea_result *result,
+                            const char *directory, const struct dea_figure_options *options,
+                            const struct dea_figure *figure, bool *drawn)
+{
+  dea_status status = figure->write != NULL
+                          ? figure->write(ctx, result, options, directory, drawn)
+                          : write_plot(ctx, result, directory, options, figure, drawn);
+  if (status == DEA_OK && !*drawn && options->names != NULL) {
     status = dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
                              "the result has nothing to show in figure '%s'", figure->name);
   }
-  dea_plot_destroy(ctx, plot);
   return status;
 }
 

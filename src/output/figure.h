@@ -6,12 +6,18 @@
 #include "output/plot.h"
 #include "result/columns.h"
 
+struct dea_figure_options;
+
 struct dea_figure {
   const char *name; // of its files: "displacement"
   const char *caption;
   /* Fills the plot; leaves it without series when the result has nothing to show. */
   dea_status (*build)(struct dea_context *ctx, const struct dea_result *result,
                       struct dea_plot *plot);
+  /* In its place for a figure that is no plot of series: writes its script and data. *drawn: false
+   * when the result has nothing to show. */
+  dea_status (*write)(struct dea_context *ctx, const struct dea_result *result,
+                      const struct dea_figure_options *options, const char *directory, bool *drawn);
 };
 
 /* All figures in the order of the list; static storage. */
@@ -23,6 +29,7 @@ struct dea_figure_options {
   const char *const *names;
   size_t name_count;
   struct dea_plot_format format;
+  double voltage_V; // that figures of one state show, or the nearest there is; NAN: the last
 };
 
 /* Writes NAME.gp, NAME.dat and the pictures of every figure that has something to show. A figure

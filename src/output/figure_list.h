@@ -5,4 +5,8 @@
   X(field)                                                                                         \
   X(tension)                                                                                       \
   X(force)                                                                                         \
-  X(profile)
+  X(profile)                                                                                       \
+  X(map)                                                                                           \
+  X(surface)                                                                                       \
+  X(section)                                                                                       \
+  X(animation)

@@ -12,6 +12,7 @@
 
 struct dea_keep {
   char *directory; // owned
+  bool refused;
   struct dea_keeper keeper;
 };
 
@@ -162,7 +163,7 @@ static char *state_path(struct dea_context *ctx, const char *directory, const ch
 static dea_status start(struct dea_context *ctx, void *user, const struct dea_model_type *type,
                         struct dea_model *model, const struct dea_curve *curve)
 {
-  const struct dea_keep *keep = user;
+  struct dea_keep *keep = user;
   if (type->load == NULL || curve->count == 0) {
     return DEA_OK;
   }
@@ -171,6 +172,7 @@ static dea_status start(struct dea_context *ctx, void *user, const struct dea_mo
     return DEA_E_MEMORY;
   }
   dea_status status = dea_state_file_read(ctx, type, model, path);
+  keep->refused = status != DEA_OK;
   dea_free(ctx, path);
   return status;
 }
@@ -223,6 +225,11 @@ void dea_keep_destroy(struct dea_context *ctx, struct dea_keep *keep)
     dea_free(ctx, keep->directory);
     dea_free(ctx, keep);
   }
+}
+
+bool dea_keep_refused(const struct dea_keep *keep)
+{
+  return keep != NULL && keep->refused;
 }
 
 const struct dea_keeper *dea_keep_keeper(const struct dea_keep *keep)

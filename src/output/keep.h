@@ -17,6 +17,10 @@ void dea_keep_destroy(struct dea_context *ctx, struct dea_keep *keep);
  * way; a model whose curve has points starts from its state in the folder. */
 const struct dea_keeper *dea_keep_keeper(const struct dea_keep *keep);
 
+/* Whether a model could not go on from its state: the folder is another run's then and has to stay
+ * as it is. NULL is fine. */
+bool dea_keep_refused(const struct dea_keep *keep);
+
 /* Brings the sweeps of models that left a state in the folder, up to the point of that state, into
  * a result that has its design: they go on from there. DEA_E_IO when there is no such run or it
  * cannot be read, DEA_E_DESIGN when its voltages up to there are not those of the design, with the

@@ -1,7 +1,7 @@
 #include "output/plot.h"
 
-#include "base/version.h"
 #include "output/file.h"
+#include "output/script.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -317,59 +317,10 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
     l.bottom_mm[0] = l.top_mm[1] + 4.0; // so that the tic labels of the two do not meet
   }
   l.top_mm[0] = l.bottom_mm[0] + panel;
-  l.height_mm = l.top_mm[0] + (strncmp(plot->panels[0].key, "above", 5) == 0 ? 7.0 : 3.0);
+  const char *key = plot->panels[0].key;
+  double key_mm = strstr(key, "maxrows 3") != NULL ? 12.0 : 7.0;
+  l.height_mm = l.top_mm[0] + (strncmp(key, "above", 5) == 0 ? key_mm : 3.0);
   return l;
-}
-
-static void add_head(struct dea_text *gp, const struct dea_plot *plot, const struct layout *l,
-                     const struct dea_plot_format *format)
-{
-  dea_text_add(gp,
-               "# %s: %s\n# Written by dea %s. Change it and run in this folder: gnuplot %s.gp\n"
-               "reset\nname = \"%s\"\nformats = \"%s%s%s\"\nwidth_mm = %.6g\nheight_mm = %.6g\n"
-               "font_pt = 8\n\n",
-               plot->name, plot->caption, DEA_VERSION, plot->name, plot->name,
-               format->svg ? "svg " : "", format->pdf ? "pdf " : "", format->png ? "png" : "",
-               l->width_mm, l->height_mm);
-  dea_text_add(gp, "data = name.\".dat\"\n"
-                   "out = exists(\"dea_folder\") ? dea_folder : \"\"\n"
-                   "small = sprintf(\",%%g\", 0.85 * font_pt)\n"
-                   "set encoding utf8\nset minussign\n"
-                   "set datafile missing \"?\"\n"
-                   "set border lw 0.8\nset tics scale 0.6 nomirror\nset bars 0.5\n"
-                   "set key Left reverse samplen 2.2 spacing 1.05 font small\n");
-  dea_text_add(gp, "set lmargin at screen %.4f\nset rmargin at screen %.4f\n\n",
-               l->left_mm / l->width_mm, l->right_mm / l->width_mm);
-}
-
-static void add_terminals(struct dea_text *gp)
-{
-  dea_text_add(
-      gp, "do for [format in formats] {\n"
-          "  if (format eq \"svg\") {\n"
-          "    px = 96 / 25.4 # of an SVG, per mm\n"
-          "    x_shift = 0.6; y_shift = 1.0\n"
-          "    key_width = -2 # this terminal takes words for wider than they are\n"
-          "    small = sprintf(\",%%g\", 0.85 * font_pt * 96 / 72.0)\n"
-          "    set terminal svg size width_mm * px, height_mm * px enhanced \\\n"
-          "      font sprintf(\"Arial,%%g\", font_pt * 96 / 72.0) linewidth 1\n"
-          "  }\n"
-          "  if (format eq \"pdf\") {\n"
-          "    x_shift = 0.2; y_shift = 0.3; key_width = 0\n"
-          "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
-          "    set terminal pdfcairo size width_mm / 10.0 cm, height_mm / 10.0 cm enhanced \\\n"
-          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 0.75 linewidth 1.5\n"
-          "  }\n"
-          "  if (format eq \"png\") {\n"
-          "    px = 300 / 25.4 # 300 dots an inch\n"
-          "    x_shift = 0.2; y_shift = 0.3; key_width = 0\n"
-          "    small = sprintf(\",%%g\", 0.85 * font_pt)\n"
-          "    set terminal pngcairo size width_mm * px, height_mm * px enhanced \\\n"
-          "      font sprintf(\"Arial,%%g\", font_pt) fontscale 300 / 96.0 linewidth 3.1 "
-          "pointscale 3.1\n"
-          "  }\n"
-          "  set key font small\n"
-          "  set output out.name.\".\".format\n");
 }
 
 static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool has_x_label)
@@ -433,8 +384,10 @@ static void add_script(struct dea_text *gp, const struct dea_plot *plot,
                        const struct dea_plot_format *format)
 {
   struct layout l = lay_out(plot, format->width_m);
-  add_head(gp, plot, &l, format);
-  add_terminals(gp);
+  dea_script_head(gp, plot->name, plot->caption, format, l.width_mm, l.height_mm);
+  dea_text_add(gp, "set lmargin at screen %.4f\nset rmargin at screen %.4f\n\n",
+               l.left_mm / l.width_mm, l.right_mm / l.width_mm);
+  dea_script_terminals(gp);
   if (plot->panel_count > 1) {
     dea_text_add(gp, "  set multiplot\n");
   }

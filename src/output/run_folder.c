@@ -58,7 +58,7 @@ static void forget(struct dea_context *ctx, const char *directory, const char *n
 
 static void forget_figures(struct dea_context *ctx, const char *directory)
 {
-  static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png"};
+  static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
   size_t count;
   const struct dea_figure *const *figures = dea_figure_all(&count);
   for (size_t f = 0; f < count; f++) {
@@ -147,7 +147,7 @@ static dea_status write_figures(struct dea_context *ctx, const struct dea_result
                                 const char *directory)
 {
   const struct dea_design *design = result->design;
-  struct dea_figure_options options = {.format = {.width_m = 0.085}};
+  struct dea_figure_options options = {.format = {.width_m = 0.085}, .voltage_V = NAN};
   if (design != NULL) {
     options.format.svg = design->report.svg;
     options.format.pdf = design->report.pdf;

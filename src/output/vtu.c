@@ -2,9 +2,9 @@
 
 #include "base/version.h"
 #include "output/bytes.h"
+#include "output/copies.h"
 #include "output/file.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -69,42 +69,6 @@ static size_t cells_of(const struct dea_mesh_block *block)
   return (size_t)(pieces(block) * pieces(block) * pieces_z(block));
 }
 
-/* ---- copies ---- */
-
-/* One copy of the computed part: x' = m x in the plane. */
-struct copy {
-  double m[4];
-  bool mirrored;
-};
-
-static size_t copy_count(const struct dea_field_mesh *mesh, bool whole)
-{
-  return whole && mesh->fold > 0 ? 2 * (size_t)mesh->fold : 1;
-}
-
-/* Copies 2k are turned by k times 2 pi/fold, copies 2k + 1 mirrored at the plane of symmetry first.
- */
-static struct copy copy_at(const struct dea_field_mesh *mesh, size_t number)
-{
-  struct copy copy = {{1, 0, 0, 1}, number % 2 == 1};
-  if (number == 0) {
-    return copy;
-  }
-  double turn = 2 * acos(-1) * (double)(number / 2) / mesh->fold;
-  // a turn by t after a mirror at angle a is a mirror at a + t/2
-  double angle = copy.mirrored ? 2 * mesh->symmetry_angle + turn : turn;
-  double c = cos(angle), s = sin(angle), sign = copy.mirrored ? -1 : 1;
-  memcpy(copy.m, (double[4]){c, -sign * s, s, sign * c}, sizeof copy.m);
-  return copy;
-}
-
-static void move(const struct copy *copy, const double in[3], double out[3])
-{
-  out[0] = copy->m[0] * in[0] + copy->m[1] * in[1];
-  out[1] = copy->m[2] * in[0] + copy->m[3] * in[1];
-  out[2] = in[2];
-}
-
 /* ---- arrays ---- */
 
 /* Everything that is written. */
@@ -117,10 +81,10 @@ static void add_vectors(struct dea_bytes *out, const struct grid *grid, const do
                         bool doubles)
 {
   for (size_t c = 0; c < grid->copies; c++) {
-    const struct copy copy = copy_at(grid->mesh, c);
+    const struct dea_copy copy = dea_copy_at(grid->mesh, c);
     for (size_t p = 0; p < grid->mesh->point_count; p++) {
       double moved[3];
-      move(&copy, values + 3 * p, moved);
+      dea_copy_move(&copy, values + 3 * p, moved);
       for (int i = 0; i < 3; i++) {
         if (doubles) {
           dea_bytes_add_f64(out, moved[i]);
@@ -317,7 +281,7 @@ static void build(struct file *file, const struct grid *grid, double voltage_V)
 static dea_status count(struct dea_context *ctx, const struct dea_field_mesh *mesh, bool whole,
                         struct grid *out)
 {
-  *out = (struct grid){.mesh = mesh, .copies = copy_count(mesh, whole)};
+  *out = (struct grid){.mesh = mesh, .copies = whole ? dea_copy_count(mesh) : 1};
   for (size_t b = 0; b < mesh->block_count; b++) {
     const struct dea_mesh_block *block = &mesh->blocks[b];
     size_t cells = block->count * cells_of(block) * out->copies;

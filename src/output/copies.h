@@ -1,0 +1,21 @@
+/* The mirrored copies of a part that make up the whole (struct dea_field_mesh). */
+#ifndef DEA_OUTPUT_COPIES_H
+#define DEA_OUTPUT_COPIES_H
+
+#include "model/field_mesh.h"
+
+/* x' = m x in the plane; z stays. */
+struct dea_copy {
+  double m[4];
+  bool mirrored;
+};
+
+/* Number of copies, the part itself included. */
+size_t dea_copy_count(const struct dea_field_mesh *mesh);
+/* Copy 2k is turned by k times 2 pi/fold, copy 2k + 1 mirrored at the first plane of symmetry
+ * before that. Copy 0 is the part itself. */
+struct dea_copy dea_copy_at(const struct dea_field_mesh *mesh, size_t number);
+/* A place or a vector in a copy. */
+void dea_copy_move(const struct dea_copy *copy, const double in[3], double out[3]);
+
+#endif

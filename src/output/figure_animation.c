@@ -1,0 +1,105 @@
+/* The deformed film over the voltages of the sweep, as an animated GIF. */
+#include "output/file.h"
+#include "output/script.h"
+#include "output/space.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { PIECES = 1200, FRAMES_MAX = 33, WIDTH_PX = 720, LABEL_PX = 40 };
+
+static const char name[] = "animation";
+
+static void add_script(struct dea_text *gp, const struct dea_space *space,
+                       const struct dea_plot_format *format)
+{
+  char caption[160];
+  snprintf(caption, sizeof caption,
+           "the film's middle surface over the sweep, z drawn %g times larger than x and y",
+           space->times);
+  dea_script_head(gp, name, caption, format, 1e3 * format->width_m, 1e3 * format->width_m);
+  dea_picture_add_palette(gp, space->low_m, space->high_m);
+  dea_space_add_settings(gp, space);
+  double height_px = 0.78 * WIDTH_PX * dea_space_shape(space) + 2 * LABEL_PX;
+  dea_text_add(gp,
+               "set lmargin at screen 0.01\nset rmargin at screen 0.79\n"
+               "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
+               "set colorbox user origin screen 0.82, screen 0.15 size screen 0.03, screen 0.7\n"
+               "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
+               "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
+               "screen 0.06 front\n",
+               LABEL_PX / height_px, 1 - LABEL_PX / height_px, 2e3 * space->radius_m, space->times);
+  dea_text_add(gp, "array kV = [");
+  for (size_t i = 0; i < space->count; i++) {
+    dea_text_add(gp, "%s\"%.4g\"", i > 0 ? ", " : "", 1e-3 * space->pictures[i].voltage_V);
+  }
+  dea_text_add(gp,
+               "]\n\nset terminal gif animate delay 15 loop 0 optimize size %d, %.0f font "
+               "\"DejaVuSans,13\"\nset output out.name.\".gif\"\n"
+               "set pm3d interpolate 2, 2\n"
+               "do for [k = 0:%zu] {\n"
+               "  set label 1 kV[k + 1].\" kV\" at screen 0.03, screen 0.94 front\n",
+               WIDTH_PX, height_px, space->count - 1);
+  dea_space_add_command(gp, space);
+  dea_text_add(gp, "}\nunset output\n");
+}
+
+/* Pictures of all records on one mesh; *count: how many were made, also after a failure. */
+static dea_status make_pictures(struct dea_context *ctx, const struct dea_surface_record *records[],
+                                size_t record_count, struct dea_picture *pictures, size_t *count)
+{
+  const struct dea_field_mesh *first = records[0]->mesh;
+  *count = 0;
+  for (size_t i = 0; i < record_count; i++) {
+    const struct dea_field_mesh *mesh = records[i]->mesh;
+    if (mesh->point_count == first->point_count && mesh->cell_count == first->cell_count &&
+        memcmp(mesh->X, first->X, 3 * mesh->point_count * sizeof *mesh->X) == 0) {
+      DEA_TRY(ctx, dea_picture_create(ctx, records[i], PIECES, &pictures[(*count)++]));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status write_files(struct dea_context *ctx, const struct dea_picture *pictures,
+                              size_t count, const struct dea_plot_format *format,
+                              const char *directory)
+{
+  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
+  struct dea_space space;
+  dea_space_measure(pictures, count, &space);
+  void *before = dea_c_locale_enter();
+  add_script(&gp, &space, format);
+  dea_space_add_data(&dat, &space);
+  dea_c_locale_leave(before);
+  dea_status status = dea_picture_write(ctx, &gp, &dat, name, directory);
+  dea_text_free(&gp);
+  dea_text_free(&dat);
+  return status;
+}
+
+static dea_status write(struct dea_context *ctx, const struct dea_result *result,
+                        const struct dea_figure_options *options, const char *directory,
+                        bool *drawn)
+{
+  const struct dea_surface_record *records[FRAMES_MAX];
+  struct dea_picture pictures[FRAMES_MAX];
+  size_t count = dea_surface_spread(result, FRAMES_MAX, records);
+  *drawn = count > 1 && records[0]->mesh->cell_count > 0; // one is no animation
+  if (!*drawn) {
+    return DEA_OK;
+  }
+  dea_status status = make_pictures(ctx, records, count, pictures, &count);
+  if (status == DEA_OK) {
+    status = write_files(ctx, pictures, count, &options->format, directory);
+  }
+  for (size_t i = 0; i < count; i++) {
+    dea_picture_free(ctx, &pictures[i]);
+  }
+  return status;
+}
+
+const struct dea_figure dea_figure_animation = {
+    .name = name,
+    .caption = "the deformed film over the sweep",
+    .write = write,
+};

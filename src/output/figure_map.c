@@ -1,0 +1,73 @@
+/* Displacement out of the plane over the whole disc, as colours. */
+#include "output/file.h"
+#include "output/script.h"
+#include "output/space.h"
+
+enum { PIECES = 3000 };
+
+static const char name[] = "map";
+static const char caption[] = "displacement out of the plane, over the place in the stretched film";
+
+static void add_script(struct dea_text *gp, const struct dea_space *space,
+                       const struct dea_plot_format *format)
+{
+  double width_mm = 1e3 * format->width_m, left = 12, right = 20, bottom = 10, top = 3;
+  double side = width_mm - left - right, height_mm = side + bottom + top;
+  double edge_mm = 1.03e3 * space->radius_m;
+  dea_script_head(gp, name, caption, format, width_mm, height_mm);
+  dea_picture_add_palette(gp, space->low_m, space->high_m);
+  dea_text_add(
+      gp,
+      "set lmargin at screen %.4f\nset rmargin at screen %.4f\n"
+      "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
+      "set view map\nset pm3d corners2color mean border retrace\n"
+      "set surface explicit # lines, not a grid of them\n"
+      "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
+      "set xtics %.6g\nset ytics %.6g\n"
+      "set colorbox user origin screen %.4f, screen %.4f size screen %.4f, screen %.4f\n\n",
+      left / width_mm, 1 - right / width_mm, bottom / height_mm, 1 - top / height_mm, -edge_mm,
+      edge_mm, -edge_mm, edge_mm, dea_nice_below(0.5e3 * space->radius_m),
+      dea_nice_below(0.5e3 * space->radius_m), 1 - (right - 2) / width_mm, bottom / height_mm,
+      3 / width_mm, side / height_mm);
+  dea_script_terminals(gp);
+  dea_text_add(gp,
+               "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
+               "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
+               "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
+               "  set label 1 \"%.4g kV\" at graph 0.02, graph 0.96 front\n"
+               "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
+               "  k = 0\n",
+               1e-3 * space->pictures[0].voltage_V);
+  dea_space_add_command(gp, space);
+  dea_text_add(gp, "  unset output\n}\n");
+}
+
+static dea_status write(struct dea_context *ctx, const struct dea_result *result,
+                        const struct dea_figure_options *options, const char *directory,
+                        bool *drawn)
+{
+  const struct dea_surface_record *record = dea_surface_choose(result, options->voltage_V);
+  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
+  struct dea_picture picture;
+  *drawn = record != NULL && record->mesh->cell_count > 0;
+  if (!*drawn) {
+    return DEA_OK;
+  }
+  dea_status status = dea_picture_create(ctx, record, PIECES, &picture);
+  if (status == DEA_OK) {
+    struct dea_space space;
+    dea_space_measure(&picture, 1, &space);
+    space.flat = true;
+    void *before = dea_c_locale_enter();
+    add_script(&gp, &space, &options->format);
+    dea_space_add_data(&dat, &space);
+    dea_c_locale_leave(before);
+    status = dea_picture_write(ctx, &gp, &dat, name, directory);
+  }
+  dea_picture_free(ctx, &picture);
+  dea_text_free(&gp);
+  dea_text_free(&dat);
+  return status;
+}
+
+const struct dea_figure dea_figure_map = {.name = name, .caption = caption, .write = write};

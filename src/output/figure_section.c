@@ -1,0 +1,99 @@
+/* Displacement out of the plane along two diameters: along the first fibre, and between it and the
+ * next. */
+#include "output/picture.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { SHOWN_MAX = 3, PIECES = 80000 };
+
+static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
+                               const struct dea_drawing *drawing, double angle,
+                               const struct dea_series *look)
+{
+  double *found;
+  size_t count;
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_drawing_section(ctx, drawing, angle, &found, &count));
+  dea_status status = dea_panel_add(ctx, panel, count, &series);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    series->values[i] = 1e3 * found[i];
+    series->values[count + i] = 1e6 * found[count + i];
+  }
+  dea_free(ctx, found);
+  DEA_TRY(ctx, status);
+  series->style = look->style;
+  series->colour = look->colour;
+  snprintf(series->title, sizeof series->title, "%s", look->title);
+  return DEA_OK;
+}
+
+static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
+                             const struct dea_surface_record *record, size_t shown)
+{
+  static const enum dea_colour order[SHOWN_MAX] = {DEA_SKY, DEA_VERMILLION, DEA_BLACK};
+  struct dea_series look = {.style = DEA_LINE, .colour = order[shown]};
+  struct dea_drawing drawing;
+  snprintf(look.title, sizeof look.title, "%.4g kV", 1e-3 * record->voltage_V);
+  dea_status status = dea_drawing_create(ctx, record->mesh, PIECES, &drawing);
+  if (status == DEA_OK) {
+    status = add_diameter(ctx, panel, &drawing, 0, &look);
+  }
+  if (status == DEA_OK && record->mesh->fibres > 0) {
+    look.style = DEA_DASHED;
+    look.title[0] = '\0';
+    status = add_diameter(ctx, panel, &drawing, acos(-1) / record->mesh->fibres, &look);
+  }
+  panel->x_max = 1e3 * drawing.radius_m;
+  panel->x_min = -panel->x_max;
+  dea_drawing_free(ctx, &drawing);
+  return status;
+}
+
+/* Key entries of the two diameters; of their series only a point shows, on a curve that is there.
+ */
+static dea_status add_directions(struct dea_context *ctx, struct dea_panel *panel)
+{
+  static const char *const titles[2] = {"along fibres", "between"};
+  for (int d = 0; d < 2; d++) {
+    struct dea_series *entry;
+    DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
+    entry->style = d == 0 ? DEA_LINE : DEA_DASHED;
+    entry->colour = DEA_GREY;
+    snprintf(entry->title, sizeof entry->title, "%s", titles[d]);
+    entry->values[0] = panel->x_min;
+    entry->values[1] = 0;
+  }
+  return DEA_OK;
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  const struct dea_surface_record *records[SHOWN_MAX + 1];
+  size_t count = dea_surface_spread(result, SHOWN_MAX + 1, records);
+  size_t first =
+      count > SHOWN_MAX ? 1 : 0; // at the first voltage, mostly 0, there is nothing to see
+  for (size_t i = first; i < count; i++) {
+    DEA_TRY(ctx, add_record(ctx, panel, records[i], SHOWN_MAX - count + i));
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  if (records[0]->mesh->fibres > 0) {
+    DEA_TRY(ctx, add_directions(ctx, panel));
+  }
+  snprintf(panel->x_label, sizeof panel->x_label, "Place across the film (mm)");
+  snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");
+  dea_figure_even_tics(panel, 7);
+  panel->key = "above horizontal maxrows 3 samplen 1.5 width key_width";
+  return DEA_OK;
+}
+
+const struct dea_figure dea_figure_section = {
+    .name = "section",
+    .caption =
+        "displacement out of the plane along diameters (full: along fibres, dashed: between)",
+    .build = build,
+};

@@ -1,0 +1,74 @@
+/* The deformed film in space, coloured by its displacement. */
+#include "output/file.h"
+#include "output/script.h"
+#include "output/space.h"
+
+#include <stdio.h>
+
+enum { PIECES = 3000, LABEL_MM = 6 }; // room for words above and below
+
+static const char name[] = "surface";
+
+static void add_script(struct dea_text *gp, const struct dea_space *space,
+                       const struct dea_plot_format *format)
+{
+  double width_mm = 1e3 * format->width_m, voltage_kV = 1e-3 * space->pictures[0].voltage_V;
+  char caption[160];
+  snprintf(caption, sizeof caption,
+           "the film's middle surface at %.4g kV, z drawn %g times larger than x and y", voltage_kV,
+           space->times);
+  double height_mm = 0.78 * width_mm * dea_space_shape(space) + 2 * LABEL_MM;
+  dea_script_head(gp, name, caption, format, width_mm, height_mm);
+  dea_picture_add_palette(gp, space->low_m, space->high_m);
+  dea_space_add_settings(gp, space);
+  dea_text_add(gp,
+               "set lmargin at screen 0.01\nset rmargin at screen 0.79\n"
+               "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
+               "set colorbox user origin screen 0.82, screen 0.15 size screen 0.03, screen 0.7\n\n",
+               LABEL_MM / height_mm, 1 - LABEL_MM / height_mm);
+  dea_script_terminals(gp);
+  dea_text_add(gp,
+               "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
+               "  set label 1 \"%.4g kV, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
+               "front\n"
+               "  set label 2 \"frame \342\214\200 %.4g mm\" at screen 0.03, screen 0.06 front\n"
+               "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
+               "  k = 0\n",
+               voltage_kV, space->times, 2e3 * space->radius_m);
+  dea_space_add_command(gp, space);
+  dea_text_add(gp, "  unset output\n}\n");
+}
+
+static dea_status write(struct dea_context *ctx, const struct dea_result *result,
+                        const struct dea_figure_options *options, const char *directory,
+                        bool *drawn)
+{
+  const struct dea_surface_record *record = dea_surface_choose(result, options->voltage_V);
+  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
+  struct dea_picture picture;
+  *drawn = record != NULL && record->mesh->cell_count > 0;
+  if (!*drawn) {
+    return DEA_OK;
+  }
+  dea_status status = dea_picture_create(ctx, record, PIECES, &picture);
+  if (status == DEA_OK) {
+    struct dea_space space;
+    dea_space_measure(&picture, 1, &space);
+    space.moved = true;
+    void *before = dea_c_locale_enter();
+    add_script(&gp, &space, &options->format);
+    dea_space_add_data(&dat, &space);
+    dea_c_locale_leave(before);
+    status = dea_picture_write(ctx, &gp, &dat, name, directory);
+  }
+  dea_picture_free(ctx, &picture);
+  dea_text_free(&gp);
+  dea_text_free(&dat);
+  return status;
+}
+
+const struct dea_figure dea_figure_surface = {
+    .name = name,
+    .caption = "the deformed film in space, coloured by its displacement",
+    .write = write,
+};

@@ -1,0 +1,14 @@
+/* What all gnuplot scripts begin with. */
+#ifndef DEA_OUTPUT_SCRIPT_H
+#define DEA_OUTPUT_SCRIPT_H
+
+#include "output/plot.h"
+
+/* The settings that a user may want to change, and those that hold for all figures. */
+void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
+                     const struct dea_plot_format *format, double width_mm, double height_mm);
+/* Opens the loop over the formats: terminal, sizes of signs and the file that is drawn into. The
+ * caller closes it with "}". */
+void dea_script_terminals(struct dea_text *gp);
+
+#endif

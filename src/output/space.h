@@ -1,0 +1,30 @@
+/* The deformed film in space or seen from above, for one voltage or several. */
+#ifndef DEA_OUTPUT_SPACE_H
+#define DEA_OUTPUT_SPACE_H
+
+#include "output/picture.h"
+
+/* What is drawn: the same surface at some voltages, in one box. z is drawn `times` larger. */
+struct dea_space {
+  const struct dea_picture *pictures; // lent
+  size_t count;
+  bool moved;   // places with the displacement in the plane, of the first picture
+  bool flat;    // seen from above, without heights
+  double times; // dea_space_measure sets the rest
+  double radius_m, low_m, high_m;
+  size_t frame_lines, lines; // lines of frame and electrode, all lines
+};
+/* pictures: of one mesh, at least one; lent. */
+void dea_space_measure(const struct dea_picture *pictures, size_t count, struct dea_space *out);
+/* Height of a drawing in space over its width. */
+double dea_space_shape(const struct dea_space *space);
+/* Its settings: projection and ranges, with the variables tilt and turn of the view, and times. */
+void dea_space_add_settings(struct dea_text *gp, const struct dea_space *space);
+/* "splot ..." of the picture in the gnuplot variable k, counted from 0. Of a flat one the lines
+ * come last, in space depth decides. */
+void dea_space_add_command(struct dea_text *gp, const struct dea_space *space);
+/* Data: one index a line, as a ribbon that faces the viewer, then one a patch. Columns: x y (mm),
+ * what z is drawn above the surface (mm of the drawing), then z (um) of each picture. */
+void dea_space_add_data(struct dea_text *dat, const struct dea_space *space);
+
+#endif
