@@ -251,10 +251,39 @@ static void test_pre_stretch_beyond_the_data_is_a_warning(void **state)
 static void test_fibres_that_just_touch_are_good(void **state)
 {
   (void)state;
-  // 8 fibres of 2 mm meet at 1 mm/tan(22.5 degrees) = 2.414213562 mm.
+  // The ends are arcs: 8 fibres of 2 mm meet at 1 mm/sin(22.5 degrees) = 2.613125930 mm.
   const struct dea_override touching[] = {{"fibres.count", "8"},
-                                          {"fibres.tip_radius", "2.41421356237310 mm stretched"}};
+                                          {"fibres.tip_radius", "2.61312592975275 mm stretched"}};
   read_good(GOOD_DESIGN, touching, 2);
+}
+
+static void test_taper_and_free_end(void **state)
+{
+  (void)state;
+  const struct dea_override sets[] = {
+      {"fibres.width", "3 mm"},         {"fibres.tip_width", "1 mm"},
+      {"fibres.outer_end", "free"},     {"fibres.outer_gap", "2 mm unstretched"},
+      {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"}};
+  read_good(GOOD_DESIGN, sets, 6);
+  assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
+  assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
+  assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
+  assert_int_equal(device->solid_domain, DEA_DOMAIN_DISC);
+  assert_int_equal(device->solid_film, DEA_FILM_SOLID);
+  assert_close(device->solid_refinement, 2.5, 0, 0);
+}
+
+static void test_straight_clamped_fibres_are_the_default(void **state)
+{
+  (void)state;
+  read_good(GOOD_DESIGN, NULL, 0);
+  assert_close(device->fibre_tip_width_m, 2e-3, 1e-14, 0);
+  assert_close(device->fibre_outer_gap_m, 0, 0, 0);
+  const struct dea_override gap = {"fibres.outer_gap", "2 mm stretched"};
+  tear_down(state);
+  set_up(state);
+  read_good(GOOD_DESIGN, &gap, 1);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1); // the end is not free
 }
 
 static void test_examples_are_good(void **state)
@@ -294,6 +323,8 @@ int main(void)
       TEST(test_coverage_given),
       TEST(test_pre_stretch_beyond_the_data_is_a_warning),
       TEST(test_fibres_that_just_touch_are_good),
+      TEST(test_taper_and_free_end),
+      TEST(test_straight_clamped_fibres_are_the_default),
       TEST(test_examples_are_good),
   };
 #undef TEST

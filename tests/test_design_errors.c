@@ -241,6 +241,14 @@ static void test_geometry(void **state)
       {GEOMETRY("3.75 mm stretched", "count: 4, tip_radius: 15 mm stretched"),
        {6, 49, "are not inside the frame of 15 mm"}},
       {GEOMETRY("3.75 mm stretched", "count: 1, width: 31 mm"), {6, 44, "do not fit into a frame"}},
+      {GEOMETRY("3.75 mm stretched", "count: 1, tip_width: 8 mm"),
+       {6, 48, "1 fibre of 8 mm width does not fit on the circle of its tip, 3.75 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 6, width: 16 mm, tip_width: 2 mm"),
+       {6, 44, "overlap each other at the frame, where they may be at most 15 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, outer_end: free, outer_gap: 12 mm stretched"),
+       {6, 65, "leaves nothing of fibres that reach 11.25 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4, overlap: 2.5 mm stretched"),
+       {6, 34, "at most 1.768 mm wide, or their tips must be at least 1.414 mm from the centre"}},
   };
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     check_errors(bad[i].text, &bad[i].wanted, 1);

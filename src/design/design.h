@@ -22,6 +22,8 @@ enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
 enum dea_fields_at { DEA_FIELDS_ALL, DEA_FIELDS_LAST, DEA_FIELDS_NONE };
 enum dea_fields_of { DEA_FIELDS_WHOLE, DEA_FIELDS_SECTOR };
 enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
+enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
+enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
 
 struct dea_design {
   const char *file; // as given by the caller; interned in the context
@@ -48,6 +50,7 @@ struct dea_design {
   struct { // fibres on the +z face, from the frame towards the centre
     struct dea_quantity count;
     struct dea_quantity width_m, thickness_m;
+    struct dea_quantity tip_width_m; // absent: width_m
     // Exactly one of the next three says where the tip is; the others are absent.
     struct dea_inplane_length length;     // from the inner edge of the frame to the tip
     struct dea_inplane_length tip_radius; // from the centre to the tip ("reach")
@@ -56,6 +59,7 @@ struct dea_design {
     struct dea_quantity bond_thickness_m; // glue layer; 0 = none
     struct dea_quantity bond_modulus_Pa;  // Young's modulus of the glue
     struct dea_choice outer_end;          // enum dea_outer_end
+    struct dea_inplane_length outer_gap;  // from a free outer end to the frame
   } fibres;
 
   struct dea_material_data *materials; // [material_count] inline ones of this file, owned
@@ -75,8 +79,12 @@ struct dea_design {
       struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
       size_t depth_count, preload_count;
     } force;
-    struct dea_choice coverage_by; // enum dea_coverage_by, paper eq 17
-    struct dea_quantity coverage;  // R itself; absent: from coverage_by
+    struct dea_choice coverage_by;    // enum dea_coverage_by, paper eq 17
+    struct dea_quantity coverage;     // R itself; absent: from coverage_by
+    struct {                          // model 3d
+      struct dea_choice film, domain; // enum dea_solid_film, enum dea_solid_domain
+      struct dea_quantity refinement; // 1: the coarsest mesh; one more halves all sizes
+    } solid;
   } compute;
 
   struct { // report

@@ -20,12 +20,18 @@ struct dea_device {
 
   int fibre_count; // 0: none; the rest then is 0
   double fibre_width_m, fibre_thickness_m;
+  double fibre_tip_width_m;  // fibre_width_m is that of the outer end
   double fibre_tip_radius_m; // distance of the tip from the centre
   double fibre_length_m;     // L_f of paper eq 19: frame radius - tip radius
   double fibre_overlap_m;    // electrode radius - tip radius; negative: a gap
   struct dea_material fibre;
   double bond_thickness_m, bond_modulus_Pa;
   enum dea_outer_end outer_end;
+  double fibre_outer_gap_m; // from a free outer end to the frame; 0 for other ends
+
+  enum dea_solid_film solid_film; // of model 3d, as the next two
+  enum dea_solid_domain solid_domain;
+  double solid_refinement; // 1: the coarsest mesh
 };
 
 /* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:

@@ -1,5 +1,5 @@
 /* Symbols: l_pre pre-stretch, L_r frame radius, r_a electrode radius, r_t radius of the fibre tips,
- * w fibre width, N number of fibres; all lengths in the stretched film. */
+ * w_t fibre width at the tip, N number of fibres; all lengths in the stretched film. */
 #include "device/geometry.h"
 
 #include <math.h>
@@ -44,12 +44,18 @@ static void fill_fibres(const struct dea_design *design, struct dea_device *devi
   device->fibre_count = (int)design->fibres.count.si;
   device->fibre_width_m = design->fibres.width_m.si;
   device->fibre_thickness_m = design->fibres.thickness_m.si;
+  device->fibre_tip_width_m = design->fibres.tip_width_m.origin != DEA_ABSENT
+                                  ? design->fibres.tip_width_m.si
+                                  : device->fibre_width_m;
   device->fibre_tip_radius_m = tip_radius(design, device);
   device->fibre_length_m = device->frame_radius_m - device->fibre_tip_radius_m;
   device->fibre_overlap_m = device->electrode_radius_m - device->fibre_tip_radius_m;
   device->bond_thickness_m = design->fibres.bond_thickness_m.si;
   device->bond_modulus_Pa = design->fibres.bond_modulus_Pa.si;
   device->outer_end = (enum dea_outer_end)design->fibres.outer_end.value;
+  device->fibre_outer_gap_m = device->outer_end == DEA_END_FREE
+                                  ? stretched(&design->fibres.outer_gap, device->pre_stretch)
+                                  : 0;
 }
 
 void dea_geometry_fill(const struct dea_design *design, struct dea_device *device)
@@ -65,28 +71,67 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->coverage = design->compute.coverage.origin != DEA_ABSENT ? design->compute.coverage.si
                      : design->compute.coverage_by.value == DEA_COVERAGE_AREA ? ratio * ratio
                                                                               : ratio;
+  device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
+  device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
+  device->solid_refinement = design->compute.solid.refinement.si;
   if (design->has_fibres) {
     fill_fibres(design, device);
   }
 }
 
-/* N radial strips of width w: the corner of a tip, at the angle atan(w/(2 r_t)) from its axis, must
- * not lie beyond the ray halfway to the neighbour, at pi/N. */
+/* The ends of a fibre are cut along circles (docs/theory/mesh.md): one of width w on the circle r
+ * reaches to the angle asin(w/(2 r)) from its axis, which must not lie beyond the ray halfway to
+ * the neighbour, at pi/N. */
 static dea_status check_neighbours(struct dea_context *ctx, const struct dea_design *design,
                                    const struct dea_device *device)
 {
-  double half_angle = pi / device->fibre_count, w = device->fibre_width_m,
-         r_t = device->fibre_tip_radius_m;
-  if (device->fibre_count < 2 || atan2(w / 2, r_t) <= half_angle * (1 + touching)) {
+  int N = device->fibre_count;
+  double room = sin(fmin(pi / N, pi / 2)), w_t = device->fibre_tip_width_m,
+         r_t = device->fibre_tip_radius_m, w = device->fibre_width_m,
+         r_o = device->frame_radius_m - device->fibre_outer_gap_m;
+  bool tapers = design->fibres.tip_width_m.origin != DEA_ABSENT;
+  if (w_t > 2 * r_t * room * (1 + touching)) {
+    struct dea_place place = N > 1    ? design->fibres.count.place
+                             : tapers ? design->fibres.tip_width_m.place
+                                      : design->fibres.width_m.place;
+    return dea_finding_add(
+        ctx, DEA_ERROR, place,
+        N > 1 ? "%d fibres of %.4g mm width overlap each other at their tips, %.4g mm from "
+                "the centre (stretched); there they may be at most %.4g mm wide, or their "
+                "tips must be at least %.4g mm from the centre"
+              : "%d fibre of %.4g mm width does not fit on the circle of its tip, %.4g mm from the "
+                "centre (stretched); there it may be at most %.4g mm wide, or its tip must be at "
+                "least %.4g mm from the centre",
+        N, 1e3 * w_t, 1e3 * r_t, 2e3 * r_t * room, 1e3 * w_t / (2 * room));
+  }
+  if (w > 2 * r_o * room * (1 + touching)) {
+    return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.place,
+                           "%d fibres of %.4g mm width overlap each other at the frame, where they "
+                           "may be at most %.4g mm wide",
+                           N, 1e3 * w, 2e3 * r_o * room);
+  }
+  return DEA_OK;
+}
+
+/* The free outer end of a fibre has film between itself and the frame, and lies outside of its tip.
+ */
+static dea_status check_outer_end(struct dea_context *ctx, const struct dea_design *design,
+                                  const struct dea_device *device)
+{
+  const struct dea_quantity *gap = &design->fibres.outer_gap.length;
+  if (device->outer_end != DEA_END_FREE) {
+    bool given = gap->origin == DEA_GIVEN || gap->origin == DEA_OVERRIDE;
+    return given ? dea_finding_add(ctx, DEA_WARNING, gap->place,
+                                   "outer_gap has no effect: the outer end is not free")
+                 : DEA_OK;
+  }
+  if (device->fibre_outer_gap_m < device->fibre_length_m * (1 - touching)) {
     return DEA_OK;
   }
-  return dea_finding_add(
-      ctx, DEA_ERROR, design->fibres.count.place,
-      "%d fibres of %.4g mm width overlap each other at their tips, %.4g mm from "
-      "the centre (stretched); there they may be at most %.4g mm wide, or their "
-      "tips must be at least %.4g mm from the centre",
-      device->fibre_count, 1e3 * w, 1e3 * r_t, 2e3 * r_t * tan(half_angle),
-      1e3 * w / (2 * tan(half_angle)));
+  return dea_finding_add(ctx, DEA_ERROR, gap->place,
+                         "a gap of %.4g mm (stretched) at the frame leaves nothing of fibres that "
+                         "reach %.4g mm from it to their tips",
+                         1e3 * device->fibre_outer_gap_m, 1e3 * device->fibre_length_m);
 }
 
 static dea_status check_fibres(struct dea_context *ctx, const struct dea_design *design,
@@ -115,6 +160,7 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
         "frame of %.4g mm inner radius",
         1e3 * r_t, 1e3 * frame);
   }
+  DEA_TRY(ctx, check_outer_end(ctx, design, device));
   return check_neighbours(ctx, design, device);
 }
 

@@ -1,0 +1,40 @@
+/* Keys of `compute.solid`. */
+#include "design/schema.h"
+
+#include <stddef.h>
+
+#define AT(member) offsetof(struct dea_design_raw, design.compute.solid.member)
+
+// In the order of enum dea_solid_film and enum dea_solid_domain.
+static const char *const films[] = {"solid", "membrane", NULL};
+static const char *const domains[] = {"sector", "disc", NULL};
+
+static const struct dea_field fields[] = {
+    {.key = "film",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(film),
+     .choices = films,
+     .default_text = "solid",
+     .doc = "elements of the film: solid ones, or a membrane for a faster preview",
+     .example = "solid"},
+    {.key = "domain",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(domain),
+     .choices = domains,
+     .default_text = "sector",
+     .doc =
+         "from a fibre's axis halfway to the next, or all of it with motions that break symmetry",
+     .example = "sector"},
+    {.key = "refinement",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(refinement),
+     .unit = "1",
+     .min = 1,
+     .max = 6,
+     .default_text = "1",
+     .doc = "fineness of the mesh: 1 is a preview, each one more halves all sizes in the plane",
+     .example = "1.5"},
+};
+
+const struct dea_record dea_solid_record = {"solid", "mesh of model 3d", fields,
+                                            sizeof fields / sizeof fields[0]};
