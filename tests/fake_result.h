@@ -45,7 +45,7 @@ static inline dea_status fake_add_profiles(struct dea_context *ctx, struct dea_r
                                            const char *model)
 {
   enum { COUNT = 31 };
-  double column[6][COUNT];
+  double column[7][COUNT];
   for (int k = 0; k < 6; k++) {
     double v = 1000.0 * k;
     for (int i = 0; i < COUNT; i++) {
@@ -56,9 +56,10 @@ static inline dea_status fake_add_profiles(struct dea_context *ctx, struct dea_r
       column[3][i] = 1.5 * (1.0 + 4e-9 * v * v * edge);
       column[4][i] = 35.0 - (r < 5e-3 ? 0.6e-6 : 0.2e-6) * v * v;
       column[5][i] = 35.0 - 0.5e-6 * v * v * edge;
+      column[6][i] = 0;
     }
     struct dea_profile profile = {COUNT,     column[0], column[1], column[2],
-                                  column[3], column[4], column[5]};
+                                  column[3], column[4], column[5], column[6]};
     DEA_TRY(ctx, dea_result_add_profile(ctx, result, model, v, &profile));
   }
   return DEA_OK;

@@ -36,13 +36,16 @@ struct dea_path_options {
   size_t max_points;
 };
 
-/* Values along the radius of an axisymmetric answer: arrays [count], lent until the next call. */
+/* Values along the radius, arrays [count] in ascending order of it, lent until the next call. Model
+ * 3d gives them across the diagonal: radius > 0 along a fibre's axis, < 0 halfway between two
+ * fibres, and twice where electrode and bare film or film under and beside a fibre meet. */
 struct dea_profile {
   size_t count;
   const double *radius_m;              // in the stretched flat film
-  const double *displacement_m;        // radial
+  const double *displacement_m;        // radial, outwards
   const double *stretch_r, *stretch_t; // total, from the unstretched film
   const double *tension_r_N_per_m, *tension_t_N_per_m;
+  const double *z_m; // displacement out of the plane, of the film's middle surface
 };
 
 /* What `fields` hands out: all of the device, or the middle surface of its film. */

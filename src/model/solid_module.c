@@ -81,6 +81,12 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
+static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
+{
+  DEA_TRY(ctx, model->type->profile(ctx, model->inner, out));
+  return DEA_OK;
+}
+
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
@@ -103,10 +109,11 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
 
 const struct dea_model_type dea_model_3d = {
     .name = "3d",
-    .long_name = "3D solid (preview: a quarter, coarse)",
+    .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .profile = profile,
     .fields = fields,
     .save = save,
     .load = load,

@@ -6,6 +6,7 @@
 #include "output/store_surface.h"
 #include "result/columns.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -197,7 +198,13 @@ static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea
     return;
   }
   for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-    dea_h5_get_array(h, group, dea_profile_columns[c].key, H5T_NATIVE_DOUBLE, n, columns + c * n);
+    const char *key = dea_profile_columns[c].key;
+    for (size_t i = 0; i < n; i++) {
+      columns[c * n + i] = NAN;
+    }
+    if (c < 6 || dea_h5_has(h, group, key)) { // z came later: older files have none
+      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, columns + c * n);
+    }
   }
   if (h->status == DEA_OK) {
     struct dea_profile profile = {n,
@@ -206,7 +213,8 @@ static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea
                                   columns + 2 * n,
                                   columns + 3 * n,
                                   columns + 4 * n,
-                                  columns + 5 * n};
+                                  columns + 5 * n,
+                                  columns + 6 * n};
     h->status = dea_result_add_profile(h->ctx, result, model, voltage_V, &profile);
   }
   dea_free(h->ctx, columns);

@@ -13,7 +13,8 @@
   X(stretch_t, "1", "1", 1.0, "hoop stretch", "hoop stretch from the unstretched film")            \
   X(tension_r_N_per_m, "N/m", "N/m", 1.0, "radial tension",                                        \
     "radial true stress x current thickness")                                                      \
-  X(tension_t_N_per_m, "N/m", "N/m", 1.0, "hoop tension", "hoop true stress x current thickness")
+  X(tension_t_N_per_m, "N/m", "N/m", 1.0, "hoop tension", "hoop true stress x current thickness")  \
+  X(z_m, "m", "um", 1e6, "z", "displacement out of the plane, positive to the fibres")
 
 #define DEA_COLUMN_ONE(member, si, display, factor, header, meaning) +1
 enum {

@@ -12,7 +12,7 @@ enum {
   PROFILE_ACTIVE = 31,  // samples over the electrode, both ends
   PROFILE_PASSIVE = 90, // from the electrode edge (again) to the frame
   PROFILE_COUNT = PROFILE_ACTIVE + PROFILE_PASSIVE,
-  PROFILE_COLUMNS = 6,
+  PROFILE_COLUMNS = 7,
 };
 
 struct dea_model {
@@ -201,10 +201,11 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
     model->profile[3][i] = at.stretch_t;
     model->profile[4][i] = at.tension_r_N_per_m;
     model->profile[5][i] = at.tension_t_N_per_m;
+    model->profile[6][i] = 0; // it stays flat
   }
   *out = (struct dea_profile){PROFILE_COUNT,     model->profile[0], model->profile[1],
                               model->profile[2], model->profile[3], model->profile[4],
-                              model->profile[5]};
+                              model->profile[5], model->profile[6]};
   return DEA_OK;
 }
 

@@ -62,10 +62,12 @@ static void compressible(const struct dea_layer *layer, const double F[9], const
   }
 }
 
-/* -(k/2) |F_1 x F_2|^2; |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns. */
-static void add_electric(double k, const double F[9], bool tangent, struct dea_point *out)
+/* -(E^2/2) eps(q) q, q = |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns.
+ * With eps = e0 + e1 q^(1/4) its derivative by q is -k/2, k = E^2 (e0 + (5/4) e1 q^(1/4)). */
+static void add_electric(const struct dea_layer *layer, double E, const double F[9], bool tangent,
+                         struct dea_point *out)
 {
-  double c[2][3], m[2][2];
+  double c[2][3], m[2][2], slope[2][3]; // columns, their products, dq/dc / 2
   for (int J = 0; J < 2; J++) {
     for (int i = 0; i < 3; i++) {
       c[J][i] = F[3 * i + J];
@@ -76,15 +78,26 @@ static void add_electric(double k, const double F[9], bool tangent, struct dea_p
       m[J][L] = c[J][0] * c[L][0] + c[J][1] * c[L][1] + c[J][2] * c[L][2];
     }
   }
-  out->W -= 0.5 * k * (m[0][0] * m[1][1] - m[0][1] * m[0][1]);
+  double q = m[0][0] * m[1][1] - m[0][1] * m[0][1], e1 = layer->permittivity_slope_F_per_m;
+  double e0 = layer->permittivity_F_per_m - e1, root = e1 != 0 ? sqrt(sqrt(q)) : 0;
+  double k = E * E * (e0 + 1.25 * e1 * root);
+  double second = e1 != 0 ? -(5.0 / 32) * E * E * e1 * root / q : 0; // d2W/dq2
+  out->W -= 0.5 * E * E * (e0 + e1 * root) * q;
+  for (int J = 0; J < 2; J++) {
+    for (int i = 0; i < 3; i++) {
+      slope[J][i] = m[1 - J][1 - J] * c[J][i] - m[0][1] * c[1 - J][i];
+    }
+  }
   for (int J = 0; J < 2; J++) {
     int O = 1 - J; // the other column
     for (int i = 0; i < 3; i++) {
-      out->P[3 * i + J] -= k * (m[O][O] * c[J][i] - m[0][1] * c[O][i]);
+      out->P[3 * i + J] -= k * slope[J][i];
       double *row = out->A + 9 * (3 * i + J);
       for (int p = 0; p < 3 && tangent; p++) {
         row[3 * p + J] -= k * ((i == p ? m[O][O] : 0) - c[O][i] * c[O][p]);
         row[3 * p + O] -= k * (2 * c[J][i] * c[O][p] - c[O][i] * c[J][p] - (i == p ? m[0][1] : 0));
+        row[3 * p + J] += 4 * second * slope[J][i] * slope[J][p];
+        row[3 * p + O] += 4 * second * slope[J][i] * slope[O][p];
       }
     }
   }
@@ -153,7 +166,7 @@ static dea_status evaluate(const struct dea_layer *layer, const double F[9], con
     }
   }
   if (field_V_per_m != 0 && layer->permittivity_F_per_m > 0) {
-    add_electric(layer->permittivity_F_per_m * field_V_per_m * field_V_per_m, F, tangent, point);
+    add_electric(layer, field_V_per_m, F, tangent, point);
   }
   return DEA_OK;
 }

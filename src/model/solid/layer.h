@@ -4,6 +4,7 @@
  *
  *   W(F G) + p0 (J - 1) + kappa_s/2 (J - 1)^2 - (eps/2) E^2 |F_1 x F_2|^2
  *
+ * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md),
  * and a compressible neo-Hookean solid (fibre) without one. */
 #ifndef DEA_MODEL_SOLID_LAYER_H
 #define DEA_MODEL_SOLID_LAYER_H
@@ -21,9 +22,11 @@ struct dea_layer {
   double pre_stretch[3];       // diagonal of G, det G = 1
   double p0_Pa, kappa_s_Pa;    // dea_layer_relax sets them
   double kappa_Pa;             // bulk modulus of the projected part, of the element
-  double permittivity_F_per_m; // eps, 0: no electric energy
-  double thickness_m;          // h, over which the voltage stands
-  bool relaxed;                // flat elements wrinkle instead of taking pressure (tension.h)
+  double permittivity_F_per_m; // eps of the flat layer, 0: no electric energy
+  /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
+  double permittivity_slope_F_per_m;
+  double thickness_m; // h, over which the voltage stands
+  bool relaxed;       // flat elements wrinkle instead of taking pressure (tension.h)
 };
 
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that

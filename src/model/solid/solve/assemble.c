@@ -296,6 +296,22 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   return status;
 }
 
+dea_status dea_solid_capacitance(struct dea_solid *s, double *capacitance_F)
+{
+  // the energy at fixed displacements is that at 0 V less C V^2/2
+  double thickness = 0, without, with;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    thickness = fmax(thickness, s->active[e] ? s->layers[s->layer[e]].thickness_m : 0);
+  }
+  double V = 50e6 * thickness; // electric and elastic energies of about one size
+  dea_status status = dea_solid_energy(s, s->u, 0, &without);
+  if (status == DEA_OK) {
+    status = dea_solid_energy(s, s->u, V, &with);
+  }
+  *capacitance_F = status == DEA_OK && V > 0 ? 2 * (without - with) / (V * V) : NAN;
+  return status;
+}
+
 dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
                               double pre_stretch, struct dea_solid_extremes *out)
 {
@@ -303,7 +319,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *ma
   *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
   for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
     size_t e = s->own[k];
-    if (s->layers[s->layer[e]].law != NULL) {
+    if (s->layers[s->layer[e]].permittivity_F_per_m > 0) { // the film
       status = extremes_of(s, e, material, pre_stretch, out);
     }
   }

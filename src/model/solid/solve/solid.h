@@ -97,7 +97,10 @@ const double *dea_solid_reaction(const struct dea_solid *solid);
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);
 
-/* Extremes of the film (elements of hyperelastic layers) at the last equilibrium. */
+/* Capacitance between the electrodes at the last equilibrium: charge over voltage. */
+dea_status dea_solid_capacitance(struct dea_solid *solid, double *capacitance_F);
+
+/* Extremes of the film (elements of layers with a permittivity) at the last equilibrium. */
 struct dea_solid_extremes {
   double true_field_V_per_m;  // largest V over the current thickness
   double breakdown_margin;    // smallest; NAN when unknown

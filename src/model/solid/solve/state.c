@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { LAYER_NUMBERS = 9 }; // beside the parameters of the law
+enum { LAYER_NUMBERS = 10 }; // beside the parameters of the law
 
 static size_t layer_count(const struct dea_solid *s)
 {
@@ -23,9 +23,11 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
   size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
   for (size_t i = 0; i < layer_count(s); i++) {
     const struct dea_layer *l = &s->layers[i];
-    const double own[LAYER_NUMBERS] = {
-        l->lame_lambda_Pa, l->lame_mu_Pa, l->pre_stretch[0],       l->pre_stretch[1], l->p0_Pa,
-        l->kappa_s_Pa,     l->kappa_Pa,   l->permittivity_F_per_m, l->thickness_m};
+    const double own[LAYER_NUMBERS] = {l->lame_lambda_Pa, l->lame_mu_Pa,
+                                       l->pre_stretch[0], l->pre_stretch[1],
+                                       l->p0_Pa,          l->kappa_s_Pa,
+                                       l->kappa_Pa,       l->permittivity_F_per_m,
+                                       l->thickness_m,    l->permittivity_slope_F_per_m};
     size_t params = l->law != NULL ? l->law->param_count : 0;
     if (count + LAYER_NUMBERS + params > room) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer layers");

@@ -1,0 +1,107 @@
+#include "model/solid/actuator.h"
+
+#include "model/film.h"
+
+static const double kappa_share = 100; // kappa over the shear modulus
+
+/* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
+static const double incompressible = 0.49;
+
+/* Film or electrode: a law, and the film's pre-stretch. */
+static struct dea_layer stretched(const struct dea_material *material, double pre_stretch)
+{
+  return (struct dea_layer){
+      .law = material->law,
+      .param = material->param,
+      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
+      .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
+  };
+}
+
+/* A part that is bonded free of stress. mu_Pa: memory for the parameter of an incompressible one.
+ */
+static struct dea_layer bonded(double young_modulus_Pa, double poisson_ratio, double *mu_Pa)
+{
+  double E = young_modulus_Pa, nu = poisson_ratio;
+  if (nu < incompressible) {
+    return (struct dea_layer){.lame_mu_Pa = E / (2 * (1 + nu)),
+                              .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  }
+  *mu_Pa = E / 3;
+  return (struct dea_layer){.law = dea_law_find("neo-hookean"),
+                            .param = mu_Pa,
+                            .pre_stretch = {1, 1, 1},
+                            .kappa_Pa = kappa_share * *mu_Pa};
+}
+
+dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_actuator *out)
+{
+  const struct dea_device *d = device;
+  struct dea_film film;
+  *out = (struct dea_actuator){.device = device};
+  DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
+  DEA_TRY(ctx, dea_plate_of_device(ctx, d, &out->plate));
+  struct dea_layer *layers = out->layers;
+  layers[DEA_LAYER_FILM] = stretched(&d->film, d->pre_stretch);
+  layers[DEA_LAYER_FILM].permittivity_F_per_m = DEA_EPSILON_0 * d->film.permittivity.at_rest;
+  layers[DEA_LAYER_FILM].thickness_m = d->film_thickness_m;
+  layers[DEA_LAYER_ELECTRODE] =
+      stretched(film.electrode != NULL ? film.electrode : &d->film, d->pre_stretch);
+  layers[DEA_LAYER_ELECTRODE].thickness_m = out->plate.electrode_thickness;
+  // a glue is taken as incompressible; the design says nothing else of it
+  layers[DEA_LAYER_GLUE] = bonded(d->bond_modulus_Pa, 0.5, &out->glue_mu_Pa);
+  layers[DEA_LAYER_FIBRE] =
+      bonded(d->fibre.young_modulus_Pa, d->fibre.poisson_ratio, &out->fibre_mu_Pa);
+  for (int i = 0; i < DEA_LAYER_COUNT; i++) {
+    bool there = i == DEA_LAYER_FILM || (i == DEA_LAYER_ELECTRODE && film.electrode != NULL) ||
+                 (i > DEA_LAYER_ELECTRODE && d->fibre_count > 0);
+    dea_status status = there ? dea_layer_relax(&layers[i]) : DEA_OK;
+    if (status != DEA_OK) {
+      return dea_fail(ctx, status, "the law '%s' ends before the pre-stretch %.4g",
+                      layers[i].law->name, d->pre_stretch);
+    }
+  }
+  return DEA_OK;
+}
+
+int dea_actuator_layer(const void *self, int region, int sheet)
+{
+  const struct dea_actuator *a = self;
+  bool electrode = (region & DEA_PLATE_ELECTRODE) != 0;
+  switch (sheet) {
+  case DEA_PLATE_FILM:
+    return DEA_LAYER_FILM;
+  case DEA_PLATE_TOP: // beside the electrodes it fills what is under the fibre
+    return electrode                     ? DEA_LAYER_ELECTRODE
+           : a->plate.glue_thickness > 0 ? DEA_LAYER_GLUE
+                                         : DEA_LAYER_FIBRE;
+  case DEA_PLATE_BOTTOM:
+    return DEA_LAYER_ELECTRODE;
+  default:
+    return sheet == DEA_PLATE_GLUE ? DEA_LAYER_GLUE : DEA_LAYER_FIBRE;
+  }
+}
+
+bool dea_actuator_active(const void *self, int region, int sheet)
+{
+  (void)self;
+  return sheet == DEA_PLATE_FILM && (region & DEA_PLATE_ELECTRODE) != 0;
+}
+
+int dea_actuator_held(const void *self, const double X[3])
+{
+  const struct dea_actuator *a = self;
+  return dea_plate_held(&a->plate, X);
+}
+
+bool dea_actuator_frame(const void *self, const double X[3], double Q[9])
+{
+  const struct dea_actuator *a = self;
+  return dea_plate_frame(&a->plate, X, Q);
+}
+
+double dea_actuator_copies(const struct dea_actuator *a)
+{
+  return (double)dea_plate_sectors(&a->plate) / a->plate.sectors;
+}

@@ -1,0 +1,35 @@
+/* A device as a solid: its mesh and what each part of it is made of (docs/theory/mesh.md). */
+#ifndef DEA_MODEL_SOLID_ACTUATOR_H
+#define DEA_MODEL_SOLID_ACTUATOR_H
+
+#include "model/solid/plate.h"
+
+enum { DEA_LAYER_FILM, DEA_LAYER_ELECTRODE, DEA_LAYER_GLUE, DEA_LAYER_FIBRE, DEA_LAYER_COUNT };
+
+/* Stays where it is: layers lend from it. */
+struct dea_actuator {
+  const struct dea_device *device; // lent
+  struct dea_plate plate;
+  struct dea_layer layers[DEA_LAYER_COUNT];
+  double glue_mu_Pa, fibre_mu_Pa; // of those that are incompressible
+};
+
+/* The plate of a device, on the domain and with the refinement that it names. DEA_E_UNSUPPORTED for
+ * a domain that cannot show what the device does. */
+dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_plate *out);
+
+/* Plate and layers. device: lent, outlives the actuator. */
+dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_actuator *out);
+
+/* Callbacks for a solid (solve/solid.h); self: a struct dea_actuator. */
+int dea_actuator_layer(const void *self, int region, int sheet);
+bool dea_actuator_active(const void *self, int region, int sheet);
+int dea_actuator_held(const void *self, const double X[3]);
+bool dea_actuator_frame(const void *self, const double X[3], double Q[9]);
+
+/* How often the domain lies in the whole actuator. */
+double dea_actuator_copies(const struct dea_actuator *actuator);
+
+#endif

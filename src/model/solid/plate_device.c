@@ -1,0 +1,50 @@
+/* From a device to its plate. */
+#include "model/solid/actuator.h"
+
+#include <math.h>
+
+/* Sizes of elements over the electrode radius at refinement 1, which each refinement more halves
+ * (docs/theory/mesh.md has the study that they come from). */
+static const double size_share = 0.26, edge_share = 0.05;
+
+/* Whether the film looks the same from both sides of a plane through a fibre's axis: its own
+ * direction, at the angle gamma to the radius, turns over to -gamma. */
+static bool has_mirror_planes(const struct dea_material *film)
+{
+  return !film->law->anisotropic || fabs(sin(2 * film->fibre_angle_rad)) < 1e-9;
+}
+
+dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device *d,
+                               struct dea_plate *out)
+{
+  double finer = exp2(1 - fmax(1, d->solid_refinement)), a = d->electrode_radius_m;
+  double l = d->pre_stretch;
+  *out = (struct dea_plate){
+      .order = 2,
+      .order_z = 2,
+      .fibres = d->fibre_count,
+      .sectors = 1,
+      .electrode_radius = a,
+      .frame_radius = d->frame_radius_m,
+      .tip_radius = d->fibre_tip_radius_m,
+      .outer_radius = d->frame_radius_m - d->fibre_outer_gap_m,
+      .tip_width = d->fibre_tip_width_m > 0 ? d->fibre_tip_width_m : d->fibre_width_m,
+      .outer_width = d->fibre_width_m,
+      .film_thickness = d->film_thickness_m,
+      .electrode_thickness = d->electrode_thickness_m / (l * l), // they are stretched with the film
+      .glue_thickness = d->bond_thickness_m,
+      .fibre_thickness = d->fibre_thickness_m,
+      .end = d->outer_end == DEA_END_HINGED ? DEA_PLATE_HINGED : DEA_PLATE_CLAMPED,
+      .size = size_share * a * finer,
+      .edge = edge_share * a * finer,
+  };
+  if (d->solid_domain == DEA_DOMAIN_DISC) {
+    out->sectors = dea_plate_sectors(out);
+  } else if (!has_mirror_planes(&d->film)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a film with a direction of its own at %.4g degrees to the radius has no "
+                    "mirror planes: the whole disc is needed (compute.solid.domain: disc)",
+                    d->film.fibre_angle_rad * 180 / acos(-1));
+  }
+  return DEA_OK;
+}
