@@ -87,9 +87,14 @@ static void test_derivatives_of_all_orders(void **state)
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
       const struct dea_layer soft = film(1.5), hard = plastic();
+      struct dea_layer sloped = soft;
+      sloped.permittivity_slope_F_per_m = -0.4 * soft.permittivity_F_per_m;
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
       check_derivatives(&hard);
+      if (order == 2) {
+        check_derivatives(&sloped);
+      }
     }
   }
 }

@@ -43,11 +43,14 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
   DEA_TRY(ctx, dea_plate_of_device(ctx, d, &out->plate));
   struct dea_layer *layers = out->layers;
-  layers[DEA_LAYER_FILM] = stretched(&d->film, d->pre_stretch);
-  layers[DEA_LAYER_FILM].permittivity_F_per_m = DEA_EPSILON_0 * d->film.permittivity.at_rest;
+  double l = d->pre_stretch, slope = d->film.permittivity.slope;
+  layers[DEA_LAYER_FILM] = stretched(&d->film, l);
+  // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
+  layers[DEA_LAYER_FILM].permittivity_F_per_m =
+      DEA_EPSILON_0 * (d->film.permittivity.at_rest + slope * (l - 1));
+  layers[DEA_LAYER_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
   layers[DEA_LAYER_FILM].thickness_m = d->film_thickness_m;
-  layers[DEA_LAYER_ELECTRODE] =
-      stretched(film.electrode != NULL ? film.electrode : &d->film, d->pre_stretch);
+  layers[DEA_LAYER_ELECTRODE] = stretched(film.electrode != NULL ? film.electrode : &d->film, l);
   layers[DEA_LAYER_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
   layers[DEA_LAYER_GLUE] = bonded(d->bond_modulus_Pa, 0.5, &out->glue_mu_Pa);

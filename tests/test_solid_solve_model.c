@@ -1,0 +1,270 @@
+/* Model 3d against the exact disc and against itself: permittivity that depends on stretch,
+ * electrode layers, profile, capacitance; and what fibres of all kinds do. */
+// ctest: solid
+#include "devices.h"
+#include "model/model.h"
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+extern const struct dea_model_type dea_solid_module;
+static const struct dea_model_type *const solid = &dea_solid_module;
+
+static struct dea_device plain(void)
+{
+  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
+  device.solid_refinement = 1;
+  return device;
+}
+
+/* Fibres of the paper's actuator. */
+static struct dea_device star(int fibres)
+{
+  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, fibres);
+  device.fibre.young_modulus_Pa = 2950e6;
+  device.fibre.poisson_ratio = 0.38;
+  device.fibre_width_m = device.fibre_tip_width_m = 2e-3;
+  device.fibre_thickness_m = 100e-6;
+  device.solid_refinement = 1;
+  return device;
+}
+
+static struct dea_load_point solve(const struct dea_model_type *type,
+                                   const struct dea_device *device, double voltage_V)
+{
+  struct dea_model *model;
+  struct dea_load_point point;
+  if (type->create(ctx, device, &model) != DEA_OK ||
+      type->solve(ctx, model, voltage_V, &point) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  type->destroy(ctx, model);
+  assert_int_equal(point.unstable_modes, 0);
+  return point;
+}
+
+/* ---- against the exact disc ---- */
+
+/* The strain of the electrode, which the disc's thickness and the mesh change by half a per cent;
+ * what is tested changes it by much more. */
+static void check_exact(const struct dea_device *device, double least_change)
+{
+  struct dea_device usual = plain();
+  const struct dea_model_type *exact = dea_model_find("axisymmetric");
+  double was = solve(exact, &usual, 3e3).electrode_stretch - 1;
+  struct dea_load_point wanted = solve(exact, device, 3e3), point = solve(solid, device, 3e3);
+  assert_true(fabs((wanted.electrode_stretch - 1) / was - 1) > least_change);
+  assert_close(point.electrode_stretch - 1, wanted.electrode_stretch - 1, 6e-3, 0);
+  assert_close(point.capacitance_F, wanted.capacitance_F, 2e-3, 0);
+  assert_close(point.energy_J, wanted.energy_J, 6e-3, 0);
+}
+
+static void test_permittivity_that_depends_on_stretch(void **state)
+{
+  (void)state;
+  struct dea_device device = plain();
+  device.film.permittivity.slope = -0.6;
+  check_exact(&device, 0.1);
+  device.film.permittivity.slope = 1;
+  check_exact(&device, 0.1);
+}
+
+/* Electrodes pull the disc together at rest (the film takes their force over within a thickness of
+ * the rim, which the exact disc knows nothing of: the difference is as the thickness), and it
+ * grows from there with the voltage. */
+static void test_electrode_layers(void **state)
+{
+  (void)state;
+  const struct dea_model_type *exact = dea_model_find("axisymmetric");
+  double difference[2];
+  for (int i = 0; i < 2; i++) {
+    struct dea_device device = plain();
+    double H0 = i == 0 ? 100e-6 : 50e-6, V = 30e6 * H0;
+    device.film_thickness_unstretched_m = H0;
+    device.film_thickness_m = H0 / 2.25;
+    device.electrode = test_material("neo-hookean", 400e3, 0, 0);
+    device.electrode_thickness_m = H0 / 20;
+    device.solid_refinement = 1 + i;
+    double wanted = solve(exact, &device, 0).electrode_stretch;
+    double rest = solve(solid, &device, 0).electrode_stretch;
+    assert_true(wanted < 0.98);
+    difference[i] = rest - wanted;
+    assert_close(solve(solid, &device, V).electrode_stretch - rest,
+                 solve(exact, &device, V).electrode_stretch - wanted, 6e-3, 0);
+  }
+  assert_close(difference[0], 0, 0, 6e-4);
+  assert_close(difference[1], 0.5 * difference[0], 0.1, 0);
+}
+
+/* Displacement along the ray, from the exact disc's table. */
+static double exact_at(const struct dea_profile *profile, const double *column, double radius_m)
+{
+  size_t i = 1;
+  while (i + 1 < profile->count && profile->radius_m[i] < radius_m) {
+    i++;
+  }
+  double from = profile->radius_m[i - 1], share = (radius_m - from) / (profile->radius_m[i] - from);
+  return column[i - 1] + share * (column[i] - column[i - 1]);
+}
+
+static void test_profile(void **state)
+{
+  (void)state;
+  const struct dea_model_type *exact = dea_model_find("axisymmetric");
+  struct dea_device device = plain();
+  struct dea_model *model, *reference;
+  struct dea_load_point point;
+  struct dea_profile wanted, profile;
+  assert_int_equal(exact->create(ctx, &device, &reference), DEA_OK);
+  assert_int_equal(exact->solve(ctx, reference, 5e3, &point), DEA_OK);
+  assert_int_equal(exact->profile(ctx, reference, &wanted), DEA_OK);
+  assert_int_equal(solid->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(solid->solve(ctx, model, 5e3, &point), DEA_OK);
+  assert_int_equal(solid->profile(ctx, model, &profile), DEA_OK);
+  assert_int_equal(solid->profile(ctx, model, &profile), DEA_OK);
+  assert_close(profile.radius_m[0], -15e-3, 1e-9, 0);
+  assert_close(profile.radius_m[profile.count - 1], 15e-3, 1e-9, 0);
+  size_t jumps = 0;
+  for (size_t i = 0; i < profile.count; i++) {
+    double r = fabs(profile.radius_m[i]);
+    bool jump = i > 0 && profile.radius_m[i] == profile.radius_m[i - 1];
+    assert_true(i == 0 || profile.radius_m[i] >= profile.radius_m[i - 1]);
+    if (jump) { // from the inner part to the outer one: the film is stretched more inside
+      jumps++;
+      assert_true((profile.stretch_r[i] < profile.stretch_r[i - 1]) == (profile.radius_m[i] > 0));
+    }
+    assert_close(profile.z_m[i], 0, 0, 1e-9);
+    if (fabs(r / device.electrode_radius_m - 1) > 0.15) {
+      assert_close(profile.displacement_m[i], exact_at(&wanted, wanted.displacement_m, r), 0.01,
+                   2e-6);
+      assert_close(profile.stretch_r[i], exact_at(&wanted, wanted.stretch_r, r), 0.006, 0);
+      assert_close(profile.stretch_t[i], exact_at(&wanted, wanted.stretch_t, r), 0.006, 0);
+      assert_close(profile.tension_r_N_per_m[i], exact_at(&wanted, wanted.tension_r_N_per_m, r),
+                   0.02, 0);
+      assert_close(profile.tension_t_N_per_m[i], exact_at(&wanted, wanted.tension_t_N_per_m, r),
+                   0.02, 0);
+    }
+  }
+  assert_int_equal(jumps, 2);
+  solid->destroy(ctx, model);
+  exact->destroy(ctx, reference);
+}
+
+/* ---- against itself ---- */
+
+/* Of the whole actuator on both domains: at rest eps A/h. */
+static void test_capacitance_of_the_whole(void **state)
+{
+  (void)state;
+  struct dea_device device = plain();
+  double h = 100e-6 / 2.25, exact = 2.8 * DEA_EPSILON_0 * acos(-1) * 3.75e-3 * 3.75e-3 / h;
+  assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
+  device.solid_domain = DEA_DOMAIN_DISC;
+  assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
+}
+
+/* The charge is minus the derivative of the energy by the voltage. */
+static void test_charge(void **state)
+{
+  (void)state;
+  struct dea_device device = star(4);
+  struct dea_model *model;
+  struct dea_load_point at, up;
+  device.film.permittivity.slope = -0.28;
+  assert_int_equal(solid->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(solid->solve(ctx, model, 2e3, &at), DEA_OK);
+  assert_int_equal(solid->solve(ctx, model, 2.02e3, &up), DEA_OK);
+  double charge = 0.5 * (at.capacitance_F * 2e3 + up.capacitance_F * 2.02e3);
+  assert_close(-(up.energy_J - at.energy_J) / 20, charge, 1e-5, 0);
+  solid->destroy(ctx, model);
+}
+
+/* ---- fibres ---- */
+
+/* The more fibres hold the electrode, the less it grows between them; all bend down. */
+static void test_number_of_fibres(void **state)
+{
+  (void)state;
+  static const int fibres[] = {1, 3, 6};
+  double before = 1e3;
+  for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
+    struct dea_device device = star(fibres[i]);
+    struct dea_load_point point = solve(solid, &device, 2e3);
+    assert_true(point.electrode_edge_u_m < before && point.electrode_edge_u_m > 1e-5);
+    assert_true(point.fibre_tip_z_m < -0.3e-6);
+    assert_true(fibres[i] == 1 || point.centre_z_m < -0.3e-6);
+    before = point.electrode_edge_u_m;
+  }
+}
+
+/* A fibre over the electrode holds it more, and so do stiff electrodes; one that ends before it
+ * less, and so do a narrow tip, a free end and glue. A hinge lies on the side of the film, whose
+ * pull then bends the fibre less. */
+static void test_kinds_of_fibres(void **state)
+{
+  (void)state;
+  struct dea_device device = star(4);
+  struct dea_load_point usual = solve(solid, &device, 2e3);
+  double edge = usual.electrode_edge_u_m;
+
+  device.fibre_tip_radius_m -= 0.75e-3;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m < 0.95 * edge);
+  device.electrode = test_material("neo-hookean", 400e3, 0, 0); // under the fibre too
+  device.electrode_thickness_m = 5e-6;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m < 0.85 * edge);
+
+  device = star(4);
+  device.fibre_tip_radius_m += 0.75e-3;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
+
+  device = star(4);
+  device.fibre_tip_width_m = 0.5e-3;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
+
+  device = star(4);
+  device.outer_end = DEA_END_HINGED;
+  struct dea_load_point hinged = solve(solid, &device, 2e3);
+  assert_true(hinged.fibre_tip_z_m > 0.9 * usual.fibre_tip_z_m && hinged.fibre_tip_z_m < 0);
+  assert_close(hinged.electrode_edge_u_m, edge, 0.02, 0);
+
+  device.outer_end = DEA_END_FREE;
+  device.fibre_outer_gap_m = 1e-3;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
+
+  device = star(4);
+  device.bond_thickness_m = 50e-6;
+  device.bond_modulus_Pa = 1e6;
+  assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.005 * edge);
+}
+
+static void test_what_it_refuses(void **state)
+{
+  (void)state;
+  struct dea_device device = plain();
+  struct dea_model *model;
+  device.solid_film = DEA_FILM_MEMBRANE;
+  assert_int_equal(solid->create(ctx, &device, &model), DEA_E_UNSUPPORTED);
+  assert_null(model);
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_permittivity_that_depends_on_stretch),
+      cmocka_unit_test(test_electrode_layers),
+      cmocka_unit_test(test_profile),
+      cmocka_unit_test(test_capacitance_of_the_whole),
+      cmocka_unit_test(test_charge),
+      cmocka_unit_test(test_number_of_fibres),
+      cmocka_unit_test(test_kinds_of_fibres),
+      cmocka_unit_test(test_what_it_refuses),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, tear_down);
+}
