@@ -81,6 +81,13 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
+static dea_status press(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
+{
+  DEA_TRY(ctx, model->type->press(ctx, model->inner, probe, depth_m, out));
+  return DEA_OK;
+}
+
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
 {
   DEA_TRY(ctx, model->type->profile(ctx, model->inner, out));
@@ -113,6 +120,7 @@ const struct dea_model_type dea_model_3d = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .press = press,
     .profile = profile,
     .fields = fields,
     .save = save,

@@ -4,6 +4,7 @@
 #include "model/solid/actuator.h"
 #include "model/solid/line_profile.h"
 #include "model/solid/solve/fields.h"
+#include "model/solid/solve/press.h"
 #include "model/solid/solve/state.h"
 
 #include <math.h>
@@ -19,7 +20,8 @@ struct dea_model {
   size_t tip, centre, between; // nodes that are reported
   double voltage_V, rest_energy_J;
   struct dea_solid_report report;
-  double *profile; // what the last one lends from
+  double *profile;         // what the last one lends from
+  struct dea_press *press; // NULL: no probe
 };
 
 static size_t nearest_node(const struct dea_grid *grid, double x, double y, double z)
@@ -92,6 +94,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
     dea_solid_destroy(ctx, model->solid);
+    dea_press_destroy(ctx, model->press);
     dea_grid_destroy(ctx, model->grid);
     dea_free(ctx, model->profile);
     dea_free(ctx, model);
@@ -135,6 +138,10 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   double copies = dea_actuator_copies(&model->actuator);
   out->energy_J = copies * (model->report.energy_J - model->rest_energy_J);
   out->capacitance_F = copies * capacitance_F;
+  if (model->press != NULL) {
+    out->tip_depth_m = model->press->depth_m;
+    out->force_N = dea_press_force(model->press, u);
+  }
   out->unstable_modes = model->report.unstable_modes;
   out->stable = out->unstable_modes == 0;
   return DEA_OK;
@@ -173,6 +180,26 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
       return stopped(ctx, model, next, status);
     }
     model->voltage_V = next;
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  return DEA_OK;
+}
+
+static dea_status press(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
+{
+  if (model->press == NULL) {
+    DEA_TRY(ctx, dea_press_create(ctx, &model->actuator, model->grid, model->solid, probe,
+                                  &model->press));
+  }
+  dea_status status =
+      dea_press_move(ctx, model->press, model->solid, model->voltage_V, depth_m, &model->report);
+  if (status != DEA_OK) {
+    char why[200];
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    return dea_fail(ctx, status,
+                    "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
+                    1e3 * model->press->depth_m, 1e3 * depth_m, why);
   }
   DEA_TRY(ctx, report(ctx, model, out));
   return DEA_OK;
@@ -233,6 +260,7 @@ const struct dea_model_type dea_solid_module = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .press = press,
     .profile = profile,
     .fields = fields,
     .save = save,

@@ -1,0 +1,33 @@
+/* A rigid probe against the middle of the actuator, as study "force" presses it. */
+#ifndef DEA_MODEL_SOLID_SOLVE_PRESS_H
+#define DEA_MODEL_SOLID_SOLVE_PRESS_H
+
+#include "model/model.h"
+#include "model/solid/actuator.h"
+#include "model/solid/loads.h"
+#include "model/solid/solve/solid.h"
+
+struct dea_press {
+  struct dea_surface *surface;
+  struct dea_contact *contact;
+  bool from_fibre_side;
+  double touch_z_m; // of the tip's place when it touches the flat film
+  double depth_m;   // where it is
+  double copies;    // of the domain in the actuator
+};
+
+/* Puts the probe just out of touch and adds it to the solid. The solid must be destroyed first. */
+dea_status dea_press_create(struct dea_context *ctx, const struct dea_actuator *actuator,
+                            const struct dea_grid *grid, struct dea_solid *solid,
+                            const struct dea_probe *probe, struct dea_press **out);
+void dea_press_destroy(struct dea_context *ctx, struct dea_press *press);
+
+/* Brings it to a depth in steps, at the voltage given. It stays where it came to when a step fails.
+ */
+dea_status dea_press_move(struct dea_context *ctx, struct dea_press *press, struct dea_solid *solid,
+                          double voltage_V, double depth_m, struct dea_solid_report *report);
+
+/* Force of the whole actuator on the probe, away from the film [N]. u: displacements. */
+double dea_press_force(const struct dea_press *press, const double *u);
+
+#endif
