@@ -11,7 +11,7 @@
 /* Tests may run as root, and on fewer cores than ranks, beside others. */
 #define MPIRUN                                                                                     \
   "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 120 "                         \
-  "mpirun --oversubscribe --mca mpi_yield_when_idle 1 "
+  "mpirun --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "
 
 static struct dea_context *ctx;
 static const char *program;
@@ -38,6 +38,14 @@ static int quarter_held(const void *self, const double X[3])
     return 1 | 2 | 4;
   }
   return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
+}
+
+/* Of a coupled field: ground below, voltage on top. self: thickness of the film. */
+static bool faces(const void *self, const double X[3], double *share)
+{
+  const double *h = self;
+  *share = X[2] > 0 ? 1 : 0;
+  return hypot(X[0], X[1]) < a_m * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * *h) < 1e-6 * *h;
 }
 
 /* What is compared: sums over all displacements, the largest of them, energy, unstable modes. */
@@ -71,27 +79,37 @@ static void take_samples(struct dea_solid *solid, const struct dea_grid *grid, d
   }
 }
 
-/* A quarter with `fibres` in steps of 1 kV; inverted: with one element turned inside out. */
-static struct answer solve(int fibres, double pre_stretch, int highest_kV, bool inverted)
+struct test_case {
+  int fibres;
+  double pre_stretch;
+  int highest_kV; // in steps of 1 kV
+  enum dea_solid_field_kind field;
+  bool inverted; // one element turned inside out
+};
+
+static struct answer solve(const struct test_case *k)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  const double h = 100e-6 / (pre_stretch * pre_stretch), E = 2950e6, nu = 0.38;
+  const double l = k->pre_stretch, h = 100e-6 / (l * l), E = 2950e6, nu = 0.38;
   struct dea_layer layers[] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
-       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
+       .pre_stretch = {l, l, 1 / (l * l)},
        .kappa_Pa = 4e7,
        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
        .thickness_m = h},
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
-  const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           fibres,
+  const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           k->fibres,
                                       2e-3, 100e-6, .fine = 2, .across = 1, .edge = 4e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
                                             .layers = layers,
                                             .layer_of = sheet_layer,
                                             .active = film_inside,
-                                            .held = quarter_held};
+                                            .held = quarter_held,
+                                            .field = k->field,
+                                            .electrode = faces,
+                                            .self = &h};
   struct dea_grid *grid = NULL;
   struct dea_solid *solid = NULL;
   struct dea_solid_report report = {0};
@@ -99,10 +117,10 @@ static struct answer solve(int fibres, double pre_stretch, int highest_kV, bool 
   dea_status status = dea_layer_relax(&layers[0]);
   status = status == DEA_OK ? dea_grid_quarter(ctx, &quarter, &grid) : status;
   status = status == DEA_OK ? dea_solid_create(ctx, grid, &options, &solid) : status;
-  if (status == DEA_OK && inverted) {
+  if (status == DEA_OK && k->inverted) {
     dea_solid_displacement(solid)[3 * (grid->node_count - 1)] = 0.1;
   }
-  for (int kV = 0; kV <= highest_kV && status == DEA_OK; kV++) {
+  for (int kV = 0; kV <= k->highest_kV && status == DEA_OK; kV++) {
     status = dea_solid_solve(ctx, solid, 1e3 * kV, &report);
   }
   answer.status = (int)status;
@@ -116,19 +134,26 @@ static struct answer solve(int fibres, double pre_stretch, int highest_kV, bool 
 }
 
 /* A film without pre-stretch is slack under voltage: flat, it has many unstable modes. */
-enum { DISC, FOUR_FIBRES, SLACK, INVERTED, CASES };
+enum { DISC, FOUR_FIBRES, SLACK, COUPLED, INVERTED, CASES };
 static struct answer solve_case(int k)
 {
-  return solve(k == FOUR_FIBRES ? 4 : 0, k == SLACK ? 1 : 1.5, k == SLACK ? 1 : 3, k == INVERTED);
+  static const struct test_case cases[CASES] = {
+      [DISC] = {0, 1.5, 2, DEA_SOLID_FIELD_THIN, false},
+      [FOUR_FIBRES] = {4, 1.5, 2, DEA_SOLID_FIELD_THIN, false},
+      [SLACK] = {0, 1, 1, DEA_SOLID_FIELD_THIN, false},
+      [COUPLED] = {4, 1.5, 1, DEA_SOLID_FIELD_COUPLED, false},
+      [INVERTED] = {0, 1.5, 0, DEA_SOLID_FIELD_THIN, true},
+  };
+  return solve(&cases[k]);
 }
 
-/* As a rank: all solve, the first prints. */
-static int run_as_rank(void)
+/* As a rank: all solve the first cases, the first rank prints. */
+static int run_as_rank(int cases)
 {
   if (dea_context_create(NULL, &ctx) != DEA_OK || dea_solid_start(ctx) != DEA_OK) {
     return 1;
   }
-  for (int k = 0; k < CASES; k++) {
+  for (int k = 0; k < cases; k++) {
     struct answer answer = solve_case(k);
     if (dea_solid_rank() == 0) {
       printf("%d %d", answer.status, answer.modes);
@@ -148,13 +173,14 @@ static bool have_mpirun(void)
   return system("mpirun --version >/dev/null 2>&1") == 0;
 }
 
-static void read_answers(int ranks, struct answer answers[CASES])
+/* before: what stands before the program on its command line. */
+static void read_answers(const char *before, int cases, struct answer *answers)
 {
   char line[1200];
-  snprintf(line, sizeof line, MPIRUN "-n %d '%s' ranks", ranks, program);
+  snprintf(line, sizeof line, "%s '%s' ranks %d", before, program, cases);
   FILE *pipe = popen(line, "r");
   assert_non_null(pipe);
-  for (int k = 0; k < CASES; k++) {
+  for (int k = 0; k < cases; k++) {
     assert_int_equal(fscanf(pipe, "%d %d", &answers[k].status, &answers[k].modes), 2);
     for (int i = 0; i < SAMPLES; i++) {
       assert_int_equal(fscanf(pipe, "%lf", &answers[k].samples[i]), 1);
@@ -165,39 +191,49 @@ static void read_answers(int ranks, struct answer answers[CASES])
   assert_int_equal(pclose(pipe), 0);
 }
 
+static void compare(const struct answer *many, const struct answer *one, int cases)
+{
+  for (int k = 0; k < cases; k++) {
+    assert_int_equal(many[k].status, one[k].status);
+    assert_int_equal(many[k].modes, one[k].modes);
+    for (int i = 0; i < SAMPLES && one[k].status == DEA_OK; i++) {
+      if (fabs(many[k].samples[i] - one[k].samples[i]) > 1e-7 * fabs(one[k].samples[i]) + 1e-13) {
+        fail_msg("case %d, %s: %.10g, not %.10g", k, sample_name[i], many[k].samples[i],
+                 one[k].samples[i]);
+      }
+    }
+  }
+}
+
 /* Same displacements, energy, extremes and inertia to what the solver leaves, and where one rank
  * fails all do. */
 static void test_ranks_agree(void **state)
 {
   (void)state;
-  struct answer one[CASES], many[2][CASES];
+  struct answer one[CASES], two[CASES], three[1];
   if (!have_mpirun()) {
     skip();
   }
-  read_answers(2, many[0]); // before MPI starts here, which mpirun would inherit
-  read_answers(3, many[1]);
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  assert_int_equal(dea_solid_start(ctx), DEA_OK);
-  for (int k = 0; k < CASES; k++) {
-    one[k] = solve_case(k);
-    for (int ranks = 0; ranks < 2; ranks++) {
-      const struct answer *other = &many[ranks][k];
-      assert_int_equal(other->status, one[k].status);
-      assert_int_equal(other->modes, one[k].modes);
-      for (int i = 0; i < SAMPLES && one[k].status == DEA_OK; i++) {
-        if (fabs(other->samples[i] - one[k].samples[i]) > 1e-7 * fabs(one[k].samples[i]) + 1e-13) {
-          fail_msg("case %d, %d ranks, %s: %.10g, not %.10g", k, ranks + 2, sample_name[i],
-                   other->samples[i], one[k].samples[i]);
-        }
-      }
-    }
-  }
+  read_answers("", CASES, one);
+  read_answers(MPIRUN "-n 2", CASES, two);
+  read_answers(MPIRUN "-n 3", 1, three);
+  compare(two, one, CASES);
+  compare(three, one, 1);
   assert_int_equal(one[DISC].status, DEA_OK);
   assert_true(one[FOUR_FIBRES].samples[5] > 1e-6); // it has gone down
   assert_true(one[SLACK].modes > 1);
+  assert_int_equal(one[COUPLED].status, DEA_OK);
+  assert_int_equal(one[COUPLED].modes, 0);
   assert_int_equal(one[INVERTED].status, DEA_E_DOMAIN);
-  dea_solid_stop();
-  dea_context_destroy(ctx);
+}
+
+/* A factor that finds no room is a failure, not a solution of something else. */
+static void test_no_room_for_the_factor(void **state)
+{
+  (void)state;
+  struct answer one[1];
+  read_answers("PETSC_OPTIONS='-mat_mumps_icntl_14 -60'", 1, one);
+  assert_int_equal(one[0].status, DEA_E_MEMORY);
 }
 
 /* ---- the command ---- */
@@ -245,12 +281,13 @@ static void test_command_on_ranks(void **state)
 int main(int argc, char **argv)
 {
   program = argv[0];
-  if (argc > 1 && strcmp(argv[1], "ranks") == 0) {
-    return run_as_rank();
+  if (argc > 2 && strcmp(argv[1], "ranks") == 0) {
+    return run_as_rank(atoi(argv[2]));
   }
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ranks_agree),
+      cmocka_unit_test(test_no_room_for_the_factor),
       cmocka_unit_test(test_command_on_ranks),
-      cmocka_unit_test(test_ranks_agree), // starts MPI, and nothing under mpirun starts after it
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

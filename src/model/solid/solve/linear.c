@@ -3,25 +3,48 @@
 
 #include <string.h>
 
-dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
+/* Analysis of A's pattern. room_percent: for pivots that come later than planned. */
+static dea_status analyse(struct dea_context *ctx, Mat A, PetscInt room_percent, Mat *factor)
 {
   MatFactorInfo info;
   MatFactorInfoInitialize(&info);
-  if (*factor == NULL) {
-    DEA_TRY(ctx, dea_solid_petsc(ctx, MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor),
-                                 "MatGetFactor"));
-    MatMumpsSetIcntl(*factor, 24, 1); // null pivots and
-    MatMumpsSetIcntl(*factor, 13, 1); // no parallel root, so that the inertia is counted
-    dea_status status = dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info),
-                                        "MatCholeskyFactorSymbolic");
-    if (status != DEA_OK) {
-      MatDestroy(factor); // sets it to NULL: not analysed
-      return status;
-    }
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor),
+                               "MatGetFactor"));
+  MatMumpsSetIcntl(*factor, 24, 1); // null pivots and
+  MatMumpsSetIcntl(*factor, 13, 1); // no parallel root, so that the inertia is counted
+  MatMumpsSetIcntl(*factor, 14, room_percent);
+  dea_status status = dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info),
+                                      "MatCholeskyFactorSymbolic");
+  if (status != DEA_OK) {
+    MatDestroy(factor); // sets it to NULL: not analysed
   }
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorNumeric(*factor, A, &info),
-                               "MatCholeskyFactorNumeric"));
-  return DEA_OK;
+  return status;
+}
+
+dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
+{
+  enum { ROOM = 25, ROOM_MAX = 400 };
+  MatFactorInfo info;
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  MatFactorInfoInitialize(&info);
+  for (PetscInt room = ROOM; room <= ROOM_MAX; room *= 2) {
+    if (*factor == NULL) {
+      DEA_TRY(ctx, analyse(ctx, A, room, factor));
+    }
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatCholeskyFactorNumeric(*factor, A, &info),
+                                 "MatCholeskyFactorNumeric"));
+    DEA_TRY(ctx, dea_solid_petsc(ctx, MatFactorGetError(*factor, &error), "MatFactorGetError"));
+    if (error != MAT_FACTOR_OUTMEMORY) {
+      break;
+    }
+    MatDestroy(factor); // PETSc takes no second attempt with it
+  }
+  if (error == MAT_FACTOR_OUTMEMORY) {
+    return dea_fail(ctx, DEA_E_MEMORY, "the factors of the tangent find no room in memory");
+  }
+  return error == MAT_FACTOR_NOERROR
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the tangent cannot be factorised");
 }
 
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
