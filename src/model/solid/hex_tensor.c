@@ -14,30 +14,37 @@ enum {
   SUMS_MAX = DEA_HEX_GAUSS_MAX * DEA_HEX_COLUMNS_MAX,
 };
 
-/* The loop where the time goes: four terms at once; those beyond the last are zero times one. */
+/* One row of dea_hex_combine, where the time goes: four terms at once; those beyond the last are
+ * zero times one. (Static: clang 14 gives clones with external linkage a name of its own.) */
 DEA_CLONES
+static void combine_row(size_t terms, const double *table, size_t width, const double *restrict in,
+                        double *restrict out)
+{
+  for (size_t k = 0; k < terms; k += 4) {
+    double f[4];
+    const double *at[4];
+    for (size_t i = 0; i < 4; i++) {
+      bool used = k + i < terms;
+      f[i] = used ? table[k + i] : 0;
+      at[i] = in + (used ? k + i : k) * width;
+    }
+    if (k == 0) {
+      for (size_t x = 0; x < width; x++) {
+        out[x] = f[0] * at[0][x] + f[1] * at[1][x] + f[2] * at[2][x] + f[3] * at[3][x];
+      }
+    } else {
+      for (size_t x = 0; x < width; x++) {
+        out[x] += f[0] * at[0][x] + f[1] * at[1][x] + f[2] * at[2][x] + f[3] * at[3][x];
+      }
+    }
+  }
+}
+
 void dea_hex_combine(size_t rows, size_t terms, const double *table, size_t table_width,
                      size_t width, const double *restrict in, double *restrict out)
 {
-  for (size_t r = 0; r < rows; r++, table += table_width, out += width) {
-    for (size_t k = 0; k < terms; k += 4) {
-      double f[4];
-      const double *at[4];
-      for (size_t i = 0; i < 4; i++) {
-        bool used = k + i < terms;
-        f[i] = used ? table[k + i] : 0;
-        at[i] = in + (used ? k + i : k) * width;
-      }
-      if (k == 0) {
-        for (size_t x = 0; x < width; x++) {
-          out[x] = f[0] * at[0][x] + f[1] * at[1][x] + f[2] * at[2][x] + f[3] * at[3][x];
-        }
-      } else {
-        for (size_t x = 0; x < width; x++) {
-          out[x] += f[0] * at[0][x] + f[1] * at[1][x] + f[2] * at[2][x] + f[3] * at[3][x];
-        }
-      }
-    }
+  for (size_t r = 0; r < rows; r++) {
+    combine_row(terms, table + r * table_width, width, in, out + r * width);
   }
 }
 
