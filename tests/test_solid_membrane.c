@@ -2,7 +2,7 @@
 #include "complex_material.h"
 #include "failing_allocator.h"
 #include "membrane_samples.h"
-#include "model/solid/grid.h"
+#include "model/solid/loads.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
@@ -365,6 +365,52 @@ static void test_membrane_with_fibres(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+static double areal_density(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 0.05;
+}
+
+/* Loads on a membrane: it is its own upper and lower face and has no sides; weight by mass per
+ * area.
+ */
+static void test_faces_and_weight(void **state)
+{
+  (void)state;
+  const double b = 15e-3, area = 0.25 * acos(-1) * b * b, free_fall[3] = {0, 0, -9.81};
+  const struct dea_quarter quarter = {2, 1, 3.75e-3, b, 1e-4, .fine = 3, .membrane = true};
+  struct dea_hex_shape solid;
+  struct dea_grid *grid;
+  struct dea_surface *surface;
+  assert_int_equal(dea_hex_shape_create(2, 1, &solid), DEA_OK);
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  for (int side = DEA_SIDE_BOTTOM; side <= DEA_SIDE_TOP; side++) {
+    assert_int_equal(
+        dea_surface_create(ctx, grid, &solid, (enum dea_side)side, NULL, NULL, &surface), DEA_OK);
+    double *force = calloc(3 * grid->node_count, sizeof *force), sum = 0;
+    struct dea_face_shape face;
+    double X[3 * DEA_FACE_NODES_MAX], normal[3];
+    assert_non_null(force);
+    assert_close(dea_surface_area(surface), area, 2e-4, 0);
+    dea_face_shape_create(surface, DEA_FACE_GAUSS, &face);
+    dea_face_gather(surface, 0, grid->X, X);
+    dea_face_normal(&face, 0, X, normal);
+    assert_true(side == DEA_SIDE_TOP ? normal[2] > 0 : normal[2] < 0);
+    dea_load_gravity(grid, &solid, areal_density, NULL, free_fall, force);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      sum += force[3 * n + 2];
+    }
+    assert_close(sum, -9.81 * 0.05 * dea_surface_area(surface), 1e-9, 0);
+    free(force);
+    dea_surface_destroy(ctx, surface);
+  }
+  assert_int_equal(dea_surface_create(ctx, grid, &solid, DEA_SIDE_FIRST_LOW, NULL, NULL, &surface),
+                   DEA_E_ARGUMENT);
+  dea_grid_destroy(ctx, grid);
+}
+
 static void make_grid(struct dea_context *failing)
 {
   const struct dea_quarter quarter = {
@@ -393,6 +439,7 @@ int main(void)
       cmocka_unit_test(test_bad_elements),
       cmocka_unit_test(test_patch_and_area),
       cmocka_unit_test(test_membrane_with_fibres),
+      cmocka_unit_test(test_faces_and_weight),
       cmocka_unit_test(test_each_allocation_of_a_mesh),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -25,6 +25,29 @@ static void add_body_force(const struct dea_hex_shape *s, const double *X, const
   }
 }
 
+/* The same of a flat element, f per area. The basis in the plane is that of the hexahedron summed
+ * through its levels; its rule has the weight 2 through the thickness. */
+static void add_sheet_force(const struct dea_hex_shape *s, const double *X, const double f[3],
+                            const int *nodes, double *force)
+{
+  int per = (s->order + 1) * (s->order + 1);
+  for (int q = 0; q < s->gauss; q++) {
+    double map[4] = {0}, value[DEA_FACE_NODES_MAX] = {0};
+    for (int n = 0; n < s->nodes; n++) {
+      value[n % per] += s->value[q][n];
+      for (int a = 0; a < 4; a++) {
+        map[a] += X[3 * nodes[n % per] + a / 2] * s->slope[q][a % 2][n];
+      }
+    }
+    double area = 0.5 * s->weight[q] * (map[0] * map[3] - map[1] * map[2]);
+    for (int n = 0; n < per; n++) {
+      for (int i = 0; i < 3; i++) {
+        force[3 * nodes[n] + i] += f[i] * area * value[n];
+      }
+    }
+  }
+}
+
 void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *shape,
                       double (*density_kg_per_m3)(const void *self, int region, int sheet),
                       const void *self, const double acceleration_m_per_s2[3], double *force)
@@ -34,7 +57,8 @@ void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *s
     for (int i = 0; i < 3; i++) {
       f[i] = density * acceleration_m_per_s2[i];
     }
-    add_body_force(shape, grid->X, f, grid->nodes + e * DEA_HEX_NODES_MAX, force);
+    (grid->flat[e] ? add_sheet_force : add_body_force)(shape, grid->X, f,
+                                                       grid->nodes + e * DEA_HEX_NODES_MAX, force);
   }
 }
 

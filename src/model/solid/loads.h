@@ -11,7 +11,7 @@
 /* ---- dead loads; force: [node_count][3] [N], added to ---- */
 
 /* Weight. shape: of the grid's elements; density of each region and sheet, in the stretched flat
- * film; acceleration: of free fall. */
+ * film, of a flat sheet its mass per area [kg/m^2]; acceleration: of free fall. */
 void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *shape,
                       double (*density_kg_per_m3)(const void *self, int region, int sheet),
                       const void *self, const double acceleration_m_per_s2[3], double *force);

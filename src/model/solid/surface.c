@@ -59,9 +59,13 @@ dea_status dea_surface_create(struct dea_context *ctx, const struct dea_grid *gr
   s->face_nodes = (s->order[0] + 1) * (s->order[1] + 1);
   for (size_t e = 0; e < grid->element_count; e++) {
     double middle[3];
+    if (grid->flat[e] && side != DEA_SIDE_BOTTOM && side != DEA_SIDE_TOP) {
+      continue;
+    }
     for (int n = 0; n < s->face_nodes; n++) {
+      int node = grid->flat[e] ? local[n] % s->face_nodes : local[n];
       s->nodes[s->face_count * DEA_FACE_NODES_MAX + (size_t)n] =
-          grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)local[n]];
+          grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)node];
     }
     middle_of(s, s->face_count, middle);
     if (select == NULL || select(self, grid->region[e], grid->sheet[e], middle)) {
