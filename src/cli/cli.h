@@ -29,6 +29,7 @@ struct dea_command {
 #define DEA_COMMAND_LIST(X)                                                                        \
   X(cmd_run)                                                                                       \
   X(cmd_check)                                                                                     \
+  X(cmd_mesh)                                                                                      \
   X(cmd_schema)                                                                                    \
   X(cmd_materials)                                                                                 \
   X(cmd_plot)                                                                                      \

@@ -334,9 +334,7 @@ dea_status dea_plate_create(struct dea_context *ctx, const struct dea_plate *pla
 
 /* ---- supports ---- */
 
-/* Which of the two straight edges of the domain, at the angles 0 and dea_plate_angle, a node is on,
- * as bits. */
-static int edges_of(const struct dea_plate *p, const double X[3])
+int dea_plate_edges(const struct dea_plate *p, const double X[3])
 {
   double close = same * p->frame_radius, beta = dea_plate_angle(p);
   if (p->sectors == dea_plate_sectors(p)) {
@@ -365,7 +363,7 @@ int dea_plate_held(const struct dea_plate *p, const double X[3])
   }
   double beta = dea_plate_angle(p);
   bool even = fmod(floor(beta / (0.5 * pi) + 0.5), 2) == 0; // the last plane is y = 0 as well
-  int edges = edges_of(p, X), last = !is_global(beta) ? 1 : even ? 2 : 1;
+  int edges = dea_plate_edges(p, X), last = !is_global(beta) ? 1 : even ? 2 : 1;
   if (edges == 3) { // the centre
     return is_global(beta) && even ? 2 : 1 | 2;
   }
@@ -375,7 +373,7 @@ int dea_plate_held(const struct dea_plate *p, const double X[3])
 bool dea_plate_frame(const struct dea_plate *p, const double X[3], double Q[9])
 {
   double beta = dea_plate_angle(p), c = cos(beta), s = sin(beta);
-  if (edges_of(p, X) != 2 || is_global(beta)) {
+  if (dea_plate_edges(p, X) != 2 || is_global(beta)) {
     return false;
   }
   const double axes[9] = {-s, c, 0, -c, -s, 0, 0, 0, 1};

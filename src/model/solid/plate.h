@@ -54,6 +54,9 @@ dea_status dea_plate_create(struct dea_context *ctx, const struct dea_plate *pla
                             struct dea_grid **out);
 enum { DEA_PLATE_LINE_MAX = 256 };
 
+/* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at
+ * dea_plate_angle. 0 in the whole disc. */
+int dea_plate_edges(const struct dea_plate *plate, const double X[3]);
 /* Components of a node that frame and mirror planes hold, as bits 1, 2, 4 of its local axes. */
 int dea_plate_held(const struct dea_plate *plate, const double X[3]);
 /* Local axes of a node as the rows of Q: normal of its mirror plane, along it, z. false where the

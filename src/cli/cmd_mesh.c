@@ -1,0 +1,133 @@
+#include "cli/cli.h"
+
+#include "model/solid/actuator.h"
+#include "output/msh.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+enum { OVERRIDES_MAX = 256 };
+
+struct arguments {
+  const char *design, *file;
+  bool json;
+  struct dea_override overrides[OVERRIDES_MAX];
+  size_t override_count;
+};
+
+/* -1, or the exit code after a usage error. */
+static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *out)
+{
+  for (int i = 1; i < argc; i++) {
+    if (strcmp(argv[i], "--json") == 0) {
+      out->json = true;
+    } else if (strcmp(argv[i], "--set") == 0 || strncmp(argv[i], "--set=", 6) == 0) {
+      char *text = argv[i][5] == '=' ? argv[i] + 6 : i + 1 < argc ? argv[++i] : NULL;
+      if (text == NULL ||
+          !cli_parse_override(text, out->overrides, OVERRIDES_MAX, &out->override_count)) {
+        return cli_usage_error(cli, &cmd_mesh,
+                               "--set wants KEY=VALUE, such as "
+                               "--set compute.solid.refinement=2");
+      }
+    } else if (strcmp(argv[i], "-o") == 0 || strcmp(argv[i], "--output") == 0) {
+      if (++i == argc) {
+        return cli_usage_error(cli, &cmd_mesh, "%s wants a file", argv[i - 1]);
+      }
+      out->file = argv[i];
+    } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
+      return cli_usage_error(cli, &cmd_mesh, "unknown option '%s'", argv[i]);
+    } else if (out->design != NULL) {
+      return cli_usage_error(cli, &cmd_mesh, "one design at a time; '%s' is a second", argv[i]);
+    } else {
+      out->design = argv[i];
+    }
+  }
+  return out->design != NULL ? -1 : cli_usage_error(cli, &cmd_mesh, "which design file?");
+}
+
+/* Displacement components that nothing holds. */
+static size_t count_unknowns(const struct dea_plate *plate, const struct dea_grid *grid)
+{
+  size_t count = 3 * grid->node_count;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    int held = dea_plate_held(plate, grid->X + 3 * n);
+    count -= (size_t)((held & 1) + ((held >> 1) & 1) + ((held >> 2) & 1));
+  }
+  return count;
+}
+
+static void print_summary(const struct arguments *arguments, const struct dea_plate *plate,
+                          const struct dea_grid *grid)
+{
+  double degrees = dea_plate_angle(plate) * 180 / acos(-1);
+  double jacobian = dea_grid_smallest_jacobian(grid);
+  size_t unknowns = count_unknowns(plate, grid);
+  if (arguments->json) {
+    json_t *json = json_pack(
+        "{s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements", (json_int_t)grid->element_count, "nodes",
+        (json_int_t)grid->node_count, "unknowns", (json_int_t)unknowns, "smallest_jacobian",
+        jacobian, "angle_deg", degrees, "size_m", plate->size, "edge_size_m", plate->edge);
+    json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    putchar('\n');
+    json_decref(json);
+    return;
+  }
+  printf("%-20s %g degrees\n", "domain", degrees);
+  printf("%-20s %zu, of 27 nodes\n", "elements", grid->element_count);
+  printf("%-20s %zu\n", "nodes", grid->node_count);
+  printf("%-20s %zu\n", "unknowns", unknowns);
+  printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
+         1e3 * plate->size, 1e3 * plate->edge);
+  printf("%-20s %.3f of an element's mean\n", "smallest Jacobian", jacobian);
+  if (arguments->file != NULL) {
+    printf("%-20s %s\n", "file", arguments->file);
+  }
+}
+
+static int run(struct dea_cli *cli, int argc, char **argv)
+{
+  struct arguments arguments = {0};
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  struct dea_grid *grid = NULL;
+  struct dea_plate plate;
+  int wrong = parse(cli, argc, argv, &arguments);
+  if (wrong >= 0) {
+    return wrong;
+  }
+  dea_status status = dea_design_read(cli->ctx, arguments.design, arguments.overrides,
+                                      arguments.override_count, &design);
+  if (status == DEA_OK) {
+    status = dea_device_build(cli->ctx, design, &device);
+  }
+  if (status == DEA_OK) {
+    status = dea_plate_of_device(cli->ctx, device, &plate);
+  }
+  if (status == DEA_OK) {
+    status = dea_plate_create(cli->ctx, &plate, &grid);
+  }
+  if (status == DEA_OK && arguments.file != NULL) {
+    status = dea_msh_write(cli->ctx, &plate, grid, arguments.file);
+  }
+  if (status == DEA_OK) {
+    print_summary(&arguments, &plate, grid);
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_grid_destroy(cli->ctx, grid);
+  dea_device_destroy(cli->ctx, device);
+  dea_design_destroy(cli->ctx, design);
+  return code;
+}
+
+const struct dea_command cmd_mesh = {
+    .name = "mesh",
+    .summary = "Make the mesh of model 3d, and write it for Gmsh",
+    .usage = "dea mesh DESIGN [-o FILE] [--set KEY=VALUE]... [--json]\n\n"
+             "  -o, --output FILE  write the mesh as FILE, in Gmsh's format 2.2 (.msh)\n"
+             "  --set KEY=VALUE    take VALUE in place of the file's, for example\n"
+             "                     --set compute.solid.refinement=2\n"
+             "  --json             size and quality of the mesh as JSON\n",
+    .run = run,
+};
