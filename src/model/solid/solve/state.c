@@ -51,7 +51,8 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   dea_solid_state_get(s, path->keep);
   dea_solid_controls_get(s, path->controls);
   const double own[] = {path->solved, s->last_shift, s->force_largest, s->energy_largest};
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "mesh", grid->X, s->dofs * sizeof(double)));
+  DEA_TRY(ctx,
+          dea_state_add_mark(ctx, out, "mesh", grid->X, 3 * grid->node_count * sizeof(double)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
                                   grid->element_count * DEA_HEX_NODES_MAX * sizeof(int)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", s->layer,

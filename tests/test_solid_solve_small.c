@@ -1,0 +1,122 @@
+/* A coupled solid that is solved in a moment, for builds with sanitizers: fibres, a load, local
+ * axes, orders 1 and 2. */
+#include "model/solid/solve/solid.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <string.h>
+
+static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 44e-6;
+static const double epsilon = 2.8 * DEA_EPSILON_0;
+
+static int sheet_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  return sheet;
+}
+
+static bool nowhere(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return false;
+}
+
+/* Local axes on x = 0, where y comes first. */
+static bool swapped(const void *self, const double X[3], double Q[9])
+{
+  static const double axes[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
+  (void)self;
+  memcpy(Q, axes, sizeof axes);
+  return X[0] < 1e-12;
+}
+
+static int held(const void *self, const double X[3])
+{
+  (void)self;
+  if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
+    return 1 | 2 | 4;
+  }
+  return (X[0] < 1e-12 ? 2 : 0) | (X[1] < 1e-12 ? (X[0] < 1e-12 ? 1 : 2) : 0);
+}
+
+static bool faces(const void *self, const double X[3], double *share)
+{
+  (void)self;
+  *share = X[2] > 0 ? 1 : 0;
+  return hypot(X[0], X[1]) < a_m * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * h_m) < 1e-6 * h_m;
+}
+
+/* Spring of 1 N/m at the first node. */
+static dea_status spring(const void *self, size_t piece, const double *u, enum dea_level level,
+                         struct dea_piece *out)
+{
+  (void)self;
+  (void)piece;
+  (void)level;
+  memset(out, 0, sizeof *out);
+  out->node_count = 1;
+  out->energy_J = 0.5 * u[2] * u[2];
+  out->g[2] = u[2];
+  out->K[8] = 1;
+  return DEA_OK;
+}
+
+/* For a small voltage the energy falls by C V^2/2, C that of plates which are too long by
+ * 1/(order + 1)^2 of the element at their edge, much wider than the film is thick. */
+static void check_capacity(int order)
+{
+  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+  const double V = 100;
+  struct dea_layer layers[] = {{.law = dea_law_find("yeoh"),
+                                .param = yeoh,
+                                .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                .kappa_Pa = 4e7,
+                                .permittivity_F_per_m = epsilon,
+                                .thickness_m = h_m},
+                               {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
+  const struct dea_quarter quarter = {order, order, a_m, b_m, h_m, 4, 2e-3, 100e-6, 1, 1, 0.5e-3};
+  const struct dea_solid_options options = {.order_z = order,
+                                            .field = DEA_SOLID_FIELD_COUPLED,
+                                            .layer_count = 2,
+                                            .layers = layers,
+                                            .layer_of = sheet_layer,
+                                            .active = nowhere,
+                                            .held = held,
+                                            .frame = swapped,
+                                            .electrode = faces};
+  const struct dea_solid_load load = {.piece_count = 1, .evaluate = spring};
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report rest, report;
+  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+  assert_int_equal(report.unstable_modes, 0);
+  double radius = a_m + 0.5e-3 / ((order + 1) * (order + 1));
+  double capacity = epsilon * 0.25 * acos(-1) * radius * radius / h_m;
+  assert_close(rest.energy_J - report.energy_J, 0.5 * capacity * V * V, order == 1 ? 0.1 : 0.01, 0);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+static void test_capacity(void **state)
+{
+  (void)state;
+  assert_int_equal(dea_solid_start(ctx), DEA_OK);
+  check_capacity(1);
+  check_capacity(2);
+  dea_solid_stop();
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_capacity)};
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
