@@ -26,9 +26,11 @@ static void place_isochoric(const number X[3], number x[3])
   x[2] = X[2] + 0.11 * csin(0.9 * x[0] - 1.3 * x[1]);
 }
 
+/* Not larger: what it does to volume changes that the projection does not see falls with a higher
+ * order and hides the one of the displacements on coarse meshes. */
 static double pressure_smooth(const double X[3])
 {
-  return 0.3 * sin(1.5 * X[0] + 0.5) * cos(1.1 * X[1] - 0.6 * X[2]);
+  return 0.1 * sin(1.5 * X[0] + 0.5) * cos(1.1 * X[1] - 0.6 * X[2]);
 }
 
 static number potential_smooth(const number X[3])
@@ -368,6 +370,11 @@ int main(int argc, char **argv)
   for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
     section(&states[i], small);
   }
+  puts("\nThe pressure is kept to a tenth of the shear modulus. A larger one brings the orders of "
+       "u above "
+       "theory on coarse meshes: the part of it\nthat the element's polynomials miss moves volume "
+       "changes that the projection does not see, and that error falls faster (it shrinks\nwhen "
+       "kappa_s is raised, and goes with the pressure).");
   dea_solid_stop();
   dea_context_destroy(ctx);
   return verify_end();
