@@ -13,6 +13,7 @@
 
 #include "model/field_mesh.h"
 #include "model/solid/grid.h"
+#include "model/solid/membrane.h"
 
 enum { DEA_RECOVER_PLANE_MAX = 16 }; // nodes in the plane of an element
 
@@ -24,25 +25,34 @@ struct dea_recovered {
   double F[DEA_HEX_NODES_MAX][9];         // dx/dX
   double stress[DEA_HEX_NODES_MAX][6];    // xx yy zz xy yz zx [Pa]
   double energy[DEA_HEX_NODES_MAX];       // elastic, per volume of the stretched flat film [J/m^3]
-  double force[DEA_RECOVER_PLANE_MAX][6]; // P_iJ through the thickness of the element, i X then i Y
-                                          // (rows i) [N/m of the stretched flat film]
+  double field[DEA_HEX_NODES_MAX];        // true field [V/m]
+  double force[DEA_RECOVER_PLANE_MAX][6]; // P_iJ through the thickness of the element, i1 then i2
+                                          // for each i [N/m of the stretched flat film]
 };
 
-/* X, u, multiplier, voltage_V: as in dea_hex_evaluate. DEA_E_DOMAIN for an inverted element or
- * beyond the law's domain. */
+/* X, u, multiplier, voltage_V: as in dea_hex_evaluate. potential_V: [nodes] of a coupled field,
+ * which voltage_V then has no part in; NULL for a thin film. DEA_E_DOMAIN for an inverted element
+ * or beyond the law's domain. */
 dea_status dea_hex_recover(const struct dea_hex_shape *shape, const struct dea_layer *layer,
                            const double *X, const double *u, const double *multiplier,
-                           double voltage_V, struct dea_recovered *out);
+                           double voltage_V, const double *potential_V, struct dea_recovered *out);
+/* The same of a flat element, where J = 1 by construction. Where the film wrinkles stress and force
+ * are means over the wrinkles; the field is that of the film itself. */
+dea_status dea_flat_recover(const struct dea_flat_shape *shape, const struct dea_layer *layer,
+                            const double *X, const double *u, double voltage_V,
+                            struct dea_recovered *out);
 
 /* A solid at an equilibrium. u: [nodes][3]; multiplier: [elements][shape->pressures]; layer,
- * active: [elements]. */
+ * active: [elements]; potential_V: [nodes] of a coupled field, NULL for thin films. flat: for grids
+ * with flat elements, else it may be NULL. */
 struct dea_recover_input {
   const struct dea_grid *grid;
   const struct dea_hex_shape *shape;
+  const struct dea_flat_shape *flat;
   const struct dea_layer *layers;
   const int *layer;
   const bool *active;
-  const double *u, *multiplier;
+  const double *u, *multiplier, *potential_V;
   double voltage_V;
 };
 

@@ -82,18 +82,30 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 
 /* ---- elements ---- */
 
+int dea_recover_levels(const struct dea_recover_input *in, size_t element)
+{
+  return in->grid->flat[element] ? 1 : in->shape->order_z + 1;
+}
+
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out)
 {
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const int *nodes = in->grid->nodes + element * DEA_HEX_NODES_MAX;
-  for (int n = 0; n < in->shape->nodes; n++) {
-    memcpy(X + 3 * n, in->grid->X + 3 * nodes[n], 3 * sizeof *X);
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential_V[DEA_HEX_NODES_MAX];
+  const struct dea_grid *grid = in->grid;
+  const struct dea_layer *layer = &in->layers[in->layer[element]];
+  const int *nodes = grid->nodes + element * DEA_HEX_NODES_MAX;
+  for (int n = 0; n < dea_grid_nodes_of(grid, element, in->shape->nodes); n++) {
+    memcpy(X + 3 * n, grid->X + 3 * nodes[n], 3 * sizeof *X);
     memcpy(u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *u);
+    potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
-  return dea_hex_recover(in->shape, &in->layers[in->layer[element]], X, u,
-                         in->multiplier + element * (size_t)in->shape->pressures,
-                         in->active[element] ? in->voltage_V : 0, out);
+  double voltage_V = in->active[element] ? in->voltage_V : 0;
+  if (grid->flat[element]) {
+    return dea_flat_recover(in->flat, layer, X, u, voltage_V, out);
+  }
+  return dea_hex_recover(in->shape, layer, X, u,
+                         in->multiplier + element * (size_t)in->shape->pressures, voltage_V,
+                         in->potential_V != NULL ? potential_V : NULL, out);
 }
 
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level)
@@ -154,16 +166,6 @@ void dea_recover_plane(const struct dea_layer *layer, const double F[9], const d
     }
   }
   principal(T[0][0], T[1][1], 0.5 * (T[0][1] + T[1][0]), out->tension);
-}
-
-dea_status dea_recover_check(struct dea_context *ctx, const struct dea_recover_input *in)
-{
-  for (size_t e = 0; e < in->grid->element_count; e++) {
-    if (in->grid->flat[e]) {
-      return dea_fail(ctx, DEA_E_UNSUPPORTED, "there are no fields of a membrane yet");
-    }
-  }
-  return DEA_OK;
 }
 
 void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,

@@ -17,13 +17,11 @@ struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
                               bool by_sheet);
 
-/* DEA_E_UNSUPPORTED where there are flat elements. */
-dea_status dea_recover_check(struct dea_context *ctx, const struct dea_recover_input *in);
-
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out);
-/* Height of a level of nodes, and number of levels, of an element. */
+/* Levels of nodes through the thickness of an element, and the height of one. */
+int dea_recover_levels(const struct dea_recover_input *in, size_t element);
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level);
 
 /* In the plane of the film at a point: F, membrane force as in struct dea_recovered. */

@@ -3,10 +3,10 @@
 
 #include "base/quadrature.h"
 
-#include <math.h>
 #include <string.h>
 
-enum { SUMS = 19, GROUPS = 4 }; // displacement 3, F 9, membrane force 6, height
+// displacement 3, F 9, field, height, membrane force 6
+enum { SUMS = 20, FIELD = 12, HEIGHT = 13, FORCE = 14, GROUPS = 4 };
 
 struct work {
   struct dea_context *ctx;
@@ -73,17 +73,20 @@ static int *number_column(struct work *w, size_t element, int group)
   return nodes;
 }
 
-/* Displacement and F at the height z of an element, added to the points of its column. */
+/* Displacement, F and field at the height z of an element, added to the points of its column. */
 static void add_level(struct work *w, size_t element, double z, const int *points)
 {
   const struct dea_recover_input *in = w->in;
   const struct dea_recovered *at = w->at;
-  int levels = in->shape->order_z + 1;
+  int levels = dea_recover_levels(in, element);
   double bottom = dea_recover_height(in, element, 0);
   double top = dea_recover_height(in, element, levels - 1);
-  double places[DEA_HEX_ORDER_MAX + 1], value[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
-  dea_lobatto_nodes((size_t)levels - 1, places);
-  dea_lagrange((size_t)levels, places, 2 * (z - bottom) / (top - bottom) - 1, value, slope);
+  double places[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
+  double value[DEA_HEX_ORDER_MAX + 1] = {1}; // of a flat element
+  if (levels > 1) {
+    dea_lobatto_nodes((size_t)levels - 1, places);
+    dea_lagrange((size_t)levels, places, 2 * (z - bottom) / (top - bottom) - 1, value, slope);
+  }
   for (int n = 0; n < at->nodes; n++) {
     double *sum = w->sum[points[n % at->plane_nodes]];
     double share = at->volume_m3 * value[n / at->plane_nodes];
@@ -94,6 +97,7 @@ static void add_level(struct work *w, size_t element, double z, const int *point
     for (int i = 0; i < 9; i++) {
       sum[3 + i] += share * at->F[n][i];
     }
+    sum[FIELD] += share * at->field[n];
   }
 }
 
@@ -102,9 +106,9 @@ static void add_level(struct work *w, size_t element, double z, const int *point
 static dea_status add_column(struct work *w, size_t from, size_t end, bool covered)
 {
   const struct dea_recover_input *in = w->in;
-  int levels = in->shape->order_z + 1;
+  size_t last = w->stack[end - 1].element;
   double bottom = dea_recover_height(in, w->stack[from].element, 0);
-  double middle = 0.5 * (bottom + dea_recover_height(in, w->stack[end - 1].element, levels - 1));
+  double middle = 0.5 * (bottom + dea_recover_height(in, last, dea_recover_levels(in, last) - 1));
   int group = (in->active[w->stack[from].element] ? 1 : 0) + (covered ? 2 : 0);
   int *points = number_column(w, w->stack[from].element, group);
   double force[DEA_RECOVER_PLANE_MAX][6] = {{0}}, weight = 0;
@@ -119,7 +123,8 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
         force[n][i] += w->at->force[n][i];
       }
     }
-    double z = dea_recover_height(in, e, 0), top = dea_recover_height(in, e, levels - 1);
+    double z = dea_recover_height(in, e, 0);
+    double top = dea_recover_height(in, e, dea_recover_levels(in, e) - 1);
     if (weight == 0 && (k + 1 == end || top > middle - 1e-9 * (top - z))) {
       weight = w->at->volume_m3;
       add_level(w, e, middle, points);
@@ -128,11 +133,22 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
   for (int n = 0; n < w->at->plane_nodes; n++) {
     w->weight[points[n]] += weight;
     for (int i = 0; i < 6; i++) {
-      w->sum[points[n]][12 + i] += weight * force[n][i];
+      w->sum[points[n]][FORCE + i] += weight * force[n][i];
     }
-    w->sum[points[n]][18] += weight * middle;
+    w->sum[points[n]][HEIGHT] += weight * middle;
   }
   return DEA_OK;
+}
+
+/* Whether a part without a law, a fibre, stands in a column. */
+static bool has_fibre(const struct work *w, size_t from, size_t end)
+{
+  bool any = false;
+  for (size_t k = from; k < end; k++) {
+    const struct dea_layer *layer = &w->in->layers[w->in->layer[w->stack[k].element]];
+    any = any || (layer->law == NULL && w->stack[k].sheet != w->sheet);
+  }
+  return any;
 }
 
 static dea_status add_columns(struct work *w)
@@ -143,7 +159,7 @@ static dea_status add_columns(struct work *w)
     for (size_t first = from; first < end;) {
       size_t last = dea_recover_column_end(w->stack, count, first, true);
       if (w->stack[first].sheet == w->sheet) {
-        DEA_TRY(w->ctx, add_column(w, first, last, last - first < end - from));
+        DEA_TRY(w->ctx, add_column(w, first, last, has_fibre(w, from, end)));
       }
       first = last;
     }
@@ -169,7 +185,7 @@ static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mes
                                                 NULL},
                                      under = {"under_fibre",
                                               "1",
-                                              "1 where another layer lies on the film",
+                                              "1 where a fibre lies on the film",
                                               DEA_MESH_VALUES,
                                               1,
                                               true,
@@ -195,12 +211,12 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
     mean[i] = w->sum[p][i] / w->weight[p];
   }
   memcpy(X, in->grid->X + 3 * w->node[p], 2 * sizeof *X);
-  X[2] = mean[18];
+  X[2] = mean[HEIGHT];
   memcpy(to->displacement + 3 * p, mean, 3 * sizeof *mean);
-  dea_recover_plane(layer, mean + 3, mean + 12, &plane);
+  dea_recover_plane(layer, mean + 3, mean + FORCE, &plane);
   memcpy(to->stretch + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
-  to->field[p] = in->active[e] ? fabs(in->voltage_V) / layer->thickness_m * plane.area : 0;
+  to->field[p] = mean[FIELD];
 }
 
 static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
@@ -225,7 +241,6 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
 {
   struct work work = {.ctx = ctx, .in = in, .sheet = sheet};
   *out = NULL;
-  DEA_TRY(ctx, dea_recover_check(ctx, in));
   dea_status status = prepare(&work);
   if (status == DEA_OK) {
     status = add_columns(&work);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SUMS = 22 }; // F 9, stress 6, energy 1, membrane force 6
+enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 6
 
 /* Points while sums are taken. A group is a sheet in a region. */
 struct work {
@@ -62,8 +62,8 @@ static dea_status number_points(struct work *w)
   }
   for (size_t e = 0; e < grid->element_count; e++) {
     int *points = points_of(w, e);
-    for (size_t n = 0; n < per; n++) {
-      int node = grid->nodes[e * DEA_HEX_NODES_MAX + n];
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, w->in->shape->nodes); n++) {
+      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
       if (points[node] == 0) {
         w->node[w->point_count] = node;
         w->element[w->point_count] = e;
@@ -101,6 +101,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
         w->sum[p][9 + i] += at->volume_m3 * at->stress[n][i];
       }
       w->sum[p][15] += at->volume_m3 * at->energy[n];
+      w->sum[p][16] += at->volume_m3 * at->field[n];
     }
     for (int n = 0; n < at->plane_nodes; n++) {
       for (int i = 0; i < 6; i++) {
@@ -113,7 +114,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
     for (int n = 0; n < at->nodes; n++) {
       int p = point_of(w, e, n);
       for (int i = 0; i < 6; i++) {
-        w->sum[p][16 + i] += w->volume[e] * force[n % at->plane_nodes][i];
+        w->sum[p][FORCE + i] += w->volume[e] * force[n % at->plane_nodes][i];
       }
     }
   }
@@ -248,27 +249,50 @@ static void fill_point(const struct work *w, size_t p, const struct fields *to)
     memcpy(to->axis[k] + 3 * p, axis[k], sizeof axis[k]);
   }
   to->energy[p] = sum[15];
-  dea_recover_plane(layer, sum, sum + 16, &plane);
+  dea_recover_plane(layer, sum, sum + FORCE, &plane);
   memcpy(to->plane + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
-  to->field[p] = in->active[e] ? fabs(in->voltage_V) / layer->thickness_m * plane.area : 0;
+  to->field[p] = sum[16];
+}
+
+/* A block of the solid elements or of the flat ones, if there are any. */
+static dea_status add_block(struct work *w, struct dea_field_mesh *mesh, bool flat)
+{
+  const struct dea_grid *grid = w->in->grid;
+  const struct dea_hex_shape *shape = w->in->shape;
+  size_t count = 0;
+  int *nodes;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    count += grid->flat[e] == flat;
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, shape->order, flat ? 0 : shape->order_z,
+                                           count, &nodes));
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, shape->nodes) && grid->flat[e] == flat; n++) {
+      *nodes++ = point_of(w, e, n);
+    }
+  }
+  return DEA_OK;
 }
 
 static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
 {
   const struct dea_grid *grid = w->in->grid;
   struct fields to;
-  int *nodes;
-  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, w->in->shape->order, w->in->shape->order_z,
-                                           grid->element_count, &nodes));
+  DEA_TRY(w->ctx, add_block(w, mesh, false));
+  DEA_TRY(w->ctx, add_block(w, mesh, true));
   DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
-  for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < w->in->shape->nodes; n++) {
-      *nodes++ = point_of(w, e, n);
+  for (int flat = 0; flat <= 1; flat++) { // block by block
+    for (size_t e = 0; e < grid->element_count; e++) {
+      if (grid->flat[e] == (flat == 1)) {
+        *to.error++ = w->error[e];
+        *to.sheet++ = grid->sheet[e];
+        *to.region++ = grid->region[e];
+      }
     }
-    to.error[e] = w->error[e];
-    to.sheet[e] = grid->sheet[e];
-    to.region[e] = grid->region[e];
   }
   for (size_t p = 0; p < w->point_count; p++) {
     memcpy(mesh->X + 3 * p, grid->X + 3 * w->node[p], 3 * sizeof(double));
@@ -282,7 +306,6 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
 {
   struct work work = {.ctx = ctx, .in = in};
   *out = NULL;
-  DEA_TRY(ctx, dea_recover_check(ctx, in));
   dea_status status = number_points(&work);
   if (status == DEA_OK) {
     status = take_means(&work);

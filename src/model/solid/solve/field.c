@@ -16,6 +16,11 @@ struct dea_solid_field {
   Vec charge, solution;
 };
 
+double dea_solid_field_scale(const struct dea_solid *s)
+{
+  return s->field->scale_V_per_m;
+}
+
 static bool dielectric(const struct dea_solid *s, size_t e)
 {
   return s->layers[s->layer[e]].permittivity_F_per_m > 0;

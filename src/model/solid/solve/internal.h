@@ -140,6 +140,8 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s, const PetscInt *own,
                                   const PetscInt *others);
 void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s);
+/* c: a potential is c psi [V/m]. */
+double dea_solid_field_scale(const struct dea_solid *s);
 /* s->element of an element with potential: arguments as in dea_hex_evaluate; psi: of the whole. */
 dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double *X,
                                      const double *u, const double *multiplier, const double *psi,
