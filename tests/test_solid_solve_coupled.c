@@ -372,7 +372,7 @@ static void test_a_field_needs_electrodes(void **state)
 {
   (void)state;
   struct body body = {.place = {3.75e-3, 15e-3, 44e-6}};
-  const struct dea_layer soft = film(1.5, 44e-6);
+  struct dea_layer soft = film(1.5, 44e-6);
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
   struct dea_solid_options options = {.order_z = 2,
                                       .field = DEA_SOLID_FIELD_COUPLED,
@@ -388,6 +388,9 @@ static void test_a_field_needs_electrodes(void **state)
   options.electrode = NULL;
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
   assert_non_null(strstr(dea_context_message(ctx), "electrodes"));
+  options.electrode = faces;
+  soft.permittivity_slope_F_per_m = 1e-12;
+  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_UNSUPPORTED);
   body_destroy(&body);
 }
 

@@ -78,7 +78,17 @@ static void check_capacity(int order)
                                 .permittivity_F_per_m = epsilon,
                                 .thickness_m = h_m},
                                {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
-  const struct dea_quarter quarter = {order, order, a_m, b_m, h_m, 4, 2e-3, 100e-6, 1, 1, 0.5e-3};
+  const struct dea_quarter quarter = {.order = order,
+                                      .order_z = order,
+                                      .a = a_m,
+                                      .b = b_m,
+                                      .film_thickness = h_m,
+                                      .fibres = 4,
+                                      .fibre_width = 2e-3,
+                                      .fibre_thickness = 100e-6,
+                                      .fine = 1,
+                                      .across = 1,
+                                      .edge = 0.5e-3};
   const struct dea_solid_options options = {.order_z = order,
                                             .field = DEA_SOLID_FIELD_COUPLED,
                                             .layer_count = 2,
@@ -99,6 +109,9 @@ static void check_capacity(int order)
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
+  double found;
+  assert_int_equal(dea_solid_capacitance(ctx, solid, &found), DEA_OK);
+  assert_close(rest.energy_J - report.energy_J, 0.5 * found * V * V, 1e-3, 0);
   double radius = a_m + 0.5e-3 / ((order + 1) * (order + 1));
   double capacity = epsilon * 0.25 * acos(-1) * radius * radius / h_m;
   assert_close(rest.energy_J - report.energy_J, 0.5 * capacity * V * V, order == 1 ? 0.1 : 0.01, 0);

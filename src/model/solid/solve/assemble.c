@@ -296,17 +296,27 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   return status;
 }
 
-dea_status dea_solid_capacitance(struct dea_solid *s, double *capacitance_F)
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
+                                 double *capacitance_F)
 {
   // the energy at fixed displacements is that at 0 V less C V^2/2
-  double thickness = 0, without, with;
+  double thickness = 0, without = 0, with = 0;
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    thickness = fmax(thickness, s->active[e] ? s->layers[s->layer[e]].thickness_m : 0);
+    const struct dea_layer *layer = &s->layers[s->layer[e]];
+    bool counts = s->field != NULL ? layer->permittivity_F_per_m > 0 : s->active[e];
+    thickness = fmax(thickness, counts ? layer->thickness_m : 0);
   }
   double V = 50e6 * thickness; // electric and elastic energies of about one size
-  dea_status status = dea_solid_energy(s, s->u, 0, &without);
+  memcpy(s->trial, s->u, s->dofs * sizeof(double));
+  dea_status status = dea_solid_settle(ctx, s, 0, s->trial);
   if (status == DEA_OK) {
-    status = dea_solid_energy(s, s->u, V, &with);
+    status = dea_solid_energy(s, s->trial, 0, &without);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_settle(ctx, s, V, s->trial);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_energy(s, s->trial, V, &with);
   }
   *capacitance_F = status == DEA_OK && V > 0 ? 2 * (without - with) / (V * V) : NAN;
   return status;

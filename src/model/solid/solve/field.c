@@ -84,6 +84,11 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
     return DEA_E_MEMORY;
   }
   set_scale(s, options->layer_count, s->field);
+  for (size_t i = 0; i < options->layer_count; i++) {
+    if (s->layers[i].permittivity_slope_F_per_m != 0) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
+    }
+  }
   DEA_TRY(ctx, hold_potentials(ctx, s, options));
   return DEA_OK;
 }

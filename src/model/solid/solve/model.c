@@ -117,7 +117,7 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   double capacitance_F;
   dea_status status = dea_solid_extremes(model->solid, &d->film, d->pre_stretch, &extremes);
   if (status == DEA_OK) {
-    status = dea_solid_capacitance(model->solid, &capacitance_F);
+    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);

@@ -24,7 +24,8 @@ struct dea_solid_options {
   enum dea_solid_field_kind field;
   size_t layer_count;
   const struct dea_layer *layers; // copied
-  /* Layer of an element, and whether it lies between electrodes. */
+  /* Layer of an element, and whether it lies between electrodes (with a coupled field: for what
+   * fields and extremes report by V/h). */
   int (*layer_of)(const void *self, int region, int sheet);
   bool (*active)(const void *self, int region, int sheet);
   /* Components of a node that are held, as bits 1, 2, 4. */
@@ -98,7 +99,8 @@ dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);
 
 /* Capacitance between the electrodes at the last equilibrium: charge over voltage. */
-dea_status dea_solid_capacitance(struct dea_solid *solid, double *capacitance_F);
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
+                                 double *capacitance_F);
 
 /* Extremes of the film (elements of layers with a permittivity) at the last equilibrium. */
 struct dea_solid_extremes {
