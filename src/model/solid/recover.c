@@ -33,20 +33,6 @@ static void true_stress(const double P[9], const double F[9], double J, double o
   }
 }
 
-/* Field E in the stretched flat film: of a thin film, or of the potentials. */
-static void reference_field(const struct dea_hex_shape *s, double gradient[3][DEA_HEX_NODES_MAX],
-                            const double *potential_V, double thin_V_per_m, double E[3])
-{
-  E[0] = E[1] = 0;
-  E[2] = thin_V_per_m;
-  for (int J = 0; J < 3 && potential_V != NULL; J++) {
-    E[J] = 0;
-    for (int n = 0; n < s->nodes; n++) {
-      E[J] -= potential_V[n] * gradient[J][n];
-    }
-  }
-}
-
 static void cross(const double a[3], const double b[3], double out[3])
 {
   for (int i = 0; i < 3; i++) {
@@ -76,26 +62,45 @@ static double add_electric(double eps, const struct dea_hex_point *at, const dou
   return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
 }
 
-/* Values of one Gauss point, and P for the membrane force. */
+/* Field E in the stretched flat film from potentials. */
+static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_HEX_NODES_MAX],
+                          const double *potential_V, double E[3])
+{
+  for (int J = 0; J < 3; J++) {
+    E[J] = 0;
+    for (int n = 0; n < s->nodes; n++) {
+      E[J] -= potential_V[n] * gradient[J][n];
+    }
+  }
+}
+
+/* Values of one Gauss point, and P for the membrane force. E: of a coupled field, NULL for a thin
+ * film with thin_V_per_m. */
 static dea_status evaluate_point(const struct dea_layer *layer, const struct dea_hex_point *at,
-                                 double pressure, const double E[3], double values[DEA_FIT_VALUES],
-                                 double P[9])
+                                 double pressure, double thin_V_per_m, const double *E,
+                                 double values[DEA_FIT_VALUES], double P[9])
 {
   struct dea_point point;
   double excess = at->J - 1;
-  dea_status status = dea_layer_point(layer, at->F, at->cof, at->J, pressure, 0, &point);
-  if (status != DEA_OK) {
-    return status;
-  }
-  memcpy(P, point.P, 9 * sizeof *P);
-  values[16] =
-      layer->permittivity_F_per_m > 0 ? add_electric(layer->permittivity_F_per_m, at, E, P) : 0;
-  memcpy(values, at->F, sizeof at->F);
-  true_stress(P, at->F, at->J, values + 9);
+  dea_status status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure, 0, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
   if (layer->law != NULL) {
     values[15] -= layer->p0_Pa * excess + 0.5 * layer->kappa_s_Pa * excess * excess;
   }
+  if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
+    status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);
+  }
+  if (status != DEA_OK) {
+    return status;
+  }
+  const double *c = at->cof;
+  memcpy(P, point.P, 9 * sizeof *P);
+  values[16] = fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]); // |F_1 x F_2|
+  if (E != NULL) {
+    values[16] = add_electric(layer->permittivity_F_per_m, at, E, P);
+  }
+  memcpy(values, at->F, sizeof at->F);
+  true_stress(P, at->F, at->J, values + 9);
   return DEA_OK;
 }
 
@@ -136,12 +141,16 @@ dea_status dea_hex_recover(const struct dea_hex_shape *shape, const struct dea_l
     status = dea_hex_project(shape, points, factor, moment, theta);
   }
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+    bool coupled = potential_V != NULL && layer->permittivity_F_per_m > 0;
     double pressure = 0, E[3];
     for (int m = 0; m < shape->pressures && layer->law != NULL; m++) {
       pressure += shape->pressure[q][m] * (multiplier[m] + layer->kappa_Pa * theta[m]);
     }
-    reference_field(shape, gradient[q], potential_V, thin_V_per_m, E);
-    status = evaluate_point(layer, &points[q], pressure, E, values[q], P[q]);
+    if (coupled) {
+      coupled_field(shape, gradient[q], potential_V, E);
+    }
+    status = evaluate_point(layer, &points[q], pressure, potential_V == NULL ? thin_V_per_m : 0,
+                            coupled ? E : NULL, values[q], P[q]);
     out->volume_m3 += points[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points[q].J - 1));
   }
