@@ -100,7 +100,7 @@ static struct answer solve(const struct test_case *k)
        .thickness_m = h},
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           k->fibres,
-                                      2e-3, 100e-6, .fine = 2, .across = 1, .edge = 4e-4};
+                                      2e-3, 100e-6, .fine = 1, .across = 1, .edge = 8e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
                                             .layers = layers,
