@@ -31,7 +31,9 @@ static double complex solid_film(const struct dea_layer *layer, double field,
     full[3 * i + 2] = N[i] / n * G[2];
   }
   assert_int_equal(complex_point(layer->law->name, layer->param, full, NULL, &W, solid, A), DEA_OK);
-  double k = layer->permittivity_F_per_m * field * field;
+  // -(E^2/2) (eps + slope (n^(1/4) - 1)) n, n = |F_1 x F_2|^2
+  double slope = layer->permittivity_slope_F_per_m, rest = layer->permittivity_F_per_m - slope;
+  double complex k = field * field * (rest + 1.25 * slope * cpow(n, 0.25));
   for (int a = 0; a < 6; a++) {
     int i = a / 2, J = a % 2, j = (i + 1) % 3, l = (i + 2) % 3, O = 1 - J;
     double sign = J == 0 ? 1 : -1;
@@ -46,7 +48,7 @@ static double complex solid_film(const struct dea_layer *layer, double field,
       P[a] += G[2] * solid[3 * b + 2] * (d[b] / n - N[b] * dn / (n * n));
     }
   }
-  return W - 0.5 * k * n;
+  return W - 0.5 * field * field * (rest + slope * cpow(n, 0.25)) * n;
 }
 
 /* W, P and A of the film against the solid: A by complex step of P, P by complex step of W too. */
@@ -85,8 +87,8 @@ static void check_law(const struct dea_law *law, const double *param)
   uint64_t seed = 11;
   for (int n = 0; n < 20 && !law->anisotropic; n++) {
     double m1 = uniform(&seed, 0.8, 1.3), m2 = uniform(&seed, 0.8, 1.3), F[6];
-    const struct dea_layer layer =
-        film(law, param, uniform(&seed, 0.9, 1.4), uniform(&seed, 0.9, 1.4));
+    struct dea_layer layer = film(law, param, uniform(&seed, 0.9, 1.4), uniform(&seed, 0.9, 1.4));
+    layer.permittivity_slope_F_per_m = uniform(&seed, -0.3, 0.1) * permittivity;
     compose(m1, m2, uniform(&seed, 0, 6), F);
     check_point(&layer, uniform(&seed, 0, 5e7), F, 1e-11);
   }

@@ -152,6 +152,17 @@ static void assemble_tensors(const struct principal *p, double cosine, double si
   }
 }
 
+/* eps = permittivity + slope (sqrt(a) - 1) of the layer by s = sqrt(a G1 G2), as a material has it.
+ */
+static void set_permittivity(const struct dea_layer *layer, double G1_G2,
+                             struct dea_permittivity *out)
+{
+  double slope = layer->permittivity_slope_F_per_m / sqrt(G1_G2);
+  out->slope = slope / DEA_EPSILON_0;
+  out->at_rest =
+      (layer->permittivity_F_per_m - layer->permittivity_slope_F_per_m + slope) / DEA_EPSILON_0;
+}
+
 /* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
 static dea_status evaluate_point(const struct dea_layer *layer, const double F[6], double field,
                                  struct plane_tensors *t, struct dea_membrane_point *out)
@@ -161,8 +172,8 @@ static dea_status evaluate_point(const struct dea_layer *layer, const double F[6
                  F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
   struct dea_material material = {.law = layer->law};
   memcpy(material.param, layer->param, layer->law->param_count * sizeof(double));
-  double per_area = field / scale[2];
-  const struct dea_tension film = {&material, layer->permittivity_F_per_m * per_area * per_area};
+  const struct dea_tension film = {&material, field / scale[2]};
+  set_permittivity(layer, scale[2], &material.permittivity);
   for (int a = 0; a < 3; a++) {
     t->C[a] = scale[a] * c[a];
   }

@@ -4,14 +4,15 @@ dea_status dea_tension_taut(const struct dea_tension *film, double l1, double l2
                             struct dea_plane *out)
 {
   dea_status status = dea_plane_elastic(film->material, l1, l2, out);
-  double k = film->electric_Pa, area = l1 * l2;
-  if (status == DEA_OK && k != 0) {
-    out->W -= 0.5 * k * area * area;
-    out->s1 -= k * area * l2;
-    out->s2 -= k * area * l1;
-    out->k11 -= k * l2 * l2;
-    out->k22 -= k * l1 * l1;
-    out->k12 -= 2 * k * area;
+  if (status == DEA_OK && film->nominal_field_V_per_m != 0) {
+    struct dea_plane electric;
+    dea_plane_electric(film->material, film->nominal_field_V_per_m, l1, l2, &electric);
+    out->W += electric.W;
+    out->s1 += electric.s1;
+    out->s2 += electric.s2;
+    out->k11 += electric.k11;
+    out->k22 += electric.k22;
+    out->k12 += electric.k12;
   }
   return status;
 }

@@ -3,7 +3,7 @@
  *
  * Symbol   meaning                                                       unit
  * l1, l2   in-plane stretches counted from the unstretched film          1
- * f        W(l1, l2) - (k/2)(l1 l2)^2, energy per volume                 Pa
+ * f        W(l1, l2) - (eps/2)(V/H)^2 (l1 l2)^2, energy per volume       Pa
  * b        natural width: f_2(l1, b) = 0                                 1 */
 #ifndef DEA_MODEL_SOLID_TENSION_H
 #define DEA_MODEL_SOLID_TENSION_H
@@ -11,8 +11,8 @@
 #include "material/plane.h"
 
 struct dea_tension {
-  const struct dea_material *material; // isotropic law
-  double electric_Pa;                  // k = eps (V/h)^2/(G1 G2)^2
+  const struct dea_material *material; // isotropic law; permittivity
+  double nominal_field_V_per_m;        // V/H, H: thickness unstretched
 };
 
 enum dea_tension_state { DEA_TAUT, DEA_WRINKLED, DEA_SLACK };
