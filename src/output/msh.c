@@ -103,17 +103,18 @@ static void add_element(struct dea_text *text, size_t number, int type, enum gro
   dea_text_add(text, "\n");
 }
 
-/* All elements and faces; with text NULL they are counted only. */
+/* All elements and faces; with text NULL they are counted only, and by group into counts. */
 static size_t add_elements(const struct dea_plate *plate, const struct dea_grid *grid,
-                           struct dea_text *text)
+                           struct dea_text *text, size_t counts[GROUPS])
 {
   size_t number = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    enum group part = group_of(grid->region[e], grid->sheet[e]);
     number++;
+    counts[part]++;
     if (text != NULL) {
-      add_element(text, number, HEX27, group_of(grid->region[e], grid->sheet[e]), nodes, hex_order,
-                  NODES);
+      add_element(text, number, HEX27, part, nodes, hex_order, NODES);
     }
     for (int face = 0; face < FACES; face++) {
       int own[FACE_NODES];
@@ -121,6 +122,7 @@ static size_t add_elements(const struct dea_plate *plate, const struct dea_grid 
       enum group group = face_group(plate, grid, e, face, own);
       if (group != GROUPS) {
         number++;
+        counts[group]++;
         if (text != NULL) {
           add_element(text, number, QUAD9, group, own, NULL, FACE_NODES);
         }
@@ -133,17 +135,23 @@ static size_t add_elements(const struct dea_plate *plate, const struct dea_grid 
 static void add_mesh(struct dea_text *text, const struct dea_plate *plate,
                      const struct dea_grid *grid)
 {
-  dea_text_add(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n", GROUPS);
+  size_t counts[GROUPS] = {0}, count = add_elements(plate, grid, NULL, counts), names = 0;
   for (int g = 0; g < GROUPS; g++) {
-    dea_text_add(text, "%d %d \"%s\"\n", groups[g].dimension, g + 1, groups[g].name);
+    names += counts[g] > 0;
+  }
+  dea_text_add(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%zu\n", names);
+  for (int g = 0; g < GROUPS; g++) {
+    if (counts[g] > 0) {
+      dea_text_add(text, "%d %d \"%s\"\n", groups[g].dimension, g + 1, groups[g].name);
+    }
   }
   dea_text_add(text, "$EndPhysicalNames\n$Nodes\n%zu\n", grid->node_count);
   for (size_t n = 0; n < grid->node_count; n++) {
     const double *X = grid->X + 3 * n;
     dea_text_add(text, "%zu %.15g %.15g %.15g\n", n + 1, X[0], X[1], X[2]);
   }
-  dea_text_add(text, "$EndNodes\n$Elements\n%zu\n", add_elements(plate, grid, NULL));
-  add_elements(plate, grid, text);
+  dea_text_add(text, "$EndNodes\n$Elements\n%zu\n", count);
+  add_elements(plate, grid, text, counts);
   dea_text_add(text, "$EndElements\n");
 }
 

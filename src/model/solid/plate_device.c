@@ -7,13 +7,6 @@
  * (docs/theory/mesh.md has the study that they come from). */
 static const double size_share = 0.26, edge_share = 0.05;
 
-/* Whether the film looks the same from both sides of a plane through a fibre's axis: its own
- * direction, at the angle gamma to the radius, turns over to -gamma. */
-static bool has_mirror_planes(const struct dea_material *film)
-{
-  return !film->law->anisotropic || fabs(sin(2 * film->fibre_angle_rad)) < 1e-9;
-}
-
 dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device *d,
                                struct dea_plate *out)
 {
@@ -38,13 +31,13 @@ dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device 
       .size = size_share * a * finer,
       .edge = edge_share * a * finer,
   };
+  if (d->film.law->anisotropic) { // its direction turns with the angle around the centre
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d does not know films with a direction of their own (law '%s') yet",
+                    d->film.law->name);
+  }
   if (d->solid_domain == DEA_DOMAIN_DISC) {
     out->sectors = dea_plate_sectors(out);
-  } else if (!has_mirror_planes(&d->film)) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "a film with a direction of its own at %.4g degrees to the radius has no "
-                    "mirror planes: the whole disc is needed (compute.solid.domain: disc)",
-                    d->film.fibre_angle_rad * 180 / acos(-1));
   }
   return DEA_OK;
 }
