@@ -66,10 +66,10 @@ static double pressure_at(const struct dea_hex_shape *s, const struct dea_layer 
   return pressure;
 }
 
-/* One Gauss point: its energy, and what the sums over the points take. */
+/* One Gauss point: its energy, and what the sums over the points take. predicted: NULL without. */
 static dea_status evaluate_point(const struct dea_hex_shape *s, const struct dea_layer *layer,
                                  int q, double pressure, double field, enum dea_level level,
-                                 struct hex_work *work, double *energy)
+                                 const double *predicted, struct hex_work *work, double *energy)
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
@@ -82,6 +82,14 @@ static dea_status evaluate_point(const struct dea_hex_shape *s, const struct dea
   *energy += at->weight * point.W;
   if (level >= DEA_FORCE) {
     set_flux(s, q, at->weight, point.P, 0, work);
+  }
+  if (level >= DEA_TANGENT && predicted != NULL) {
+    double other = 0;
+    for (int m = 0; m < s->pressures && layer->law != NULL; m++) {
+      other += s->pressure[q][m] * predicted[m];
+    }
+    dea_layer_restress(at->F, at->cof, at->J, layer->law != NULL ? other - pressure : 0,
+                       predicted + s->pressures + 6 * q, &point);
   }
   if (level >= DEA_TANGENT) {
     set_tangent(q, point.A, work);
@@ -120,9 +128,10 @@ static void set_projected(const struct dea_hex_shape *s, double kappa, struct he
                   work->b, K);
 }
 
-dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
-                            const double *X, const double *u, const double *multiplier,
-                            double voltage_V, enum dea_level level, struct dea_element_result *out)
+static dea_status evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
+                           const double *X, const double *u, const double *multiplier,
+                           double voltage_V, enum dea_level level, const double *predicted,
+                           struct dea_element_result *out)
 {
   struct hex_work work;
   bool projected = layer->law != NULL;
@@ -139,7 +148,8 @@ dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_
   for (int q = 0; status == DEA_OK && q < shape->gauss; q++) {
     double pressure = projected ? pressure_at(shape, layer, q, multiplier, out->theta) : 0;
     out->volume_m3 += work.points[q].weight;
-    status = evaluate_point(shape, layer, q, pressure, field, level, &work, &out->energy_J);
+    status =
+        evaluate_point(shape, layer, q, pressure, field, level, predicted, &work, &out->energy_J);
   }
   if (status != DEA_OK || level < DEA_FORCE) {
     return status;
@@ -153,4 +163,19 @@ dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_
     dea_hex_add_tangent(shape, work.A, out->K);
   }
   return DEA_OK;
+}
+
+dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
+                            const double *X, const double *u, const double *multiplier,
+                            double voltage_V, enum dea_level level, struct dea_element_result *out)
+{
+  return evaluate(shape, layer, X, u, multiplier, voltage_V, level, NULL, out);
+}
+
+dea_status dea_hex_evaluate_predicted(const struct dea_hex_shape *shape,
+                                      const struct dea_layer *layer, const double *X,
+                                      const double *u, const double *multiplier, double voltage_V,
+                                      const double *predicted, struct dea_element_result *out)
+{
+  return evaluate(shape, layer, X, u, multiplier, voltage_V, DEA_TANGENT, predicted, out);
 }

@@ -11,8 +11,8 @@
  *
  * Energy of an element, per volume of the stretched flat film:
  *
- *   W(F G) + p0 (J - 1) + kappa_s/2 (J - 1)^2 + p_k theta + kappa/2 theta^2 - (eps/2)(V/h)^2 |F_1 x
- * F_2|^2
+ *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) + p_k theta + kappa/2 theta^2
+ *     - (eps/2)(V/h)^2 |F_1 x F_2|^2
  *
  * p0 frees the flat layer of thickness stress; p_k is a multiplier per element that an outer loop
  * moves until theta vanishes. */
@@ -20,6 +20,8 @@
 #define DEA_MODEL_SOLID_HEX_H
 
 #include "model/solid/layer.h"
+
+#include <stddef.h>
 
 enum {
   DEA_HEX_ORDER_MAX = 3,
@@ -73,6 +75,28 @@ struct dea_element_result {
 dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_layer *layer,
                             const double *X, const double *u, const double *multiplier,
                             double voltage_V, enum dea_level level, struct dea_element_result *out);
+
+/* Stresses that a linear step leads to, which a tangent at the end of the step may hold in place of
+ * those that are there (docs/theory/branches.md): [pressures] pressures, then [gauss][6] second
+ * Piola-Kirchhoff stresses. */
+size_t dea_hex_predicted_count(const struct dea_hex_shape *shape);
+/* Those at u + share step, from the tangent at u. stresses: false for the pressures only. Arguments
+ * and errors as in dea_hex_evaluate. */
+dea_status dea_hex_predict(const struct dea_hex_shape *shape, const struct dea_layer *layer,
+                           const double *X, const double *u, const double *multiplier,
+                           double voltage_V, const double *step, double share, bool stresses,
+                           double *predicted);
+/* dea_hex_evaluate to DEA_TANGENT with predicted stresses in K; energy and force are what they are.
+ */
+dea_status dea_hex_evaluate_predicted(const struct dea_hex_shape *shape,
+                                      const struct dea_layer *layer, const double *X,
+                                      const double *u, const double *multiplier, double voltage_V,
+                                      const double *predicted, struct dea_element_result *out);
+
+/* What a shift of K and a norm of displacements are made of. laplace: [nodes][nodes], int grad N_a
+ * . grad N_b [m]; volume: [nodes], the element's volume lumped to its nodes [m^3], all positive. */
+dea_status dea_hex_metric(const struct dea_hex_shape *shape, const double *X, double *laplace,
+                          double *volume);
 
 /* Membrane state of a film element at its in-plane Gauss points, averaged through the thickness. */
 struct dea_hex_membrane {

@@ -32,6 +32,15 @@ static void add_second_of_J(double f, const double F[9], double A[81])
   }
 }
 
+double dea_layer_pointwise(const struct dea_layer *layer, double J, double *slope,
+                           double *curvature)
+{
+  double k = 0.5 * layer->kappa_s_Pa, excess = J - 1;
+  *slope = k * (J - 1 / J);
+  *curvature = k * (1 + 1 / (J * J));
+  return k * (0.5 * excess * (excess + 2) - log1p(excess));
+}
+
 /* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. From the displacement gradient D = F - 1, so that
  * at small strains no difference of numbers near 3 hides the energy from a line search: I1 - 3 = 2
  * tr D + D:D, J - 1 = tr D + (tr^2 D - D:D^T)/2 + det D. */
@@ -152,13 +161,13 @@ static dea_status evaluate(const struct dea_layer *layer, const double F[9], con
     return status;
   }
   if (layer->law != NULL) {
-    double excess = J - 1, p = layer->p0_Pa + layer->kappa_s_Pa * excess;
-    point->W += layer->p0_Pa * excess + 0.5 * layer->kappa_s_Pa * excess * excess;
-    p += pressure;
+    double slope, curvature;
+    point->W += layer->p0_Pa * (J - 1) + dea_layer_pointwise(layer, J, &slope, &curvature);
+    double p = layer->p0_Pa + slope + pressure;
     for (int a = 0; a < 9; a++) {
       point->P[a] += p * cof[a];
       for (int b = 0; b < 9 && tangent; b++) {
-        point->A[9 * a + b] += layer->kappa_s_Pa * cof[a] * cof[b];
+        point->A[9 * a + b] += curvature * cof[a] * cof[b];
       }
     }
     if (tangent) {
@@ -182,4 +191,31 @@ dea_status dea_layer_stress(const struct dea_layer *layer, const double F[9], co
                             struct dea_point *point)
 {
   return evaluate(layer, F, cof, J, pressure, field_V_per_m, false, point);
+}
+
+void dea_layer_second_stress(const double cof[9], double J, const double P[9], double S[9])
+{
+  for (int A = 0; A < 3; A++) { // F^-1 = cof^T / J
+    for (int B = 0; B < 3; B++) {
+      S[3 * A + B] = (cof[A] * P[B] + cof[3 + A] * P[3 + B] + cof[6 + A] * P[6 + B]) / J;
+    }
+  }
+}
+
+void dea_layer_restress(const double F[9], const double cof[9], double J, double pressure,
+                        const double S[6], struct dea_point *point)
+{
+  static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
+  double P[9], now[9];
+  for (int a = 0; a < 9; a++) {
+    P[a] = point->P[a] + pressure * cof[a];
+  }
+  add_second_of_J(pressure, F, point->A);
+  dea_layer_second_stress(cof, J, P, now);
+  for (int JL = 0; JL < 9; JL++) {
+    double change = S[place[JL]] - now[JL];
+    for (int i = 0; i < 3; i++) {
+      point->A[9 * (3 * i + JL / 3) + 3 * i + JL % 3] += change;
+    }
+  }
 }

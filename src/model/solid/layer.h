@@ -2,7 +2,7 @@
  *
  * Energy per volume of the stretched flat film (docs/theory/solid.md), a film or glue with a law:
  *
- *   W(F G) + p0 (J - 1) + kappa_s/2 (J - 1)^2 - (eps/2) E^2 |F_1 x F_2|^2
+ *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) - (eps/2) E^2 |F_1 x F_2|^2
  *
  * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md),
  * and a compressible neo-Hookean solid (fibre) without one. */
@@ -44,6 +44,19 @@ dea_status dea_layer_point(const struct dea_layer *layer, const double F[9], con
 dea_status dea_layer_stress(const struct dea_layer *layer, const double F[9], const double cof[9],
                             double J, double pressure, double field_V_per_m,
                             struct dea_point *point);
+
+/* The pointwise part kappa_s/2 ((J^2 - 1)/2 - ln J) and its derivatives by J: kappa_s/2 (J - 1)^2
+ * near 1, and a barrier before J = 0. */
+double dea_layer_pointwise(const struct dea_layer *layer, double J, double *slope,
+                           double *curvature);
+
+/* Second Piola-Kirchhoff stress S = F^-1 P from the first one. */
+void dea_layer_second_stress(const double cof[9], double J, const double P[9], double S[9]);
+
+/* Puts other stresses into a tangent: `pressure` more as p dJ/dF, and then S (11 22 33 23 13 12) in
+ * place of F^-1 P in its geometric part. P stays. */
+void dea_layer_restress(const double F[9], const double cof[9], double J, double pressure,
+                        const double S[6], struct dea_point *point);
 
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);

@@ -375,3 +375,28 @@ dea_status dea_membrane_stiffness(const struct dea_flat_shape *shape, const stru
   }
   return DEA_OK;
 }
+
+dea_status dea_membrane_metric(const struct dea_flat_shape *shape, const struct dea_layer *layer,
+                               const double *X, double *laplace, double *volume)
+{
+  double gradient[2][DEA_FLAT_NODES_MAX], whole = 0;
+  size_t nodes = (size_t)shape->nodes;
+  memset(laplace, 0, nodes * nodes * sizeof *laplace);
+  for (int q = 0; q < shape->gauss; q++) {
+    double weight = layer->thickness_m * gradients(shape, q, X, gradient);
+    if (!(weight > 0)) {
+      return DEA_E_DOMAIN;
+    }
+    whole += weight;
+    for (size_t a = 0; a < nodes; a++) {
+      for (size_t b = 0; b < nodes; b++) {
+        laplace[a * nodes + b] +=
+            weight * (gradient[0][a] * gradient[0][b] + gradient[1][a] * gradient[1][b]);
+      }
+    }
+  }
+  for (size_t a = 0; a < nodes; a++) {
+    volume[a] = whole / (double)nodes;
+  }
+  return DEA_OK;
+}

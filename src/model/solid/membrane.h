@@ -70,4 +70,9 @@ dea_status dea_membrane_state(const struct dea_flat_shape *shape, const struct d
 dea_status dea_membrane_stiffness(const struct dea_flat_shape *shape, const struct dea_layer *layer,
                                   const double *X, double *out);
 
+/* As dea_hex_metric: laplace [nodes][nodes], thickness_m times the integral of grad N_a . grad N_b
+ * [m]; volume: [nodes], equal shares of the element's [m^3]. */
+dea_status dea_membrane_metric(const struct dea_flat_shape *shape, const struct dea_layer *layer,
+                               const double *X, double *laplace, double *volume);
+
 #endif

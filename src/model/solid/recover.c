@@ -81,11 +81,12 @@ static dea_status evaluate_point(const struct dea_layer *layer, const struct dea
                                  double values[DEA_FIT_VALUES], double P[9])
 {
   struct dea_point point;
-  double excess = at->J - 1;
   dea_status status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure, 0, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
   if (layer->law != NULL) {
-    values[15] -= layer->p0_Pa * excess + 0.5 * layer->kappa_s_Pa * excess * excess;
+    double slope, curvature;
+    values[15] -=
+        layer->p0_Pa * (at->J - 1) + dea_layer_pointwise(layer, at->J, &slope, &curvature);
   }
   if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
     status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);

@@ -61,6 +61,21 @@ static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *
   return status;
 }
 
+/* The k-th of this rank's elements at s->u; with stresses that were predicted for it, if any. */
+static dea_status evaluate_own(struct dea_solid *s, size_t k, double voltage_V,
+                               enum dea_level level)
+{
+  size_t e = s->own[k];
+  if (level < DEA_TANGENT || !s->predicted_fits || s->grid->flat[e]) {
+    return evaluate_element(s, e, s->u, voltage_V, level);
+  }
+  struct element_place at;
+  gather(s, e, s->u, &at);
+  return dea_hex_evaluate_predicted(
+      &s->shape, &s->layers[s->layer[e]], at.X, at.u, at.multiplier, s->active[e] ? voltage_V : 0,
+      s->predicted + k * dea_hex_predicted_count(&s->shape), s->element);
+}
+
 /* Energy of this rank's elements and pieces of loads. */
 static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
@@ -145,10 +160,6 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   }
   dea_solid_frame_matrix(s, node_count, nodes, K);
   hold(s, nodes, dofs, K);
-  for (int i = 0; i < dofs; i++) {
-    s->metric[dea_solid_at(s, nodes[i / per], i % per)] +=
-        i % per < 3 ? fabs(K[i * dofs + i]) : 0; // the potential is not shifted
-  }
   for (int n = 0; n < node_count; n++) {
     block[n] = nodes[n];
   }
@@ -165,7 +176,7 @@ static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, dou
   for (size_t k = 0; k < s->own_count; k++) {
     size_t e = s->own[k];
     struct dea_element_result *element = s->element;
-    dea_status status = evaluate_element(s, e, s->u, voltage_V, level);
+    dea_status status = evaluate_own(s, k, voltage_V, level);
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "element %zu is inverted or beyond its law's domain", e);
     }
@@ -220,15 +231,12 @@ static void keep_scales(struct dea_solid *s)
 }
 
 /* Sums over the ranks, then the dead loads, which all ranks know. */
-static void collect(struct dea_solid *s, enum dea_level level, double *energy)
+static void collect(struct dea_solid *s, double *energy)
 {
   double sums[3] = {*energy, s->energy_scale, s->squares};
   dea_solid_sum(s, sums, 3);
   dea_solid_sum(s, s->g, s->dofs);
   dea_solid_sum(s, s->theta, dea_solid_pressure_count(s));
-  if (level >= DEA_TANGENT) {
-    dea_solid_sum(s, s->metric, s->dofs);
-  }
   for (size_t i = 0; i < s->dofs; i++) {
     s->g[i] -= s->force[i];
     sums[2] += s->force[i] * s->force[i];
@@ -251,7 +259,6 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   memset(s->g, 0, s->dofs * sizeof(double));
   memset(s->theta, 0, dea_solid_pressure_count(s) * sizeof(double));
   if (level >= DEA_TANGENT) {
-    memset(s->metric, 0, s->dofs * sizeof(double));
     DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(s->K), "MatZeroEntries"));
   }
   dea_status status = add_elements(ctx, s, voltage_V, level, energy);
@@ -259,7 +266,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
     status = add_loads(ctx, s, level, energy);
   }
   DEA_TRY(ctx, dea_solid_agree(ctx, s, status));
-  collect(s, level, energy);
+  collect(s, energy);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx,
             dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));

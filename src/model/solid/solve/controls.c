@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double alike = 1e-6;     // two directions, relative
 static const double rounding = 1e-12; // of a displacement, relative
 
 /* Displacements, without the potentials of a coupled field. */
@@ -36,8 +35,7 @@ static size_t state_count(const struct dea_solid *s)
 
 void dea_solid_path_release(struct dea_context *ctx, struct dea_solid_path *path)
 {
-  double *const memory[] = {path->before,   path->keep,          path->controls_before,
-                            path->controls, path->controls_from, path->controls_goal,
+  double *const memory[] = {path->keep, path->controls, path->controls_from, path->controls_goal,
                             path->at};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
@@ -53,16 +51,13 @@ dea_status dea_solid_path_prepare(struct dea_context *ctx, struct dea_solid *s)
     return DEA_OK;
   }
   dea_solid_path_release(ctx, path); // a load more: what was before is no guide
-  path->before = dea_alloc(ctx, states, sizeof(double));
   path->keep = dea_alloc(ctx, states, sizeof(double));
-  path->controls_before = dea_alloc(ctx, controls, sizeof(double));
   path->controls = dea_alloc(ctx, controls, sizeof(double));
   path->controls_from = dea_alloc(ctx, controls, sizeof(double));
   path->controls_goal = dea_alloc(ctx, controls, sizeof(double));
   path->at = dea_alloc(ctx, controls, sizeof(double));
-  if (path->before == NULL || path->keep == NULL || path->controls_before == NULL ||
-      path->controls == NULL || path->controls_from == NULL || path->controls_goal == NULL ||
-      path->at == NULL) {
+  if (path->keep == NULL || path->controls == NULL || path->controls_from == NULL ||
+      path->controls_goal == NULL || path->at == NULL) {
     dea_solid_path_release(ctx, path);
     return DEA_E_MEMORY;
   }
@@ -157,50 +152,4 @@ bool dea_solid_controls_drive(struct dea_solid *s, const double *controls)
   }
   dea_solid_frame_vector(s, true, s->drive);
   return any;
-}
-
-/* How two ways of one kind of control compare. */
-struct comparison {
-  bool any, differ;
-  double factor;
-};
-
-/* Takes in one kind: its last way and the next one. */
-static void compare(struct comparison *c, size_t count, const double *before, const double *now,
-                    const double *next)
-{
-  double ll = 0, lw = 0, ww = 0, none = 0;
-  for (size_t i = 0; i < count; i++) {
-    double last = now[i] - before[i], way = next[i] - now[i];
-    ll += last * last;
-    lw += last * way;
-    ww += way * way;
-    none += rounding * rounding * (now[i] * now[i] + next[i] * next[i]);
-  }
-  if (ll <= none && ww <= none) {
-    return;
-  }
-  double factor = ll > none ? lw / ll : 0;
-  c->differ = c->differ || !(ll > none) || !(ww - factor * lw <= alike * alike * ww) ||
-              (c->any && !(fabs(factor - c->factor) <= alike * fabs(factor)));
-  c->any = true;
-  c->factor = factor;
-}
-
-bool dea_solid_controls_extend(const struct dea_solid *s, const double *before, const double *now,
-                               const double *next, double *factor)
-{
-  struct comparison c = {false, false, 0};
-  double V[3] = {before[0] * before[0], now[0] * now[0], next[0] * next[0]};
-  size_t at = 1;
-  compare(&c, 1, &V[0], &V[1], &V[2]);
-  compare(&c, s->dofs, before + at, now + at, next + at); // dead loads
-  at += s->dofs;
-  compare(&c, move_count(s), before + at, now + at, next + at); // places
-  at += move_count(s);
-  for (size_t i = 0; i < s->load_count; at += s->loads[i].parameter_count, i++) {
-    compare(&c, s->loads[i].parameter_count, before + at, now + at, next + at);
-  }
-  *factor = c.factor;
-  return c.any && !c.differ;
 }

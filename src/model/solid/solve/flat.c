@@ -1,7 +1,6 @@
 /* What flat elements ask of the solver: modes without stiffness (docs/theory/membrane.md). */
 #include "model/solid/solve/internal.h"
 
-#include <math.h>
 #include <string.h>
 
 static const double neutral = 1e-10; // tau: stiffness that counts as none, in units of M
@@ -56,9 +55,6 @@ dea_status dea_solid_add_springs(struct dea_context *ctx, struct dea_solid *s)
 {
   if (s->spring == NULL) {
     return DEA_OK;
-  }
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->metric[i] = fmax(s->metric[i], s->spring[i]);
   }
   PetscScalar *values;
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));

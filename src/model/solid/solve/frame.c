@@ -1,6 +1,6 @@
 /* Local axes of nodes on mirror planes that are not x = 0 or y = 0 (docs/theory/mesh.md).
  *
- * Displacements and forces are kept in global components everywhere; K, its metric and the held
+ * Displacements and forces are kept in global components everywhere; K and the held
  * components of such a node are in local ones, v_local = Q v. */
 #include "model/solid/solve/internal.h"
 

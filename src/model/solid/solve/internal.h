@@ -9,13 +9,12 @@
 
 struct dea_solid_field;
 
-/* Two equilibria and a goal. State: displacements and multipliers; controls: what an equilibrium is
+/* An equilibrium and a goal. State: displacements and multipliers; controls: what an equilibrium is
  * asked for at, see controls.c. */
 struct dea_solid_path {
-  int solved; // how many equilibria there are, up to 2
   size_t state_count, control_count;
-  double *before, *keep;                      // [state_count] last but one; last
-  double *controls_before, *controls;         // [control_count] of the same two
+  double *keep;                               // [state_count] last equilibrium
+  double *controls;                           // [control_count] of it
   double *controls_from, *controls_goal, *at; // start and end of a solve, and where it is
 };
 
@@ -41,8 +40,8 @@ struct dea_solid {
   unsigned char *held;           // [dofs] DEA_FREE, ..., of the node's local components
   int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
   double (*frames)[9]; // rows are local axes
-  double *u, *trial, *g, *step, *metric, *force; // [dofs]
-  double *multiplier, *theta;                    // [elements][shape.pressures]
+  double *u, *trial, *g, *step, *force; // [dofs]
+  double *multiplier, *theta;           // [elements][shape.pressures]
   double *force_goal; // [dofs] dead loads that were asked for; force: as they stand
   double *place;      // [dofs] displacements that were asked for of prescribed (local) components
   double *reaction;   // [dofs] forces of the supports at the last assembly
@@ -60,9 +59,16 @@ struct dea_solid {
   struct dea_piece *piece;
   Mat K, factor;
   Vec right, solution;
-  double last_shift; // that made K positive definite, relative to the metric
   bool checked;
+  double *predicted;   // [own_count][dea_hex_predicted_count] stresses at the end of the last step
+  bool predicted_fits; // they belong to s->u
+  bool factor_fits;    // factor is of K at the last equilibrium, positive definite
+  double modulus_Pa;   // shear modulus of the softest layer
+  double length_m;     // smallest extent of the grid
+  double energy_floor; // rounding of the energy
 };
+
+#define DEA_SOLID_THETA_SMALL 1e-7 // of J - 1, projected
 
 /* Turns PETSc's error code into a status. */
 dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const char *what);
@@ -101,12 +107,12 @@ double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b
 /* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
 
-/* At s->u: energy and, up to the level, g and K; also theta, the metric (diagonal of K in absolute
- * value) and the scales. */
+/* At s->u: energy and, up to the level, g and K; also theta and the scales. With s->predicted_fits
+ * K has the predicted stresses. */
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               enum dea_level level, double *energy);
 
-/* Nodes with local axes (see options): K, metric and held are in their components, all else is in
+/* Nodes with local axes (see options): K and held are in their components, all else is in
  * global ones. */
 dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
                                    const struct dea_solid_options *options);
@@ -120,15 +126,17 @@ void dea_solid_release_held(const struct dea_solid *s, double *v);
 /* Makes s->spring for the flat elements, if there are any. DEA_E_UNSUPPORTED for what they cannot
  * be: anisotropic or without a law, in a coupled field. */
 dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
-/* What K and the metric get for modes without stiffness; nothing without flat elements. */
+/* What K gets for modes without stiffness; nothing without flat elements. */
 dea_status dea_solid_add_springs(struct dea_context *ctx, struct dea_solid *s);
 
 /* LDL^T of A into *factor, which is analysed when it is NULL. */
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 /* Factor of K; *negative: its negative pivots beyond those of free potentials. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
-/* K += amount times the metric. */
-dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount);
+/* K += amount_Pa int grad : grad of the displacements. */
+dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount_Pa);
+/* Sets modulus_Pa, length_m and energy_floor. */
+void dea_solid_sizes(struct dea_solid *s);
 /* out = K^-1 right with the present factor, [dofs] both, in global components. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
@@ -167,18 +175,23 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls);
 /* drive: from the held components' displacements to those of the controls. false: they are there.
  */
 bool dea_solid_controls_drive(struct dea_solid *s, const double *controls);
-/* Whether the way from `now` to `next` is `factor` times that from `before` to `now` (the voltage
- * by its square). */
-bool dea_solid_controls_extend(const struct dea_solid *s, const double *before, const double *now,
-                               const double *next, double *factor);
 
-/* Minimum of the energy with the multipliers as they are. */
+/* Before s->u goes on by share step: stresses there into s->predicted, pressures there into the
+ * multipliers, each if it is wanted. */
+dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                             const double *step, double share, bool stresses, bool pressures);
+/* Largest theta of the last assembly. */
+double dea_solid_theta_max(const struct dea_solid *s);
+
+/* Stationary point of the energy, downhill from s->u: a minimum, or a point that has a valley on
+ * all sides that a Newton step sees. Pressures follow; where they do not, report->theta_max is
+ * above DEA_SOLID_THETA_SMALL. */
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               struct dea_solid_report *report);
 /* One linear step in which the held components go the whole of s->drive and the rest follows. */
 dea_status dea_solid_drive(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report);
-/* The multipliers take over kappa theta; returns the largest theta. */
-double dea_solid_update_multipliers(struct dea_solid *s);
+/* The multipliers take over kappa theta. */
+void dea_solid_update_multipliers(struct dea_solid *s);
 
 #endif

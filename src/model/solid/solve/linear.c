@@ -1,4 +1,4 @@
-/* Linear algebra: factor, inertia, shift, solve. */
+/* Linear algebra: factor, inertia, solve. */
 #include "model/solid/solve/internal.h"
 
 #include <string.h>
@@ -74,17 +74,6 @@ static void from_nodes(const struct dea_solid *s, const double *nodes, double *s
       solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
     }
   }
-}
-
-dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount)
-{
-  PetscScalar *values;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  to_nodes(s, s->metric, values);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecScale(s->right, amount), "VecScale"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatDiagonalSet(s->K, s->right, ADD_VALUES), "MatDiagonalSet"));
-  return DEA_OK;
 }
 
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,

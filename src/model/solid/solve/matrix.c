@@ -82,9 +82,13 @@ static dea_status prepare(struct dea_context *ctx, struct dea_solid *s, PetscInt
 {
   size_t rows = s->end_node - s->first_node;
   DEA_TRY(ctx, split_elements(ctx, s));
+  s->predicted =
+      dea_alloc(ctx, s->own_count * dea_hex_predicted_count(&s->shape), sizeof *s->predicted);
   *own = dea_alloc(ctx, rows, sizeof **own);
   *others = dea_alloc(ctx, rows, sizeof **others);
-  return *own != NULL && *others != NULL ? count_blocks(ctx, s, *own, *others) : DEA_E_MEMORY;
+  return s->predicted != NULL && *own != NULL && *others != NULL
+             ? count_blocks(ctx, s, *own, *others)
+             : DEA_E_MEMORY;
 }
 
 dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before)

@@ -25,7 +25,6 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   s->trial = dea_alloc(ctx, s->dofs, sizeof(double));
   s->g = dea_alloc(ctx, s->dofs, sizeof(double));
   s->step = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->metric = dea_alloc(ctx, s->dofs, sizeof(double));
   s->force = dea_alloc(ctx, s->dofs, sizeof(double));
   s->multiplier = dea_alloc(ctx, elements * pressures, sizeof(double));
   s->theta = dea_alloc(ctx, elements * pressures, sizeof(double));
@@ -36,10 +35,9 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   s->element = dea_alloc(ctx, 1, sizeof *s->element);
   s->piece = dea_alloc(ctx, 1, sizeof *s->piece);
   if (s->layers == NULL || s->layer == NULL || s->active == NULL || s->held == NULL ||
-      s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL || s->metric == NULL ||
-      s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL ||
-      s->place == NULL || s->reaction == NULL || s->drive == NULL || s->element == NULL ||
-      s->piece == NULL) {
+      s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL || s->force == NULL ||
+      s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL || s->place == NULL ||
+      s->reaction == NULL || s->drive == NULL || s->element == NULL || s->piece == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
@@ -56,6 +54,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
+  dea_solid_sizes(s);
   return DEA_OK;
 }
 
@@ -98,10 +97,11 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   VecDestroy(&s->right);
   VecDestroy(&s->solution);
   dea_solid_path_release(ctx, &s->path);
-  void *const memory[] = {s->layers,     s->layer, s->active,     s->held,   s->u,       s->trial,
-                          s->g,          s->step,  s->multiplier, s->theta,  s->metric,  s->force,
-                          s->force_goal, s->place, s->reaction,   s->drive,  s->element, s->piece,
-                          s->loads,      s->own,   s->frame,      s->frames, s->spring};
+  void *const memory[] = {s->layers,  s->layer,      s->active, s->held,       s->u,
+                          s->trial,   s->g,          s->step,   s->multiplier, s->theta,
+                          s->force,   s->force_goal, s->place,  s->reaction,   s->drive,
+                          s->element, s->piece,      s->loads,  s->own,        s->frame,
+                          s->frames,  s->predicted,  s->spring};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

@@ -1,9 +1,8 @@
 /* A solid made of layered hexahedra: assembly, equilibrium at a voltage, count of unstable modes.
  *
- * The energy of hex.h is minimised by Newton's method with line search. While the tangent K is not
- * positive definite (a negative pivot of its LDL^T) a multiple of a lumped metric is added to it,
- * so that every step goes down. Incompressibility is brought in by multipliers: after each minimum
- * they take over the pressure kappa theta, until J - 1 has no projection left.
+ * The energy of hex.h is gone down (docs/theory/branches.md): while the tangent K has a negative
+ * pivot of its LDL^T, an equal tension in all directions is added to it. Incompressibility is
+ * brought in by multipliers that follow on the way, until J - 1 has no projection left.
  *
  * PETSc must be initialised (dea_solid_start). Under mpirun all ranks make the same calls with the
  * same arguments and get the same answers; the work is split among them. */
@@ -42,12 +41,14 @@ struct dea_solid_options {
 
 /* How a solve went. */
 struct dea_solid_report {
-  int iterations, factorisations, shifted; // shifted: of the factorisations
-  int unstable_modes;                      // negative pivots of the unshifted tangent at the end
-  double energy_J, residual;               // residual: relative to the sum of element forces
-  double theta_max;                        // largest projected J - 1 left
-  double load_error; // largest constraint violation of a load over the one it allows
-  double way;        // share of the way to what was asked for; 1 unless the solve failed
+  int iterations;              // steps with a tangent of their own
+  int corrections;             // steps with the factor that was there
+  int factorisations, shifted; // shifted: of the factorisations
+  int unstable_modes;          // negative pivots of the unshifted tangent at the end
+  double energy_J, residual;   // residual: relative to the sum of element forces
+  double theta_max;            // largest projected J - 1 left
+  double load_error;           // largest constraint violation of a load over the one it allows
+  double way;                  // share of the way to what was asked for; 1 unless the solve failed
 };
 
 /* PETSc for this process; harmless when it runs already. */

@@ -50,7 +50,7 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   DEA_TRY(ctx, dea_solid_path_prepare(ctx, s));
   dea_solid_state_get(s, path->keep);
   dea_solid_controls_get(s, path->controls);
-  const double own[] = {path->solved, s->last_shift, s->force_largest, s->energy_largest};
+  const double own[] = {s->force_largest, s->energy_largest};
   DEA_TRY(ctx,
           dea_state_add_mark(ctx, out, "mesh", grid->X, 3 * grid->node_count * sizeof(double)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
@@ -62,10 +62,7 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", s->held, s->dofs));
   DEA_TRY(ctx, mark_materials(ctx, s, out));
   DEA_TRY(ctx, dea_state_add(ctx, out, "state", path->keep, path->state_count));
-  DEA_TRY(ctx, dea_state_add(ctx, out, "state before", path->before, path->state_count));
   DEA_TRY(ctx, dea_state_add(ctx, out, "controls", path->controls, path->control_count));
-  DEA_TRY(ctx,
-          dea_state_add(ctx, out, "controls before", path->controls_before, path->control_count));
   DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
   return DEA_OK;
 }
@@ -76,21 +73,15 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
   struct dea_solid_path *path = &s->path;
   DEA_TRY(ctx, dea_solid_path_prepare(ctx, s));
   const double *now = dea_state_find(state, "state", path->state_count);
-  const double *before = dea_state_find(state, "state before", path->state_count);
   const double *controls = dea_state_find(state, "controls", path->control_count);
-  const double *controls_before = dea_state_find(state, "controls before", path->control_count);
-  const double *own = dea_state_find(state, "solid", 4);
-  if (now == NULL || before == NULL || controls == NULL || controls_before == NULL || own == NULL) {
+  const double *own = dea_state_find(state, "solid", 2);
+  if (now == NULL || controls == NULL || own == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh and these loads");
   }
   dea_solid_state_set(s, now);
   dea_solid_controls_set(s, controls);
   memcpy(s->force_goal, s->force, s->dofs * sizeof(double));
-  memcpy(path->before, before, path->state_count * sizeof *before);
-  memcpy(path->controls_before, controls_before, path->control_count * sizeof *controls_before);
-  path->solved = (int)own[0];
-  s->last_shift = own[1];
-  s->force_largest = own[2];
-  s->energy_largest = own[3];
+  s->force_largest = own[0];
+  s->energy_largest = own[1];
   return DEA_OK;
 }

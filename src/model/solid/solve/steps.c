@@ -6,41 +6,7 @@
 
 enum { OUTER_MAX = 30 };
 
-static const double theta_small = 1e-7;       // of J - 1
 static const double step_smallest = 1.0 / 64; // of the way asked for
-static const double factor_largest = 2.5;     // of the last way, for an extrapolation
-
-/* A start for the next controls from the last two equilibria: displacements and multipliers go on
- * as they did, with V^2. Nothing changes when that leads too far, or an element would be inverted.
- */
-static void extrapolate(struct dea_solid *s, const double *next)
-{
-  const struct dea_solid_path *path = &s->path;
-  double factor, energy;
-  if (path->solved < 2 ||
-      !dea_solid_controls_extend(s, path->controls_before, path->controls, next, &factor) ||
-      !(fabs(factor) <= factor_largest)) {
-    return;
-  }
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->trial[i] = s->u[i] + factor * (s->u[i] - path->before[i]);
-  }
-  if (dea_solid_energy(s, s->trial, s->voltage_V, &energy) != DEA_OK) {
-    return;
-  }
-  memcpy(s->u, s->trial, s->dofs * sizeof(double));
-  const double *before = path->before + s->dofs;
-  size_t pressures = dea_solid_pressure_count(s);
-  for (size_t i = 0; i < pressures; i++) {
-    s->multiplier[i] += factor * (s->multiplier[i] - before[i]);
-  }
-  before += pressures;
-  for (size_t i = 0; i < s->load_count; before += s->loads[i].multiplier_count, i++) {
-    for (size_t k = 0; k < s->loads[i].multiplier_count; k++) {
-      s->loads[i].multiplier[k] += factor * (s->loads[i].multiplier[k] - before[k]);
-    }
-  }
-}
 
 /* Minima at multipliers that follow, until the constraints hold. */
 static dea_status outer_loop(struct dea_context *ctx, struct dea_solid *s,
@@ -48,15 +14,17 @@ static dea_status outer_loop(struct dea_context *ctx, struct dea_solid *s,
 {
   for (int i = 0; i < OUTER_MAX; i++) {
     DEA_TRY(ctx, dea_solid_minimise(ctx, s, s->voltage_V, report));
-    report->theta_max = dea_solid_update_multipliers(s);
     report->load_error = 0;
     for (size_t k = 0; k < s->load_count; k++) {
       if (s->loads[k].update != NULL) {
         report->load_error = fmax(report->load_error, s->loads[k].update(s->loads[k].self, s->u));
       }
     }
-    if (report->theta_max < theta_small && report->load_error <= 1) {
+    if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {
       return DEA_OK;
+    }
+    if (report->theta_max >= DEA_SOLID_THETA_SMALL) {
+      dea_solid_update_multipliers(s);
     }
   }
   if (report->load_error > 1) {
@@ -79,7 +47,6 @@ static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double 
   }
   dea_solid_state_get(s, path->keep);
   dea_solid_controls_set(s, next);
-  extrapolate(s, next);
   dea_status status = DEA_OK;
   if (dea_solid_controls_drive(s, next)) {
     status = dea_solid_drive(ctx, s, s->voltage_V, report);
@@ -92,10 +59,7 @@ static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double 
     dea_solid_controls_set(s, path->controls);
     return status;
   }
-  memcpy(path->before, path->keep, path->state_count * sizeof(double));
-  memcpy(path->controls_before, path->controls, path->control_count * sizeof(double));
   memcpy(path->controls, next, path->control_count * sizeof(double));
-  path->solved += path->solved < 2;
   return DEA_OK;
 }
 

@@ -1,0 +1,106 @@
+/* The shift of K, sigma times int grad : grad of the displacements: an equal tension sigma in all
+ * directions (docs/theory/branches.md); and the sizes that go with it. */
+#include "model/solid/solve/internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* L of an element [nodes][nodes] and its volume. */
+static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace, double *volume)
+{
+  double X[DEA_HEX_DOFS_MAX] = {0}, lumped[DEA_HEX_NODES_MAX] = {0};
+  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+  for (int n = 0; n < count; n++) {
+    memcpy(X + 3 * n, s->grid->X + 3 * s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
+           3 * sizeof *X);
+  }
+  dea_status status =
+      s->grid->flat[e] ? dea_membrane_metric(&s->flat, &s->layers[s->layer[e]], X, laplace, lumped)
+                       : dea_hex_metric(&s->shape, X, laplace, lumped);
+  *volume = 0;
+  for (int n = 0; n < count && status == DEA_OK; n++) {
+    *volume += lumped[n];
+  }
+  return status;
+}
+
+/* L of an element as a block of K without the rows and columns of held components. */
+static dea_status shift_block(struct dea_solid *s, size_t e, double amount, double *block)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes), per = s->per_node, dofs = per * count;
+  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume;
+  dea_status status = metric_of(s, e, laplace, &volume);
+  if (status != DEA_OK) {
+    return status;
+  }
+  memset(block, 0, (size_t)(dofs * dofs) * sizeof *block);
+  for (int a = 0; a < count; a++) {
+    for (int b = 0; b < count; b++) {
+      for (int i = 0; i < 3; i++) {
+        block[(per * a + i) * dofs + per * b + i] = amount * laplace[a * count + b];
+      }
+    }
+  }
+  dea_solid_frame_matrix(s, count, nodes, block);
+  for (int i = 0; i < dofs; i++) {
+    for (int j = 0; j < dofs && s->held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
+      block[i * dofs + j] = block[j * dofs + i] = 0;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount_Pa)
+{
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    PetscInt block[DEA_HEX_NODES_MAX];
+    size_t e = s->own[k];
+    status = shift_block(s, e, amount_Pa, s->element->K);
+    int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+    for (int n = 0; n < count; n++) {
+      block[n] = s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+    }
+    if (status == DEA_OK) {
+      status = dea_solid_petsc(
+          ctx, MatSetValuesBlocked(s->K, count, block, count, block, s->element->K, ADD_VALUES),
+          "MatSetValuesBlocked");
+    }
+  }
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, status));
+  DEA_TRY(ctx,
+          dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  return DEA_OK;
+}
+
+static double modulus_of(const struct dea_layer *layer)
+{
+  return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
+}
+
+void dea_solid_sizes(struct dea_solid *s)
+{
+  double squares = 0, extent[3];
+  s->modulus_Pa = INFINITY;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], whole;
+    double modulus = modulus_of(&s->layers[s->layer[e]]);
+    metric_of(s, e, laplace, &whole); // 0 for an inverted one: dea_solid_check speaks of it
+    squares += modulus * modulus * whole * whole;
+    s->modulus_Pa = fmin(s->modulus_Pa, modulus);
+  }
+  s->energy_floor = DBL_EPSILON * sqrt(squares);
+  s->length_m = INFINITY;
+  for (int i = 0; i < 3; i++) {
+    double least = INFINITY, most = -INFINITY;
+    for (size_t n = 0; n < s->grid->node_count; n++) {
+      least = fmin(least, s->grid->X[3 * n + (size_t)i]);
+      most = fmax(most, s->grid->X[3 * n + (size_t)i]);
+    }
+    extent[i] = most - least;
+    s->length_m = extent[i] > 0 ? fmin(s->length_m, extent[i]) : s->length_m;
+  }
+}

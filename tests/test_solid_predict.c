@@ -1,0 +1,147 @@
+/* Stresses at the end of a linear step, the metric of the shift, and the barrier before inversion.
+ */
+#include "devices.h"
+#include "model/solid/hex.h"
+#include "testing.h"
+
+static struct dea_hex_shape shape;
+static struct dea_element_result plain, other;
+static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], way[DEA_HEX_DOFS_MAX];
+static double predicted[DEA_HEX_PRESSURES_MAX + 6 * DEA_HEX_GAUSS_MAX];
+static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3, 5e2};
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+
+static struct dea_layer film(void)
+{
+  struct dea_layer layer = {.law = dea_law_find("yeoh"),
+                            .param = yeoh,
+                            .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                            .kappa_Pa = 4e7,
+                            .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                            .thickness_m = 44e-6};
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  return layer;
+}
+
+static const struct dea_layer plastic = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+
+static void sample(void)
+{
+  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  for (int n = 0; n < shape.nodes; n++) {
+    const double *x = shape.node_at[n];
+    X[3 * n] = 100e-6 * x[0] + 1e-5 * x[0] * x[1];
+    X[3 * n + 1] = 100e-6 * x[1] + 1e-5 * x[0];
+    X[3 * n + 2] = 22e-6 * x[2] + 1e-6 * x[0] * x[2];
+    for (int i = 0; i < 3; i++) {
+      u[3 * n + i] = (i == 2 ? 2e-6 : 1e-5) * sin(1.3 * n + i);
+      way[3 * n + i] = (i == 2 ? 1e-6 : 5e-6) * cos(0.7 * n + 2 * i);
+    }
+  }
+}
+
+static double distance(int dofs)
+{
+  double largest = 0, apart = 0;
+  for (int i = 0; i < dofs * dofs; i++) {
+    largest = fmax(largest, fabs(plain.K[i]));
+    apart = fmax(apart, fabs(plain.K[i] - other.K[i]));
+  }
+  return apart / largest;
+}
+
+/* Apart from the plain tangent at u + share way. */
+static double apart_at(const struct dea_layer *layer, double share)
+{
+  double end[DEA_HEX_DOFS_MAX];
+  assert_int_equal(
+      dea_hex_predict(&shape, layer, X, u, pressures, 4e3, way, share, true, predicted), DEA_OK);
+  for (int i = 0; i < 3 * shape.nodes; i++) {
+    end[i] = u[i] + share * way[i];
+  }
+  assert_int_equal(dea_hex_evaluate(&shape, layer, X, end, pressures, 4e3, DEA_TANGENT, &plain),
+                   DEA_OK);
+  assert_int_equal(
+      dea_hex_evaluate_predicted(&shape, layer, X, end, pressures, 4e3, predicted, &other), DEA_OK);
+  for (int i = 0; i < 3 * shape.nodes; i++) {
+    assert_true(plain.g[i] == other.g[i]);
+    for (int j = 0; j < i; j++) {
+      int dofs = 3 * shape.nodes;
+      assert_close(other.K[i * dofs + j], other.K[j * dofs + i], 0, 1e-9 * fabs(other.K[0]));
+    }
+  }
+  assert_true(plain.energy_J == other.energy_J);
+  return distance(3 * shape.nodes);
+}
+
+/* Without a step the tangent is the plain one; with one it differs by the square of the step, for
+ * the stresses are linear in it. */
+static void test_stresses_of_a_step(void **state)
+{
+  (void)state;
+  const struct dea_layer layers[] = {film(), plastic};
+  sample();
+  for (int k = 0; k < 2; k++) {
+    assert_close(apart_at(&layers[k], 0), 0, 0, 1e-12);
+    double at = apart_at(&layers[k], 1e-2), half = apart_at(&layers[k], 5e-3);
+    assert_true(at > 1e-9);
+    assert_close(at / half, 4, 5e-2, 0);
+  }
+}
+
+/* L of a linear field is its squared gradient times the volume, and of a constant 0; the volume is
+ * shared out among the nodes. */
+static void test_metric(void **state)
+{
+  (void)state;
+  double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
+  const struct dea_layer layer = film();
+  sample();
+  assert_int_equal(dea_hex_metric(&shape, X, L, volume), DEA_OK);
+  assert_int_equal(dea_hex_evaluate(&shape, &layer, X, u, pressures, 0, DEA_ENERGY, &plain),
+                   DEA_OK);
+  for (int a = 0; a < shape.nodes; a++) {
+    double row = 0;
+    whole += volume[a];
+    assert_true(volume[a] > 0);
+    for (int b = 0; b < shape.nodes; b++) {
+      double f[2], nodes[2] = {a, b};
+      for (int k = 0; k < 2; k++) {
+        const double *x = X + 3 * (int)nodes[k];
+        f[k] = 2 * x[0] - 3 * x[1] + 6 * x[2];
+      }
+      sum += f[0] * L[a * shape.nodes + b] * f[1];
+      row += L[a * shape.nodes + b];
+    }
+    assert_close(row, 0, 0, 1e-12 * L[a * shape.nodes + a]);
+  }
+  assert_close(whole, plain.volume_m3, 1e-12, 0);
+  assert_close(sum, 49 * plain.volume_m3, 1e-12, 0);
+}
+
+/* (kappa_s/2) (J - 1)^2 near 1; without bound before J = 0. */
+static void test_barrier(void **state)
+{
+  (void)state;
+  const struct dea_layer layer = film();
+  double slope, curvature, ahead, behind, ignored;
+  assert_close(dea_layer_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
+  assert_close(slope, 0, 0, 1e-9);
+  assert_close(curvature, layer.kappa_s_Pa, 1e-14, 0);
+  double far = dea_layer_pointwise(&layer, 0.3, &slope, &curvature), d = 1e-6;
+  double up = dea_layer_pointwise(&layer, 0.3 + d, &ahead, &ignored);
+  double down = dea_layer_pointwise(&layer, 0.3 - d, &behind, &ignored);
+  assert_close(slope, (up - down) / (2 * d), 1e-8, 0);
+  assert_close(curvature, (ahead - behind) / (2 * d), 1e-8, 0);
+  assert_true(dea_layer_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_stresses_of_a_step),
+      cmocka_unit_test(test_metric),
+      cmocka_unit_test(test_barrier),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
