@@ -197,7 +197,9 @@ static void compare(const struct answer *many, const struct answer *one, int cas
     assert_int_equal(many[k].status, one[k].status);
     assert_int_equal(many[k].modes, one[k].modes);
     for (int i = 0; i < SAMPLES && one[k].status == DEA_OK; i++) {
-      if (fabs(many[k].samples[i] - one[k].samples[i]) > 1e-7 * fabs(one[k].samples[i]) + 1e-13) {
+      // a solve ends with steps below 1e-10 of the film's thickness: 4e-15 m at each of 2000 nodes
+      double left = strncmp(sample_name[i], "sum ", 4) == 0 ? 1e-11 : 1e-13;
+      if (fabs(many[k].samples[i] - one[k].samples[i]) > 1e-7 * fabs(one[k].samples[i]) + left) {
         fail_msg("case %d, %s: %.10g, not %.10g", k, sample_name[i], many[k].samples[i],
                  one[k].samples[i]);
       }
