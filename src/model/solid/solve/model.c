@@ -154,12 +154,9 @@ static dea_status stopped(struct dea_context *ctx, const struct dea_model *model
   char why[200];
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   return dea_fail(ctx, status,
-                  "stopped between %.4g and %.4g kV (%s); the points before are kept. %s",
-                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why,
-                  model->device->pre_stretch < 1.1
-                      ? "A film with hardly any pre-stretch buckles at once, which this model "
-                        "cannot follow yet"
-                      : "Try smaller steps of compute.voltage");
+                  "stopped between %.4g and %.4g kV (%s); the points before are kept. Try smaller "
+                  "steps of compute.voltage",
+                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
