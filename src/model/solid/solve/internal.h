@@ -30,7 +30,8 @@ struct dea_solid {
   struct dea_hex_shape shape;
   struct dea_flat_shape flat;
   double *spring; // [dofs] M of docs/theory/membrane.md, 0 off the flat elements; NULL without any
-  struct dea_layer *layers;
+  struct dea_layer *layers; // [layer_count]
+  size_t layer_count;
   int per_node;                  // 3, or 4 with a potential
   size_t dofs;                   // per_node * nodes
   struct dea_solid_field *field; // NULL: thin film
@@ -62,6 +63,7 @@ struct dea_solid {
   bool checked;
   double *predicted;   // [own_count][dea_hex_predicted_count] stresses at the end of the last step
   bool predicted_fits; // they belong to s->u
+  bool stay;           // at unstable equilibria
   bool factor_fits;    // factor is of K at the last equilibrium, positive definite
   double modulus_Pa;   // shear modulus of the softest layer
   double length_m;     // smallest extent of the grid
@@ -191,6 +193,22 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, doub
 /* One linear step in which the held components go the whole of s->drive and the rest follows. */
 dea_status dea_solid_drive(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report);
+/* Equilibrium at the controls as they are, from s->u, with all multipliers settled. */
+dea_status dea_solid_settle_down(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report);
+/* Moves the multipliers of the loads; the largest violation over what is allowed. */
+double dea_solid_update_loads(struct dea_solid *s);
+/* Factor of K with a kappa so large that its inertia is that of the incompressible solid, at s->u
+ * (docs/theory/branches.md). */
+dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);
+/* One unstable mode at the equilibrium [3 node_count]: the lowest unless more than DEA_MODES_MAX
+ * are. */
+dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *vector);
+/* dea_solid_leave at an unstable equilibrium that *report speaks of. */
+dea_status dea_solid_leave_from(struct dea_context *ctx, struct dea_solid *s, int side,
+                                struct dea_solid_report *report);
+/* Volume lumped to the displacements [dofs]; 0 for potentials. */
+void dea_solid_masses(const struct dea_solid *s, double *mass);
 /* The multipliers take over kappa theta. */
 void dea_solid_update_multipliers(struct dea_solid *s);
 

@@ -159,6 +159,19 @@ static dea_status stopped(struct dea_context *ctx, const struct dea_model *model
                   1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
 }
 
+/* Where the path to a voltage has turned unstable and the solid has gone down from it. */
+static dea_status say_snap(struct dea_context *ctx, const struct dea_model *model)
+{
+  if (model->report.snapped) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                            "model 3d: the state on the way to %.4g kV is unstable (buckling or "
+                            "snapping); the sweep goes on from the stable one below it",
+                            1e-3 * model->voltage_V));
+  }
+  return DEA_OK;
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -177,6 +190,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
       return stopped(ctx, model, next, status);
     }
     model->voltage_V = next;
+    DEA_TRY(ctx, say_snap(ctx, model));
   }
   DEA_TRY(ctx, report(ctx, model, out));
   return DEA_OK;

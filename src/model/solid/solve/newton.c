@@ -216,6 +216,10 @@ static dea_status finish(struct dea_context *ctx, struct dea_solid *s, struct de
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
   d->report->factorisations++;
   s->factor_fits = d->report->unstable_modes == 0;
+  if (!s->factor_fits) { // of a solid that kappa leaves a little compressible
+    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
+    d->report->factorisations++;
+  }
   return DEA_OK;
 }
 

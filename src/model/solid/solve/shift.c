@@ -7,9 +7,10 @@
 #include <string.h>
 
 /* L of an element [nodes][nodes] and its volume. */
-static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace, double *volume)
+static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace, double *lumped,
+                            double *volume)
 {
-  double X[DEA_HEX_DOFS_MAX] = {0}, lumped[DEA_HEX_NODES_MAX] = {0};
+  double X[DEA_HEX_DOFS_MAX] = {0};
   int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
   for (int n = 0; n < count; n++) {
     memcpy(X + 3 * n, s->grid->X + 3 * s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
@@ -30,8 +31,8 @@ static dea_status shift_block(struct dea_solid *s, size_t e, double amount, doub
 {
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
   int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes), per = s->per_node, dofs = per * count;
-  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume;
-  dea_status status = metric_of(s, e, laplace, &volume);
+  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+  dea_status status = metric_of(s, e, laplace, lumped, &volume);
   if (status != DEA_OK) {
     return status;
   }
@@ -76,6 +77,21 @@ dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double 
   return DEA_OK;
 }
 
+void dea_solid_masses(const struct dea_solid *s, double *mass)
+{
+  memset(mass, 0, s->dofs * sizeof *mass);
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    metric_of(s, e, laplace, lumped, &volume);
+    for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+      for (int i = 0; i < 3; i++) {
+        mass[3 * nodes[n] + i] += lumped[n];
+      }
+    }
+  }
+}
+
 static double modulus_of(const struct dea_layer *layer)
 {
   return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
@@ -86,9 +102,9 @@ void dea_solid_sizes(struct dea_solid *s)
   double squares = 0, extent[3];
   s->modulus_Pa = INFINITY;
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], whole;
+    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
     double modulus = modulus_of(&s->layers[s->layer[e]]);
-    metric_of(s, e, laplace, &whole); // 0 for an inverted one: dea_solid_check speaks of it
+    metric_of(s, e, laplace, lumped, &whole); // 0 for an inverted one: dea_solid_check speaks of it
     squares += modulus * modulus * whole * whole;
     s->modulus_Pa = fmin(s->modulus_Pa, modulus);
   }

@@ -40,6 +40,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
       s->reaction == NULL || s->drive == NULL || s->element == NULL || s->piece == NULL) {
     return DEA_E_MEMORY;
   }
+  s->layer_count = options->layer_count;
   memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
   for (size_t e = 0; e < elements; e++) {
     s->layer[e] = options->layer_of(options->self, grid->region[e], grid->sheet[e]);

@@ -45,6 +45,7 @@ struct dea_solid_report {
   int corrections;             // steps with the factor that was there
   int factorisations, shifted; // shifted: of the factorisations
   int unstable_modes;          // negative pivots of the unshifted tangent at the end
+  bool snapped;                // an unstable equilibrium on the way was left (branch.h)
   double energy_J, residual;   // residual: relative to the sum of element forces
   double theta_max;            // largest projected J - 1 left
   double load_error;           // largest constraint violation of a load over the one it allows

@@ -4,34 +4,56 @@
 #include <math.h>
 #include <string.h>
 
-enum { OUTER_MAX = 30 };
+enum { OUTER_MAX = 30, WORSE_MAX = 4 };
 
 static const double step_smallest = 1.0 / 64; // of the way asked for
 
-/* Minima at multipliers that follow, until the constraints hold. */
-static dea_status outer_loop(struct dea_context *ctx, struct dea_solid *s,
-                             struct dea_solid_report *report)
+/* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
+ * more minima at given multipliers may go on, but violate the constraints more and more. */
+dea_status dea_solid_settle_down(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report)
 {
-  for (int i = 0; i < OUTER_MAX; i++) {
+  double best = INFINITY;
+  for (int i = 0, worse = 0; i < OUTER_MAX && worse < WORSE_MAX; i++) {
     DEA_TRY(ctx, dea_solid_minimise(ctx, s, s->voltage_V, report));
-    report->load_error = 0;
-    for (size_t k = 0; k < s->load_count; k++) {
-      if (s->loads[k].update != NULL) {
-        report->load_error = fmax(report->load_error, s->loads[k].update(s->loads[k].self, s->u));
-      }
-    }
+    report->load_error = dea_solid_update_loads(s);
+    double error = fmax(report->theta_max / DEA_SOLID_THETA_SMALL, report->load_error);
     if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {
       return DEA_OK;
     }
     if (report->theta_max >= DEA_SOLID_THETA_SMALL) {
       dea_solid_update_multipliers(s);
     }
+    worse = error < best ? 0 : worse + 1;
+    best = fmin(best, error);
   }
-  if (report->load_error > 1) {
-    return dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                    "a constraint is violated %.2g times as much as allowed", report->load_error);
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                  "the constraints do not settle (J - 1: %.1e; loads: %.2g of what is allowed)",
+                  report->theta_max, report->load_error);
+}
+
+double dea_solid_update_loads(struct dea_solid *s)
+{
+  double error = 0;
+  for (size_t k = 0; k < s->load_count; k++) {
+    if (s->loads[k].update != NULL) {
+      error = fmax(error, s->loads[k].update(s->loads[k].self, s->u));
+    }
   }
-  return DEA_OK;
+  return error;
+}
+
+/* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
+ * unstable modes. */
+static dea_status leave(struct dea_context *ctx, struct dea_solid *s,
+                        struct dea_solid_report *report)
+{
+  dea_status status = dea_solid_leave_from(ctx, s, 0, report);
+  if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  return status;
 }
 
 /* The equilibrium a share of the way to the goal; the solid stays as it was when it fails. */
@@ -52,7 +74,10 @@ static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double 
     status = dea_solid_drive(ctx, s, s->voltage_V, report);
   }
   if (status == DEA_OK) {
-    status = outer_loop(ctx, s, report);
+    status = dea_solid_settle_down(ctx, s, report);
+  }
+  if (status == DEA_OK && report->unstable_modes > 0 && !s->stay) {
+    status = leave(ctx, s, report);
   }
   if (status != DEA_OK) {
     dea_solid_state_set(s, path->keep);

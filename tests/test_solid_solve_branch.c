@@ -1,0 +1,221 @@
+/* Stability of solids: modes of a clamped strip, buckling of a compressed strip
+ * against Euler, both sides of the pitchfork, and solves that leave an unstable equilibrium. */
+// ctest: solid
+#include "model/solid/grid.h"
+#include "model/solid/solve/branch.h"
+#include "testing.h"
+
+#include "context_fixture.h"
+
+#include <string.h>
+
+/* A strip of a compressible solid, length 1 along x, clamped at both ends, free to move along y by
+ * its width only by Poisson's ratio 0. nu = 0: E = 2 mu. Pre-strain is put in by prescribing the
+ * end x = 1. */
+static const double length = 1, width = 0.05, thickness = 0.01, mu = 0.5e6;
+enum { ALONG = 8, ORDER = 3 }; // of order 2 ten are 3 % too stiff
+
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+static struct dea_solid_report report;
+
+static void map_strip(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = length * s;
+  x[1] = width * t;
+}
+
+static int only_layer(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return 0;
+}
+
+static bool nowhere(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return false;
+}
+
+static int clamped(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 || X[0] > length - 1e-9 ? 7 : 0;
+}
+
+static void create(void)
+{
+  double cuts[ALONG + 1];
+  static const double one[] = {0, 1};
+  for (int i = 0; i <= ALONG; i++) {
+    cuts[i] = (double)i / ALONG;
+  }
+  const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
+  const struct dea_sheet sheet = {thickness, 1, 2};
+  const struct dea_layer layer = {.lame_mu_Pa = mu};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 1,
+                                            .layers = &layer,
+                                            .layer_of = only_layer,
+                                            .active = nowhere,
+                                            .held = clamped};
+  assert_int_equal(
+      dea_grid_create(ctx, ORDER, &block, 1, &sheet, 1, NULL, -0.5 * thickness, length, &grid),
+      DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+}
+
+static void destroy(void)
+{
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Both ends stay clamped, the one at x = 1 goes inwards by the strain. */
+static void compress(double strain)
+{
+  const double to[3] = {-strain * length, 0, 0};
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (grid->X[3 * n] > length - 1e-9) {
+      assert_int_equal(dea_solid_prescribe(ctx, solid, n, 7, to), DEA_OK);
+    }
+  }
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+}
+
+static double middle_z(void)
+{
+  double most = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    double z = dea_solid_displacement(solid)[3 * n + 2];
+    most = fabs(z) > fabs(most) ? z : most;
+  }
+  return most;
+}
+
+/* Euler: clamped ends, strain pi^2/3 (h/L)^2 for a thin strip, E from mu with nu = 0. The strain at
+ * which the lowest mode has no stiffness, by bisection on the flat path. */
+static void test_strip_buckles_at_eulers_strain(void **state)
+{
+  (void)state;
+  const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
+  double below = 0.8 * euler, above = 1.2 * euler, value;
+  create();
+  dea_solid_stay(solid, true);
+  compress(below);
+  assert_int_equal(report.unstable_modes, 0);
+  compress(above);
+  assert_int_equal(report.unstable_modes, 1);
+  assert_int_equal(dea_solid_modes(ctx, solid, 1, &value, NULL), DEA_OK);
+  assert_true(value < 0);
+  for (int i = 0; i < 8; i++) {
+    double middle = 0.5 * (below + above);
+    destroy(); // from rest: a descent from an unstable state would find the buckled one
+    create();
+    dea_solid_stay(solid, true);
+    compress(middle);
+    assert_close(middle_z(), 0, 0, 1e-6);
+    *(report.unstable_modes > 0 ? &above : &below) = middle;
+  }
+  assert_close(0.5 * (below + above), euler, 1e-2, 0);
+  destroy();
+}
+
+/* Pitchfork: left to either side the strip has the same energy, below that of the flat one, and is
+ * the mirror image; deflection of the buckled strip from the length that it has to keep. */
+static void test_both_sides_of_the_pitchfork(void **state)
+{
+  (void)state;
+  const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
+  double z[2], energy[2], flat;
+  create();
+  dea_solid_stay(solid, true);
+  compress(1.5 * euler); // the second mode comes at 2.05
+  assert_int_equal(report.unstable_modes, 1);
+  flat = report.energy_J;
+  size_t size = 3 * grid->node_count * sizeof(double);
+  double *keep = dea_alloc(ctx, 3 * grid->node_count, sizeof *keep);
+  assert_non_null(keep);
+  memcpy(keep, dea_solid_displacement(solid), size);
+  for (int k = 0; k < 2; k++) {
+    memcpy(dea_solid_displacement(solid), keep, size);
+    assert_int_equal(dea_solid_leave(ctx, solid, k == 0 ? 1 : -1, &report), DEA_OK);
+    assert_true(report.snapped);
+    assert_int_equal(report.unstable_modes, 0);
+    z[k] = middle_z();
+    energy[k] = report.energy_J;
+  }
+  assert_true(z[0] > 0 && z[1] < 0);
+  assert_close(z[0], -z[1], 1e-6, 0);
+  assert_close(energy[0], energy[1], 1e-8, 0);
+  assert_true(energy[0] < flat);
+  // w = (z/2)(1 - cos 2 pi x/L): a quarter of the square of pi z/L takes up the strain beyond
+  // Euler's
+  assert_close(z[0], sqrt(4 * 0.5 * euler) / acos(-1), 2e-2, 0);
+  dea_free(ctx, keep);
+  destroy();
+}
+
+/* As a user has it: a solve ends at a stable equilibrium and says that it left another. */
+static void test_a_solve_leaves_what_is_unstable(void **state)
+{
+  (void)state;
+  const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
+  create();
+  compress(0.5 * euler);
+  assert_false(report.snapped);
+  compress(3 * euler);
+  assert_true(report.snapped);
+  assert_int_equal(report.unstable_modes, 0);
+  assert_true(fabs(middle_z()) > 0.5 * thickness);
+  destroy();
+}
+
+/* Bending of a strip that is clamped at both ends: lambda = (E h^2/12) beta^4, beta L = 4.730041
+ * and 7.853205. */
+static void test_modes_of_a_clamped_strip(void **state)
+{
+  (void)state;
+  enum { COUNT = 6 };
+  const double D = 2 * mu * thickness * thickness / 12;
+  double value[COUNT];
+  create();
+  compress(0);
+  double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
+  assert_non_null(vector);
+  assert_int_equal(dea_solid_modes(ctx, solid, COUNT, value, vector), DEA_OK);
+  for (int k = 1; k < COUNT; k++) {
+    assert_true(value[k] >= value[k - 1]);
+  }
+  assert_close(value[0], D * pow(4.730041 / length, 4), 2e-2, 0);
+  assert_close(value[1], D * pow(7.853205 / length, 4), 3e-2, 0);
+  for (size_t n = 0; n < grid->node_count; n++) { // clamped, and the first mode bends one way only
+    const double *X = grid->X + 3 * n;
+    assert_true(!clamped(NULL, X) || vector[3 * n + 2] == 0);
+    assert_true(vector[3 * n + 2] >= 0);
+  }
+  assert_int_equal(dea_solid_modes(ctx, solid, 0, value, NULL), DEA_E_ARGUMENT);
+  dea_free(ctx, vector);
+  destroy();
+}
+
+static int start(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_modes_of_a_clamped_strip),
+      cmocka_unit_test(test_strip_buckles_at_eulers_strain),
+      cmocka_unit_test(test_both_sides_of_the_pitchfork),
+      cmocka_unit_test(test_a_solve_leaves_what_is_unstable),
+  };
+  return cmocka_run_group_tests(tests, start, context_tear_down);
+}
