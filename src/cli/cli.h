@@ -51,6 +51,19 @@ int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, cons
 /* Takes "key=value" of --set (text is cut at the '='); false when it is not of that form or there
  * is no room. Keys and values lend from text. */
 bool cli_parse_override(char *text, struct dea_override *overrides, size_t room, size_t *count);
+/* What a command takes that looks at one design: DESIGN, --set, --json and, where it writes one
+ * file, --output. */
+enum { CLI_OVERRIDES_MAX = 256 };
+struct cli_design_arguments {
+  const char *design;
+  const char *output; // NULL: not given
+  bool json;
+  struct dea_override overrides[CLI_OVERRIDES_MAX];
+  size_t override_count;
+};
+/* -1, or the exit code after a usage error. writes: whether --output is an option. */
+int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command, bool writes,
+                               int argc, char **argv, struct cli_design_arguments *out);
 /* Usage error for what getopt_long answered: ':' or '?'. */
 int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
                      char **argv);

@@ -8,14 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OVERRIDES_MAX = 100, DERIVED_MAX = 16 };
-
-struct arguments {
-  const char *file;
-  struct dea_override overrides[OVERRIDES_MAX];
-  size_t override_count;
-  bool json;
-};
+enum { DERIVED_MAX = 16 };
 
 /* A number that follows from the design. */
 struct derived {
@@ -175,41 +168,16 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
   json_decref(json);
 }
 
-/* -1, or the exit code after a usage error. */
-static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *out)
-{
-  for (int i = 1; i < argc; i++) {
-    if (strcmp(argv[i], "--json") == 0) {
-      out->json = true;
-    } else if (strcmp(argv[i], "--set") == 0 || strncmp(argv[i], "--set=", 6) == 0) {
-      char *text = argv[i][5] == '=' ? argv[i] + 6 : i + 1 < argc ? argv[++i] : NULL;
-      if (text == NULL ||
-          !cli_parse_override(text, out->overrides, OVERRIDES_MAX, &out->override_count)) {
-        return cli_usage_error(cli, &cmd_check,
-                               "--set wants KEY=VALUE, such as "
-                               "--set film.thickness=200um");
-      }
-    } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
-      return cli_usage_error(cli, &cmd_check, "unknown option '%s'", argv[i]);
-    } else if (out->file != NULL) {
-      return cli_usage_error(cli, &cmd_check, "one design at a time; '%s' is a second", argv[i]);
-    } else {
-      out->file = argv[i];
-    }
-  }
-  return out->file != NULL ? -1 : cli_usage_error(cli, &cmd_check, "which design file?");
-}
-
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  struct arguments arguments = {0};
+  struct cli_design_arguments arguments;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
-  int wrong = parse(cli, argc, argv, &arguments);
+  int wrong = cli_parse_design_arguments(cli, &cmd_check, false, argc, argv, &arguments);
   if (wrong >= 0) {
     return wrong;
   }
-  dea_status status = dea_design_read(cli->ctx, arguments.file, arguments.overrides,
+  dea_status status = dea_design_read(cli->ctx, arguments.design, arguments.overrides,
                                       arguments.override_count, &design);
   if (status == DEA_OK) {
     dea_status known = cli_models_check(cli, design);
@@ -217,7 +185,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     status = status != DEA_OK ? status : known;
   }
   if (arguments.json) {
-    print_json(cli, arguments.file, design, device);
+    print_json(cli, arguments.design, design, device);
   } else if (status == DEA_OK) {
     print_text(design, device);
     fflush(stdout);

@@ -7,45 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { OVERRIDES_MAX = 256 };
-
-struct arguments {
-  const char *design, *file;
-  bool json;
-  struct dea_override overrides[OVERRIDES_MAX];
-  size_t override_count;
-};
-
-/* -1, or the exit code after a usage error. */
-static int parse(struct dea_cli *cli, int argc, char **argv, struct arguments *out)
-{
-  for (int i = 1; i < argc; i++) {
-    if (strcmp(argv[i], "--json") == 0) {
-      out->json = true;
-    } else if (strcmp(argv[i], "--set") == 0 || strncmp(argv[i], "--set=", 6) == 0) {
-      char *text = argv[i][5] == '=' ? argv[i] + 6 : i + 1 < argc ? argv[++i] : NULL;
-      if (text == NULL ||
-          !cli_parse_override(text, out->overrides, OVERRIDES_MAX, &out->override_count)) {
-        return cli_usage_error(cli, &cmd_mesh,
-                               "--set wants KEY=VALUE, such as "
-                               "--set compute.solid.refinement=2");
-      }
-    } else if (strcmp(argv[i], "-o") == 0 || strcmp(argv[i], "--output") == 0) {
-      if (++i == argc) {
-        return cli_usage_error(cli, &cmd_mesh, "%s wants a file", argv[i - 1]);
-      }
-      out->file = argv[i];
-    } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
-      return cli_usage_error(cli, &cmd_mesh, "unknown option '%s'", argv[i]);
-    } else if (out->design != NULL) {
-      return cli_usage_error(cli, &cmd_mesh, "one design at a time; '%s' is a second", argv[i]);
-    } else {
-      out->design = argv[i];
-    }
-  }
-  return out->design != NULL ? -1 : cli_usage_error(cli, &cmd_mesh, "which design file?");
-}
-
 /* Displacement components that nothing holds. */
 static size_t count_unknowns(const struct dea_plate *plate, const struct dea_grid *grid)
 {
@@ -57,8 +18,8 @@ static size_t count_unknowns(const struct dea_plate *plate, const struct dea_gri
   return count;
 }
 
-static void print_summary(const struct arguments *arguments, const struct dea_plate *plate,
-                          const struct dea_grid *grid)
+static void print_summary(const struct cli_design_arguments *arguments,
+                          const struct dea_plate *plate, const struct dea_grid *grid)
 {
   double degrees = dea_plate_angle(plate) * 180 / acos(-1);
   double jacobian = dea_grid_smallest_jacobian(grid);
@@ -80,19 +41,19 @@ static void print_summary(const struct arguments *arguments, const struct dea_pl
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
          1e3 * plate->size, 1e3 * plate->edge);
   printf("%-20s %.3f of an element's mean\n", "smallest Jacobian", jacobian);
-  if (arguments->file != NULL) {
-    printf("%-20s %s\n", "file", arguments->file);
+  if (arguments->output != NULL) {
+    printf("%-20s %s\n", "file", arguments->output);
   }
 }
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  struct arguments arguments = {0};
+  struct cli_design_arguments arguments;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   struct dea_grid *grid = NULL;
   struct dea_plate plate;
-  int wrong = parse(cli, argc, argv, &arguments);
+  int wrong = cli_parse_design_arguments(cli, &cmd_mesh, true, argc, argv, &arguments);
   if (wrong >= 0) {
     return wrong;
   }
@@ -107,8 +68,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   if (status == DEA_OK) {
     status = dea_plate_create(cli->ctx, &plate, &grid);
   }
-  if (status == DEA_OK && arguments.file != NULL) {
-    status = dea_msh_write(cli->ctx, &plate, grid, arguments.file);
+  if (status == DEA_OK && arguments.output != NULL) {
+    status = dea_msh_write(cli->ctx, &plate, grid, arguments.output);
   }
   if (status == DEA_OK) {
     print_summary(&arguments, &plate, grid);

@@ -16,12 +16,12 @@
 #include <string.h>
 #include <time.h>
 
-enum { OVERRIDES_MAX = 64, TABLE_ROWS = 9 };
+enum { TABLE_ROWS = 9 };
 
 struct run_options {
   const char *file, *directory, *models[DEA_DESIGN_MODELS_MAX];
   size_t model_count;
-  struct dea_override overrides[OVERRIDES_MAX];
+  struct dea_override overrides[CLI_OVERRIDES_MAX];
   size_t override_count;
   bool json, force, resume, no_figures;
 };
@@ -58,7 +58,7 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
       out->models[out->model_count++] = optarg;
       break;
     case 's':
-      if (!cli_parse_override(optarg, out->overrides, OVERRIDES_MAX, &out->override_count)) {
+      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
         return cli_usage_error(cli, &cmd_run, "--set takes key=value, not '%s'", optarg);
       }
       break;

@@ -1,4 +1,5 @@
 /* What the commands share in reading their options. */
+#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
 #include <getopt.h>
@@ -24,4 +25,42 @@ int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int
     return cli_usage_error(cli, command, "option '%s' needs a value", word);
   }
   return cli_usage_error(cli, command, "there is no option '%s'", word);
+}
+
+int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command, bool writes,
+                               int argc, char **argv, struct cli_design_arguments *out)
+{
+  static const struct option longs[] = {{"set", required_argument, NULL, 's'},
+                                        {"json", no_argument, NULL, 'j'},
+                                        {"output", required_argument, NULL, 'o'},
+                                        {NULL, 0, NULL, 0}};
+  static const struct option reads[] = {
+      {"set", required_argument, NULL, 's'}, {"json", no_argument, NULL, 'j'}, {NULL, 0, NULL, 0}};
+  int option;
+  *out = (struct cli_design_arguments){0};
+  opterr = 0;
+  while ((option = getopt_long(argc, argv, writes ? ":o:" : ":", writes ? longs : reads, NULL)) !=
+         -1) {
+    switch (option) {
+    case 's':
+      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
+        return cli_usage_error(cli, command, "--set takes KEY=VALUE, not '%s'", optarg);
+      }
+      break;
+    case 'j':
+      out->json = true;
+      break;
+    case 'o':
+      out->output = optarg;
+      break;
+    default:
+      return cli_option_error(cli, command, option, argv);
+    }
+  }
+  if (argc - optind != 1) {
+    return cli_usage_error(
+        cli, command, argc == optind ? "a design file is needed" : "one design file at a time");
+  }
+  out->design = argv[optind];
+  return -1;
 }

@@ -35,6 +35,17 @@ void dea_field_mesh_destroy(struct dea_context *ctx, struct dea_field_mesh *mesh
   dea_free(ctx, mesh);
 }
 
+dea_status dea_field_mesh_finish(struct dea_context *ctx, dea_status made,
+                                 struct dea_field_mesh **mesh)
+{
+  if (made != DEA_OK) {
+    dea_field_mesh_destroy(ctx, *mesh);
+    *mesh = NULL;
+    return dea_fail_chain(ctx, made, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
 int dea_mesh_block_nodes(const struct dea_mesh_block *block)
 {
   return (block->order + 1) * (block->order + 1) * (block->order_z + 1);

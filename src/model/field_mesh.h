@@ -54,6 +54,9 @@ struct dea_field_mesh {
 dea_status dea_field_mesh_create(struct dea_context *ctx, size_t point_count,
                                  struct dea_field_mesh **out);
 void dea_field_mesh_destroy(struct dea_context *ctx, struct dea_field_mesh *mesh);
+/* The end of making one: passes `made` on, and keeps *mesh only when that is DEA_OK. */
+dea_status dea_field_mesh_finish(struct dea_context *ctx, dea_status made,
+                                 struct dea_field_mesh **mesh);
 /* Nodes of an element of a block. */
 int dea_mesh_block_nodes(const struct dea_mesh_block *block);
 /* Adds a block, its nodes 0; *nodes lent. */

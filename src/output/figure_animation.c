@@ -1,5 +1,4 @@
 /* The deformed film over the voltages of the sweep, as an animated GIF. */
-#include "output/file.h"
 #include "output/script.h"
 #include "output/space.h"
 
@@ -60,27 +59,11 @@ static dea_status make_pictures(struct dea_context *ctx, const struct dea_surfac
   return DEA_OK;
 }
 
-static dea_status write_files(struct dea_context *ctx, const struct dea_picture *pictures,
-                              size_t count, const struct dea_plot_format *format,
-                              const char *directory)
-{
-  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
-  struct dea_space space;
-  dea_space_measure(pictures, count, &space);
-  void *before = dea_c_locale_enter();
-  add_script(&gp, &space, format);
-  dea_space_add_data(&dat, &space);
-  dea_c_locale_leave(before);
-  dea_status status = dea_picture_write(ctx, &gp, &dat, name, directory);
-  dea_text_free(&gp);
-  dea_text_free(&dat);
-  return status;
-}
-
 static dea_status write(struct dea_context *ctx, const struct dea_result *result,
                         const struct dea_figure_options *options, const char *directory,
                         bool *drawn)
 {
+  static const struct dea_space_figure figure = {.name = name, .add_script = add_script};
   const struct dea_surface_record *records[FRAMES_MAX];
   struct dea_picture pictures[FRAMES_MAX];
   size_t count = dea_surface_spread(result, FRAMES_MAX, records);
@@ -90,7 +73,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   }
   dea_status status = make_pictures(ctx, records, count, pictures, &count);
   if (status == DEA_OK) {
-    status = write_files(ctx, pictures, count, &options->format, directory);
+    status = dea_space_write(ctx, &figure, pictures, count, &options->format, directory);
   }
   for (size_t i = 0; i < count; i++) {
     dea_picture_free(ctx, &pictures[i]);

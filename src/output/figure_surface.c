@@ -1,5 +1,4 @@
 /* The deformed film in space, coloured by its displacement. */
-#include "output/file.h"
 #include "output/script.h"
 #include "output/space.h"
 
@@ -43,28 +42,9 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const struct dea_figure_options *options, const char *directory,
                         bool *drawn)
 {
-  const struct dea_surface_record *record = dea_surface_choose(result, options->voltage_V);
-  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
-  struct dea_picture picture;
-  *drawn = record != NULL && record->mesh->cell_count > 0;
-  if (!*drawn) {
-    return DEA_OK;
-  }
-  dea_status status = dea_picture_create(ctx, record, PIECES, &picture);
-  if (status == DEA_OK) {
-    struct dea_space space;
-    dea_space_measure(&picture, 1, &space);
-    space.moved = true;
-    void *before = dea_c_locale_enter();
-    add_script(&gp, &space, &options->format);
-    dea_space_add_data(&dat, &space);
-    dea_c_locale_leave(before);
-    status = dea_picture_write(ctx, &gp, &dat, name, directory);
-  }
-  dea_picture_free(ctx, &picture);
-  dea_text_free(&gp);
-  dea_text_free(&dat);
-  return status;
+  static const struct dea_space_figure figure = {
+      .name = name, .moved = true, .pieces = PIECES, .add_script = add_script};
+  return dea_space_write_one(ctx, &figure, result, options, directory, drawn);
 }
 
 const struct dea_figure dea_figure_surface = {

@@ -1,5 +1,7 @@
 #include "output/space.h"
 
+#include "output/file.h"
+
 #include <math.h>
 #include <stdint.h>
 
@@ -194,4 +196,42 @@ void dea_space_add_data(struct dea_text *dat, const struct dea_space *space)
     dea_text_add(dat, "%s", p > 0 ? "\n\n" : "");
     add_patch(dat, space, p);
   }
+}
+
+dea_status dea_space_write(struct dea_context *ctx, const struct dea_space_figure *figure,
+                           const struct dea_picture *pictures, size_t count,
+                           const struct dea_plot_format *format, const char *directory)
+{
+  struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
+  struct dea_space space;
+  dea_space_measure(pictures, count, &space);
+  space.moved = figure->moved;
+  space.flat = figure->flat;
+  void *before = dea_c_locale_enter();
+  figure->add_script(&gp, &space, format);
+  dea_space_add_data(&dat, &space);
+  dea_c_locale_leave(before);
+  dea_status status = dea_picture_write(ctx, &gp, &dat, figure->name, directory);
+  dea_text_free(&gp);
+  dea_text_free(&dat);
+  return status;
+}
+
+dea_status dea_space_write_one(struct dea_context *ctx, const struct dea_space_figure *figure,
+                               const struct dea_result *result,
+                               const struct dea_figure_options *options, const char *directory,
+                               bool *drawn)
+{
+  const struct dea_surface_record *record = dea_surface_choose(result, options->voltage_V);
+  struct dea_picture picture;
+  *drawn = record != NULL && record->mesh->cell_count > 0;
+  if (!*drawn) {
+    return DEA_OK;
+  }
+  dea_status status = dea_picture_create(ctx, record, figure->pieces, &picture);
+  if (status == DEA_OK) {
+    status = dea_space_write(ctx, figure, &picture, 1, &options->format, directory);
+  }
+  dea_picture_free(ctx, &picture);
+  return status;
 }

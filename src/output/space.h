@@ -27,4 +27,22 @@ void dea_space_add_command(struct dea_text *gp, const struct dea_space *space);
  * what z is drawn above the surface (mm of the drawing), then z (um) of each picture. */
 void dea_space_add_data(struct dea_text *dat, const struct dea_space *space);
 
+/* A figure in space: its name and what adds its script. */
+struct dea_space_figure {
+  const char *name;
+  bool moved, flat; // as of struct dea_space
+  size_t pieces;    // as of dea_drawing_create
+  void (*add_script)(struct dea_text *gp, const struct dea_space *space,
+                     const struct dea_plot_format *format);
+};
+/* Writes script and data of pictures of one mesh. */
+dea_status dea_space_write(struct dea_context *ctx, const struct dea_space_figure *figure,
+                           const struct dea_picture *pictures, size_t count,
+                           const struct dea_plot_format *format, const char *directory);
+/* The same for the surface at the voltage of the options; *drawn: whether there was one. */
+dea_status dea_space_write_one(struct dea_context *ctx, const struct dea_space_figure *figure,
+                               const struct dea_result *result,
+                               const struct dea_figure_options *options, const char *directory,
+                               bool *drawn);
+
 #endif

@@ -252,10 +252,5 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
     status = fill_mesh(&work, *out);
   }
   release(&work);
-  if (status != DEA_OK) {
-    dea_field_mesh_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  return DEA_OK;
+  return dea_field_mesh_finish(ctx, status, out);
 }

@@ -146,8 +146,9 @@ bool dea_solid_controls_drive(struct dea_solid *s, const double *controls)
   memcpy(s->drive, s->u, s->dofs * sizeof(double));
   dea_solid_frame_vector(s, false, s->drive);
   for (size_t i = 0; i < s->dofs; i++) {
-    double way = i < move_count(s) && s->held[i] ? place[i] - s->drive[i] : 0;
-    s->drive[i] = fabs(way) <= rounding * fabs(place[i]) ? 0 : way;
+    bool moves = i < move_count(s) && s->held[i];
+    double way = moves ? place[i] - s->drive[i] : 0;
+    s->drive[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
     any = any || s->drive[i] != 0;
   }
   dea_solid_frame_vector(s, true, s->drive);
