@@ -198,6 +198,13 @@ dea_status dea_solid_settle_down(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report);
 /* Moves the multipliers of the loads; the largest violation over what is allowed. */
 double dea_solid_update_loads(struct dea_solid *s);
+/* kappa so large that the solid is as good as incompressible, at the same pressures; s->theta has
+ * to belong to s->u. Back: the same, or, with multipliers that are pressures by themselves, kappa
+ * only.
+ */
+void dea_solid_stiffen(struct dea_solid *s);
+void dea_solid_unstiffen(struct dea_solid *s);
+void dea_solid_soften(struct dea_solid *s);
 /* Factor of K with a kappa so large that its inertia is that of the incompressible solid, at s->u
  * (docs/theory/branches.md). */
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);

@@ -212,17 +212,38 @@ static dea_status find(struct dea_context *ctx, struct dea_solid *s, struct lanc
                         negative + positive);
 }
 
-/* Another kappa for all layers with a law, at the same pressures p + kappa theta. */
 static void change_kappa(struct dea_solid *s, double factor)
+{
+  for (size_t k = 0; k < s->layer_count; k++) {
+    s->layers[k].kappa_Pa *= factor;
+  }
+}
+
+/* p + kappa theta stays what it is when kappa becomes factor times as large. */
+static void keep_pressures(struct dea_solid *s, double factor)
 {
   size_t pressures = (size_t)s->shape.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
     const struct dea_layer *layer = &s->layers[s->layer[i / pressures]];
     s->multiplier[i] -= layer->law != NULL ? (factor - 1) * layer->kappa_Pa * s->theta[i] : 0;
   }
-  for (size_t k = 0; k < s->layer_count; k++) {
-    s->layers[k].kappa_Pa *= factor;
-  }
+}
+
+void dea_solid_stiffen(struct dea_solid *s)
+{
+  keep_pressures(s, stiffer);
+  change_kappa(s, stiffer);
+}
+
+void dea_solid_soften(struct dea_solid *s)
+{
+  change_kappa(s, 1 / stiffer);
+}
+
+void dea_solid_unstiffen(struct dea_solid *s)
+{
+  keep_pressures(s, 1 / stiffer);
+  change_kappa(s, 1 / stiffer);
 }
 
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
@@ -230,9 +251,9 @@ dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, 
   double energy;
   s->predicted_fits = s->factor_fits = false;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
-  change_kappa(s, stiffer);
+  dea_solid_stiffen(s);
   dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
-  change_kappa(s, 1 / stiffer);
+  dea_solid_unstiffen(s);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, negative));
   return DEA_OK;

@@ -1,0 +1,176 @@
+/* Limit points and bifurcations of a path, and the other branch (docs/theory/branches.md). */
+#include "model/solid/solve/trace.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROUNDS_MAX = 12, SIZES_MAX = 6 };
+
+static const double close_enough = 1e-5; // of the way between the two points
+static const double flat_enough = 1e-8;  // of what is 0 at the critical point, over what it was
+
+/* Between two places: where, what is to be 0 there, and the direction from one to the other. */
+struct bracket {
+  const struct dea_trace_place *from;
+  double *way; // [state_count]
+  double way_load, length, at[2], value[2];
+  size_t mode; // of a bifurcation: the place of the critical one among all
+};
+
+/* What is 0 at the critical point, where the solid is; t->mode then is the critical mode. */
+static dea_status measure(struct dea_context *ctx, struct dea_solid_trace *t,
+                          const struct bracket *b, double *value)
+{
+  struct dea_solid *s = t->s;
+  DEA_TRY(ctx, dea_trace_arrive(ctx, t, b->way, b->way_load, false, &t->critical));
+  *value = t->critical.slope;
+  if (t->event == DEA_TRACE_LIMIT) {
+    return DEA_OK;
+  }
+  size_t count = b->mode + 1, dofs = 3 * s->grid->node_count;
+  double values[DEA_MODES_MAX];
+  double *vectors = dea_alloc(ctx, count * dofs, sizeof *vectors);
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, vectors != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_status status = dea_solid_modes(ctx, s, count, values, vectors);
+  *value = values[b->mode];
+  memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);
+  dea_free(ctx, vectors);
+  return status;
+}
+
+/* The equilibrium at a share of the way. */
+static dea_status go(struct dea_context *ctx, struct dea_solid_trace *t, const struct bracket *b,
+                     double share)
+{
+  int iterations;
+  memcpy(t->critical.state, b->from->state, t->s->path.state_count * sizeof(double));
+  for (size_t i = 0; i < t->s->path.state_count; i++) {
+    t->critical.state[i] += share * b->way[i];
+  }
+  t->critical.load = b->from->load + share * b->way_load;
+  DEA_TRY(ctx, dea_trace_return(ctx, t, &t->critical));
+  dea_trace_point_plane(t, b->way, b->way_load);
+  t->plane.u0 = b->from->state;
+  t->plane.tau0 = b->from->load;
+  t->plane.length = share * b->length;
+  DEA_TRY(ctx, dea_trace_correct(ctx, t, &iterations));
+  t->critical.arc = b->from->arc + share * b->length;
+  return DEA_OK;
+}
+
+/* Regula falsi, with the older end's value halved while it stays (Illinois). */
+static dea_status close_in(struct dea_context *ctx, struct dea_solid_trace *t, struct bracket *b)
+{
+  double first = fmax(fabs(b->value[0]), fabs(b->value[1])), value, before = -1;
+  int stays = -1;
+  for (int i = 0; i < ROUNDS_MAX; i++) {
+    double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
+    DEA_TRY(ctx, go(ctx, t, b, share));
+    DEA_TRY(ctx, measure(ctx, t, b, &value));
+    if (fabs(share - before) < close_enough || fabs(value) < flat_enough * first) {
+      return DEA_OK;
+    }
+    before = share;
+    int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
+    b->at[end] = share;
+    b->value[end] = value;
+    if (stays == 1 - end) {
+      b->value[1 - end] /= 2;
+    }
+    stays = 1 - end;
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the critical point could not be closed in on");
+}
+
+static dea_status locate(struct dea_context *ctx, struct dea_solid_trace *t, struct bracket *b)
+{
+  const struct dea_trace_place *ends[2] = {&t->before, &t->last};
+  b->from = ends[0];
+  for (size_t i = 0; i < t->s->path.state_count; i++) {
+    b->way[i] = ends[1]->state[i] - ends[0]->state[i];
+  }
+  b->way_load = ends[1]->load - ends[0]->load;
+  b->length = hypot(dea_trace_size(t, b->way), b->way_load);
+  b->at[1] = 1;
+  b->mode = (size_t)(ends[0]->modes < ends[1]->modes ? ends[0]->modes : ends[1]->modes);
+  if (t->event == DEA_TRACE_BIFURCATION && b->mode >= DEA_MODES_MAX) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%zu modes are unstable already", b->mode);
+  }
+  for (int k = 0; k < 2; k++) {
+    DEA_TRY(ctx, dea_trace_return(ctx, t, ends[k]));
+    DEA_TRY(ctx, measure(ctx, t, b, &b->value[k]));
+  }
+  if (b->value[0] * b->value[1] > 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no change of sign between the two points");
+  }
+  DEA_TRY(ctx, close_in(ctx, t, b));
+  return DEA_OK;
+}
+
+dea_status dea_solid_trace_locate(struct dea_context *ctx, struct dea_solid_trace *t,
+                                  struct dea_trace_point *point)
+{
+  struct bracket b = {0};
+  if (t->event == DEA_TRACE_NOTHING) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
+  }
+  b.way = dea_alloc(ctx, t->s->path.state_count, sizeof *b.way);
+  dea_status status = dea_solid_agree(ctx, t->s, b.way != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    status = locate(ctx, t, &b);
+  }
+  dea_free(ctx, b.way);
+  if (status != DEA_OK) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  t->located = t->event;
+  dea_trace_tell(t, &t->critical, t->event, point);
+  return DEA_OK;
+}
+
+/* Onto the branch at a distance along the critical mode. */
+static dea_status leave_along(struct dea_context *ctx, struct dea_solid_trace *t, double distance)
+{
+  int iterations;
+  DEA_TRY(ctx, dea_trace_return(ctx, t, &t->critical));
+  double size = dea_trace_size(t, t->mode);
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->start[i] = distance / size * t->mode[i];
+  }
+  DEA_TRY(ctx, dea_trace_advance(ctx, t, t->start, 0));
+  dea_trace_point_plane(t, t->mode, 0);
+  t->plane.u0 = t->critical.state;
+  t->plane.tau0 = t->critical.load;
+  t->plane.length = distance;
+  DEA_TRY(ctx, dea_trace_correct(ctx, t, &iterations));
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->start[i] = t->s->u[i] - t->critical.state[i];
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_trace_switch(struct dea_context *ctx, struct dea_solid_trace *t, int side,
+                                  double distance, struct dea_trace_point *point)
+{
+  if (t->located != DEA_TRACE_BIFURCATION || !(distance > 0)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "another branch starts at a bifurcation that was located");
+  }
+  dea_status status = DEA_OK;
+  for (int i = 0; i < SIZES_MAX; i++, distance /= 2) {
+    dea_context_clear(ctx);
+    status = leave_along(ctx, t, side < 0 ? -distance : distance);
+    if (status != DEA_E_NOT_CONVERGED && status != DEA_E_DOMAIN) {
+      break;
+    }
+  }
+  DEA_TRY(ctx, status);
+  struct dea_trace_place old = t->before;
+  t->before = t->last;
+  t->last = old;
+  t->last.arc = t->critical.arc + distance;
+  DEA_TRY(ctx, dea_trace_arrive(ctx, t, t->start, t->load - t->critical.load, true, &t->last));
+  t->event = DEA_TRACE_NOTHING;
+  t->step = distance;
+  dea_trace_tell(t, &t->last, t->event, point);
+  return DEA_OK;
+}

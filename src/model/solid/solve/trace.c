@@ -1,0 +1,274 @@
+/* Paths of equilibria by arc-length: steps along the tangent (docs/theory/branches.md). */
+#include "model/solid/solve/trace.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ATTEMPTS_MAX = 16, ITERATIONS_MANY = 8 };
+
+static const double off_most = 0.5; // distance of a point from its prediction, over the step
+static const double off_good = 0.1; // the one that steps aim at
+static const double least = 1e-6;   // step over the first one
+
+double dea_trace_size(const struct dea_solid_trace *t, const double *du)
+{
+  double sum = 0;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    sum += t->metric[i] * du[i] * du[i];
+  }
+  return sqrt(sum);
+}
+
+void dea_trace_point_plane(struct dea_solid_trace *t, const double *direction, double load)
+{
+  double size = hypot(dea_trace_size(t, direction), load);
+  size = size > 0 ? size : 1;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->plane.weight[i] = t->metric[i] * direction[i] / size;
+  }
+  t->plane.load = load / size;
+}
+
+void dea_trace_tell(const struct dea_solid_trace *t, const struct dea_trace_place *place,
+                    enum dea_trace_event event, struct dea_trace_point *out)
+{
+  *out = (struct dea_trace_point){.load = place->load,
+                                  .voltage_V = t->s->voltage_V,
+                                  .slope = place->slope,
+                                  .arc = place->arc,
+                                  .energy_J = place->energy_J,
+                                  .unstable_modes = place->modes,
+                                  .passed = event};
+}
+
+dea_status dea_trace_return(struct dea_context *ctx, struct dea_solid_trace *t,
+                            const struct dea_trace_place *place)
+{
+  dea_solid_state_set(t->s, place->state);
+  t->s->predicted_fits = t->s->factor_fits = false;
+  DEA_TRY(ctx, dea_trace_load(ctx, t, place->load));
+  return DEA_OK;
+}
+
+dea_status dea_trace_advance(struct dea_context *ctx, struct dea_solid_trace *t, const double *du,
+                             double dtau)
+{
+  struct dea_solid *s = t->s;
+  double energy;
+  s->predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
+  dea_solid_stiffen(s);
+  dea_status status = dea_solid_predict(ctx, s, s->voltage_V, du, 1, true, true);
+  dea_solid_soften(s); // the multipliers are those of the end of the step
+  DEA_TRY(ctx, status);
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->u[i] += du[i];
+  }
+  DEA_TRY(ctx, dea_trace_load(ctx, t, t->load + dtau));
+  return DEA_OK;
+}
+
+dea_status dea_trace_arrive(struct dea_context *ctx, struct dea_solid_trace *t, const double *along,
+                            double along_load, bool tangent, struct dea_trace_place *place)
+{
+  struct dea_solid *s = t->s;
+  double product = along_load;
+  DEA_TRY(ctx, dea_trace_look(ctx, t, &place->modes));
+  for (size_t i = 0; i < s->dofs; i++) {
+    product += t->metric[i] * along[i] * t->rate[i];
+  }
+  place->slope = copysign(1 / hypot(dea_trace_size(t, t->rate), 1), product);
+  place->load = t->load;
+  place->energy_J = t->energy_J;
+  dea_solid_state_get(s, place->state);
+  for (size_t i = 0; i < s->dofs && tangent; i++) {
+    t->tangent[i] = place->slope * t->rate[i];
+  }
+  t->tangent_load = tangent ? place->slope : t->tangent_load;
+  return DEA_OK;
+}
+
+/* Distance of where the solid is to the prediction that t->start and tau are, both from last. */
+static double distance(struct dea_solid_trace *t, const double *predicted, double tau)
+{
+  double sum = (t->load - tau) * (t->load - tau);
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    double way = t->s->u[i] - predicted[i];
+    sum += t->metric[i] * way * way;
+  }
+  return sqrt(sum);
+}
+
+/* A point at t->step; *off: how far from the prediction, over the step. */
+static dea_status attempt(struct dea_context *ctx, struct dea_solid_trace *t, double *off,
+                          int *iterations)
+{
+  struct dea_solid *s = t->s;
+  DEA_TRY(ctx, dea_trace_return(ctx, t, &t->last));
+  for (size_t i = 0; i < s->dofs; i++) {
+    t->start[i] = t->step * t->tangent[i];
+  }
+  DEA_TRY(ctx, dea_trace_advance(ctx, t, t->start, t->step * t->tangent_load));
+  memcpy(t->start, s->u, s->dofs * sizeof *t->start);
+  double tau = t->load;
+  dea_trace_point_plane(t, t->tangent, t->tangent_load);
+  t->plane.u0 = t->last.state;
+  t->plane.tau0 = t->last.load;
+  t->plane.length = t->step;
+  DEA_TRY(ctx, dea_trace_correct(ctx, t, iterations));
+  *off = distance(t, t->start, tau) / t->step;
+  return *off < off_most ? DEA_OK
+                         : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is left for another one");
+}
+
+static enum dea_trace_event event_between(const struct dea_trace_place *a,
+                                          const struct dea_trace_place *b)
+{
+  if (a->slope * b->slope < 0) {
+    return DEA_TRACE_LIMIT;
+  }
+  return a->modes != b->modes ? DEA_TRACE_BIFURCATION : DEA_TRACE_NOTHING;
+}
+
+dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace *t,
+                                struct dea_trace_point *point)
+{
+  double off = 0;
+  int iterations = 0;
+  dea_status status = DEA_OK;
+  for (int i = 0; i < ATTEMPTS_MAX; i++) {
+    dea_context_clear(ctx);
+    status = attempt(ctx, t, &off, &iterations);
+    if (status == DEA_OK || status == DEA_E_MEMORY || t->step < 2 * t->step_least) {
+      break;
+    }
+    t->step /= 2;
+  }
+  if (status == DEA_OK) {
+    struct dea_trace_place old = t->before;
+    t->before = t->last;
+    t->last = old;
+    t->last.arc = t->before.arc + t->step;
+    status = dea_trace_arrive(ctx, t, t->tangent, t->tangent_load, true, &t->last);
+    if (status != DEA_OK) {
+      t->last = t->before;
+      t->before = old;
+    }
+  }
+  if (status != DEA_OK) {
+    char why[200];
+    strncpy(why, dea_context_message(ctx), sizeof why - 1);
+    why[sizeof why - 1] = '\0';
+    dea_context_clear(ctx);
+    DEA_TRY(ctx, dea_trace_return(ctx, t, &t->last));
+    return dea_fail(ctx, status, "the path cannot be followed beyond a load of %.6g (%s)",
+                    t->last.load, why);
+  }
+  t->event = event_between(&t->before, &t->last);
+  t->located = DEA_TRACE_NOTHING;
+  dea_trace_tell(t, &t->last, t->event, point);
+  double longer = off > 0 ? fmin(sqrt(off_good / off), 2) : 2;
+  longer = iterations > ITERATIONS_MANY ? fmin(longer, 0.7) : longer;
+  t->step = fmin(t->step * fmax(longer, 0.5), t->step_most);
+  return DEA_OK;
+}
+
+/* Memory and metric. */
+static dea_status make(struct dea_context *ctx, struct dea_solid *s,
+                       const struct dea_trace_options *options, struct dea_solid_trace *t)
+{
+  size_t controls = s->path.control_count, states = s->path.state_count;
+  double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
+                              &t->rate,   &t->right,     &t->start,   &t->mode};
+  double **const of_controls[] = {&t->from, &t->goal, &t->now};
+  double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state};
+  bool all = true;
+  for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
+    *of_dofs[i] = dea_alloc(ctx, s->dofs, sizeof(double));
+    all = all && *of_dofs[i] != NULL;
+  }
+  for (size_t i = 0; i < 3; i++) {
+    *of_controls[i] = dea_alloc(ctx, controls, sizeof(double));
+    *of_states[i] = dea_alloc(ctx, states, sizeof(double));
+    all = all && *of_controls[i] != NULL && *of_states[i] != NULL;
+  }
+  if (dea_solid_any(!all)) {
+    return DEA_E_MEMORY;
+  }
+  double volume = 0;
+  dea_solid_masses(s, t->metric);
+  for (size_t i = 0; i < s->dofs; i++) {
+    volume += t->metric[i] / 3;
+  }
+  for (size_t i = 0; i < s->dofs; i++) {
+    t->metric[i] /= volume * options->unit_m * options->unit_m;
+  }
+  t->step = fabs(options->step);
+  t->step_least = least * t->step;
+  t->step_most = options->step_most > 0 ? options->step_most : INFINITY;
+  return DEA_OK;
+}
+
+/* The controls and the place to start from. */
+static dea_status begin(struct dea_context *ctx, struct dea_solid_trace *t, double voltage_V,
+                        double sense)
+{
+  struct dea_solid *s = t->s;
+  struct dea_solid_report report = {0};
+  DEA_TRY(ctx, dea_solid_check(ctx, s));
+  DEA_TRY(ctx, dea_solid_settle_down(ctx, s, &report));
+  dea_solid_controls_get(s, t->from);
+  dea_solid_controls_goal(s, voltage_V, t->goal);
+  dea_solid_controls_drive(s, t->from);
+  memcpy(t->held_rate, s->drive, s->dofs * sizeof(double));
+  dea_solid_controls_drive(s, t->goal);
+  for (size_t i = 0; i < s->dofs; i++) {
+    t->held_rate[i] = s->drive[i] - t->held_rate[i];
+  }
+  DEA_TRY(ctx, dea_trace_arrive(ctx, t, t->tangent, sense, true, &t->last));
+  return DEA_OK;
+}
+
+dea_status dea_solid_trace_create(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                  const struct dea_trace_options *options,
+                                  struct dea_solid_trace **out)
+{
+  *out = NULL;
+  if (!(options->unit_m > 0) || !(fabs(options->step) > 0)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
+  }
+  if (s->field != NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
+  }
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_solid_path_prepare(ctx, s)));
+  struct dea_solid_trace *t = dea_alloc(ctx, 1, sizeof *t);
+  if (dea_solid_any(t == NULL)) {
+    dea_free(ctx, t);
+    return DEA_E_MEMORY;
+  }
+  t->s = s;
+  dea_status status = make(ctx, s, options, t);
+  if (status == DEA_OK) {
+    status = begin(ctx, t, voltage_V, options->step);
+  }
+  if (status != DEA_OK) {
+    dea_solid_trace_destroy(ctx, t);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = t;
+  return DEA_OK;
+}
+
+void dea_solid_trace_destroy(struct dea_context *ctx, struct dea_solid_trace *t)
+{
+  if (t == NULL) {
+    return;
+  }
+  void *const memory[] = {t->metric, t->held_rate,    t->tangent,    t->plane.weight,  t->rate,
+                          t->right,  t->start,        t->mode,       t->from,          t->goal,
+                          t->now,    t->before.state, t->last.state, t->critical.state};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    dea_free(ctx, memory[i]);
+  }
+  dea_free(ctx, t);
+}

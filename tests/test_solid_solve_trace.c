@@ -1,0 +1,319 @@
+/* Paths of solids by arc-length, against closed forms: the limit point of a free film under voltage
+ * and what comes after it, a film between clamps that buckles under voltage, a strip that is pushed
+ * together. */
+// ctest: solid
+#include "failing_allocator.h"
+#include "model/solid/solve/branch.h"
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+#include <string.h>
+
+/* Units: mu = eps = 1. */
+static const double neo_hookean[DEA_LAW_PARAM_MAX] = {1};
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+static struct dea_solid_trace *trace;
+
+static bool all_active(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return true;
+}
+
+/* law: NULL for a compressible solid with E = 2 mu and Poisson's ratio 0. */
+static dea_status try(struct dea_context *with, const struct block *block, const char *law,
+                      int (*held)(const void *self, const double X[3]))
+{
+  struct dea_layer layer = {.lame_mu_Pa = 1,
+                            .param = neo_hookean,
+                            .pre_stretch = {1, 1, 1},
+                            .kappa_Pa = 100,
+                            .thickness_m = block->size[2]};
+  if (law != NULL) {
+    layer.law = dea_law_find(law);
+    layer.permittivity_F_per_m = 1;
+  }
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  const struct dea_solid_options options = {.order_z = block->order_z,
+                                            .layer_count = 1,
+                                            .layers = &layer,
+                                            .layer_of = block_layer,
+                                            .active = all_active,
+                                            .held = held,
+                                            .self = block};
+  return dea_solid_create(with, grid, &options, &solid);
+}
+
+static void create(const struct block *block, const char *law,
+                   int (*held)(const void *self, const double X[3]))
+{
+  grid = block_grid(ctx, block);
+  assert_int_equal(try(ctx, block, law, held), DEA_OK);
+}
+
+static void start(double voltage_V, double step, double step_most, double unit_m)
+{
+  const struct dea_trace_options options = {step, step_most, unit_m};
+  assert_int_equal(dea_solid_trace_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
+}
+
+static struct dea_trace_point step(void)
+{
+  struct dea_trace_point point;
+  if (dea_solid_trace_step(ctx, trace, &point) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  return point;
+}
+
+static struct dea_trace_point locate(void)
+{
+  struct dea_trace_point point;
+  if (dea_solid_trace_locate(ctx, trace, &point) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  return point;
+}
+
+static void destroy(void)
+{
+  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* A displacement of the node nearest to a place. */
+static double displacement_at(double x, double y, double z, size_t component)
+{
+  size_t nearest = 0;
+  double best = INFINITY;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
+    nearest = distance < best ? n : nearest;
+    best = fmin(best, distance);
+  }
+  return dea_solid_displacement(solid)[3 * nearest + component];
+}
+
+/* ---- a free film: (V/h)^2 eps/mu = lambda^-2 - lambda^-8, largest at lambda = 2^(1/3) ---- */
+
+static const struct block film = {{1, 1, 0.1}, {1, 1, 1}, 2, 2};
+
+static int on_planes(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
+}
+
+/* Both sides of it. (Modes are counted too early by elements of order 2, whose areas change by
+ * squares of x and y without the volume being asked: from lambda = 1.15 on, 2 % below the limit.)
+ */
+static void test_free_film_through_its_limit_point(void **state)
+{
+  (void)state;
+  int limits = 0;
+  double stretch = 1;
+  create(&film, "neo-hookean", on_planes);
+  start(0.7 * film.size[2], 0.1, 0, 1);
+  for (int i = 0; i < 40 && stretch < 2; i++) {
+    struct dea_trace_point point = step();
+    stretch = 1 + displacement_at(1, 1, 0, 0);
+    double field = point.voltage_V / film.size[2];
+    assert_close(field * field, pow(stretch, -2) - pow(stretch, -8), 1e-5, 0);
+    assert_true(stretch > 1.15 || point.unstable_modes == 0);
+    assert_true(stretch < cbrt(2) || point.unstable_modes > 0);
+    assert_true(point.slope * (cbrt(2) - stretch) > 0);
+    if (point.passed == DEA_TRACE_LIMIT) {
+      struct dea_trace_point limit = locate();
+      limits++;
+      assert_close(1 + displacement_at(1, 1, 0, 0), cbrt(2), 1e-5, 0);
+      assert_close(limit.voltage_V / film.size[2], sqrt(pow(2, -2.0 / 3) - pow(2, -8.0 / 3)), 1e-7,
+                   0);
+    }
+  }
+  assert_int_equal(limits, 1);
+  assert_true(stretch > 2);
+  destroy();
+}
+
+/* The same path downwards: it ends at 0 V, and says so. */
+static void test_a_path_ends_without_voltage(void **state)
+{
+  (void)state;
+  struct dea_solid_report report;
+  struct dea_trace_point point;
+  dea_status status = DEA_OK;
+  create(&film, "neo-hookean", on_planes);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0.5 * film.size[2], &report), DEA_OK);
+  start(0.6 * film.size[2], -0.1, 0, 1);
+  for (int i = 0; i < 60 && status == DEA_OK; i++) {
+    status = dea_solid_trace_step(ctx, trace, &point);
+  }
+  assert_int_equal(status, DEA_E_DOMAIN);
+  assert_non_null(strstr(dea_context_message(ctx), "0 V"));
+  assert_close(1 + displacement_at(1, 1, 0, 0), 1, 0, 1e-3);
+  dea_context_clear(ctx);
+  // the solid is at the last point, and solves go on from there
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_close(displacement_at(1, 1, 0, 0), 0, 0, 1e-9);
+  destroy();
+}
+
+/* ---- a film in plane strain between clamps: the field pushes with eps (V/h)^2 h ---- */
+
+static const struct block strip = {{1, 0.1, 0.01}, {16, 1, 1}, 3, 2};
+
+static int clamped_in_plane_strain(const void *self, const double X[3])
+{
+  const struct block *block = self;
+  return 2 | (X[0] < 1e-9 || X[0] > block->size[0] - 1e-9 ? 7 : 0);
+}
+
+static double middle_z(void)
+{
+  return displacement_at(0.5, 0, 0.005, 2);
+}
+
+/* Plate of an incompressible solid: D = mu h^3/3, critical push 4 pi^2 D/L^2. Beyond, the push
+ * stays what it is and the film grows longer, by the square of the field over 4 mu: A^2 = (4/3) h^2
+ * (r - 1), with r the square of the voltage over the critical one and A the deflection in the
+ * middle. */
+static void test_film_buckles_under_voltage(void **state)
+{
+  (void)state;
+  const double h = strip.size[2], pi = acos(-1);
+  const double critical = 4 * pi * pi / 3 * h * h, goal = sqrt(2 * critical) * h; // L = 1
+  struct dea_trace_point point = {0};
+  create(&strip, "neo-hookean", clamped_in_plane_strain);
+  start(goal, 0.1, 0.2, h);
+  while (point.passed == DEA_TRACE_NOTHING && point.load < 1) {
+    point = step();
+    assert_close(middle_z(), 0, 0, 1e-9 * h);
+  }
+  assert_int_equal(point.passed, DEA_TRACE_BIFURCATION);
+  struct dea_trace_point fork = locate();
+  assert_close(fork.load, 0.5, 1e-2, 0);
+  double first[2];
+  for (int k = 0; k < 2; k++) {
+    int side = k == 0 ? 1 : -1;
+    assert_int_equal(dea_solid_trace_switch(ctx, trace, side, 0.1, &point), DEA_OK);
+    first[k] = middle_z();
+  }
+  assert_true(first[0] > 0);
+  assert_close(first[1], -first[0], 1e-6, 0);
+  for (int i = 0; i < 20 && point.load < 1; i++) {
+    double A = middle_z() / h, r = point.load / fork.load;
+    assert_true(A < 0);
+    assert_close(A * A, 4.0 / 3 * (r - 1), 1e-2, 0);
+    assert_int_equal(point.unstable_modes, 0);
+    point = step();
+  }
+  assert_true(point.load >= 1);
+  destroy();
+}
+
+/* ---- a strip that is pushed together by its end ---- */
+
+static int clamped(const void *self, const double X[3])
+{
+  const struct block *block = self;
+  return X[0] < 1e-9 || X[0] > block->size[0] - 1e-9 ? 7 : 0;
+}
+
+/* Euler's strain pi^2/3 (h/L)^2, by prescribed displacements. */
+static void test_strip_buckles_at_eulers_strain(void **state)
+{
+  (void)state;
+  const double h = strip.size[2], euler = acos(-1) * acos(-1) / 3 * h * h;
+  const double to[3] = {-1.6 * euler, 0, 0};
+  struct dea_trace_point point = {0};
+  create(&strip, NULL, clamped);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (grid->X[3 * n] > 1 - 1e-9) {
+      assert_int_equal(dea_solid_prescribe(ctx, solid, n, 7, to), DEA_OK);
+    }
+  }
+  start(0, 0.2, 0.3, h);
+  while (point.passed == DEA_TRACE_NOTHING && point.load < 1) {
+    point = step();
+  }
+  assert_int_equal(point.passed, DEA_TRACE_BIFURCATION);
+  point = locate();
+  assert_close(point.load, 1 / 1.6, 1e-2, 0);
+  assert_close(displacement_at(1, 0, 0, 0), -1.6 * euler * point.load, 1e-9, 0);
+  destroy();
+}
+
+static void test_what_cannot_be(void **state)
+{
+  (void)state;
+  const struct dea_trace_options wrong[] = {{0.1, 0, 0}, {0, 0, 1}};
+  struct dea_trace_point point;
+  create(&film, "neo-hookean", on_planes);
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(dea_solid_trace_create(ctx, solid, 0.01, &wrong[i], &trace), DEA_E_ARGUMENT);
+    assert_null(trace);
+  }
+  start(0.01, 0.1, 0, 1);
+  assert_int_equal(dea_solid_trace_locate(ctx, trace, &point), DEA_E_ARGUMENT);
+  step();
+  assert_int_equal(dea_solid_trace_locate(ctx, trace, &point), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_trace_switch(ctx, trace, 1, 0.1, &point), DEA_E_ARGUMENT);
+  destroy();
+}
+
+/* Through the first critical point and back to it. */
+static void trace_it(struct dea_context *failing)
+{
+  static const struct dea_trace_options options = {0.3, 0, 1};
+  struct dea_trace_point point = {0};
+  struct dea_solid_report report;
+  trace = NULL;
+  dea_status status = try(failing, &film, "neo-hookean", on_planes);
+  if (status == DEA_OK) {
+    status = dea_solid_solve(failing, solid, 0.65 * film.size[2], &report);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_trace_create(failing, solid, 0.7 * film.size[2], &options, &trace);
+  }
+  while (status == DEA_OK && point.passed == DEA_TRACE_NOTHING) {
+    status = dea_solid_trace_step(failing, trace, &point);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_trace_locate(failing, trace, &point);
+  }
+  failing_check(failing, status);
+  dea_solid_trace_destroy(failing, trace);
+  dea_solid_destroy(failing, solid);
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  grid = block_grid(ctx, &film);
+  assert_true(failing_each(trace_it) > 40);
+  dea_grid_destroy(ctx, grid);
+}
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_free_film_through_its_limit_point),
+      cmocka_unit_test(test_a_path_ends_without_voltage),
+      cmocka_unit_test(test_film_buckles_under_voltage),
+      cmocka_unit_test(test_strip_buckles_at_eulers_strain),
+      cmocka_unit_test(test_what_cannot_be),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, set_up, context_tear_down);
+}
