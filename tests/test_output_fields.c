@@ -127,9 +127,43 @@ static dea_status make_result(struct dea_context *c, struct dea_result **out)
       return DEA_E_MEMORY;
     }
     mesh->X[0] += k == 2 ? 1e-9 : 0; // another mesh
-    DEA_TRY(c, dea_result_add_surface(c, *out, "fake", 1e3 * k, mesh));
+    DEA_TRY(c, dea_result_add_surface(c, *out, "fake", (size_t)k, 1e3 * k, mesh));
   }
   return DEA_OK;
+}
+
+/* A long sweep keeps a few surfaces, evenly spread, the first and the last among them. */
+static void test_surfaces_are_bounded(void **state)
+{
+  (void)state;
+  enum { POINTS = 101, ROOM = 10 };
+  struct dea_result *result;
+  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
+  struct dea_field_mesh *mesh = fake_surface(ctx, 0);
+  size_t cells = FAKE_RINGS * FAKE_TURNS; // 8 bytes: place, displacement, tension; two of cells
+  size_t bytes = sizeof *mesh + cells * (9 * (3 + 3 + 2) * 8 + 9 * sizeof(int) + 2 * 8);
+  result->surface_bytes_max = ROOM * bytes;
+  dea_field_mesh_destroy(ctx, mesh);
+  for (size_t k = 0; k < POINTS; k++) {
+    for (int model = 0; model < 2; model++) {
+      assert_int_equal(dea_result_add_surface(ctx, result, model == 0 ? "a" : "b", k,
+                                              1e2 * (double)k, fake_surface(ctx, 1e2 * (double)k)),
+                       DEA_OK);
+    }
+    const struct dea_surface_record *last = &result->surfaces[result->surface_count - 1];
+    assert_true(result->surface_count <= 2 * ROOM);
+    assert_true(k < 4 || result->surface_count >= ROOM - 2);
+    assert_int_equal(last->point, k);
+    assert_close(last->voltage_V, 1e2 * (double)k, 1e-12, 0);
+  }
+  size_t n = result->surface_count / 2;
+  for (size_t i = 0; i + 1 < n; i++) { // one of sixteen
+    assert_int_equal(result->surfaces[2 * i].point, 16 * i);
+    assert_string_equal(result->surfaces[2 * i].model, "a");
+    assert_string_equal(result->surfaces[2 * i + 1].model, "b");
+  }
+  assert_int_equal(n, 8);
+  dea_result_destroy(ctx, result);
 }
 
 static void check_same(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
@@ -214,7 +248,7 @@ static void test_figures_of_little(void **state)
   assert_int_equal(dea_result_create(ctx, &design, NULL, &result), DEA_OK);
   assert_int_equal(dea_figures_write(ctx, result, in_folder("none"), &options), DEA_OK);
   assert_false(there("none/map.gp"));
-  assert_int_equal(dea_result_add_surface(ctx, result, "fake", 0, fake_surface(ctx, 0)), DEA_OK);
+  assert_int_equal(dea_result_add_surface(ctx, result, "fake", 0, 0, fake_surface(ctx, 0)), DEA_OK);
   assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options), DEA_OK);
   assert_true(there("one/map.svg") && there("one/surface.svg") && there("one/section.svg"));
   assert_false(there("one/animation.gp"));
@@ -261,6 +295,7 @@ static void test_each_allocation(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_surfaces_are_bounded),
       cmocka_unit_test(test_outlines),
       cmocka_unit_test(test_patches),
       cmocka_unit_test(test_section),

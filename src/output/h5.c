@@ -276,6 +276,11 @@ double dea_h5_get_real(struct h5 *h, hid_t object, const char *name)
   return value;
 }
 
+bool dea_h5_has_attribute(const struct h5 *h, hid_t object, const char *name)
+{
+  return h->status == DEA_OK && H5Aexists(object, name) > 0;
+}
+
 bool dea_h5_has(const struct h5 *h, hid_t group, const char *name)
 {
   return h->status == DEA_OK && H5Lexists(group, name, H5P_DEFAULT) > 0;

@@ -53,6 +53,7 @@ void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const cha
 void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size);
 long long dea_h5_get_int(struct h5 *h, hid_t object, const char *name);
 double dea_h5_get_real(struct h5 *h, hid_t object, const char *name);
+bool dea_h5_has_attribute(const struct h5 *h, hid_t object, const char *name);
 /* True when a link of that name exists. */
 bool dea_h5_has(const struct h5 *h, hid_t group, const char *name);
 /* A one-dimensional dataset of exactly `count` values. */

@@ -259,17 +259,16 @@ static dea_status check_voltages(struct dea_context *ctx, const struct dea_desig
   return DEA_OK;
 }
 
-/* Moves the surfaces of a model, at most `count`, to another result. */
+/* Moves the surfaces of a model at its first `count` points to another result. */
 static dea_status take_surfaces(struct dea_context *ctx, struct dea_result *from, const char *model,
                                 size_t count, struct dea_result *to)
 {
-  for (size_t i = 0; i < from->surface_count && count > 0; i++) {
+  for (size_t i = 0; i < from->surface_count; i++) {
     struct dea_surface_record *record = &from->surfaces[i];
-    if (strcmp(record->model, model) == 0) {
+    if (strcmp(record->model, model) == 0 && record->point < count) {
       struct dea_field_mesh *mesh = record->mesh;
       record->mesh = NULL;
-      count--;
-      DEA_TRY(ctx, dea_result_add_surface(ctx, to, model, record->voltage_V, mesh));
+      DEA_TRY(ctx, dea_result_add_surface(ctx, to, model, record->point, record->voltage_V, mesh));
     }
   }
   return DEA_OK;

@@ -41,6 +41,7 @@ void dea_store_put_surface(struct h5 *h, hid_t group, const struct dea_surface_r
                            hid_t same)
 {
   const struct dea_field_mesh *mesh = record->mesh;
+  dea_h5_put_int(h, group, "point", (long long)record->point);
   dea_h5_put_real(h, group, "voltage_V", record->voltage_V);
   dea_h5_put_int(h, group, "points", (long long)mesh->point_count);
   dea_h5_put_int(h, group, "fold", mesh->fold);
@@ -143,6 +144,10 @@ void dea_store_get_surface(struct h5 *h, hid_t group, const char *model, struct 
   struct dea_field_mesh *mesh = NULL;
   double voltage_V = dea_h5_get_real(h, group, "voltage_V");
   size_t points = (size_t)get_within(h, group, "points", 0, COUNT_MAX);
+  size_t point = result->surface_count; // older files do not say it: one a point
+  if (dea_h5_has_attribute(h, group, "point")) {
+    point = (size_t)get_within(h, group, "point", 0, COUNT_MAX);
+  }
   int fold = (int)get_within(h, group, "fold", 0, 1000);
   int fibres = (int)get_within(h, group, "fibres", 0, 1000);
   if (h->status == DEA_OK) {
@@ -158,7 +163,7 @@ void dea_store_get_surface(struct h5 *h, hid_t group, const char *model, struct 
   get_each(h, group, "blocks", true, mesh);
   get_each(h, group, "fields", false, mesh);
   if (h->status == DEA_OK) {
-    h->status = dea_result_add_surface(h->ctx, result, model, voltage_V, mesh);
+    h->status = dea_result_add_surface(h->ctx, result, model, point, voltage_V, mesh);
   } else {
     dea_field_mesh_destroy(h->ctx, mesh);
   }

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const size_t surface_bytes = (size_t)256 << 20; // hundreds of sectors, tens of fine discs
+
 dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_device *device, struct dea_result **out)
 {
@@ -12,6 +14,7 @@ dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *d
   }
   (*out)->design = design;
   (*out)->device = device;
+  (*out)->surface_bytes_max = surface_bytes;
   return DEA_OK;
 }
 
@@ -108,6 +111,15 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
   return DEA_OK;
 }
 
+dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status)
+{
+  curve->complete = status == DEA_OK;
+  curve->status = status;
+  snprintf(curve->stopped, sizeof curve->stopped, "%s",
+           status == DEA_OK ? "" : dea_context_message(ctx));
+  return status;
+}
+
 dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
                                   const char *model, double voltage_V,
                                   const struct dea_profile *profile)
@@ -145,12 +157,89 @@ dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *resu
   return dea_result_add_curve(ctx, result, model, kind, out);
 }
 
-dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *result,
-                                  const char *model, double voltage_V, struct dea_field_mesh *mesh)
+static size_t mesh_bytes(const struct dea_field_mesh *mesh)
 {
-  struct dea_surface_record record = {.voltage_V = voltage_V, .mesh = mesh};
-  void *surfaces = result->surfaces;
+  size_t bytes = sizeof *mesh + 3 * mesh->point_count * sizeof *mesh->X;
+  for (size_t b = 0; b < mesh->block_count; b++) {
+    const struct dea_mesh_block *block = &mesh->blocks[b];
+    bytes += block->count * (size_t)dea_mesh_block_nodes(block) * sizeof *block->nodes;
+  }
+  for (size_t f = 0; f < mesh->field_count; f++) {
+    bytes += dea_mesh_field_count(mesh, &mesh->fields[f]) * (size_t)mesh->fields[f].components *
+             sizeof(double);
+  }
+  return bytes;
+}
+
+/* Surfaces of a model, and where the first, the second and the last of them are. */
+struct surfaces_of {
+  size_t count, first, second, last, bytes;
+};
+
+static struct surfaces_of list_surfaces(const struct dea_result *result, const char *model)
+{
+  struct surfaces_of list = {0};
+  for (size_t i = 0; i < result->surface_count; i++) {
+    if (strcmp(result->surfaces[i].model, model) == 0) {
+      list.first = list.count == 0 ? i : list.first;
+      list.second = list.count == 1 ? i : list.second;
+      list.last = i;
+      list.bytes += mesh_bytes(result->surfaces[i].mesh);
+      list.count++;
+    }
+  }
+  return list;
+}
+
+/* Removes the surfaces of a model from the second to the last: each other one, or (stride > 0) the
+ * last if it is not a multiple of that many points after the first. */
+static void drop_surfaces(struct dea_context *ctx, struct dea_result *result, const char *model,
+                          size_t stride)
+{
+  const struct surfaces_of list = list_surfaces(result, model);
+  size_t kept = 0, number = 0;
+  for (size_t i = 0; i < result->surface_count; i++) {
+    struct dea_surface_record *record = &result->surfaces[i];
+    bool of_model = strcmp(record->model, model) == 0;
+    bool off = stride == 0 ? number % 2 == 1
+                           : i == list.last &&
+                                 (record->point - result->surfaces[list.first].point) % stride != 0;
+    number += of_model;
+    if (of_model && off) {
+      dea_field_mesh_destroy(ctx, record->mesh);
+    } else {
+      result->surfaces[kept++] = *record;
+    }
+  }
+  result->surface_count = kept;
+}
+
+/* Makes room in memory for one more of a model's surfaces. */
+static void thin_surfaces(struct dea_context *ctx, struct dea_result *result, const char *model,
+                          size_t bytes)
+{
+  struct surfaces_of list = list_surfaces(result, model);
+  if (list.count > 2) { // the last may be there only because it was the last
+    drop_surfaces(ctx, result, model,
+                  result->surfaces[list.second].point - result->surfaces[list.first].point);
+    list = list_surfaces(result, model);
+  }
+  for (; list.count > 1 && list.bytes + bytes > result->surface_bytes_max;
+       list = list_surfaces(result, model)) {
+    drop_surfaces(ctx, result, model, 0);
+  }
+}
+
+dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, size_t point, double voltage_V,
+                                  struct dea_field_mesh *mesh)
+{
+  struct dea_surface_record record = {.point = point, .voltage_V = voltage_V, .mesh = mesh};
   dea_status status = name_set(ctx, "model", model, record.model);
+  if (status == DEA_OK) {
+    thin_surfaces(ctx, result, model, mesh_bytes(mesh));
+  }
+  void *surfaces = result->surfaces;
   if (status == DEA_OK) {
     status = make_room(ctx, &surfaces, result->surface_count, &result->surface_room,
                        sizeof *result->surfaces);

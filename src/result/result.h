@@ -28,9 +28,10 @@ struct dea_profile_record {
   double *columns;
 };
 
-/* Middle surface of the film at a voltage of a sweep. */
+/* Middle surface of the film at a point of a sweep. */
 struct dea_surface_record {
   char model[DEA_NAME_SIZE];
+  size_t point; // of the sweep, from 0
   double voltage_V;
   struct dea_field_mesh *mesh; // owned
 };
@@ -72,6 +73,7 @@ struct dea_result {
   size_t profile_count, profile_room;
   struct dea_surface_record *surfaces;
   size_t surface_count, surface_room;
+  size_t surface_bytes_max;        // of one model's; may be changed before the first
   const struct dea_keeper *keeper; // lent, NULL for none
   struct dea_provenance provenance;
 };
@@ -93,9 +95,15 @@ dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *re
 /* The curve of that model and kind, a new empty one when there is none; *out as above. */
 dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
                                 const char *model, const char *kind, struct dea_curve **out);
-/* Takes the mesh, also when it fails. */
+/* Surface of a point after those that are there. Where those of the model would take more memory
+ * than surface_bytes_max, every second one goes, and from then on one of two points stays, one of
+ * four, ...; the first and the last are always there. Takes the mesh, also when it fails. */
 dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *result,
-                                  const char *model, double voltage_V, struct dea_field_mesh *mesh);
+                                  const char *model, size_t point, double voltage_V,
+                                  struct dea_field_mesh *mesh);
+/* How a curve ended, and for a failure the recorded message as the reason. Returns the status, for
+ * DEA_TRY. */
+dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status);
 /* Curve of that model and kind, or NULL; lent. */
 const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,
                                         const char *kind);

@@ -83,12 +83,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, stops);
     }
   }
-  curve->complete = status == DEA_OK;
-  curve->status = status;
-  if (status != DEA_OK) {
-    snprintf(curve->stopped, sizeof curve->stopped, "%s", dea_context_message(ctx));
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
   return DEA_OK;
 }
 

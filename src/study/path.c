@@ -2,7 +2,6 @@
 #include "study/study.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { POINTS_MAX = 20000 };
 
@@ -81,12 +80,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       .max_points = POINTS_MAX,
   };
   dea_status status = type->path(ctx, model, &options, take_point, take_event, &target);
-  target.curve->complete = status == DEA_OK;
-  target.curve->status = status;
-  if (status != DEA_OK) {
-    snprintf(target.curve->stopped, sizeof target.curve->stopped, "%s", dea_context_message(ctx));
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));
   fill_distances(target.curve);
   return DEA_OK;
 }

@@ -33,14 +33,17 @@ static dea_status add_profile(struct dea_context *ctx, const struct dea_model_ty
 }
 
 static dea_status add_surface(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, double voltage_V, struct dea_result *result)
+                              struct dea_model *model, const struct dea_curve *curve,
+                              struct dea_result *result)
 {
+  size_t last = curve->count - 1;
   struct dea_field_mesh *mesh;
   if (type->fields == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, type->fields(ctx, model, DEA_FIELDS_SURFACE, &mesh));
-  DEA_TRY(ctx, dea_result_add_surface(ctx, result, type->name, voltage_V, mesh));
+  DEA_TRY(ctx, dea_result_add_surface(ctx, result, type->name, last, curve->points[last].voltage_V,
+                                      mesh));
   return DEA_OK;
 }
 
@@ -59,7 +62,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
-  DEA_TRY(ctx, add_surface(ctx, type, model, voltage_V, result));
+  DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
   if (result->keeper != NULL) {
     DEA_TRY(ctx, result->keeper->point(ctx, result->keeper->user, type, model, result, curve));
   }
@@ -94,13 +97,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, total);
     }
   }
-  curve->complete = status == DEA_OK;
-  curve->status = status;
-  curve->stopped[0] = '\0';
-  if (status != DEA_OK) {
-    snprintf(curve->stopped, sizeof curve->stopped, "%s", dea_context_message(ctx));
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
   return DEA_OK;
 }
 
