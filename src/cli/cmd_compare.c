@@ -187,7 +187,7 @@ static const struct dea_curve *side_curve(const struct side *side, const char *m
     return &side->measurement->curve;
   }
   const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_figure_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
   const char *wanted = model[0] != '\0' ? model : count > 0 ? models[0] : "";
   return dea_figure_curve(side->run->result, wanted, false);
 }
@@ -213,7 +213,7 @@ static dea_status no_curve(struct dea_context *ctx, const struct side *side, con
 {
   struct dea_text all = {.ctx = ctx};
   const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_figure_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     dea_text_add(&all, "%s%s", m > 0 ? ", " : "", models[m]);
   }
@@ -233,7 +233,7 @@ static dea_status find_pairs(struct dea_context *ctx, const struct request *requ
   *count = 0;
   if (request->model[0][0] == '\0' && a->run != NULL && b->run != NULL) {
     const char *models[DEA_DESIGN_MODELS_MAX];
-    size_t n = dea_figure_models(a->run->result, models, DEA_DESIGN_MODELS_MAX);
+    size_t n = dea_result_models(a->run->result, models, DEA_DESIGN_MODELS_MAX);
     for (size_t m = 0; m < n; m++) {
       const struct dea_curve *x = side_curve(a, models[m]), *y = side_curve(b, models[m]);
       if (x != NULL && y != NULL) {

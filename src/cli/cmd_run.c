@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "base/yaml.h"
 #include "cli/models.h"
+#include "cli/print_studies.h"
 #include "output/keep.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
@@ -16,11 +17,13 @@
 #include <string.h>
 #include <time.h>
 
-enum { TABLE_ROWS = 9 };
+enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
 
 struct run_options {
   const char *file, *directory, *models[DEA_DESIGN_MODELS_MAX];
   size_t model_count;
+  const char *studies[STUDIES_MAX];
+  size_t study_count;
   struct dea_override overrides[CLI_OVERRIDES_MAX];
   size_t override_count;
   bool json, force, resume, no_figures;
@@ -37,11 +40,15 @@ struct run {
 
 static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_options *out)
 {
-  static const struct option longs[] = {
-      {"model", required_argument, NULL, 'm'},  {"set", required_argument, NULL, 's'},
-      {"output", required_argument, NULL, 'o'}, {"json", no_argument, NULL, 'j'},
-      {"force", no_argument, NULL, 'f'},        {"resume", no_argument, NULL, 'r'},
-      {"no-figures", no_argument, NULL, 'n'},   {NULL, 0, NULL, 0}};
+  static const struct option longs[] = {{"model", required_argument, NULL, 'm'},
+                                        {"set", required_argument, NULL, 's'},
+                                        {"output", required_argument, NULL, 'o'},
+                                        {"json", no_argument, NULL, 'j'},
+                                        {"force", no_argument, NULL, 'f'},
+                                        {"resume", no_argument, NULL, 'r'},
+                                        {"no-figures", no_argument, NULL, 'n'},
+                                        {"study", required_argument, NULL, 'S'},
+                                        {NULL, 0, NULL, 0}};
   opterr = 0;
   int option;
   while ((option = getopt_long(argc, argv, ":m:s:o:f", longs, NULL)) != -1) {
@@ -61,6 +68,12 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
       if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
         return cli_usage_error(cli, &cmd_run, "--set takes key=value, not '%s'", optarg);
       }
+      break;
+    case 'S':
+      if (out->study_count == STUDIES_MAX) {
+        return cli_usage_error(cli, &cmd_run, "too many studies");
+      }
+      out->studies[out->study_count++] = optarg;
       break;
     case 'o':
       out->directory = optarg;
@@ -232,6 +245,9 @@ static void print_model(const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   const struct dea_curve *path = dea_result_find(result, model, "path");
+  if (sweep == NULL && path == NULL) {
+    return;
+  }
   printf("\n%s\n%9s%10s%12s%12s%12s%10s%10s\n", model, "V", "stretch", "u edge", "z tip", "field",
          "margin", "tension");
   printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
@@ -270,6 +286,7 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
     puts(run->design->title.text);
     for (size_t i = 0; i < count; i++) {
       print_model(run->result, types[i]->name);
+      DEA_TRY(ctx, cli_print_convergence(ctx, run->result, types[i]->name));
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
@@ -302,6 +319,12 @@ static dea_status open_folder(struct dea_cli *cli, const struct run_options *opt
   return DEA_OK;
 }
 
+/* Names of studies, NULL for those that the design asks for. */
+static const char *const *chosen_studies(const struct run_options *options)
+{
+  return options->study_count > 0 ? options->studies : NULL;
+}
+
 static dea_status run_all(struct dea_cli *cli, const struct run_options *options, struct run *run)
 {
   const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
@@ -310,12 +333,14 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   struct timespec start, end;
   DEA_TRY(ctx, prepare(cli, options, run));
   DEA_TRY(ctx, choose_models(cli, options, run->design, types, &count));
+  DEA_TRY(ctx, dea_study_check(ctx, chosen_studies(options), options->study_count, run->design));
   DEA_TRY(ctx, open_folder(cli, options, run));
   dea_status first = DEA_OK;
   char message[1024] = "";
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_keep_refused(run->keep); i++) {
-    dea_status status = dea_study_run(ctx, types[i], run->result);
+    dea_status status = dea_study_run_named(ctx, types[i], chosen_studies(options),
+                                            options->study_count, run->result);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
       snprintf(message, sizeof message, "%s: %s", types[i]->name, dea_context_message(ctx));
@@ -352,6 +377,8 @@ const struct dea_command cmd_run = {
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
     .usage = "dea run DESIGN [options]\n"
              "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
+             "      --study NAME      only this study: path, sweep, force, convergence;\n"
+             "                        can be repeated\n"
              "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
              "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
              "  -f, --force           replace the results in an existing run folder\n"

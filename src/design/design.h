@@ -16,6 +16,7 @@ enum {
   DEA_DESIGN_VOLTAGES_MAX = 10000,
   DEA_DESIGN_STOPS_MAX = 32,
   DEA_DESIGN_FIELDS_MAX = 100,
+  DEA_DESIGN_MESHES_MAX = 8,
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
@@ -79,6 +80,13 @@ struct dea_design {
       struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
       size_t depth_count, preload_count;
     } force;
+    struct {      // study of convergence, of models with a mesh
+      bool asked; // the section is there; the values are there without it too
+      struct dea_quantity refinements[DEA_DESIGN_MESHES_MAX]; // rising
+      struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX];   // none: quarters of the highest
+      size_t refinement_count, voltage_count;
+      struct dea_quantity tolerance; // relative
+    } convergence;
     struct dea_choice coverage_by;    // enum dea_coverage_by, paper eq 17
     struct dea_quantity coverage;     // R itself; absent: from coverage_by
     struct {                          // model 3d

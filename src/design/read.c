@@ -111,6 +111,30 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
   return DEA_OK;
 }
 
+/* Whether a section of `compute` is written. */
+static bool has_section(const struct dea_design *design, const char *key)
+{
+  const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
+  return compute != NULL && dea_node_find(compute, key) != NULL;
+}
+
+/* Meshes of a study of convergence become finer. */
+static dea_status take_convergence(struct dea_context *ctx, struct dea_design *design)
+{
+  const struct dea_quantity *n = design->compute.convergence.refinements;
+  design->compute.convergence.asked = has_section(design, "convergence");
+  for (size_t i = 1; i < design->compute.convergence.refinement_count; i++) {
+    if (n[i].si <= n[i - 1].si) {
+      DEA_TRY(ctx,
+              dea_finding_add(ctx, DEA_ERROR, n[i].place,
+                              "refinement: %g after %g, but each mesh has to be finer than the "
+                              "one before",
+                              n[i].si, n[i - 1].si));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_models(struct dea_context *ctx, const struct dea_design *design)
 {
   for (size_t i = 1; i < design->compute.model_count; i++) {
@@ -208,6 +232,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *name, const char
     DEA_TRY(ctx, take_voltages(ctx, raw));
     DEA_TRY(ctx, take_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
+    DEA_TRY(ctx, take_convergence(ctx, design));
     take_figures(raw);
     DEA_TRY(ctx, take_fields(ctx, raw));
   }

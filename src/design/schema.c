@@ -331,6 +331,12 @@ static const struct dea_field compute_fields[] = {
      .kind = DEA_FIELD_RECORD,
      .record = &dea_solid_record,
      .doc = "mesh of model 3d"},
+    {.key = "convergence",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_convergence_record,
+     .doc =
+         "study of convergence, made when this section is there ({}) or with --study: the same on "
+         "ever finer meshes (3d)"},
     {.key = "coverage_by",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(compute.coverage_by),

@@ -60,6 +60,11 @@ struct dea_probe {
   bool from_fibre_side; // comes from +z
 };
 
+/* How large the system of a model on a mesh is. */
+struct dea_model_size {
+  size_t elements, nodes, unknowns;
+};
+
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
@@ -95,6 +100,8 @@ struct dea_model_type {
   dea_status (*save)(struct dea_context *ctx, struct dea_model *model, struct dea_state *out);
   dea_status (*load)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_state *state);
+  /* Size of a model whose mesh the device's solid_refinement sets; NULL when it has none. */
+  void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };
 
 /* Path of the module that holds the 3D engine, into out[size]; false when it is not here. */

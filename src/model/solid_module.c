@@ -114,6 +114,11 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static void size(const struct dea_model *model, struct dea_model_size *out)
+{
+  model->type->size(model->inner, out);
+}
+
 const struct dea_model_type dea_model_3d = {
     .name = "3d",
     .long_name = "3D solid",
@@ -125,4 +130,5 @@ const struct dea_model_type dea_model_3d = {
     .fields = fields,
     .save = save,
     .load = load,
+    .size = size,
 };

@@ -1,6 +1,7 @@
 #include "output/csv.h"
 
 #include "output/file.h"
+#include "result/convergence.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,14 @@ static void add_number(struct dea_text *text, double value)
 {
   if (!isnan(value)) {
     dea_text_add(text, "%.12g", value);
+  }
+}
+
+/* Columns that hold a number at some point: adds to what is set already. */
+static void mark_used(const struct dea_curve *curve, bool *used)
+{
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    used[c] = used[c] || dea_points_have(curve->points, curve->count, c);
   }
 }
 
@@ -48,10 +57,8 @@ static void add_point(struct dea_text *text, const bool *used, const struct dea_
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
                                const char *directory)
 {
-  bool used[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    used[c] = dea_points_have(curve->points, curve->count, c);
-  }
+  bool used[DEA_LOAD_POINT_COLUMNS] = {false};
+  mark_used(curve, used);
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   add_header(&text, used);
@@ -130,5 +137,110 @@ dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_resu
   snprintf(name, sizeof name, "%s_profiles.csv", model);
   dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
   dea_text_free(&text);
+  return status;
+}
+
+// Variants ---------------------------------------------------------------------------------------
+
+/* A name as one field: in quotes where it has a comma or quotes of its own. */
+static void add_name(struct dea_text *text, const char *name)
+{
+  bool quoted = strpbrk(name, ",\"\n") != NULL;
+  dea_text_add(text, "%s", quoted ? "\"" : "");
+  for (const char *c = name; *c != '\0'; c++) {
+    dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
+  }
+  dea_text_add(text, "%s", quoted ? "\"" : "");
+}
+
+static void add_variant(struct dea_text *text, const bool *used, bool meshes,
+                        const struct dea_variant *variant)
+{
+  for (size_t i = 0; i < variant->curve.count; i++) {
+    add_name(text, variant->name);
+    dea_text_add(text, ",");
+    if (meshes) {
+      add_number(text, variant->refinement);
+      dea_text_add(text, ",%zu,%zu,%zu,", variant->size.elements, variant->size.nodes,
+                   variant->size.unknowns);
+    }
+    dea_text_add(text, "%.6g,", variant->wall_s);
+    add_point(text, used, &variant->curve.points[i]);
+  }
+}
+
+dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
+                                  const char *model, const char *study, const char *directory)
+{
+  bool used[DEA_LOAD_POINT_COLUMNS] = {false}, any = false, meshes = false;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, study)) {
+      any = true;
+      meshes = meshes || result->variants[i].size.nodes > 0;
+      mark_used(&result->variants[i].curve, used);
+    }
+  }
+  if (!any) {
+    return DEA_OK;
+  }
+  struct dea_text text = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  dea_text_add(&text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
+  add_header(&text, used);
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, study)) {
+      add_variant(&text, used, meshes, &result->variants[i]);
+    }
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 8];
+  snprintf(name, sizeof name, "%s_%s.csv", model, study);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  return status;
+}
+
+/* A line a mesh. */
+static void add_row(struct dea_text *text, const struct dea_convergence *convergence,
+                    const struct dea_convergence_row *row)
+{
+  const struct dea_column *column = &dea_point_columns[row->column];
+  for (size_t m = 0; m < convergence->mesh_count; m++) {
+    const struct dea_variant *mesh = convergence->meshes[m];
+    dea_text_add(text, "%s,%s,%.12g,%.12g,%zu,", column->header, column->display_unit,
+                 1e-3 * row->voltage_V, mesh->refinement, mesh->size.unknowns);
+    add_number(text, column->factor * row->values[m]);
+    dea_text_add(text, ",");
+    add_number(text, 100 * row->errors[m]);
+    dea_text_add(text, ",");
+    add_number(text, row->order);
+    dea_text_add(text, ",");
+    add_number(text, column->factor * row->extrapolated);
+    dea_text_add(text, ",%s\n", dea_order_text(row->kind));
+  }
+}
+
+dea_status dea_csv_write_convergence(struct dea_context *ctx, const struct dea_result *result,
+                                     const char *model, const char *directory)
+{
+  struct dea_convergence *convergence;
+  struct dea_text text = {.ctx = ctx};
+  char name[DEA_NAME_SIZE + 32];
+  DEA_TRY(ctx, dea_convergence_create(ctx, result, model, &convergence));
+  if (convergence == NULL) {
+    return DEA_OK;
+  }
+  void *before = dea_c_locale_enter();
+  dea_text_add(&text,
+               "quantity,unit,V (kV),refinement,unknowns,value,estimated error (%%),observed "
+               "order,extrapolated,remark\n");
+  for (size_t i = 0; i < convergence->row_count; i++) {
+    add_row(&text, convergence, &convergence->rows[i]);
+  }
+  dea_c_locale_leave(before);
+  snprintf(name, sizeof name, "%s_convergence_errors.csv", model);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  dea_convergence_destroy(ctx, convergence);
   return status;
 }

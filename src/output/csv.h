@@ -19,6 +19,15 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
 dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, const char *directory);
 
+/* Writes directory/MODEL_STUDY.csv: all points of all variants of a study, with name and mesh of
+ * the variant in front. Nothing when the model has none. */
+dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
+                                  const char *model, const char *study, const char *directory);
+/* Writes directory/MODEL_convergence_errors.csv: a line a quantity, voltage and mesh, with the
+ * estimated error in per cent, the order and the extrapolated value. Nothing without that study. */
+dea_status dea_csv_write_convergence(struct dea_context *ctx, const struct dea_result *result,
+                                     const char *model, const char *directory);
+
 /* Measurements: a curve, and the standard uncertainty of each value where given. */
 struct dea_measurement {
   struct dea_curve curve;     // model "measurement", kind "sweep"

@@ -43,8 +43,6 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
  * round with prefer_path); NULL when neither has points. */
 const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
                                          bool prefer_path);
-/* Models of a result in the order of their first curve; names lent. Returns the number. */
-size_t dea_figure_models(const struct dea_result *result, const char *models[], size_t max);
 /* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
  * right); stable parts so, unstable ones dashed. Adds nothing when the curve has no such number. */
 dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,

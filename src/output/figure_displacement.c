@@ -41,7 +41,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   const int z[2] = {dea_point_column_find("centre_z_m"), dea_point_column_find("fibre_tip_z_m")};
   struct dea_panel *panel = &plot->panels[0];
   const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_figure_models(result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   double factor = z_factor(result, z);
   size_t strain_count = 0;
   for (size_t m = 0; m < count; m++) {

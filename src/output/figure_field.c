@@ -82,7 +82,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 {
   struct dea_panel *panel = &plot->panels[0];
   const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_figure_models(result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   int column = dea_point_column_find("true_field_V_per_m");
   double top = 0.0;
   for (size_t m = 0; m < count; m++) {

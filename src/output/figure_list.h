@@ -9,4 +9,5 @@
   X(map)                                                                                           \
   X(surface)                                                                                       \
   X(section)                                                                                       \
-  X(animation)
+  X(animation)                                                                                     \
+  X(convergence)

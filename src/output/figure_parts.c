@@ -16,21 +16,6 @@ const struct dea_curve *dea_figure_curve(const struct dea_result *result, const 
   return other != NULL && other->count > 0 ? other : NULL;
 }
 
-size_t dea_figure_models(const struct dea_result *result, const char *models[], size_t max)
-{
-  size_t count = 0;
-  for (size_t i = 0; i < result->curve_count && count < max; i++) {
-    bool known = false;
-    for (size_t m = 0; m < count; m++) {
-      known = known || strcmp(models[m], result->curves[i].model) == 0;
-    }
-    if (!known) {
-      models[count++] = result->curves[i].model;
-    }
-  }
-  return count;
-}
-
 struct dea_series dea_figure_look(const char *model, size_t m)
 {
   static const enum dea_colour order[] = {DEA_BLUE, DEA_VERMILLION, DEA_GREEN, DEA_PURPLE};

@@ -35,7 +35,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 {
   struct dea_panel *panel = &plot->panels[0];
   const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_figure_models(result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     struct dea_series look = dea_figure_look(models[m], m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false),

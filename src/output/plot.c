@@ -323,6 +323,17 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
   return l;
 }
 
+/* 1, 2 and 5 of each decade: those in the range are drawn. */
+static void add_log_tics(struct dea_text *gp, const char *axis)
+{
+  dea_text_add(gp, "  set %stics (", axis);
+  for (int decade = -4; decade < 7; decade++) {
+    double power = pow(10.0, decade);
+    dea_text_add(gp, "%s%.10g, %.10g, %.10g", decade > -4 ? ", " : "", power, 2 * power, 5 * power);
+  }
+  dea_text_add(gp, ")\n");
+}
+
 static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool has_x_label)
 {
   add_range(gp, "x", panel->x_min, panel->x_max);
@@ -334,7 +345,11 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
     dea_text_add(gp, "  unset xlabel\n  set format x \"\"\n");
   }
   dea_text_add(gp, "  set format y \"%s\"\n", panel->y_format != NULL ? panel->y_format : "%h");
-  if (panel->y_step > 0.0) {
+  if (panel->logarithmic) {
+    dea_text_add(gp, "  set logscale xy\n");
+    add_log_tics(gp, "x");
+    add_log_tics(gp, "y");
+  } else if (panel->y_step > 0.0) {
     dea_text_add(gp, "  set ytics %.10g\n", panel->y_step);
   } else {
     dea_text_add(gp, "  set ytics autofreq\n");

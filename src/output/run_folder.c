@@ -85,6 +85,14 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       forget(ctx, directory, name);
       dea_keep_forget(ctx, directory, curve->model, curve->count);
     }
+    for (size_t i = 0; i < old->result->variant_count; i++) {
+      const struct dea_curve *curve = &old->result->variants[i].curve;
+      char name[2 * DEA_NAME_SIZE + 32];
+      snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
+      forget(ctx, directory, name);
+      snprintf(name, sizeof name, "%s_%s_errors.csv", curve->model, curve->kind);
+      forget(ctx, directory, name);
+    }
     dea_run_destroy(ctx, old);
   }
   dea_context_clear(ctx);
@@ -102,9 +110,11 @@ static dea_status write_tables(struct dea_context *ctx, const struct dea_result 
     DEA_TRY(ctx, dea_csv_write_curve(ctx, &result->curves[i], directory));
     DEA_TRY(ctx, dea_csv_write_events(ctx, &result->curves[i], directory));
   }
-  size_t count = dea_figure_models(result, models, DEA_DESIGN_MODELS_MAX);
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], directory));
+    DEA_TRY(ctx, dea_csv_write_variants(ctx, result, models[m], "convergence", directory));
+    DEA_TRY(ctx, dea_csv_write_convergence(ctx, result, models[m], directory));
   }
   return DEA_OK;
 }

@@ -154,16 +154,9 @@ static hid_t open_entry(struct h5 *h, hid_t parent, const struct entry *entry)
   return group;
 }
 
-static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
-                      struct dea_result *result)
+/* What stands in a curve's group beside its names. */
+static void get_content(struct h5 *h, hid_t group, struct dea_curve *curve)
 {
-  struct dea_curve *curve = NULL;
-  if (h->status == DEA_OK) {
-    h->status = dea_result_add_curve(h->ctx, result, entry->model, entry->name, &curve);
-  }
-  if (h->status != DEA_OK) {
-    return;
-  }
   char name[DEA_NAME_SIZE];
   curve->complete = dea_h5_get_int(h, group, "complete") != 0;
   dea_h5_get_text(h, group, "status", name, sizeof name);
@@ -174,79 +167,113 @@ static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
   get_events(h, group, curve);
 }
 
-static void get_curves(struct h5 *h, hid_t file, struct dea_result *result)
+static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
+                      struct dea_result *result)
 {
-  hid_t parent = dea_h5_group_open(h, file, "curves");
-  size_t count;
-  struct entry *entries = list_entries(h, parent, &count);
-  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
-    hid_t group = open_entry(h, parent, &entries[i]);
-    get_curve(h, group, &entries[i], result);
-    dea_h5_close(group);
-  }
-  dea_free(h->ctx, entries);
-  dea_h5_close(parent);
-}
-
-static void get_profile(struct h5 *h, hid_t group, const char *model, struct dea_result *result)
-{
-  size_t n = get_count(h, group);
-  double voltage_V = dea_h5_get_real(h, group, "voltage_V");
-  double *columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof *columns);
-  if (columns == NULL) {
-    h->status = DEA_E_MEMORY;
-    return;
-  }
-  for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-    const char *key = dea_profile_columns[c].key;
-    for (size_t i = 0; i < n; i++) {
-      columns[c * n + i] = NAN;
-    }
-    if (c < 6 || dea_h5_has(h, group, key)) { // z came later: older files have none
-      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, columns + c * n);
-    }
+  struct dea_curve *curve = NULL;
+  if (h->status == DEA_OK) {
+    h->status = dea_result_add_curve(h->ctx, result, entry->model, entry->name, &curve);
   }
   if (h->status == DEA_OK) {
-    struct dea_profile profile = {n,
-                                  columns,
-                                  columns + n,
-                                  columns + 2 * n,
-                                  columns + 3 * n,
-                                  columns + 4 * n,
-                                  columns + 5 * n,
-                                  columns + 6 * n};
-    h->status = dea_result_add_profile(h->ctx, result, model, voltage_V, &profile);
+    get_content(h, group, curve);
+  }
+}
+
+/* Profile of a group; columns: what it lends from, owned by the caller, NULL after a failure. */
+static struct dea_profile get_columns(struct h5 *h, hid_t group, double **columns)
+{
+  size_t n = get_count(h, group);
+  *columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof **columns);
+  if (*columns == NULL) {
+    h->status = DEA_E_MEMORY;
+    return (struct dea_profile){0};
+  }
+  double *c = *columns;
+  for (size_t k = 0; k < DEA_PROFILE_COLUMNS; k++) {
+    const char *key = dea_profile_columns[k].key;
+    for (size_t i = 0; i < n; i++) {
+      c[k * n + i] = NAN;
+    }
+    if (k < 6 || dea_h5_has(h, group, key)) { // z came later: older files have none
+      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, c + k * n);
+    }
+  }
+  return (struct dea_profile){n, c, c + n, c + 2 * n, c + 3 * n, c + 4 * n, c + 5 * n, c + 6 * n};
+}
+
+static void get_profile(struct h5 *h, hid_t group, const struct entry *entry,
+                        struct dea_result *result)
+{
+  double *columns, voltage_V = dea_h5_get_real(h, group, "voltage_V");
+  const struct dea_profile profile = get_columns(h, group, &columns);
+  if (h->status == DEA_OK) {
+    h->status = dea_result_add_profile(h->ctx, result, entry->model, voltage_V, &profile);
   }
   dea_free(h->ctx, columns);
 }
 
-static void get_profiles(struct h5 *h, hid_t file, struct dea_result *result)
+static void get_surface(struct h5 *h, hid_t group, const struct entry *entry,
+                        struct dea_result *result)
 {
-  hid_t parent = dea_h5_group_open(h, file, "profiles");
-  size_t count;
-  struct entry *entries = list_entries(h, parent, &count);
-  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
-    hid_t group = open_entry(h, parent, &entries[i]);
-    get_profile(h, group, entries[i].model, result);
-    dea_h5_close(group);
-  }
-  dea_free(h->ctx, entries);
-  dea_h5_close(parent);
+  dea_store_get_surface(h, group, entry->model, result);
 }
 
-/* A run of models without surfaces, or of before there were any, has none. */
-static void get_surfaces(struct h5 *h, hid_t file, struct dea_result *result)
+static void get_variant_profile(struct h5 *h, hid_t group, struct dea_variant *variant)
 {
-  if (!dea_h5_has(h, file, "surfaces")) {
+  hid_t inner = dea_h5_group_open(h, group, "profile");
+  double *columns, voltage_V = dea_h5_get_real(h, inner, "voltage_V");
+  const struct dea_profile profile = get_columns(h, inner, &columns);
+  if (h->status == DEA_OK) {
+    h->status = dea_variant_set_profile(h->ctx, variant, voltage_V, &profile);
+  }
+  dea_free(h->ctx, columns);
+  dea_h5_close(inner);
+}
+
+static void get_variant(struct h5 *h, hid_t group, const struct entry *entry,
+                        struct dea_result *result)
+{
+  char study[DEA_NAME_SIZE], name[DEA_NAME_SIZE];
+  struct dea_variant *variant = NULL;
+  dea_h5_get_text(h, group, "study", study, sizeof study);
+  dea_h5_get_text(h, group, "name", name, sizeof name);
+  if (h->status == DEA_OK) {
+    h->status = dea_result_add_variant(h->ctx, result, entry->model, study, name, &variant);
+  }
+  if (h->status != DEA_OK) {
     return;
   }
-  hid_t parent = dea_h5_group_open(h, file, "surfaces");
+  variant->refinement = dea_h5_get_real(h, group, "refinement");
+  variant->size.elements = (size_t)dea_h5_get_int(h, group, "elements");
+  variant->size.nodes = (size_t)dea_h5_get_int(h, group, "nodes");
+  variant->size.unknowns = (size_t)dea_h5_get_int(h, group, "unknowns");
+  variant->wall_s = dea_h5_get_real(h, group, "wall_s");
+  get_content(h, group, &variant->curve);
+  if (dea_h5_has(h, group, "profile")) {
+    get_variant_profile(h, group, variant);
+  }
+}
+
+/* Reads each of name/<model>/<...> in the order of the indices. needed: else a run that had none of
+ * these has no such group, nor has one of before there were any. */
+static void get_all(struct h5 *h, hid_t file, const char *name, bool needed,
+                    void (*get)(struct h5 *h, hid_t group, const struct entry *entry,
+                                struct dea_result *result),
+                    struct dea_result *result)
+{
+  if (!needed && !dea_h5_has(h, file, name)) {
+    return;
+  }
+  hid_t parent = dea_h5_group_open(h, file, name);
   size_t count;
   struct entry *entries = list_entries(h, parent, &count);
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     hid_t group = open_entry(h, parent, &entries[i]);
-    dea_store_get_surface(h, group, entries[i].model, result);
+    get(h, group, &entries[i], result);
     dea_h5_close(group);
+  }
+  if (dea_h5_has_attribute(h, parent, "convergence_tolerance")) {
+    result->convergence_tolerance = dea_h5_get_real(h, parent, "convergence_tolerance");
   }
   dea_free(h->ctx, entries);
   dea_h5_close(parent);
@@ -296,9 +323,10 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
     dea_h5_fail(&h, "cannot read");
   }
   check_schema(&h, file);
-  get_curves(&h, file, run->result);
-  get_profiles(&h, file, run->result);
-  get_surfaces(&h, file, run->result);
+  get_all(&h, file, "curves", true, get_curve, run->result);
+  get_all(&h, file, "profiles", true, get_profile, run->result);
+  get_all(&h, file, "surfaces", false, get_surface, run->result);
+  get_all(&h, file, "variants", false, get_variant, run->result);
   get_rest(&h, file, run);
   dea_h5_close(file);
   dea_h5_end(&h);

@@ -83,6 +83,16 @@ static void put_events(struct h5 *h, hid_t parent, const struct dea_curve *curve
   dea_h5_close(group);
 }
 
+static void put_curve(struct h5 *h, hid_t group, size_t index, const struct dea_curve *curve)
+{
+  dea_h5_put_int(h, group, "index", (long long)index);
+  dea_h5_put_int(h, group, "complete", curve->complete);
+  dea_h5_put_text(h, group, "status", dea_status_name(curve->status));
+  dea_h5_put_text(h, group, "stopped", curve->stopped);
+  put_points(h, group, (const char *)curve->points, sizeof *curve->points, curve->count);
+  put_events(h, group, curve);
+}
+
 static void put_curves(struct h5 *h, hid_t file, const struct dea_result *result)
 {
   hid_t curves = dea_h5_group_make(h, file, "curves");
@@ -90,16 +100,22 @@ static void put_curves(struct h5 *h, hid_t file, const struct dea_result *result
     const struct dea_curve *curve = &result->curves[i];
     hid_t model = dea_h5_group_get(h, curves, curve->model);
     hid_t kind = dea_h5_group_make(h, model, curve->kind);
-    dea_h5_put_int(h, kind, "index", (long long)i);
-    dea_h5_put_int(h, kind, "complete", curve->complete);
-    dea_h5_put_text(h, kind, "status", dea_status_name(curve->status));
-    dea_h5_put_text(h, kind, "stopped", curve->stopped);
-    put_points(h, kind, (const char *)curve->points, sizeof *curve->points, curve->count);
-    put_events(h, kind, curve);
+    put_curve(h, kind, i, curve);
     dea_h5_close(kind);
     dea_h5_close(model);
   }
   dea_h5_close(curves);
+}
+
+static void put_profile(struct h5 *h, hid_t group, const struct dea_profile_record *record)
+{
+  dea_h5_put_int(h, group, "count", (long long)record->count);
+  dea_h5_put_real(h, group, "voltage_V", record->voltage_V);
+  for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
+    const struct dea_column *column = &dea_profile_columns[c];
+    dea_h5_put_array(h, group, column->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, record->count,
+                     record->columns + (size_t)c * record->count, column->si_unit, column->meaning);
+  }
 }
 
 static void put_profiles(struct h5 *h, hid_t file, const struct dea_result *result)
@@ -112,18 +128,49 @@ static void put_profiles(struct h5 *h, hid_t file, const struct dea_result *resu
     snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
     hid_t group = dea_h5_group_make(h, model, name);
     dea_h5_put_int(h, group, "index", (long long)i);
-    dea_h5_put_int(h, group, "count", (long long)record->count);
-    dea_h5_put_real(h, group, "voltage_V", record->voltage_V);
-    for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-      const struct dea_column *column = &dea_profile_columns[c];
-      dea_h5_put_array(h, group, column->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, record->count,
-                       record->columns + (size_t)c * record->count, column->si_unit,
-                       column->meaning);
-    }
+    put_profile(h, group, record);
     dea_h5_close(group);
     dea_h5_close(model);
   }
   dea_h5_close(profiles);
+}
+
+static void put_variant(struct h5 *h, hid_t group, size_t index, const struct dea_variant *variant)
+{
+  dea_h5_put_text(h, group, "study", variant->curve.kind);
+  dea_h5_put_text(h, group, "name", variant->name);
+  dea_h5_put_real(h, group, "refinement", variant->refinement);
+  dea_h5_put_int(h, group, "elements", (long long)variant->size.elements);
+  dea_h5_put_int(h, group, "nodes", (long long)variant->size.nodes);
+  dea_h5_put_int(h, group, "unknowns", (long long)variant->size.unknowns);
+  dea_h5_put_real(h, group, "wall_s", variant->wall_s);
+  put_curve(h, group, index, &variant->curve);
+  if (variant->profile.count > 0) {
+    hid_t profile = dea_h5_group_make(h, group, "profile");
+    put_profile(h, profile, &variant->profile);
+    dea_h5_close(profile);
+  }
+}
+
+/* variants/MODEL/0000, 0001, ... */
+static void put_variants(struct h5 *h, hid_t file, const struct dea_result *result)
+{
+  if (result->variant_count == 0) {
+    return;
+  }
+  hid_t variants = dea_h5_group_make(h, file, "variants");
+  dea_h5_put_real(h, variants, "convergence_tolerance", result->convergence_tolerance);
+  for (size_t i = 0; i < result->variant_count && h->status == DEA_OK; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    hid_t model = dea_h5_group_get(h, variants, variant->curve.model);
+    char name[24];
+    snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
+    hid_t group = dea_h5_group_make(h, model, name);
+    put_variant(h, group, i, variant);
+    dea_h5_close(group);
+    dea_h5_close(model);
+  }
+  dea_h5_close(variants);
 }
 
 static bool same_mesh(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
@@ -219,6 +266,7 @@ dea_status dea_store_write(struct dea_context *ctx, const struct dea_result *res
   put_curves(&h, file, result);
   put_profiles(&h, file, result);
   put_surfaces(&h, file, result);
+  put_variants(&h, file, result);
   put_design(&h, file, result);
   put_provenance(&h, file, &result->provenance);
   dea_h5_file_write(&h, file);

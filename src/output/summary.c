@@ -2,6 +2,7 @@
 
 #include "output/file.h"
 #include "output/json.h"
+#include "output/summary_studies.h"
 #include "result/columns.h"
 
 #include <math.h>
@@ -40,7 +41,7 @@ dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
   return text != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
-static json_t *point_json(const struct dea_load_point *point)
+json_t *dea_point_json(const struct dea_load_point *point)
 {
   json_t *object = json_object();
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
@@ -72,40 +73,38 @@ static json_t *limits_json(const struct dea_curve *path)
   return object;
 }
 
+/* First curve of a model, of its variants too, that was stopped; NULL when none was. */
+static const struct dea_curve *first_stopped(const struct dea_result *result, const char *model)
+{
+  size_t curves = result->curve_count;
+  for (size_t i = 0; i < curves + result->variant_count; i++) {
+    const struct dea_curve *curve =
+        i < curves ? &result->curves[i] : &result->variants[i - curves].curve;
+    if (strcmp(curve->model, model) == 0 && !curve->complete) {
+      return curve;
+    }
+  }
+  return NULL;
+}
+
 /* Puts what is known of one model into an object. */
-static void put_model(json_t *object, const struct dea_result *result, const char *model)
+static dea_status put_model(struct dea_context *ctx, json_t *object,
+                            const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
   json_t *points = json_array();
   for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
-    json_array_append_new(points, point_json(&sweep->points[i]));
+    json_array_append_new(points, dea_point_json(&sweep->points[i]));
   }
   json_object_set_new(object, "points", points);
-  bool complete = true;
-  const char *stopped = "", *status = dea_status_name(DEA_OK);
-  for (size_t i = 0; i < result->curve_count; i++) {
-    const struct dea_curve *curve = &result->curves[i];
-    if (strcmp(curve->model, model) == 0 && !curve->complete && complete) {
-      complete = false;
-      stopped = curve->stopped;
-      status = dea_status_name(curve->status);
-    }
-  }
-  json_object_set_new(object, "complete", json_boolean(complete));
-  dea_json_put_text(object, "stopped", stopped);
-  json_object_set_new(object, "status", json_string(status));
+  const struct dea_curve *stopped = first_stopped(result, model);
+  json_object_set_new(object, "complete", json_boolean(stopped == NULL));
+  dea_json_put_text(object, "stopped", stopped != NULL ? stopped->stopped : "");
+  json_object_set_new(object, "status",
+                      json_string(dea_status_name(stopped != NULL ? stopped->status : DEA_OK)));
   json_object_set_new(object, "limits", limits_json(dea_result_find(result, model, "path")));
-}
-
-static bool first_of_model(const struct dea_result *result, size_t index)
-{
-  for (size_t i = 0; i < index; i++) {
-    if (strcmp(result->curves[i].model, result->curves[index].model) == 0) {
-      return false;
-    }
-  }
-  return true;
+  return dea_summary_put_studies(ctx, result, model, object);
 }
 
 static json_t *design_json(const struct dea_result *result)
@@ -140,19 +139,25 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
   dea_json_put_text(root, "program", result->provenance.program);
   json_object_set_new(root, "design", design_json(result));
   json_t *more = json_array();
-  for (size_t i = 0; i < result->curve_count; i++) {
-    if (i == 0) {
-      put_model(root, result, result->curves[0].model);
-    } else if (first_of_model(result, i)) {
-      json_t *object = json_object();
-      put_model(object, result, result->curves[i].model);
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  dea_status status = DEA_OK;
+  for (size_t m = 0; m < count && status == DEA_OK; m++) {
+    json_t *object = m == 0 ? root : json_object();
+    status = put_model(ctx, object, result, models[m]);
+    if (m > 0) {
       json_array_append_new(more, object);
     }
   }
-  if (result->curve_count == 0) {
+  if (count == 0) {
     json_object_set_new(root, "points", json_array());
   }
   json_object_set_new(root, "more_models", more);
+  if (status != DEA_OK) {
+    json_decref(root);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
   json_object_set_new(root, "provenance", provenance_json(&result->provenance));
   return dea_json_text(ctx, root, out);
 }

@@ -1,5 +1,6 @@
 #include "result/columns.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *d
   (*out)->design = design;
   (*out)->device = device;
   (*out)->surface_bytes_max = surface_bytes;
+  (*out)->convergence_tolerance = NAN;
   return DEA_OK;
 }
 
@@ -36,6 +38,12 @@ void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
     dea_field_mesh_destroy(ctx, result->surfaces[i].mesh);
   }
   dea_free(ctx, result->surfaces);
+  for (size_t i = 0; i < result->variant_count; i++) {
+    dea_free(ctx, result->variants[i].curve.points);
+    dea_free(ctx, result->variants[i].curve.events);
+    dea_free(ctx, result->variants[i].profile.columns);
+  }
+  dea_free(ctx, result->variants);
   dea_free(ctx, result->provenance.input);
   dea_free(ctx, result->provenance.overrides);
   dea_free(ctx, result->provenance.command);
@@ -120,30 +128,91 @@ dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_s
   return status;
 }
 
-dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
-                                  const char *model, double voltage_V,
-                                  const struct dea_profile *profile)
+/* A record of its own memory; nothing to be freed after a failure. */
+static dea_status copy_profile(struct dea_context *ctx, const char *model, double voltage_V,
+                               const struct dea_profile *profile, struct dea_profile_record *out)
 {
-  struct dea_profile_record record = {.voltage_V = voltage_V, .count = profile->count};
-  DEA_TRY(ctx, name_set(ctx, "model", model, record.model));
-  void *profiles = result->profiles;
-  DEA_TRY(ctx, make_room(ctx, &profiles, result->profile_count, &result->profile_room,
-                         sizeof *result->profiles));
-  result->profiles = profiles;
   const double *const columns[DEA_PROFILE_COLUMNS] = {
 #define PROFILE_SOURCE(member, si, display, factor, header, meaning) profile->member,
       DEA_PROFILE_LIST(PROFILE_SOURCE)
 #undef PROFILE_SOURCE
   };
-  record.columns = dea_alloc(ctx, DEA_PROFILE_COLUMNS * profile->count, sizeof(double));
-  if (record.columns == NULL) {
+  *out = (struct dea_profile_record){.voltage_V = voltage_V, .count = profile->count};
+  DEA_TRY(ctx, name_set(ctx, "model", model, out->model));
+  out->columns = dea_alloc(ctx, DEA_PROFILE_COLUMNS * profile->count, sizeof(double));
+  if (out->columns == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t c = 0; c < DEA_PROFILE_COLUMNS && profile->count > 0; c++) {
-    memcpy(record.columns + c * profile->count, columns[c], profile->count * sizeof(double));
+    memcpy(out->columns + c * profile->count, columns[c], profile->count * sizeof(double));
   }
-  result->profiles[result->profile_count++] = record;
   return DEA_OK;
+}
+
+dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, double voltage_V,
+                                  const struct dea_profile *profile)
+{
+  void *profiles = result->profiles;
+  DEA_TRY(ctx, make_room(ctx, &profiles, result->profile_count, &result->profile_room,
+                         sizeof *result->profiles));
+  result->profiles = profiles;
+  DEA_TRY(ctx,
+          copy_profile(ctx, model, voltage_V, profile, &result->profiles[result->profile_count]));
+  result->profile_count++;
+  return DEA_OK;
+}
+
+dea_status dea_result_add_variant(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, const char *study, const char *name,
+                                  struct dea_variant **out)
+{
+  *out = NULL;
+  struct dea_variant variant = {.refinement = NAN, .curve = {.complete = true}};
+  DEA_TRY(ctx, name_set(ctx, "model", model, variant.curve.model));
+  DEA_TRY(ctx, name_set(ctx, "study", study, variant.curve.kind));
+  DEA_TRY(ctx, name_set(ctx, "variant", name, variant.name));
+  struct dea_variant *variants =
+      dea_resize(ctx, result->variants, result->variant_count + 1, sizeof *variants);
+  if (variants == NULL) {
+    return DEA_E_MEMORY;
+  }
+  result->variants = variants;
+  *out = &variants[result->variant_count++];
+  **out = variant;
+  return DEA_OK;
+}
+
+dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *variant,
+                                   double voltage_V, const struct dea_profile *profile)
+{
+  struct dea_profile_record record;
+  DEA_TRY(ctx, copy_profile(ctx, variant->curve.model, voltage_V, profile, &record));
+  dea_free(ctx, variant->profile.columns);
+  variant->profile = record;
+  return DEA_OK;
+}
+
+bool dea_variant_is(const struct dea_variant *variant, const char *model, const char *study)
+{
+  return strcmp(variant->curve.model, model) == 0 && strcmp(variant->curve.kind, study) == 0;
+}
+
+size_t dea_result_models(const struct dea_result *result, const char *models[], size_t max)
+{
+  size_t count = 0, curves = result->curve_count;
+  for (size_t i = 0; i < curves + result->variant_count && count < max; i++) {
+    const char *model =
+        i < curves ? result->curves[i].model : result->variants[i - curves].curve.model;
+    bool known = false;
+    for (size_t m = 0; m < count; m++) {
+      known = known || strcmp(models[m], model) == 0;
+    }
+    if (!known) {
+      models[count++] = model;
+    }
+  }
+  return count;
 }
 
 dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,

@@ -36,6 +36,17 @@ struct dea_surface_record {
   struct dea_field_mesh *mesh; // owned
 };
 
+/* One of several computations that a study sets beside each other: on another mesh, of another
+ * design. */
+struct dea_variant {
+  char name[DEA_NAME_SIZE];   // "refinement 1.5", "eight fibres"
+  double refinement;          // of the mesh; NAN where the model has none
+  struct dea_model_size size; // zeros there
+  double wall_s;
+  struct dea_curve curve;            // its kind is the study's name
+  struct dea_profile_record profile; // at the last point; count 0: the model has none
+};
+
 struct dea_result;
 
 /* Told of a sweep as it goes, so that what is there can be kept before it ends (output/keep.h). A
@@ -73,7 +84,10 @@ struct dea_result {
   size_t profile_count, profile_room;
   struct dea_surface_record *surfaces;
   size_t surface_count, surface_room;
-  size_t surface_bytes_max;        // of one model's; may be changed before the first
+  size_t surface_bytes_max; // of one model's; may be changed before the first
+  struct dea_variant *variants;
+  size_t variant_count;
+  double convergence_tolerance;    // relative error that the study asks for; NAN: it did not run
   const struct dea_keeper *keeper; // lent, NULL for none
   struct dea_provenance provenance;
 };
@@ -92,6 +106,19 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
 dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
                                   const char *model, double voltage_V,
                                   const struct dea_profile *profile);
+/* A new variant without points, of which a NAN refinement, size and time are the caller's to set;
+ * *out lent until the next call of this function. */
+dea_status dea_result_add_variant(struct dea_context *ctx, struct dea_result *result,
+                                  const char *model, const char *study, const char *name,
+                                  struct dea_variant **out);
+/* Copies the profile in place of the one that is there. */
+dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *variant,
+                                   double voltage_V, const struct dea_profile *profile);
+/* Whether a variant is one of that model and study. */
+bool dea_variant_is(const struct dea_variant *variant, const char *model, const char *study);
+/* Models of a result in the order of their first curve or variant; names lent. Returns the number.
+ */
+size_t dea_result_models(const struct dea_result *result, const char *models[], size_t max);
 /* The curve of that model and kind, a new empty one when there is none; *out as above. */
 dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
                                 const char *model, const char *kind, struct dea_curve **out);

@@ -65,7 +65,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   size_t stops = depths + design->compute.force.preload_count;
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
-  if (type->press == NULL || stops == 0) {
+  if (type->press == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "force", &curve));
@@ -87,4 +87,14 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
-const struct dea_study dea_study_force = {.name = "force", .run = run};
+static bool asked(const struct dea_design *design)
+{
+  return design->compute.force.depth_count + design->compute.force.preload_count > 0;
+}
+
+const struct dea_study dea_study_force = {
+    .name = "force",
+    .asked = asked,
+    .needs = "compute.force.depth or compute.force.preload",
+    .run = run,
+};

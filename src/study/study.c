@@ -1,6 +1,9 @@
 #include "study/study.h"
 
+#include "base/text.h"
 #include "study/study_list.h"
+
+#include <string.h>
 
 #define STUDY_DECLARE(name) extern const struct dea_study name;
 DEA_STUDY_LIST(STUDY_DECLARE)
@@ -11,14 +14,79 @@ static const struct dea_study *const studies[] = {
     DEA_STUDY_LIST(STUDY_ROW)
 #undef STUDY_ROW
 };
+enum { STUDIES = sizeof studies / sizeof studies[0] };
 
-dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
-                         struct dea_result *result)
+const struct dea_study *const *dea_study_all(size_t *count)
+{
+  *count = STUDIES;
+  return studies;
+}
+
+static bool is_asked(const struct dea_study *study, const struct dea_design *design)
+{
+  return study->asked == NULL || study->asked(design);
+}
+
+static bool is_wanted(const struct dea_study *study, const char *const names[], size_t name_count,
+                      const struct dea_design *design)
+{
+  for (size_t i = 0; names != NULL && i < name_count; i++) {
+    if (strcmp(names[i], study->name) == 0) {
+      return true;
+    }
+  }
+  return names == NULL && is_asked(study, design);
+}
+
+static dea_status unknown_name(struct dea_context *ctx, const char *name)
+{
+  const char *known[STUDIES];
+  struct dea_text all = {.ctx = ctx};
+  for (size_t k = 0; k < STUDIES; k++) {
+    known[k] = studies[k]->name;
+    dea_text_add(&all, "%s%s", k > 0 ? ", " : "", known[k]);
+  }
+  const char *nearest = dea_nearest_name(name, known, STUDIES);
+  dea_status status =
+      nearest != NULL ? dea_fail(ctx, DEA_E_ARGUMENT,
+                                 "there is no study '%.60s'; did you mean '%s'?", name, nearest)
+                      : dea_fail(ctx, DEA_E_ARGUMENT, "there is no study '%.60s'; there are: %s",
+                                 name, dea_text_get(&all));
+  dea_text_free(&all);
+  return status;
+}
+
+dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
+                           const struct dea_design *design)
+{
+  for (size_t i = 0; names != NULL && i < name_count; i++) {
+    size_t k = 0;
+    while (k < STUDIES && strcmp(studies[k]->name, names[i]) != 0) {
+      k++;
+    }
+    if (k == STUDIES) {
+      return unknown_name(ctx, names[i]);
+    }
+    if (studies[k]->needs != NULL && !is_asked(studies[k], design)) {
+      return dea_fail(ctx, DEA_E_DESIGN, "the study '%s' needs %s in the design", names[i],
+                      studies[k]->needs);
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
+                               const char *const names[], size_t name_count,
+                               struct dea_result *result)
 {
   struct dea_model *model;
+  DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   DEA_TRY(ctx, type->create(ctx, result->device, &model));
   dea_status first = DEA_OK;
-  for (size_t i = 0; i < sizeof studies / sizeof studies[0]; i++) {
+  for (size_t i = 0; i < STUDIES; i++) {
+    if (!is_wanted(studies[i], names, name_count, result->design)) {
+      continue;
+    }
     dea_status status = studies[i]->run(ctx, type, model, result);
     first = first == DEA_OK ? status : first;
     if (status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
@@ -27,4 +95,10 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
   }
   type->destroy(ctx, model);
   return first;
+}
+
+dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
+                         struct dea_result *result)
+{
+  return dea_study_run_named(ctx, type, NULL, 0, result);
 }

@@ -8,15 +8,29 @@
 
 struct dea_study {
   const char *name;
+  /* Whether the design asks for it; NULL: every design does. */
+  bool (*asked)(const struct dea_design *design);
+  const char *needs; // keys of the design without which it cannot run; NULL: none
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
                     struct dea_model *model, struct dea_result *result);
 };
 
-/* Runs every study of the result's design with one model. Returns the first failure, after all
- * studies had their turn (an interrupt ends it at once). */
+/* Runs every study that the result's design asks for with one model. Returns the first failure,
+ * after all studies had their turn (an interrupt ends it at once). */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          struct dea_result *result);
+/* The same with the studies of these names, whether the design asks for them or not; NULL: all that
+ * it asks for. DEA_E_ARGUMENT for a name that is none, DEA_E_DESIGN for one whose keys the design
+ * lacks. */
+dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
+                               const char *const names[], size_t name_count,
+                               struct dea_result *result);
+/* Whether these names can be run for a design, as above. */
+dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
+                           const struct dea_design *design);
+/* All studies in their order; static storage. */
+const struct dea_study *const *dea_study_all(size_t *count);
 
 #endif

@@ -4,4 +4,5 @@
 #define DEA_STUDY_LIST(X)                                                                          \
   X(dea_study_path)                                                                                \
   X(dea_study_sweep)                                                                               \
-  X(dea_study_force)
+  X(dea_study_force)                                                                               \
+  X(dea_study_convergence)

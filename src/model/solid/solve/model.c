@@ -263,6 +263,13 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static void size(const struct dea_model *model, struct dea_model_size *out)
+{
+  *out = (struct dea_model_size){.elements = model->grid->element_count,
+                                 .nodes = model->grid->node_count,
+                                 .unknowns = 3 * model->grid->node_count};
+}
+
 extern const struct dea_model_type dea_solid_module;
 
 const struct dea_model_type dea_solid_module = {
@@ -276,4 +283,5 @@ const struct dea_model_type dea_solid_module = {
     .fields = fields,
     .save = save,
     .load = load,
+    .size = size,
 };

@@ -1,0 +1,63 @@
+#include "study/variant.h"
+
+#include <time.h>
+
+static double now_s(void)
+{
+  struct timespec now;
+  return timespec_get(&now, TIME_UTC) == TIME_UTC ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec
+                                                  : 0;
+}
+
+static dea_status take_points(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_variant_run *run,
+                              struct dea_curve *curve)
+{
+  for (size_t i = 0; i < run->voltage_count; i++) {
+    struct dea_load_point point;
+    if (dea_interrupted(ctx)) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
+                      1e-3 * run->voltages_V[i], curve->count);
+    }
+    DEA_TRY(ctx, type->solve(ctx, model, run->voltages_V[i], &point));
+    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+  }
+  return DEA_OK;
+}
+
+/* All of one model. After a failure there are points, but no profile: the model may be anywhere. */
+static dea_status use_model(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_variant_run *run,
+                            struct dea_variant *variant)
+{
+  struct dea_profile profile;
+  if (type->size != NULL) {
+    type->size(model, &variant->size);
+    variant->refinement = run->device->solid_refinement;
+  }
+  DEA_TRY(ctx, take_points(ctx, type, model, run, &variant->curve));
+  if (type->profile != NULL && variant->curve.count > 0) {
+    DEA_TRY(ctx, type->profile(ctx, model, &profile));
+    DEA_TRY(ctx, dea_variant_set_profile(ctx, variant,
+                                         variant->curve.points[variant->curve.count - 1].voltage_V,
+                                         &profile));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type *type,
+                           const struct dea_variant_run *run, struct dea_result *result)
+{
+  struct dea_variant *variant;
+  struct dea_model *model;
+  double start_s = now_s();
+  DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, run->study, run->name, &variant));
+  dea_status status = type->create(ctx, run->device, &model);
+  if (status == DEA_OK) {
+    status = use_model(ctx, type, model, run, variant);
+    type->destroy(ctx, model);
+  }
+  variant->wall_s = now_s() - start_s;
+  DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, status));
+  return DEA_OK;
+}

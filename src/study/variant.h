@@ -1,0 +1,21 @@
+/* One of several computations that a study sets beside each other. */
+#ifndef DEA_STUDY_VARIANT_H
+#define DEA_STUDY_VARIANT_H
+
+#include "result/result.h"
+
+/* Which computation: of a device, through voltages in their order. */
+struct dea_variant_run {
+  const char *study, *name;
+  const struct dea_device *device;
+  const double *voltages_V; // [voltage_count]
+  size_t voltage_count;
+};
+
+/* Makes a model of the device, takes it through the voltages and adds what it has as a variant of
+ * the result, with size, time and the profile at the last point. A failure ends the variant's
+ * curve, which then says why, and is returned; the variant is there all the same. */
+dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type *type,
+                           const struct dea_variant_run *run, struct dea_result *result);
+
+#endif
