@@ -57,8 +57,10 @@ static void test_check_lists_values_and_what_follows(void **state)
 {
   (void)state;
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --set film.thickness=200um"), 0);
-  assert_contains(command_out, "film.thickness                  200um                     --set");
-  assert_contains(command_out, "electrodes.thickness            0 um                      default");
+  assert_contains(command_out,
+                  "film.thickness                     200um                     --set");
+  assert_contains(command_out,
+                  "electrodes.thickness               0 um                      default");
   assert_contains(command_out, "fibre length                      11.25 mm");
   assert_contains(command_out, "film thickness (stretched)        88.8889 um");
 }
