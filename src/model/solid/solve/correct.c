@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ITERATIONS_MAX = 15 };
+enum { ITERATIONS_MAX = 15, FAR = 4 };
 
 static const double residual_small = 1e-9; // of the sum of element forces
 static const double step_small = 1e-10;    // of the solid's length
@@ -108,9 +108,9 @@ static dea_status bordered(struct dea_context *ctx, struct dea_solid_trace *t, d
   return DEA_OK;
 }
 
-/* One iteration. *size: largest displacement of it. */
-static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, double *residual,
-                          double *theta, double *size)
+/* One iteration. stresses: whether the next one predicts them. *size: largest displacement. */
+static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, bool stresses,
+                          double *residual, double *theta, double *size)
 {
   struct dea_solid *s = t->s;
   double dtau = 0;
@@ -121,7 +121,7 @@ static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, do
   *theta = dea_solid_theta_max(s);
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered(ctx, t, &dtau));
-  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, true, true));
+  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, stresses, true));
   *size = 0;
   for (size_t i = 0; i < s->dofs; i++) {
     s->u[i] += s->step[i];
@@ -136,7 +136,7 @@ dea_status dea_trace_correct(struct dea_context *ctx, struct dea_solid_trace *t,
   struct dea_solid *s = t->s;
   double residual = 0, theta = 0, size = 0;
   for (*iterations = 1; *iterations <= ITERATIONS_MAX; ++*iterations) {
-    DEA_TRY(ctx, iterate(ctx, t, &residual, &theta, &size));
+    DEA_TRY(ctx, iterate(ctx, t, *iterations < FAR, &residual, &theta, &size));
     bool there = *iterations > 1 && theta < DEA_SOLID_THETA_SMALL &&
                  (residual < residual_small || size < step_small * s->length_m);
     if (there && dea_solid_update_loads(s) <= 1) {

@@ -4,10 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS_MAX = 12, SIZES_MAX = 6 };
+enum { ROUNDS_MAX = 20, ASIDE_MAX = 4, SIZES_MAX = 6 };
 
-static const double close_enough = 1e-5; // of the way between the two points
-static const double flat_enough = 1e-8;  // of what is 0 at the critical point, over what it was
+static const double limit_near = 1e-6, bifurcation_near = 1e-4; // of the way between two points
+static const double flat_enough = 1e-8; // of what is 0 at the critical point, over what it was
+static const double aside = 0.03;       // of the bracket, at first
 
 /* Between two places: where, what is to be 0 there, and the direction from one to the other. */
 struct bracket {
@@ -58,16 +59,34 @@ static dea_status go(struct dea_context *ctx, struct dea_solid_trace *t, const s
   return DEA_OK;
 }
 
+/* The same beside the share where there is none at it: where a mode other than the path's loses its
+ * stiffness K is singular on the plane too, and what rounding leaves along the mode grows. */
+static dea_status go_near(struct dea_context *ctx, struct dea_solid_trace *t,
+                          const struct bracket *b, double *share)
+{
+  dea_status status = go(ctx, t, b, *share);
+  bool first_half = *share - b->at[0] < b->at[1] - *share;
+  double by = (first_half ? aside : -aside) * (b->at[1] - b->at[0]), from = *share;
+  for (int i = 0; i < ASIDE_MAX && (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN);
+       i++, by *= 2) {
+    dea_context_clear(ctx);
+    *share = from + by;
+    status = go(ctx, t, b, *share);
+  }
+  return status;
+}
+
 /* Regula falsi, with the older end's value halved while it stays (Illinois). */
 static dea_status close_in(struct dea_context *ctx, struct dea_solid_trace *t, struct bracket *b)
 {
   double first = fmax(fabs(b->value[0]), fabs(b->value[1])), value, before = -1;
+  double enough = t->event == DEA_TRACE_LIMIT ? limit_near : bifurcation_near;
   int stays = -1;
   for (int i = 0; i < ROUNDS_MAX; i++) {
     double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
-    DEA_TRY(ctx, go(ctx, t, b, share));
+    DEA_TRY(ctx, go_near(ctx, t, b, &share));
     DEA_TRY(ctx, measure(ctx, t, b, &value));
-    if (fabs(share - before) < close_enough || fabs(value) < flat_enough * first) {
+    if (fabs(share - before) < enough || fabs(value) < flat_enough * first) {
       return DEA_OK;
     }
     before = share;
