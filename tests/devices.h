@@ -46,4 +46,16 @@ static inline struct dea_device test_disc(struct dea_material film, double pre_s
   return d;
 }
 
+/* The paper's actuator as built with so many fibres, for model 3d. */
+static inline struct dea_device test_star(int fibres)
+{
+  struct dea_device d = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, fibres);
+  d.fibre.young_modulus_Pa = 2950e6;
+  d.fibre.poisson_ratio = 0.38;
+  d.fibre_width_m = d.fibre_tip_width_m = 2e-3;
+  d.fibre_thickness_m = 100e-6;
+  d.solid_refinement = 1;
+  return d;
+}
+
 #endif

@@ -4,13 +4,16 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stdbool.h>
 
-enum { NODES_MAX = 20000, QUAD9 = 10, HEX27 = 12, GROUPS_MAX = 16 };
+enum { NODES_MAX = 20000, LINE3 = 8, QUAD9 = 10, HEX27 = 12, GROUPS_MAX = 16 };
 
 static double X[NODES_MAX][3];
 static char names[GROUPS_MAX][40];
 static double volume[GROUPS_MAX]; // of corner boxes: chords instead of arcs
 static size_t counts[GROUPS_MAX];
+static size_t lines;            // of three nodes
+static double area[GROUPS_MAX]; // of quadrilaterals whose z is 0, by their corners
 
 /* Corners at the ends of the edges, in the order of Gmsh's documentation: their middles are the
  * nodes 8 to 19 of a hexahedron, and 4 to 7 of a quadrilateral. */
@@ -72,6 +75,23 @@ static void check_hexahedron(const int *nodes, int group)
   }
 }
 
+/* Corners around, seen from above; the middle node between them. */
+static void check_quadrilateral(const int *nodes, int group)
+{
+  static const int all[4] = {0, 1, 2, 3};
+  double twice = 0;
+  bool flat = true;
+  for (int k = 0; k < 4; k++) {
+    const double *from = X[nodes[k]], *to = X[nodes[(k + 1) % 4]];
+    check_middle(nodes, 4 + k, quad_edge[k], 2);
+    twice += from[0] * to[1] - from[1] * to[0];
+    flat = flat && from[2] == 0;
+  }
+  check_middle(nodes, 8, all, 4);
+  assert_true(!flat || twice > 0);
+  area[group] += flat ? 0.5 * twice : 0;
+}
+
 static void read_file(const char *name)
 {
   char path[600], line[1024];
@@ -82,6 +102,8 @@ static void read_file(const char *name)
   assert_non_null(file);
   memset(counts, 0, sizeof counts);
   memset(volume, 0, sizeof volume);
+  memset(area, 0, sizeof area);
+  lines = 0;
   assert_int_equal(fscanf(file, "$MeshFormat 2.2 0 8 $EndMeshFormat $PhysicalNames %zu", &count),
                    1);
   for (size_t i = 0; i < count; i++) {
@@ -99,16 +121,20 @@ static void read_file(const char *name)
   for (size_t i = 1; i <= count; i++) {
     int nodes[27];
     assert_int_equal(fscanf(file, "%zu %d %d %d %*d", &number, &type, &tags, &group), 4);
-    assert_true(number == i && tags == 2 && (type == HEX27 || type == QUAD9));
-    for (int n = 0; n < (type == HEX27 ? 27 : 9); n++) {
+    assert_true(number == i && tags == 2 && (type == HEX27 || type == QUAD9 || type == LINE3));
+    for (int n = 0; n < (type == HEX27 ? 27 : type == QUAD9 ? 9 : 3); n++) {
       assert_int_equal(fscanf(file, "%d", &nodes[n]), 1);
     }
     counts[group]++;
     if (type == HEX27) {
       check_hexahedron(nodes, group);
     }
-    for (int k = 0; k < 4 && type == QUAD9; k++) {
-      check_middle(nodes, 4 + k, quad_edge[k], 2);
+    if (type == QUAD9) {
+      check_quadrilateral(nodes, group);
+    }
+    if (type == LINE3) {
+      check_middle(nodes, 2, quad_edge[0], 2);
+      lines++;
     }
   }
   assert_int_equal(fscanf(file, " $EndElements%n", &used), 0);
@@ -151,6 +177,33 @@ static void test_file(void **state)
   json_decref(root);
 }
 
+/* A membrane is made of quadrilaterals, and its rims of lines. */
+static void test_file_of_a_membrane(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("mesh @/examples/frdea-4.yaml -o flat.msh --json "
+                  "--set compute.solid.film=membrane --set compute.solid.refinement=2"),
+      0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  size_t elements = (size_t)json_integer_value(json_object_get(root, "elements"));
+  size_t flat = (size_t)json_integer_value(json_object_get(root, "flat_elements"));
+  read_file("flat.msh");
+  const double pi = acos(-1), a = 3.75e-3, b = 15e-3, h = 100e-6 / 2.25;
+  int film = group_of("film"), active = group_of("film_active");
+  int bond = group_of("bond"), fibre = group_of("fibre");
+  assert_int_equal(counts[film] + counts[active], flat);
+  assert_int_equal(counts[bond] + counts[fibre], elements - flat);
+  assert_int_equal(counts[bond], counts[fibre]);
+  assert_close(area[active], pi / 8 * a * a, 0.01, 0);
+  assert_close(area[film], pi / 8 * (b * b - a * a), 0.01, 0);
+  assert_close(volume[bond], 1e-3 * (b - a) * 0.5 * h, 0.01, 0);
+  assert_close(volume[fibre], 1e-3 * (b - a) * 100e-6, 0.01, 0);
+  assert_true(lines > 10);
+  assert_true(counts[group_of("frame")] > 4 && counts[group_of("mirror_first")] > 10);
+  json_decref(root);
+}
+
 static void test_summary(void **state)
 {
   (void)state;
@@ -177,6 +230,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_file),
+      cmocka_unit_test(test_file_of_a_membrane),
       cmocka_unit_test(test_summary),
       cmocka_unit_test(test_what_goes_wrong),
   };

@@ -1,6 +1,7 @@
 /* Meshes of actuators: no folded element, no hanging node, exact areas, the right nodes held. */
 #include "failing_allocator.h"
 #include "model/solid/cuts.h"
+#include "model/solid/membrane.h"
 #include "model/solid/plate.h"
 #include "testing.h"
 
@@ -75,7 +76,7 @@ static void check_conforming(const struct dea_plate *p, const struct dea_grid *g
       int *corner = faces[count++].corner;
       for (int i = 0; i < 2; i++) {
         corner[i] = nodes[sides[k][i]];
-        corner[2 + i] = nodes[18 + sides[k][i]];
+        corner[2 + i] = nodes[(grid->flat[e] ? 0 : 18) + sides[k][i]];
       }
       sort4(corner);
     }
@@ -106,20 +107,27 @@ static void check_conforming(const struct dea_plate *p, const struct dea_grid *g
 /* ---- areas ---- */
 
 static struct dea_hex_shape shape;
+static struct dea_flat_shape flat;
 static struct dea_element_result result;
 
-/* Volume of the elements of a sheet whose region has all the bits. */
+/* Volume of the elements of a sheet whose region has all the bits; flat ones are as thick as the
+ * film. */
 static double volume(const struct dea_grid *grid, int sheet, int bits)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
+  static const double mu[DEA_LAW_PARAM_MAX] = {1e5};
   const struct dea_layer hard = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  const struct dea_layer film = {
+      .law = dea_law_find("neo-hookean"), .param = mu, .pre_stretch = {1, 1, 1}, .thickness_m = h};
   double X[DEA_HEX_DOFS_MAX], sum = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < shape.nodes; n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, shape.nodes); n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
              3 * sizeof(double));
     }
-    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
+    assert_int_equal(grid->flat[e]
+                         ? dea_membrane_evaluate(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
+                         : dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
                      DEA_OK);
     sum += grid->sheet[e] == sheet && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
   }
@@ -138,6 +146,7 @@ static void check_areas(const struct dea_plate *p, const struct dea_grid *grid, 
 {
   double beta = dea_plate_angle(p), whole = 0.5 * beta * h;
   assert_int_equal(dea_hex_shape_create(p->order, p->order_z, &shape), DEA_OK);
+  assert_int_equal(dea_flat_shape_create(p->order, &flat), DEA_OK);
   assert_close(volume(grid, DEA_PLATE_FILM, 0), whole * b * b, tolerance, 0);
   assert_close(volume(grid, DEA_PLATE_FILM, DEA_PLATE_ELECTRODE), whole * a * a, tolerance, 0);
   if (p->fibres > 0) {
@@ -254,7 +263,8 @@ static void heights(const struct dea_grid *grid, int sheet, int bits, double *lo
   *low = INFINITY;
   *high = -INFINITY;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < 27 && grid->sheet[e] == sheet && grid->region[e] == bits; n++) {
+    int nodes = grid->sheet[e] == sheet && grid->region[e] == bits ? 27 : 0;
+    for (int n = 0; n < (nodes > 0 ? dea_grid_nodes_of(grid, e, nodes) : 0); n++) {
       double z = grid->X[3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n] + 2];
       *low = fmin(*low, z);
       *high = fmax(*high, z);
@@ -288,6 +298,57 @@ static void test_what_fibres_lie_on(void **state)
     heights(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE, &low, &high);
     assert_close(low, below + 50e-6, 0, 1e-12);
     assert_close(high, below + 150e-6, 0, 1e-12);
+    dea_grid_destroy(ctx, grid);
+  }
+}
+
+/* Each bond has a film element as its lower face: the same nodes in the same order. */
+static void check_bonds(const struct dea_grid *grid)
+{
+  size_t bonds = 0, joined = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    bool bond = grid->sheet[e] == DEA_PLATE_BOND;
+    bonds += bond;
+    for (size_t f = 0; f < grid->element_count && bond; f++) {
+      joined += grid->sheet[f] == DEA_PLATE_FILM &&
+                memcmp(grid->nodes + e * DEA_HEX_NODES_MAX, grid->nodes + f * DEA_HEX_NODES_MAX,
+                       9 * sizeof(int)) == 0;
+    }
+  }
+  assert_true(bonds > 0 && joined == bonds);
+}
+
+/* The film and both electrodes are surfaces at z = 0; the rest is where a solid film has it. */
+static void test_membranes(void **state)
+{
+  (void)state;
+  for (int bits = 0; bits < 8; bits++) {
+    bool on = bits & 1;
+    double t = bits & 2 ? 5e-6 : 0, glue = bits & 4 ? 50e-6 : 0, low, high;
+    struct dea_plate p = plate(bits & 4 ? 3 : 4, on ? 1e-3 : -0.5e-3, 2e-3);
+    struct dea_grid *grid;
+    p.membrane = true;
+    p.electrode_thickness = t;
+    p.glue_thickness = glue;
+    check(&p, 1e-4);
+    assert_int_equal(dea_plate_create(ctx, &p, &grid), DEA_OK);
+    check_bonds(grid);
+    double electrode = 0.5 * dea_plate_angle(&p) * a * a * h, below = 0.5 * h + (on ? t : 0);
+    assert_close(volume(grid, DEA_PLATE_BOTTOM, 0), t > 0 ? electrode : 0, 1e-4, 0);
+    heights(grid, DEA_PLATE_FILM, 0, &low, &high);
+    assert_true(low == 0 && high == 0);
+    heights(grid, DEA_PLATE_BOND, DEA_PLATE_FIBRE, &low, &high);
+    assert_close(low, 0, 0, 0);
+    assert_close(high, 0.5 * h, 0, 1e-12);
+    heights(grid, DEA_PLATE_BOND, 0, &low, &high);
+    assert_true(low > high);
+    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE, &low, &high);
+    assert_true(low > high);
+    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE | DEA_PLATE_FIBRE, &low, &high);
+    assert_true(on && t > 0 ? fabs(high - low - t) < 1e-12 : low > high);
+    heights(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE, &low, &high);
+    assert_close(low, below + glue, 0, 1e-12);
+    assert_close(high, below + glue + 100e-6, 0, 1e-12);
     dea_grid_destroy(ctx, grid);
   }
 }
@@ -359,6 +420,7 @@ int main(void)
       cmocka_unit_test(test_whole_discs),
       cmocka_unit_test(test_all_that_a_design_can_ask_for),
       cmocka_unit_test(test_what_fibres_lie_on),
+      cmocka_unit_test(test_membranes),
       cmocka_unit_test(test_plates_that_cannot_be),
       cmocka_unit_test(test_each_allocation),
   };

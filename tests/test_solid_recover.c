@@ -301,6 +301,27 @@ static void check_turned(enum kind kind, int order, int order_z, size_t film_ele
   strip_destroy(s);
 }
 
+/* The elastic energy is that of the stretches, whatever the permittivity does. */
+static void test_flat_energy_with_electrostriction(void **state)
+{
+  (void)state;
+  const double a = 1.1, b = 0.95, F[9] = {a, 0, 0, 0, b, 0, 0, 0, 1};
+  struct strip *s = strip_create(FLAT, 2, 1, 1);
+  struct dea_field_mesh *mesh;
+  s->layers[0].permittivity_slope_F_per_m = -0.28 * DEA_EPSILON_0 * l_pre;
+  apply(s, 3e3);
+  deform(s, F);
+  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
+  const double *energy = values(mesh, "energy_J_per_m3"), *sheet = values(mesh, "sheet");
+  struct corner at = {.mesh = mesh};
+  while (next_corner(&at)) {
+    assert_true(sheet[at.cell] == 1 ||
+                fabs(energy[at.point] / flat_film(a, b, 0).energy - 1) < 1e-9);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+  strip_destroy(s);
+}
+
 static void test_turned_film(void **state)
 {
   (void)state;
@@ -398,6 +419,7 @@ static void test_each_allocation(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_flat_energy_with_electrostriction),
       cmocka_unit_test(test_turned_film),
       cmocka_unit_test(test_bending),
       cmocka_unit_test(test_parts_do_not_share_points),

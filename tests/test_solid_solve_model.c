@@ -11,22 +11,11 @@
 extern const struct dea_model_type dea_solid_module;
 static const struct dea_model_type *const solid = &dea_solid_module;
 
-static struct dea_device plain(void)
+static struct dea_device plain(enum dea_solid_film film)
 {
   struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
   device.solid_refinement = 1;
-  return device;
-}
-
-/* Fibres of the paper's actuator. */
-static struct dea_device star(int fibres)
-{
-  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, fibres);
-  device.fibre.young_modulus_Pa = 2950e6;
-  device.fibre.poisson_ratio = 0.38;
-  device.fibre_width_m = device.fibre_tip_width_m = 2e-3;
-  device.fibre_thickness_m = 100e-6;
-  device.solid_refinement = 1;
+  device.solid_film = film;
   return device;
 }
 
@@ -46,28 +35,41 @@ static struct dea_load_point solve(const struct dea_model_type *type,
 
 /* ---- against the exact disc ---- */
 
-/* The strain of the electrode, which the disc's thickness and the mesh change by half a per cent;
+/* The strain of the electrode, which a solid's thickness and the mesh change by half a per cent;
  * what is tested changes it by much more. */
 static void check_exact(const struct dea_device *device, double least_change)
 {
-  struct dea_device usual = plain();
+  double tolerance = device->solid_film == DEA_FILM_MEMBRANE ? 2e-4 : 6e-3;
+  struct dea_device usual = plain(device->solid_film);
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
   double was = solve(exact, &usual, 3e3).electrode_stretch - 1;
   struct dea_load_point wanted = solve(exact, device, 3e3), point = solve(solid, device, 3e3);
   assert_true(fabs((wanted.electrode_stretch - 1) / was - 1) > least_change);
-  assert_close(point.electrode_stretch - 1, wanted.electrode_stretch - 1, 6e-3, 0);
-  assert_close(point.capacitance_F, wanted.capacitance_F, 2e-3, 0);
-  assert_close(point.energy_J, wanted.energy_J, 6e-3, 0);
+  assert_close(point.electrode_stretch - 1, wanted.electrode_stretch - 1, tolerance, 0);
+  assert_close(point.capacitance_F, wanted.capacitance_F, 0.3 * tolerance, 0);
+  assert_close(point.energy_J, wanted.energy_J, tolerance, 0);
 }
 
 static void test_permittivity_that_depends_on_stretch(void **state)
 {
   (void)state;
-  struct dea_device device = plain();
-  device.film.permittivity.slope = -0.6;
-  check_exact(&device, 0.1);
-  device.film.permittivity.slope = 1;
-  check_exact(&device, 0.1);
+  for (enum dea_solid_film film = DEA_FILM_SOLID; film <= DEA_FILM_MEMBRANE; film++) {
+    struct dea_device device = plain(film);
+    device.film.permittivity.slope = -0.6;
+    check_exact(&device, 0.1);
+    device.film.permittivity.slope = 1;
+    check_exact(&device, 0.1);
+  }
+}
+
+/* On a membrane as the exact disc has them. */
+static void test_electrodes_of_a_membrane(void **state)
+{
+  (void)state;
+  struct dea_device device = plain(DEA_FILM_MEMBRANE);
+  device.electrode = test_material("neo-hookean", 400e3, 0, 0);
+  device.electrode_thickness_m = 5e-6;
+  check_exact(&device, 0.5);
 }
 
 /* Electrodes pull the disc together at rest (the film takes their force over within a thickness of
@@ -79,7 +81,7 @@ static void test_electrode_layers(void **state)
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
   double difference[2];
   for (int i = 0; i < 2; i++) {
-    struct dea_device device = plain();
+    struct dea_device device = plain(DEA_FILM_SOLID);
     double H0 = i == 0 ? 100e-6 : 50e-6, V = 30e6 * H0;
     device.film_thickness_unstretched_m = H0;
     device.film_thickness_m = H0 / 2.25;
@@ -108,11 +110,13 @@ static double exact_at(const struct dea_profile *profile, const double *column, 
   return column[i - 1] + share * (column[i] - column[i - 1]);
 }
 
-static void test_profile(void **state)
+/* tolerance: of the stretches; the values of a node are those of its elements, which near the edge
+ * are not what is there. */
+static void check_profile(enum dea_solid_film film, double refinement, double tolerance)
 {
-  (void)state;
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
-  struct dea_device device = plain();
+  struct dea_device device = plain(film);
+  device.solid_refinement = refinement;
   struct dea_model *model, *reference;
   struct dea_load_point point;
   struct dea_profile wanted, profile;
@@ -136,19 +140,26 @@ static void test_profile(void **state)
     }
     assert_close(profile.z_m[i], 0, 0, 1e-9);
     if (fabs(r / device.electrode_radius_m - 1) > 0.15) {
-      assert_close(profile.displacement_m[i], exact_at(&wanted, wanted.displacement_m, r), 0.01,
-                   2e-6);
-      assert_close(profile.stretch_r[i], exact_at(&wanted, wanted.stretch_r, r), 0.006, 0);
-      assert_close(profile.stretch_t[i], exact_at(&wanted, wanted.stretch_t, r), 0.006, 0);
+      assert_close(profile.displacement_m[i], exact_at(&wanted, wanted.displacement_m, r),
+                   2 * tolerance, 2e-6);
+      assert_close(profile.stretch_r[i], exact_at(&wanted, wanted.stretch_r, r), tolerance, 0);
+      assert_close(profile.stretch_t[i], exact_at(&wanted, wanted.stretch_t, r), tolerance, 0);
       assert_close(profile.tension_r_N_per_m[i], exact_at(&wanted, wanted.tension_r_N_per_m, r),
-                   0.02, 0);
+                   3 * tolerance, 0);
       assert_close(profile.tension_t_N_per_m[i], exact_at(&wanted, wanted.tension_t_N_per_m, r),
-                   0.02, 0);
+                   3 * tolerance, 0);
     }
   }
   assert_int_equal(jumps, 2);
   solid->destroy(ctx, model);
   exact->destroy(ctx, reference);
+}
+
+static void test_profile(void **state)
+{
+  (void)state;
+  check_profile(DEA_FILM_SOLID, 1, 6e-3);
+  check_profile(DEA_FILM_MEMBRANE, 2, 1e-3);
 }
 
 /* ---- against itself ---- */
@@ -157,27 +168,37 @@ static void test_profile(void **state)
 static void test_capacitance_of_the_whole(void **state)
 {
   (void)state;
-  struct dea_device device = plain();
   double h = 100e-6 / 2.25, exact = 2.8 * DEA_EPSILON_0 * acos(-1) * 3.75e-3 * 3.75e-3 / h;
-  assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
-  device.solid_domain = DEA_DOMAIN_DISC;
-  assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
+  for (enum dea_solid_film film = DEA_FILM_SOLID; film <= DEA_FILM_MEMBRANE; film++) {
+    struct dea_device device = plain(film);
+    assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
+    device.solid_domain = DEA_DOMAIN_DISC;
+    assert_close(solve(solid, &device, 0).capacitance_F, exact, 1e-4, 0);
+  }
 }
 
 /* The charge is minus the derivative of the energy by the voltage. */
+static void check_charge(enum dea_solid_film film, double voltage_V)
+{
+  struct dea_device device = test_star(4);
+  struct dea_model *model;
+  struct dea_load_point at, up;
+  device.solid_film = film;
+  device.film.permittivity.slope = -0.28;
+  assert_int_equal(solid->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(solid->solve(ctx, model, voltage_V, &at), DEA_OK);
+  assert_int_equal(solid->solve(ctx, model, 1.001 * voltage_V, &up), DEA_OK);
+  double charge = 0.5 * (at.capacitance_F + 1.001 * up.capacitance_F) * voltage_V;
+  assert_close(-(up.energy_J - at.energy_J) / (0.001 * voltage_V), charge, 1e-5, 0);
+  solid->destroy(ctx, model);
+}
+
 static void test_charge(void **state)
 {
   (void)state;
-  struct dea_device device = star(4);
-  struct dea_model *model;
-  struct dea_load_point at, up;
-  device.film.permittivity.slope = -0.28;
-  assert_int_equal(solid->create(ctx, &device, &model), DEA_OK);
-  assert_int_equal(solid->solve(ctx, model, 2e3, &at), DEA_OK);
-  assert_int_equal(solid->solve(ctx, model, 2.02e3, &up), DEA_OK);
-  double charge = 0.5 * (at.capacitance_F * 2e3 + up.capacitance_F * 2.02e3);
-  assert_close(-(up.energy_J - at.energy_J) / 20, charge, 1e-5, 0);
-  solid->destroy(ctx, model);
+  check_charge(DEA_FILM_SOLID, 2e3);
+  check_charge(DEA_FILM_MEMBRANE, 2e3);
+  check_charge(DEA_FILM_MEMBRANE, 7.5e3); // wrinkled
 }
 
 /* ---- fibres ---- */
@@ -189,7 +210,7 @@ static void test_number_of_fibres(void **state)
   static const int fibres[] = {1, 3, 6};
   double before = 1e3;
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
-    struct dea_device device = star(fibres[i]);
+    struct dea_device device = test_star(fibres[i]);
     struct dea_load_point point = solve(solid, &device, 2e3);
     assert_true(point.electrode_edge_u_m < before && point.electrode_edge_u_m > 1e-5);
     assert_true(point.fibre_tip_z_m < -0.3e-6);
@@ -204,7 +225,7 @@ static void test_number_of_fibres(void **state)
 static void test_kinds_of_fibres(void **state)
 {
   (void)state;
-  struct dea_device device = star(4);
+  struct dea_device device = test_star(4);
   struct dea_load_point usual = solve(solid, &device, 2e3);
   double edge = usual.electrode_edge_u_m;
 
@@ -214,15 +235,15 @@ static void test_kinds_of_fibres(void **state)
   device.electrode_thickness_m = 5e-6;
   assert_true(solve(solid, &device, 2e3).electrode_edge_u_m < 0.85 * edge);
 
-  device = star(4);
+  device = test_star(4);
   device.fibre_tip_radius_m += 0.75e-3;
   assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
 
-  device = star(4);
+  device = test_star(4);
   device.fibre_tip_width_m = 0.5e-3;
   assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
 
-  device = star(4);
+  device = test_star(4);
   device.outer_end = DEA_END_HINGED;
   struct dea_load_point hinged = solve(solid, &device, 2e3);
   assert_true(hinged.fibre_tip_z_m > 0.9 * usual.fibre_tip_z_m && hinged.fibre_tip_z_m < 0);
@@ -232,7 +253,7 @@ static void test_kinds_of_fibres(void **state)
   device.fibre_outer_gap_m = 1e-3;
   assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.05 * edge);
 
-  device = star(4);
+  device = test_star(4);
   device.bond_thickness_m = 50e-6;
   device.bond_modulus_Pa = 1e6;
   assert_true(solve(solid, &device, 2e3).electrode_edge_u_m > 1.005 * edge);
@@ -241,9 +262,10 @@ static void test_kinds_of_fibres(void **state)
 static void test_what_it_refuses(void **state)
 {
   (void)state;
-  struct dea_device device = plain();
+  struct dea_device device = plain(DEA_FILM_MEMBRANE);
   struct dea_model *model;
-  device.solid_film = DEA_FILM_MEMBRANE;
+  device.electrode = test_material("holzapfel-gasser-ogden", 100e3, 400e3, 0.8);
+  device.electrode_thickness_m = 5e-6;
   assert_int_equal(solid->create(ctx, &device, &model), DEA_E_UNSUPPORTED);
   assert_null(model);
 }
@@ -258,6 +280,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_permittivity_that_depends_on_stretch),
+      cmocka_unit_test(test_electrodes_of_a_membrane),
       cmocka_unit_test(test_electrode_layers),
       cmocka_unit_test(test_profile),
       cmocka_unit_test(test_capacitance_of_the_whole),

@@ -18,24 +18,39 @@ static size_t count_unknowns(const struct dea_plate *plate, const struct dea_gri
   return count;
 }
 
+/* Elements of a membrane. */
+static size_t count_flat(const struct dea_grid *grid)
+{
+  size_t count = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    count += grid->flat[e];
+  }
+  return count;
+}
+
 static void print_summary(const struct cli_design_arguments *arguments,
                           const struct dea_plate *plate, const struct dea_grid *grid)
 {
   double degrees = dea_plate_angle(plate) * 180 / acos(-1);
   double jacobian = dea_grid_smallest_jacobian(grid);
-  size_t unknowns = count_unknowns(plate, grid);
+  size_t unknowns = count_unknowns(plate, grid), flat = count_flat(grid);
   if (arguments->json) {
-    json_t *json = json_pack(
-        "{s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements", (json_int_t)grid->element_count, "nodes",
-        (json_int_t)grid->node_count, "unknowns", (json_int_t)unknowns, "smallest_jacobian",
-        jacobian, "angle_deg", degrees, "size_m", plate->size, "edge_size_m", plate->edge);
+    json_t *json = json_pack("{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements",
+                             (json_int_t)grid->element_count, "flat_elements", (json_int_t)flat,
+                             "nodes", (json_int_t)grid->node_count, "unknowns",
+                             (json_int_t)unknowns, "smallest_jacobian", jacobian, "angle_deg",
+                             degrees, "size_m", plate->size, "edge_size_m", plate->edge);
     json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
     putchar('\n');
     json_decref(json);
     return;
   }
   printf("%-20s %g degrees\n", "domain", degrees);
-  printf("%-20s %zu, of 27 nodes\n", "elements", grid->element_count);
+  printf("%-20s %zu, ", "elements", grid->element_count);
+  if (flat > 0) {
+    printf("%zu of them flat, of 9 nodes, the others ", flat);
+  }
+  printf("of 27 nodes\n");
   printf("%-20s %zu\n", "nodes", grid->node_count);
   printf("%-20s %zu\n", "unknowns", unknowns);
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",

@@ -15,7 +15,9 @@ static const struct dea_field fields[] = {
      .offset = AT(film),
      .choices = films,
      .default_text = "solid",
-     .doc = "elements of the film: solid ones, or a membrane for a faster preview",
+     .doc = "elements of the film: solid ones, or a membrane, a faster preview within 10 to 20 % "
+            "at the "
+            "fibre tip",
      .example = "solid"},
     {.key = "domain",
      .kind = DEA_FIELD_CHOICE,

@@ -4,9 +4,10 @@
 
 #include <string.h>
 
-enum { HEX27 = 12, QUAD9 = 10, NODES = 27, FACE_NODES = 9, FACES = 6 }; // Gmsh's types
+enum { LINE3 = 8, QUAD9 = 10, HEX27 = 12 }; // Gmsh's types
+enum { NODES = 27, FACE_NODES = 9, EDGE_NODES = 3, FACES = 6, EDGES = 4, DIMENSIONS = 4 };
 
-/* Physical groups, counted from 1 in the file. */
+/* Physical groups, counted from 1 in the file. What is flat, a membrane, has one dimension less. */
 enum group {
   FILM,
   FILM_ACTIVE,
@@ -20,24 +21,25 @@ enum group {
   MIDDLE_PLANE,
   FACE_BELOW,
   FACE_ABOVE,
+  ELECTRODES, // of a membrane, both
+  BOND,
   GROUPS
 };
-static const struct {
-  const char *name;
-  int dimension;
-} groups[GROUPS] = {
-    [FILM] = {"film", 3},
-    [FILM_ACTIVE] = {"film_active", 3}, // between the electrodes
-    [ELECTRODE_BELOW] = {"electrode_below", 3},
-    [ELECTRODE_ABOVE] = {"electrode_above", 3},
-    [FILLER] = {"filler", 3},
-    [GLUE] = {"glue", 3},
-    [FIBRE] = {"fibre", 3},
-    [FRAME] = {"frame", 2},
-    [AXIS_PLANE] = {"mirror_first", 2},
-    [MIDDLE_PLANE] = {"mirror_last", 2},
-    [FACE_BELOW] = {"face_below", 2}, // of the film, under an electrode
-    [FACE_ABOVE] = {"face_above", 2},
+static const char *const group_names[GROUPS] = {
+    [FILM] = "film",
+    [FILM_ACTIVE] = "film_active", // between the electrodes
+    [ELECTRODE_BELOW] = "electrode_below",
+    [ELECTRODE_ABOVE] = "electrode_above",
+    [FILLER] = "filler",
+    [GLUE] = "glue",
+    [FIBRE] = "fibre",
+    [FRAME] = "frame",
+    [AXIS_PLANE] = "mirror_first",
+    [MIDDLE_PLANE] = "mirror_last",
+    [FACE_BELOW] = "face_below", // of the film, under an electrode
+    [FACE_ABOVE] = "face_above",
+    [ELECTRODES] = "electrodes",
+    [BOND] = "bond",
 };
 
 /* Place in our element, first axis fastest, of each node of Gmsh's: corners, edges, faces, middle.
@@ -50,14 +52,16 @@ static const int quad_order[FACE_NODES] = {0, 2, 8, 6, 1, 5, 7, 3, 4};
 static const int face_first[FACES] = {0, 18, 0, 6, 0, 2};
 static const int face_step[FACES][2] = {{3, 1}, {1, 3}, {1, 9}, {9, 1}, {9, 3}, {3, 9}};
 
-static enum group group_of(int region, int sheet)
+static enum group group_of(const struct dea_plate *plate, int region, int sheet)
 {
   bool electrode = (region & DEA_PLATE_ELECTRODE) != 0;
   switch (sheet) {
   case DEA_PLATE_BOTTOM:
-    return ELECTRODE_BELOW;
+    return plate->membrane ? ELECTRODES : ELECTRODE_BELOW;
   case DEA_PLATE_FILM:
     return electrode ? FILM_ACTIVE : FILM;
+  case DEA_PLATE_BOND:
+    return BOND;
   case DEA_PLATE_TOP:
     return electrode ? ELECTRODE_ABOVE : FILLER;
   default:
@@ -73,85 +77,116 @@ static void face_nodes(const int *nodes, int face, int out[FACE_NODES])
   }
 }
 
-/* Group of a face of an element, GROUPS for none. */
-static enum group face_group(const struct dea_plate *plate, const struct dea_grid *grid, size_t e,
-                             int face, const int nodes[FACE_NODES])
+/* Group of a side that looks along the plane: a face of a solid element, an edge of a flat one.
+ * GROUPS for none. */
+static enum group side_group(const struct dea_plate *plate, const struct dea_grid *grid,
+                             const int *nodes, int count)
 {
   int held = 7, edges = 3;
-  for (int n = 0; n < FACE_NODES; n++) {
+  for (int n = 0; n < count; n++) {
     const double *X = grid->X + 3 * nodes[n];
     held &= dea_plate_held(plate, X);
     edges &= dea_plate_edges(plate, X);
   }
-  if (group_of(grid->region[e], grid->sheet[e]) == FILM_ACTIVE && face < 2) {
-    return face == 0 ? FACE_BELOW : FACE_ABOVE;
-  }
-  return face < 2     ? GROUPS
-         : held == 7  ? FRAME
-         : edges == 1 ? AXIS_PLANE
-         : edges == 2 ? MIDDLE_PLANE
-                      : GROUPS;
+  return held == 7 ? FRAME : edges == 1 ? AXIS_PLANE : edges == 2 ? MIDDLE_PLANE : GROUPS;
 }
 
-static void add_element(struct dea_text *text, size_t number, int type, enum group group,
-                        const int *nodes, const int *order, int count)
+/* A mesh on its way into a text; without one its elements are counted only. */
+struct writer {
+  const struct dea_plate *plate;
+  const struct dea_grid *grid;
+  struct dea_text *text;
+  size_t number, counts[DIMENSIONS][GROUPS];
+};
+
+/* order: places of Gmsh's nodes in ours, NULL: the same. */
+static void add_element(struct writer *w, int dimension, enum group group, const int *nodes,
+                        const int *order)
 {
-  dea_text_add(text, "%zu %d 2 %d %d", number, type, (int)group + 1, (int)group + 1);
-  for (int n = 0; n < count; n++) {
-    dea_text_add(text, " %d", nodes[order != NULL ? order[n] : n] + 1);
+  static const int types[DIMENSIONS] = {0, LINE3, QUAD9, HEX27};
+  static const int node_counts[DIMENSIONS] = {0, EDGE_NODES, FACE_NODES, NODES};
+  if (group == GROUPS) {
+    return;
   }
-  dea_text_add(text, "\n");
+  w->number++;
+  w->counts[dimension][group]++;
+  if (w->text == NULL) {
+    return;
+  }
+  dea_text_add(w->text, "%zu %d 2 %d %d", w->number, types[dimension], (int)group + 1,
+               (int)group + 1);
+  for (int n = 0; n < node_counts[dimension]; n++) {
+    dea_text_add(w->text, " %d", nodes[order != NULL ? order[n] : n] + 1);
+  }
+  dea_text_add(w->text, "\n");
 }
 
-/* All elements and faces; with text NULL they are counted only, and by group into counts. */
-static size_t add_elements(const struct dea_plate *plate, const struct dea_grid *grid,
-                           struct dea_text *text, size_t counts[GROUPS])
+static void add_solid(struct writer *w, enum group part, const int *nodes)
 {
-  size_t number = 0;
+  add_element(w, 3, part, nodes, hex_order);
+  for (int face = 0; face < FACES; face++) {
+    int own[FACE_NODES];
+    face_nodes(nodes, face, own);
+    add_element(w, 2,
+                face >= 2             ? side_group(w->plate, w->grid, own, FACE_NODES)
+                : part != FILM_ACTIVE ? GROUPS
+                : face == 0           ? FACE_BELOW
+                                      : FACE_ABOVE,
+                own, NULL);
+  }
+}
+
+static void add_flat(struct writer *w, enum group part, const int *nodes)
+{
+  static const int first[EDGES] = {0, 6, 0, 2}, step[EDGES] = {1, 1, 3, 3};
+  add_element(w, 2, part, nodes, quad_order);
+  for (int edge = 0; edge < EDGES && part != ELECTRODES; edge++) {
+    const int own[EDGE_NODES] = {nodes[first[edge]], nodes[first[edge] + 2 * step[edge]],
+                                 nodes[first[edge] + step[edge]]};
+    add_element(w, 1, side_group(w->plate, w->grid, own, EDGE_NODES), own, NULL);
+  }
+}
+
+static void add_elements(struct writer *w)
+{
+  const struct dea_grid *grid = w->grid;
+  w->number = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    enum group part = group_of(grid->region[e], grid->sheet[e]);
-    number++;
-    counts[part]++;
-    if (text != NULL) {
-      add_element(text, number, HEX27, part, nodes, hex_order, NODES);
-    }
-    for (int face = 0; face < FACES; face++) {
-      int own[FACE_NODES];
-      face_nodes(nodes, face, own);
-      enum group group = face_group(plate, grid, e, face, own);
-      if (group != GROUPS) {
-        number++;
-        counts[group]++;
-        if (text != NULL) {
-          add_element(text, number, QUAD9, group, own, NULL, FACE_NODES);
-        }
-      }
+    enum group part = group_of(w->plate, grid->region[e], grid->sheet[e]);
+    (grid->flat[e] ? add_flat : add_solid)(w, part, grid->nodes + e * DEA_HEX_NODES_MAX);
+  }
+}
+
+static void add_names(struct dea_text *text, const struct writer *w)
+{
+  size_t names = 0;
+  for (int i = 0; i < DIMENSIONS * GROUPS; i++) {
+    names += w->counts[i / GROUPS][i % GROUPS] > 0;
+  }
+  dea_text_add(text, "$PhysicalNames\n%zu\n", names);
+  for (int i = 0; i < DIMENSIONS * GROUPS; i++) {
+    if (w->counts[i / GROUPS][i % GROUPS] > 0) {
+      dea_text_add(text, "%d %d \"%s\"\n", i / GROUPS, i % GROUPS + 1, group_names[i % GROUPS]);
     }
   }
-  return number;
+  dea_text_add(text, "$EndPhysicalNames\n");
 }
 
 static void add_mesh(struct dea_text *text, const struct dea_plate *plate,
                      const struct dea_grid *grid)
 {
-  size_t counts[GROUPS] = {0}, count = add_elements(plate, grid, NULL, counts), names = 0;
-  for (int g = 0; g < GROUPS; g++) {
-    names += counts[g] > 0;
-  }
-  dea_text_add(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%zu\n", names);
-  for (int g = 0; g < GROUPS; g++) {
-    if (counts[g] > 0) {
-      dea_text_add(text, "%d %d \"%s\"\n", groups[g].dimension, g + 1, groups[g].name);
-    }
-  }
-  dea_text_add(text, "$EndPhysicalNames\n$Nodes\n%zu\n", grid->node_count);
+  struct writer writer = {.plate = plate, .grid = grid};
+  add_elements(&writer);
+  dea_text_add(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+  add_names(text, &writer);
+  dea_text_add(text, "$Nodes\n%zu\n", grid->node_count);
   for (size_t n = 0; n < grid->node_count; n++) {
     const double *X = grid->X + 3 * n;
     dea_text_add(text, "%zu %.15g %.15g %.15g\n", n + 1, X[0], X[1], X[2]);
   }
-  dea_text_add(text, "$EndNodes\n$Elements\n%zu\n", count);
-  add_elements(plate, grid, text, counts);
+  dea_text_add(text, "$EndNodes\n$Elements\n%zu\n", writer.number);
+  writer.text = text;
+  add_elements(&writer);
   dea_text_add(text, "$EndElements\n");
 }
 

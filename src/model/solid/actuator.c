@@ -1,6 +1,7 @@
 #include "model/solid/actuator.h"
 
 #include "model/film.h"
+#include "model/solid/membrane.h"
 
 static const double kappa_share = 100; // kappa over the shear modulus
 
@@ -34,6 +35,27 @@ static struct dea_layer bonded(double young_modulus_Pa, double poisson_ratio, do
                             .kappa_Pa = kappa_share * *mu_Pa};
 }
 
+/* Film and electrodes as surfaces, and what joins them to fibres (docs/theory/membrane.md). */
+static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
+                                struct dea_layer *layers)
+{
+  struct dea_layer *film = &layers[DEA_LAYER_FILM], *electrode = &layers[DEA_LAYER_ELECTRODE];
+  struct dea_layer *under = &layers[DEA_LAYER_BOND_ELECTRODE];
+  dea_status status = dea_membrane_bond(film, &layers[DEA_LAYER_BOND]);
+  film->relaxed = !stiff_electrodes; // bonded sheets wrinkle together, not each by itself
+  if (status == DEA_OK && stiff_electrodes) {
+    status = dea_membrane_bond(electrode, under);
+    // the load comes in below it, and not over its depth as a film's own does
+    under->lame_mu_Pa /= 1.5;
+    under->lame_lambda_Pa /= 1.5;
+    electrode->thickness_m *= 2; // both
+  }
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status,
+                                     "compute.solid.film: membrane takes isotropic laws of film "
+                                     "and electrodes only; take compute.solid.film: solid");
+}
+
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
                                struct dea_actuator *out)
 {
@@ -58,12 +80,15 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
       bonded(d->fibre.young_modulus_Pa, d->fibre.poisson_ratio, &out->fibre_mu_Pa);
   for (int i = 0; i < DEA_LAYER_COUNT; i++) {
     bool there = i == DEA_LAYER_FILM || (i == DEA_LAYER_ELECTRODE && film.electrode != NULL) ||
-                 (i > DEA_LAYER_ELECTRODE && d->fibre_count > 0);
+                 (i > DEA_LAYER_ELECTRODE && d->fibre_count > 0); // bonds come below
     dea_status status = there ? dea_layer_relax(&layers[i]) : DEA_OK;
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "the law '%s' ends before the pre-stretch %.4g",
                       layers[i].law->name, d->pre_stretch);
     }
+  }
+  if (out->plate.membrane) {
+    DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, layers));
   }
   return DEA_OK;
 }
@@ -75,8 +100,10 @@ int dea_actuator_layer(const void *self, int region, int sheet)
   switch (sheet) {
   case DEA_PLATE_FILM:
     return DEA_LAYER_FILM;
+  case DEA_PLATE_BOND:
+    return DEA_LAYER_BOND;
   case DEA_PLATE_TOP: // beside the electrodes it fills what is under the fibre
-    return electrode                     ? DEA_LAYER_ELECTRODE
+    return electrode ? a->plate.membrane ? DEA_LAYER_BOND_ELECTRODE : DEA_LAYER_ELECTRODE
            : a->plate.glue_thickness > 0 ? DEA_LAYER_GLUE
                                          : DEA_LAYER_FIBRE;
   case DEA_PLATE_BOTTOM:

@@ -4,7 +4,15 @@
 
 #include "model/solid/plate.h"
 
-enum { DEA_LAYER_FILM, DEA_LAYER_ELECTRODE, DEA_LAYER_GLUE, DEA_LAYER_FIBRE, DEA_LAYER_COUNT };
+enum {
+  DEA_LAYER_FILM,
+  DEA_LAYER_ELECTRODE,
+  DEA_LAYER_GLUE,
+  DEA_LAYER_FIBRE,
+  DEA_LAYER_BOND,           // of a membrane, the next one too: under fibres, free of stress
+  DEA_LAYER_BOND_ELECTRODE, // where fibres lie on electrodes of a thickness
+  DEA_LAYER_COUNT
+};
 
 /* Stays where it is: layers lend from it. */
 struct dea_actuator {

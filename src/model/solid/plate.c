@@ -258,6 +258,13 @@ static bool present_on_top(int region, int sheet)
                                                                : fibre);
 }
 
+/* With a membrane: all but film and electrodes is under fibres. */
+static bool present_membrane(int region, int sheet)
+{
+  bool electrode = region & DEA_PLATE_ELECTRODE, fibre = region & DEA_PLATE_FIBRE;
+  return sheet == DEA_PLATE_FILM || (sheet == DEA_PLATE_BOTTOM ? electrode : fibre);
+}
+
 /* Sheets of a thickness have one element through it. */
 static struct dea_sheet sheet_of(const struct dea_plate *p, double thickness)
 {
@@ -269,18 +276,26 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_plate *p,
 {
   bool fibres = p->fibres > 0;
   bool on_top = fibres && p->tip_radius < p->electrode_radius - same * p->frame_radius;
-  const struct dea_sheet sheets[DEA_PLATE_SHEETS] = {
+  struct dea_sheet sheets[DEA_PLATE_SHEETS] = {
       [DEA_PLATE_BOTTOM] = sheet_of(p, p->electrode_thickness),
       [DEA_PLATE_FILM] = sheet_of(p, p->film_thickness),
+      [DEA_PLATE_BOND] = sheet_of(p, p->membrane && fibres ? 0.5 * p->film_thickness : 0),
       [DEA_PLATE_TOP] = sheet_of(p, p->electrode_thickness),
       [DEA_PLATE_GLUE] = sheet_of(p, fibres ? p->glue_thickness : 0),
       [DEA_PLATE_FIBRE_SHEET] = sheet_of(p, fibres ? p->fibre_thickness : 0),
   };
   const size_t skips[DEA_PLATE_SHEETS] = {[DEA_PLATE_GLUE] = on_top ? 0 : 1};
-  DEA_TRY(ctx, dea_grid_create_skipping(
-                   ctx, p->order, blocks, block_count, sheets, DEA_PLATE_SHEETS, skips,
-                   on_top ? present_on_top : present_beside,
-                   -0.5 * p->film_thickness - p->electrode_thickness, p->frame_radius, out));
+  double bottom = -0.5 * p->film_thickness - p->electrode_thickness;
+  if (p->membrane) {
+    sheets[DEA_PLATE_BOTTOM].thickness_m = sheets[DEA_PLATE_FILM].thickness_m = bottom = 0;
+    sheets[DEA_PLATE_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
+  }
+  DEA_TRY(ctx, dea_grid_create_skipping(ctx, p->order, blocks, block_count, sheets,
+                                        DEA_PLATE_SHEETS, skips,
+                                        p->membrane ? present_membrane
+                                        : on_top    ? present_on_top
+                                                    : present_beside,
+                                        bottom, p->frame_radius, out));
   return DEA_OK;
 }
 

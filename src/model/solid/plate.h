@@ -12,6 +12,7 @@ enum dea_plate_end { DEA_PLATE_CLAMPED, DEA_PLATE_HINGED };
 
 struct dea_plate {
   int order, order_z; // of the elements
+  bool membrane;      // the film is a surface at z = 0 (docs/theory/membrane.md)
   int fibres;         // N, evenly spread; 0: none
   /* Domain: so many sectors of pi/N (pi/4 without fibres) from the first fibre's axis; each second
    * one is the mirror image of that before it. 2 N (8): the whole disc. Less: its two straight
@@ -33,11 +34,15 @@ enum { DEA_PLATE_ELECTRODE = 1, DEA_PLATE_FIBRE = 2 };
 
 /* Sheets from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
  * DEA_PLATE_TOP then goes on under the rest of the fibre as a filler of glue or fibre, so that the
- * fibre is flat. */
+ * fibre is flat.
+ *
+ * With a membrane, film and DEA_PLATE_BOTTOM (both electrodes then) are surfaces of one place;
+ * DEA_PLATE_BOND and DEA_PLATE_TOP are there under fibres only. */
 enum {
   DEA_PLATE_BOTTOM, // electrode below
   DEA_PLATE_FILM,
-  DEA_PLATE_TOP, // electrode above
+  DEA_PLATE_BOND, // the upper half of a membrane's film
+  DEA_PLATE_TOP,  // electrode above
   DEA_PLATE_GLUE,
   DEA_PLATE_FIBRE_SHEET,
   DEA_PLATE_SHEETS

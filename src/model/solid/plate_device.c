@@ -15,6 +15,7 @@ dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device 
   *out = (struct dea_plate){
       .order = 2,
       .order_z = 2,
+      .membrane = d->solid_film == DEA_FILM_MEMBRANE,
       .fibres = d->fibre_count,
       .sectors = 1,
       .electrode_radius = a,

@@ -59,7 +59,9 @@ static dea_status evaluate_point(const struct dea_layer *layer, const double F[6
     values[9 + m] = p[0] * f[0] + p[1] * f[1];
   }
   values[16] = fabs(field_V_per_m) * point.area;
-  values[15] = point.W + 0.5 * layer->permittivity_F_per_m * values[16] * values[16];
+  double eps =
+      layer->permittivity_F_per_m + layer->permittivity_slope_F_per_m * (sqrt(point.area) - 1);
+  values[15] = point.W + 0.5 * eps * values[16] * values[16];
   return DEA_OK;
 }
 

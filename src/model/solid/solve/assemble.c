@@ -306,26 +306,26 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                                  double *capacitance_F)
 {
-  // the energy at fixed displacements is that at 0 V less C V^2/2
-  double thickness = 0, without = 0, with = 0;
+  // charge: minus the derivative of the energy by V at fixed displacements; by V^2 it is C/2. The
+  // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
+  double thickness = 0, energy[2] = {0, 0};
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_layer *layer = &s->layers[s->layer[e]];
     bool counts = s->field != NULL ? layer->permittivity_F_per_m > 0 : s->active[e];
     thickness = fmax(thickness, counts ? layer->thickness_m : 0);
   }
-  double V = 50e6 * thickness; // electric and elastic energies of about one size
+  double step = 1e12 * thickness * thickness, square = s->voltage_V * s->voltage_V;
+  const double squares[2] = {fmax(square - step, 0), square + step};
+  dea_status status = DEA_OK;
   memcpy(s->trial, s->u, s->dofs * sizeof(double));
-  dea_status status = dea_solid_settle(ctx, s, 0, s->trial);
-  if (status == DEA_OK) {
-    status = dea_solid_energy(s, s->trial, 0, &without);
+  for (int i = 0; i < 2 && status == DEA_OK; i++) {
+    status = dea_solid_settle(ctx, s, sqrt(squares[i]), s->trial);
+    if (status == DEA_OK) {
+      status = dea_solid_energy(s, s->trial, sqrt(squares[i]), &energy[i]);
+    }
   }
-  if (status == DEA_OK) {
-    status = dea_solid_settle(ctx, s, V, s->trial);
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_energy(s, s->trial, V, &with);
-  }
-  *capacitance_F = status == DEA_OK && V > 0 ? 2 * (without - with) / (V * V) : NAN;
+  *capacitance_F =
+      status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
   return status;
 }
 

@@ -18,7 +18,8 @@ static bool select_face(const void *self, int region, int sheet, const double mi
   const struct choice *choice = self;
   const struct dea_plate *p = &choice->actuator->plate;
   bool inside = region & DEA_PLATE_ELECTRODE, fibre = region & DEA_PLATE_FIBRE;
-  int covered = inside && p->electrode_thickness > 0 ? DEA_PLATE_TOP : DEA_PLATE_FILM;
+  bool layers = p->electrode_thickness > 0 && !p->membrane;
+  int covered = inside && layers ? DEA_PLATE_TOP : DEA_PLATE_FILM;
   (void)middle;
   if (choice->from_above) {
     return sheet == (fibre ? DEA_PLATE_FIBRE_SHEET : covered);
@@ -36,7 +37,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
   const struct dea_plate *p = &actuator->plate;
   const struct choice choice = {actuator, probe->from_fibre_side};
   double sign = probe->from_fibre_side ? 1 : -1;
-  double face = 0.5 * p->film_thickness + p->electrode_thickness;
+  double face = p->membrane ? 0 : 0.5 * p->film_thickness + p->electrode_thickness;
   bool round = probe->shape != DEA_PROBE_FLAT;
   struct dea_contact_options options = {
       .tip = {.shape = shapes[probe->shape],
