@@ -149,6 +149,30 @@ static void test_pull_in_keeps_what_was_computed(void **state)
   json_decref(root);
 }
 
+/* Several files: the first with the others beside it; --set holds for all of them. */
+static void test_several_designs(void **state)
+{
+  (void)state;
+  json_t *root = summary("run @/examples/plain-disc.yaml @/examples/frdea-8.yaml --model lumped "
+                         "--study compare-design --set 'compute.voltage={values: [6 kV]}' --json");
+  const json_t *designs = json_object_get(root, "designs");
+  assert_int_equal(json_array_size(json_object_get(root, "points")), 0); // no sweep was asked for
+  assert_int_equal(json_array_size(designs), 2);
+  const json_t *disc = json_array_get(designs, 0), *fibres = json_array_get(designs, 1);
+  assert_string_equal(json_string_value(json_object_get(disc, "name")), "plain-disc");
+  assert_string_equal(json_string_value(json_object_get(fibres, "name")), "frdea-8");
+  const json_t *a = json_array_get(json_object_get(disc, "points"), 0);
+  const json_t *b = json_array_get(json_object_get(fibres, "points"), 0);
+  assert_int_equal(json_array_size(json_object_get(fibres, "points")), 1);
+  assert_true(isnan(number(a, "centre_z_m")) && number(b, "centre_z_m") > 1e-3);
+  json_decref(root);
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml not-there.yaml --json"), 3);
+  assert_contains(command_err, "not-there.yaml");
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml --study compare-design"), 3);
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml --study sweeep"), 2);
+  assert_contains(command_err, "did you mean 'sweep'?");
+}
+
 static void test_unknown_model(void **state)
 {
   (void)state;
@@ -164,7 +188,8 @@ static void test_usage_errors(void **state)
   assert_contains(command_err, "did you mean 'run'");
   assert_int_equal(command_run("run"), 2);
   assert_contains(command_err, "design file");
-  assert_int_equal(command_run("run a.yaml b.yaml"), 2);
+  assert_int_equal(command_run("run 0 1 2 3 4 5 6 7 8 9"), 2);
+  assert_contains(command_err, "too many design files");
   assert_int_equal(command_run("run a.yaml --modle x"), 2);
   assert_contains(command_err, "--modle");
   assert_int_equal(command_run("run a.yaml --set thickness"), 2);
@@ -246,6 +271,7 @@ int main(void)
       cmocka_unit_test(test_run_folder),
       cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
+      cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),

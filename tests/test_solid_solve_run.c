@@ -104,12 +104,39 @@ static void test_preview(void **state)
   assert_contains(command_out, "tension");
 }
 
+/* Three meshes: more unknowns on each, answers that lie together. */
+static void test_study_of_convergence(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json "
+                               "--study convergence --set 'compute.convergence="
+                               "{refinement: [1, 1.2, 1.4], voltage: [1 kV]}'"),
+                   0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  const json_t *study = json_object_get(root, "convergence");
+  const json_t *meshes = json_object_get(study, "meshes");
+  assert_int_equal(json_array_size(meshes), 3);
+  double before = 0;
+  for (size_t i = 0; i < 3; i++) {
+    double unknowns = number(json_array_get(meshes, i), "unknowns");
+    assert_true(unknowns > before);
+    before = unknowns;
+  }
+  const json_t *centre = json_array_get(json_object_get(study, "quantities"), 0);
+  const json_t *values = json_object_get(centre, "values");
+  assert_string_equal(json_string_value(json_object_get(centre, "quantity")), "centre_z_m");
+  assert_close(json_number_value(json_array_get(values, 2)),
+               json_number_value(json_array_get(values, 0)), 0.02, 0);
+  assert_int_equal(json_array_size(json_object_get(study, "enough")), 1);
+  json_decref(root);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_four_fibres),  cmocka_unit_test(test_plain_disc),
       cmocka_unit_test(test_eight_fibres), cmocka_unit_test(test_mesh_of_the_design),
-      cmocka_unit_test(test_preview),
+      cmocka_unit_test(test_preview),      cmocka_unit_test(test_study_of_convergence),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

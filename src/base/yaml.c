@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "base/yaml_check.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
@@ -307,6 +308,28 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
   return DEA_OK;
 }
 
+/* Puts a node into a section in the place of the member `key`; one without a value takes it away.
+ */
+static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_node *section,
+                      const char *key, struct dea_place place, struct dea_node *node)
+{
+  struct dea_node **link = link_of(section, key, strlen(key)), *old = *link;
+  if (node->kind == DEA_NODE_VALUE && node->empty) {
+    *link = old != NULL ? old->next : NULL;
+    section->child_count -= old != NULL;
+    return DEA_OK;
+  }
+  node->key = keep_text(ctx, yaml, key, strlen(key));
+  if (node->key == NULL) {
+    return DEA_E_MEMORY;
+  }
+  node->key_place = place;
+  node->next = old != NULL ? old->next : NULL;
+  section->child_count += old == NULL;
+  *link = node;
+  return DEA_OK;
+}
+
 dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, const char *path,
                              const char *value)
 {
@@ -323,19 +346,47 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, place, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &place, &node));
-  struct dea_node **link = link_of(section, path, strlen(path)), *old = *link;
-  if (node->kind == DEA_NODE_VALUE && node->empty) {
-    *link = old != NULL ? old->next : NULL;
-    section->child_count -= old != NULL;
-    return DEA_OK;
+  DEA_TRY(ctx, put(ctx, yaml, section, path, place, node));
+  return DEA_OK;
+}
+
+enum { PATH_SIZE = 256 };
+
+/* Merges a section's values below the path of that section, "" for the outermost. Recursion ends
+ * with the depth of the document. */
+static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, const char *prefix,
+                              const struct dea_node *changes)
+{
+  for (const struct dea_node *child = changes->child; child != NULL; child = child->next) {
+    char whole[PATH_SIZE];
+    int length =
+        snprintf(whole, sizeof whole, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", child->key);
+    if (length >= PATH_SIZE) {
+      return found(ctx, child->key_place, "the path of this key is too long");
+    }
+    if (child->kind == DEA_NODE_SECTION) {
+      DEA_TRY(ctx, merge_below(ctx, yaml, whole, child));
+      continue;
+    }
+    const char *path = whole;
+    struct dea_node *section = NULL, *copy = keep_memory(ctx, yaml, sizeof *copy);
+    if (copy == NULL) {
+      return DEA_E_MEMORY;
+    }
+    *copy = *child;
+    copy->overridden = true;
+    DEA_TRY(ctx, walk(ctx, yaml, child->key_place, &path, &section));
+    DEA_TRY(ctx, put(ctx, yaml, section, path, child->key_place, copy));
   }
-  node->key = keep_text(ctx, yaml, path, strlen(path));
-  if (node->key == NULL) {
-    return DEA_E_MEMORY;
+  return DEA_OK;
+}
+
+dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
+                          const struct dea_node *changes)
+{
+  if (yaml->root->kind != DEA_NODE_SECTION) {
+    return DEA_OK; // the reader of the schema says so
   }
-  node->key_place = place;
-  node->next = old != NULL ? old->next : NULL;
-  section->child_count += old == NULL;
-  *link = node;
+  DEA_TRY(ctx, merge_below(ctx, yaml, "", changes));
   return DEA_OK;
 }

@@ -44,6 +44,10 @@ const struct dea_node *dea_yaml_root(const struct dea_yaml *yaml);
  * 0. DEA_E_DESIGN after a finding. */
 dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, const char *path,
                              const char *value);
+/* The same with every value of a section: keys may be dotted paths, and sections within it are
+ * paths too. Values keep their places and texts: `changes` outlives the document. */
+dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
+                          const struct dea_node *changes);
 /* A node of its own from YAML text (the default of a list), kept by the document; places = place.
  */
 dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,

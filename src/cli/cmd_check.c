@@ -183,6 +183,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     dea_status known = cli_models_check(cli, design);
     status = dea_device_build(cli->ctx, design, &device);
     status = status != DEA_OK ? status : known;
+    known = cli_variants_check(cli, design);
+    status = status != DEA_OK ? status : known;
   }
   if (arguments.json) {
     print_json(cli, arguments.design, design, device);

@@ -20,7 +20,10 @@
 enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
 
 struct run_options {
-  const char *file, *directory, *models[DEA_DESIGN_MODELS_MAX];
+  const char *file; // and those that it is compared with
+  const char *others[DEA_DESIGN_VARIANTS_MAX];
+  size_t other_count;
+  const char *directory, *models[DEA_DESIGN_MODELS_MAX];
   size_t model_count;
   const char *studies[STUDIES_MAX];
   size_t study_count;
@@ -35,6 +38,7 @@ struct run {
   struct dea_device *device;
   struct dea_result *result;
   struct dea_text directory;
+  struct dea_text others; // the designs that it is compared with, as a value of the design
   struct dea_keep *keep;
 };
 
@@ -94,9 +98,9 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
       return cli_option_error(cli, &cmd_run, option, argv);
     }
   }
-  if (argc - optind != 1) {
-    return cli_usage_error(
-        cli, &cmd_run, argc == optind ? "a design file is needed" : "one design file at a time");
+  if (argc == optind || argc - optind - 1 > DEA_DESIGN_VARIANTS_MAX) {
+    return cli_usage_error(cli, &cmd_run,
+                           argc == optind ? "a design file is needed" : "too many design files");
   }
   if (out->resume && out->force) {
     return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
@@ -105,6 +109,9 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
     return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
   }
   out->file = argv[optind];
+  for (int i = optind + 1; i < argc; i++) {
+    out->others[out->other_count++] = argv[i];
+  }
   return 0;
 }
 
@@ -152,12 +159,24 @@ static dea_status build(struct dea_cli *cli, const struct run_options *options, 
                         size_t length, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_design_read_memory(ctx, options->file, bytes, length, options->overrides,
-                                      options->override_count, &run->design));
+  struct dea_override overrides[CLI_OVERRIDES_MAX + 1];
+  size_t count = options->override_count;
+  memcpy(overrides, options->overrides, sizeof options->overrides);
+  if (options->other_count > 0) {
+    run->others.ctx = ctx;
+    cli_designs_text(options->others, options->other_count, &run->others);
+    overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
+    if (run->others.failed) {
+      return DEA_E_MEMORY;
+    }
+  }
+  DEA_TRY(ctx, dea_design_read_memory(ctx, options->file, bytes, length, overrides, count,
+                                      &run->design));
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
+  DEA_TRY(ctx, cli_variants_check(cli, run->design));
   DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
-  DEA_TRY(ctx, dea_provenance_fill(ctx, bytes, length, options->overrides, options->override_count,
-                                   cli->command_line, &run->result->provenance));
+  DEA_TRY(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
+                                   &run->result->provenance));
   return DEA_OK;
 }
 
@@ -177,6 +196,9 @@ static void release(struct dea_cli *cli, struct run *run)
 {
   if (run->directory.ctx != NULL) {
     dea_text_free(&run->directory);
+  }
+  if (run->others.ctx != NULL) {
+    dea_text_free(&run->others);
   }
   dea_keep_destroy(cli->ctx, run->keep);
   dea_result_destroy(cli->ctx, run->result);
@@ -287,6 +309,7 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
     for (size_t i = 0; i < count; i++) {
       print_model(run->result, types[i]->name);
       DEA_TRY(ctx, cli_print_convergence(ctx, run->result, types[i]->name));
+      cli_print_designs(run->result, types[i]->name);
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
@@ -375,15 +398,19 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
-    .usage = "dea run DESIGN [options]\n"
-             "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
-             "      --study NAME      only this study: path, sweep, force, convergence;\n"
-             "                        can be repeated\n"
-             "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
-             "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
-             "  -f, --force           replace the results in an existing run folder\n"
-             "      --resume          go on where the run in the folder stopped (model 3d)\n"
-             "      --no-figures      no figures\n"
-             "      --json            summary as JSON on stdout; a folder only with -o\n",
+    .usage =
+        "dea run DESIGN [DESIGN]... [options]\n"
+        "\n"
+        "More designs are set beside the first in its figures and tables (study compare-design).\n"
+        "\n"
+        "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
+        "      --study NAME      only this study: path, sweep, force, convergence,\n"
+        "                        compare-design; can be repeated\n"
+        "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
+        "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
+        "  -f, --force           replace the results in an existing run folder\n"
+        "      --resume          go on where the run in the folder stopped (model 3d)\n"
+        "      --no-figures      no figures\n"
+        "      --json            summary as JSON on stdout; a folder only with -o\n",
     .run = run,
 };

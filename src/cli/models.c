@@ -1,6 +1,9 @@
 #include "cli/models.h"
 
-#include "base/text.h"
+#include "device/device.h"
+
+#include <string.h>
+#include <unistd.h>
 
 const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *name,
                                             struct dea_place place)
@@ -29,4 +32,49 @@ dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design
     bad = cli_model_find(cli, label->text, label->place) == NULL || bad;
   }
   return bad ? dea_fail(cli->ctx, DEA_E_DESIGN, "a model is not known") : DEA_OK;
+}
+
+dea_status cli_variants_check(struct dea_cli *cli, const struct dea_design *design)
+{
+  dea_status first = DEA_OK;
+  for (size_t i = 0; i < design->compute.compare_count; i++) {
+    const struct dea_design *variant = design->compute.compare[i].design;
+    struct dea_device *device = NULL;
+    dea_status status = variant != NULL ? dea_device_build(cli->ctx, variant, &device) : DEA_OK;
+    dea_device_destroy(cli->ctx, device);
+    first = first == DEA_OK ? status : first;
+  }
+  return first;
+}
+
+/* Text in YAML's double quotes. */
+static void add_quoted(struct dea_text *out, const char *text, size_t length)
+{
+  dea_text_add(out, "\"");
+  for (size_t i = 0; i < length; i++) {
+    dea_text_add(out, "%s%c", text[i] == '"' || text[i] == '\\' ? "\\" : "", text[i]);
+  }
+  dea_text_add(out, "\"");
+}
+
+void cli_designs_text(const char *const files[], size_t count, struct dea_text *out)
+{
+  char here[4096];
+  if (getcwd(here, sizeof here) == NULL) {
+    here[0] = '\0';
+  }
+  for (size_t i = 0; i < count; i++) {
+    const char *slash = strrchr(files[i], '/'), *name = slash != NULL ? slash + 1 : files[i];
+    const char *dot = strrchr(name, '.');
+    struct dea_text path = {.ctx = out->ctx};
+    dea_text_add(&path, "%s%s%s", files[i][0] == '/' ? "" : here, files[i][0] == '/' ? "" : "/",
+                 files[i]);
+    dea_text_add(out, "%s{name: ", i == 0 ? "[" : ", ");
+    add_quoted(out, name, dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name));
+    dea_text_add(out, ", file: ");
+    add_quoted(out, dea_text_get(&path), strlen(dea_text_get(&path)));
+    dea_text_add(out, "}%s", i + 1 == count ? "]" : "");
+    out->failed = out->failed || path.failed;
+    dea_text_free(&path);
+  }
 }

@@ -68,3 +68,35 @@ dea_status cli_print_convergence(struct dea_context *ctx, const struct dea_resul
   dea_convergence_destroy(ctx, convergence);
   return status;
 }
+
+/* In um; what is only noise is 0. */
+static void print_displacement(double z_m)
+{
+  print_value(fabs(z_m) < 1e-12 ? 0 : 1e6 * z_m, 12, 5);
+}
+
+void cli_print_designs(const struct dea_result *result, const char *model)
+{
+  bool any = false;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    if (!dea_variant_is(variant, model, "compare-design")) {
+      continue;
+    }
+    if (!any) {
+      printf("\n%s: designs at their last voltage\n%-32s%9s%10s%12s%12s%12s\n", model, "", "V (kV)",
+             "strain %", "z centre um", "z tip um", "field V/um");
+      any = true;
+    }
+    printf("%-32s", variant->name);
+    if (variant->curve.count > 0) {
+      const struct dea_load_point *p = &variant->curve.points[variant->curve.count - 1];
+      print_value(1e-3 * p->voltage_V, 9, 4);
+      print_value(100 * (p->electrode_stretch - 1), 10, 4);
+      print_displacement(p->centre_z_m);
+      print_displacement(p->fibre_tip_z_m);
+      print_value(1e-6 * p->true_field_V_per_m, 12, 5);
+    }
+    printf("%s%s\n", variant->curve.complete ? "" : "  stopped: ", variant->curve.stopped);
+  }
+}

@@ -9,4 +9,7 @@
 dea_status cli_print_convergence(struct dea_context *ctx, const struct dea_result *result,
                                  const char *model);
 
+/* The last point of each design of a model's study compare-design; nothing when there is none. */
+void cli_print_designs(const struct dea_result *result, const char *model);
+
 #endif

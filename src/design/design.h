@@ -17,6 +17,7 @@ enum {
   DEA_DESIGN_STOPS_MAX = 32,
   DEA_DESIGN_FIELDS_MAX = 100,
   DEA_DESIGN_MESHES_MAX = 8,
+  DEA_DESIGN_VARIANTS_MAX = 8,
 };
 
 enum dea_outer_end { DEA_END_CLAMPED, DEA_END_HINGED, DEA_END_FREE };
@@ -25,6 +26,17 @@ enum dea_fields_of { DEA_FIELDS_WHOLE, DEA_FIELDS_SECTOR };
 enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
 enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
+
+struct dea_design;
+
+/* A design that another one is compared with. */
+struct dea_design_variant {
+  struct dea_label name;
+  struct dea_label file; // absent: the same file
+  const struct dea_node
+      *set;                  // values in the place of that file's; NULL: none; lent by the document
+  struct dea_design *design; // owned; NULL: the design itself, without a file or changes
+};
 
 struct dea_design {
   const char *file; // as given by the caller; interned in the context
@@ -87,6 +99,8 @@ struct dea_design {
       size_t refinement_count, voltage_count;
       struct dea_quantity tolerance; // relative
     } convergence;
+    struct dea_design_variant compare[DEA_DESIGN_VARIANTS_MAX]; // study compare-design
+    size_t compare_count;
     struct dea_choice coverage_by;    // enum dea_coverage_by, paper eq 17
     struct dea_quantity coverage;     // R itself; absent: from coverage_by
     struct {                          // model 3d

@@ -1,5 +1,6 @@
 #include "base/file.h"
 #include "design/schema.h"
+#include "design/variants.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -205,25 +206,40 @@ static dea_status take_materials(const struct dea_reader *reader, struct dea_des
   return DEA_OK;
 }
 
-/* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
-static dea_status read_raw(struct dea_context *ctx, const char *name, const char *bytes,
-                           size_t length, const struct dea_override *overrides,
-                           size_t override_count, struct dea_design_raw *raw)
+/* The document of a source with all that changes it. */
+static dea_status parse(struct dea_context *ctx, const struct dea_design_source *source,
+                        const struct dea_node *changes, struct dea_yaml **out)
 {
-  struct dea_design *design = &raw->design;
-  size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  design->file = dea_intern(ctx, name);
-  if (design->file == NULL) {
-    return DEA_E_MEMORY;
-  }
-  DEA_TRY(ctx, dea_yaml_parse(ctx, name, bytes, length, &design->document));
-  for (size_t i = 0; i < override_count; i++) {
+  DEA_TRY(ctx, dea_yaml_parse(ctx, source->name, source->bytes, source->length, out));
+  for (size_t i = 0; i < source->override_count; i++) {
     dea_status status =
-        dea_yaml_override(ctx, design->document, overrides[i].key, overrides[i].value);
+        dea_yaml_override(ctx, *out, source->overrides[i].key, source->overrides[i].value);
     if (status != DEA_OK && status != DEA_E_DESIGN) {
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
   }
+  if (changes == NULL) {
+    return DEA_OK;
+  }
+  dea_status status = dea_yaml_merge(ctx, *out, changes);
+  if (status == DEA_E_DESIGN) { // a finding that is counted with the others
+    status = DEA_OK;
+  }
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
+/* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
+static dea_status read_raw(struct dea_context *ctx, const struct dea_design_source *source,
+                           const struct dea_node *changes, struct dea_design_raw *raw)
+{
+  struct dea_design *design = &raw->design;
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  design->file = dea_intern(ctx, source->name);
+  if (design->file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, parse(ctx, source, changes, &design->document));
   struct dea_reader reader = {ctx, design->document, &design->values};
   DEA_TRY(ctx,
           dea_schema_read(&reader, &dea_design_record, dea_yaml_root(design->document), "", raw));
@@ -238,7 +254,8 @@ static dea_status read_raw(struct dea_context *ctx, const char *name, const char
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {
-    return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", name, found, found > 1 ? "s" : "");
+    return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", source->name, found,
+                    found > 1 ? "s" : "");
   }
   return DEA_OK;
 }
@@ -246,22 +263,25 @@ static dea_status read_raw(struct dea_context *ctx, const char *name, const char
 /* Frees what a design owns, not the design. */
 static void clear_design(struct dea_context *ctx, struct dea_design *design)
 {
+  for (size_t i = 0; i < design->compute.compare_count; i++) {
+    dea_design_destroy(ctx, design->compute.compare[i].design);
+  }
   dea_free(ctx, design->compute.voltages_V);
   dea_free(ctx, design->materials);
   dea_listing_free(ctx, &design->values);
   dea_yaml_destroy(ctx, design->document);
 }
 
-dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
-                                  size_t length, const struct dea_override *overrides,
-                                  size_t override_count, struct dea_design **out)
+/* One design, without those that it compares itself with. */
+static dea_status read_one(struct dea_context *ctx, const struct dea_design_source *source,
+                           const struct dea_node *changes, struct dea_design **out)
 {
   *out = NULL;
   struct dea_design_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
   if (raw == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = read_raw(ctx, name, bytes, length, overrides, override_count, raw);
+  dea_status status = read_raw(ctx, source, changes, raw);
   if (status == DEA_OK) {
     *out = dea_alloc(ctx, 1, sizeof **out);
     status = *out != NULL ? DEA_OK : DEA_E_MEMORY;
@@ -273,6 +293,29 @@ dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, con
   }
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_design_read_changed(struct dea_context *ctx, const struct dea_design_source *source,
+                                   const struct dea_node *changes, struct dea_design **out)
+{
+  DEA_TRY(ctx, read_one(ctx, source, changes, out));
+  (*out)->compute.compare_count = 0; // they are those of the first design
+  return DEA_OK;
+}
+
+dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
+                                  size_t length, const struct dea_override *overrides,
+                                  size_t override_count, struct dea_design **out)
+{
+  const struct dea_design_source source = {name, bytes, length, overrides, override_count};
+  DEA_TRY(ctx, read_one(ctx, &source, NULL, out));
+  dea_status status = dea_design_read_variants(ctx, &source, *out);
+  if (status != DEA_OK) {
+    dea_design_destroy(ctx, *out);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
 }
 
 dea_status dea_design_read(struct dea_context *ctx, const char *file,

@@ -22,7 +22,10 @@ struct dea_design_raw {
 };
 
 /* Parts of the table that have files of their own; base as below. */
-extern const struct dea_record dea_force_record, dea_solid_record, dea_convergence_record;
+extern const struct dea_record dea_fibres_record, dea_force_record, dea_solid_record,
+    dea_convergence_record;
+/* base: a struct dea_design_variant. */
+extern const struct dea_record dea_compare_record;
 
 /* Table of a design file; base: a struct dea_design_raw. */
 extern const struct dea_record dea_design_record;

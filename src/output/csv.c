@@ -101,9 +101,38 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   return status;
 }
 
-static void add_profile(struct dea_text *text, const struct dea_profile_record *record)
+/* A name as one field: in quotes where it has a comma or quotes of its own. */
+static void add_name(struct dea_text *text, const char *name)
+{
+  bool quoted = strpbrk(name, ",\"\n") != NULL;
+  dea_text_add(text, "%s", quoted ? "\"" : "");
+  for (const char *c = name; *c != '\0'; c++) {
+    dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
+  }
+  dea_text_add(text, "%s", quoted ? "\"" : "");
+}
+
+/* Header of a table of profiles; first: what stands before the voltage. */
+static void add_profile_header(struct dea_text *text, const char *first)
+{
+  dea_text_add(text, "%sV (kV)", first);
+  for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
+    char title[96];
+    dea_column_title(&dea_profile_columns[c], title, sizeof title);
+    dea_text_add(text, ",%s", title);
+  }
+  dea_text_add(text, "\n");
+}
+
+/* name: in front of each line, "" for none. */
+static void add_profile(struct dea_text *text, const char *name,
+                        const struct dea_profile_record *record)
 {
   for (size_t i = 0; i < record->count; i++) {
+    if (name[0] != '\0') {
+      add_name(text, name);
+      dea_text_add(text, ",");
+    }
     add_number(text, record->voltage_V * 1e-3);
     for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
       dea_text_add(text, ",");
@@ -118,18 +147,12 @@ dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_resu
 {
   struct dea_text text = {.ctx = ctx};
   bool any = false;
-  dea_text_add(&text, "V (kV)");
-  for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-    char title[96];
-    dea_column_title(&dea_profile_columns[c], title, sizeof title);
-    dea_text_add(&text, ",%s", title);
-  }
-  dea_text_add(&text, "\n");
+  add_profile_header(&text, "");
   void *before = dea_c_locale_enter();
   for (size_t i = 0; i < result->profile_count; i++) {
     if (strcmp(result->profiles[i].model, model) == 0) {
       any = true;
-      add_profile(&text, &result->profiles[i]);
+      add_profile(&text, "", &result->profiles[i]);
     }
   }
   dea_c_locale_leave(before);
@@ -142,17 +165,6 @@ dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_resu
 
 // Variants ---------------------------------------------------------------------------------------
 
-/* A name as one field: in quotes where it has a comma or quotes of its own. */
-static void add_name(struct dea_text *text, const char *name)
-{
-  bool quoted = strpbrk(name, ",\"\n") != NULL;
-  dea_text_add(text, "%s", quoted ? "\"" : "");
-  for (const char *c = name; *c != '\0'; c++) {
-    dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
-  }
-  dea_text_add(text, "%s", quoted ? "\"" : "");
-}
-
 static void add_variant(struct dea_text *text, const bool *used, bool meshes,
                         const struct dea_variant *variant)
 {
@@ -164,7 +176,8 @@ static void add_variant(struct dea_text *text, const bool *used, bool meshes,
       dea_text_add(text, ",%zu,%zu,%zu,", variant->size.elements, variant->size.nodes,
                    variant->size.unknowns);
     }
-    dea_text_add(text, "%.6g,", variant->wall_s);
+    add_number(text, variant->wall_s);
+    dea_text_add(text, ",");
     add_point(text, used, &variant->curve.points[i]);
   }
 }
@@ -196,6 +209,29 @@ dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_resu
   char name[2 * DEA_NAME_SIZE + 8];
   snprintf(name, sizeof name, "%s_%s.csv", model, study);
   dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  return status;
+}
+
+dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                          const char *model, const char *study,
+                                          const char *directory)
+{
+  struct dea_text text = {.ctx = ctx};
+  bool any = false;
+  void *before = dea_c_locale_enter();
+  add_profile_header(&text, "name,");
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    if (dea_variant_is(variant, model, study) && variant->profile.count > 0) {
+      any = true;
+      add_profile(&text, variant->name, &variant->profile);
+    }
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 16];
+  snprintf(name, sizeof name, "%s_%s_profiles.csv", model, study);
+  dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
   dea_text_free(&text);
   return status;
 }

@@ -23,6 +23,11 @@ dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_resu
  * the variant in front. Nothing when the model has none. */
 dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, const char *study, const char *directory);
+/* Writes directory/MODEL_STUDY_profiles.csv: the profiles of all variants of a study, with name and
+ * voltage in front. Nothing when none has one. */
+dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                          const char *model, const char *study,
+                                          const char *directory);
 /* Writes directory/MODEL_convergence_errors.csv: a line a quantity, voltage and mesh, with the
  * estimated error in per cent, the order and the extrapolated value. Nothing without that study. */
 dea_status dea_csv_write_convergence(struct dea_context *ctx, const struct dea_result *result,

@@ -10,4 +10,6 @@
   X(surface)                                                                                       \
   X(section)                                                                                       \
   X(animation)                                                                                     \
-  X(convergence)
+  X(convergence)                                                                                   \
+  X(designs)                                                                                       \
+  X(design_profiles)

@@ -33,11 +33,18 @@ void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot)
     return;
   }
   for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
-    for (size_t s = 0; s < plot->panels[i].series_count; s++) {
-      dea_free(ctx, plot->panels[i].series[s].values);
-    }
+    dea_panel_clear(ctx, &plot->panels[i]);
   }
   dea_free(ctx, plot);
+}
+
+void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel)
+{
+  for (size_t s = 0; s < panel->series_count; s++) {
+    dea_free(ctx, panel->series[s].values);
+  }
+  panel->series_count = 0;
+  panel->says_unstable = false;
 }
 
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
@@ -318,7 +325,9 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
   }
   l.top_mm[0] = l.bottom_mm[0] + panel;
   const char *key = plot->panels[0].key;
-  double key_mm = strstr(key, "maxrows 3") != NULL ? 12.0 : 7.0;
+  const char *rows = strstr(key, "maxrows ");
+  int row_count = rows != NULL ? rows[strlen("maxrows ")] - '0' : 1;
+  double key_mm = row_count > 2 ? 4.0 * row_count : row_count == 2 ? 9.5 : 7.0;
   l.height_mm = l.top_mm[0] + (strncmp(key, "above", 5) == 0 ? key_mm : 3.0);
   return l;
 }

@@ -7,7 +7,7 @@
 
 enum {
   DEA_PLOT_PANELS_MAX = 2,
-  DEA_PANEL_SERIES_MAX = 24,
+  DEA_PANEL_SERIES_MAX = 48,
   DEA_PANEL_MARKS_MAX = 12,
   DEA_LABEL_SIZE = 128,
 };
@@ -82,6 +82,8 @@ void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot);
  * caller fills title, style, values. DEA_E_UNSUPPORTED when the panel is full. */
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                          struct dea_series **out);
+/* Takes all series away. */
+void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
 void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
 /* True when some series has a point to show. */

@@ -92,6 +92,8 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_%s_errors.csv", curve->model, curve->kind);
       forget(ctx, directory, name);
+      snprintf(name, sizeof name, "%s_%s_profiles.csv", curve->model, curve->kind);
+      forget(ctx, directory, name);
     }
     dea_run_destroy(ctx, old);
   }
@@ -114,6 +116,9 @@ static dea_status write_tables(struct dea_context *ctx, const struct dea_result 
   for (size_t m = 0; m < count; m++) {
     DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], directory));
     DEA_TRY(ctx, dea_csv_write_variants(ctx, result, models[m], "convergence", directory));
+    DEA_TRY(ctx, dea_csv_write_variants(ctx, result, models[m], "compare-design", directory));
+    DEA_TRY(ctx,
+            dea_csv_write_variant_profiles(ctx, result, models[m], "compare-design", directory));
     DEA_TRY(ctx, dea_csv_write_convergence(ctx, result, models[m], directory));
   }
   return DEA_OK;

@@ -179,37 +179,37 @@ static void get_curve(struct h5 *h, hid_t group, const struct entry *entry,
   }
 }
 
-/* Profile of a group; columns: what it lends from, owned by the caller, NULL after a failure. */
-static struct dea_profile get_columns(struct h5 *h, hid_t group, double **columns)
+/* Profile of a group; its columns are owned by the caller, NULL after a failure. */
+static struct dea_profile_record get_record(struct h5 *h, hid_t group)
 {
-  size_t n = get_count(h, group);
-  *columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof **columns);
-  if (*columns == NULL) {
+  struct dea_profile_record record = {.voltage_V = dea_h5_get_real(h, group, "voltage_V")};
+  size_t n = record.count = get_count(h, group);
+  record.columns = dea_alloc(h->ctx, DEA_PROFILE_COLUMNS * n, sizeof *record.columns);
+  if (record.columns == NULL) {
     h->status = DEA_E_MEMORY;
-    return (struct dea_profile){0};
+    return record;
   }
-  double *c = *columns;
   for (size_t k = 0; k < DEA_PROFILE_COLUMNS; k++) {
     const char *key = dea_profile_columns[k].key;
     for (size_t i = 0; i < n; i++) {
-      c[k * n + i] = NAN;
+      record.columns[k * n + i] = NAN;
     }
     if (k < 6 || dea_h5_has(h, group, key)) { // z came later: older files have none
-      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, c + k * n);
+      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, record.columns + k * n);
     }
   }
-  return (struct dea_profile){n, c, c + n, c + 2 * n, c + 3 * n, c + 4 * n, c + 5 * n, c + 6 * n};
+  return record;
 }
 
 static void get_profile(struct h5 *h, hid_t group, const struct entry *entry,
                         struct dea_result *result)
 {
-  double *columns, voltage_V = dea_h5_get_real(h, group, "voltage_V");
-  const struct dea_profile profile = get_columns(h, group, &columns);
+  const struct dea_profile_record record = get_record(h, group);
+  const struct dea_profile profile = dea_profile_of_record(&record);
   if (h->status == DEA_OK) {
-    h->status = dea_result_add_profile(h->ctx, result, entry->model, voltage_V, &profile);
+    h->status = dea_result_add_profile(h->ctx, result, entry->model, record.voltage_V, &profile);
   }
-  dea_free(h->ctx, columns);
+  dea_free(h->ctx, record.columns);
 }
 
 static void get_surface(struct h5 *h, hid_t group, const struct entry *entry,
@@ -221,12 +221,12 @@ static void get_surface(struct h5 *h, hid_t group, const struct entry *entry,
 static void get_variant_profile(struct h5 *h, hid_t group, struct dea_variant *variant)
 {
   hid_t inner = dea_h5_group_open(h, group, "profile");
-  double *columns, voltage_V = dea_h5_get_real(h, inner, "voltage_V");
-  const struct dea_profile profile = get_columns(h, inner, &columns);
+  const struct dea_profile_record record = get_record(h, inner);
+  const struct dea_profile profile = dea_profile_of_record(&record);
   if (h->status == DEA_OK) {
-    h->status = dea_variant_set_profile(h->ctx, variant, voltage_V, &profile);
+    h->status = dea_variant_set_profile(h->ctx, variant, record.voltage_V, &profile);
   }
-  dea_free(h->ctx, columns);
+  dea_free(h->ctx, record.columns);
   dea_h5_close(inner);
 }
 

@@ -103,9 +103,24 @@ static dea_status put_convergence(struct dea_context *ctx, const struct dea_resu
   return status;
 }
 
+static void put_designs(const struct dea_result *result, const char *model, json_t *parent)
+{
+  json_t *designs = NULL;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, "compare-design")) {
+      designs = designs != NULL ? designs : json_array();
+      json_array_append_new(designs, variant_json(&result->variants[i], true));
+    }
+  }
+  if (designs != NULL) {
+    json_object_set_new(parent, "designs", designs);
+  }
+}
+
 dea_status dea_summary_put_studies(struct dea_context *ctx, const struct dea_result *result,
                                    const char *model, json_t *object)
 {
   DEA_TRY(ctx, put_convergence(ctx, result, model, object));
+  put_designs(result, model, object);
   return DEA_OK;
 }

@@ -193,6 +193,13 @@ dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *
   return DEA_OK;
 }
 
+struct dea_profile dea_profile_of_record(const struct dea_profile_record *record)
+{
+  const double *c = record->columns;
+  size_t n = record->count;
+  return (struct dea_profile){n, c, c + n, c + 2 * n, c + 3 * n, c + 4 * n, c + 5 * n, c + 6 * n};
+}
+
 bool dea_variant_is(const struct dea_variant *variant, const char *model, const char *study)
 {
   return strcmp(variant->curve.model, model) == 0 && strcmp(variant->curve.kind, study) == 0;

@@ -114,6 +114,8 @@ dea_status dea_result_add_variant(struct dea_context *ctx, struct dea_result *re
 /* Copies the profile in place of the one that is there. */
 dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *variant,
                                    double voltage_V, const struct dea_profile *profile);
+/* The record's columns as a profile; lent from the record. */
+struct dea_profile dea_profile_of_record(const struct dea_profile_record *record);
 /* Whether a variant is one of that model and study. */
 bool dea_variant_is(const struct dea_variant *variant, const char *model, const char *study);
 /* Models of a result in the order of their first curve or variant; names lent. Returns the number.

@@ -5,4 +5,5 @@
   X(dea_study_path)                                                                                \
   X(dea_study_sweep)                                                                               \
   X(dea_study_force)                                                                               \
-  X(dea_study_convergence)
+  X(dea_study_convergence)                                                                         \
+  X(dea_study_compare_design)

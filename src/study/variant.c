@@ -1,5 +1,8 @@
 #include "study/variant.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 static double now_s(void)
@@ -25,16 +28,22 @@ static dea_status take_points(struct dea_context *ctx, const struct dea_model_ty
   return DEA_OK;
 }
 
+static void take_size(const struct dea_model_type *type, const struct dea_model *model,
+                      const struct dea_device *device, struct dea_variant *variant)
+{
+  if (type->size != NULL) {
+    type->size(model, &variant->size);
+    variant->refinement = device->solid_refinement;
+  }
+}
+
 /* All of one model. After a failure there are points, but no profile: the model may be anywhere. */
 static dea_status use_model(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_variant_run *run,
                             struct dea_variant *variant)
 {
   struct dea_profile profile;
-  if (type->size != NULL) {
-    type->size(model, &variant->size);
-    variant->refinement = run->device->solid_refinement;
-  }
+  take_size(type, model, run->device, variant);
   DEA_TRY(ctx, take_points(ctx, type, model, run, &variant->curve));
   if (type->profile != NULL && variant->curve.count > 0) {
     DEA_TRY(ctx, type->profile(ctx, model, &profile));
@@ -59,5 +68,40 @@ dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type 
   }
   variant->wall_s = now_s() - start_s;
   DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, status));
+  return DEA_OK;
+}
+
+/* The last profile of a model in the result; NULL when it has none. */
+static const struct dea_profile_record *last_profile(const struct dea_result *result,
+                                                     const char *model)
+{
+  for (size_t i = result->profile_count; i > 0; i--) {
+    if (strcmp(result->profiles[i - 1].model, model) == 0) {
+      return &result->profiles[i - 1];
+    }
+  }
+  return NULL;
+}
+
+dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_type *type,
+                                const struct dea_model *model, const char *study, const char *name,
+                                struct dea_result *result)
+{
+  const struct dea_curve *sweep = dea_result_find(result, type->name, "sweep");
+  const struct dea_profile_record *last = last_profile(result, type->name);
+  struct dea_variant *variant;
+  DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, study, name, &variant));
+  take_size(type, model, result->device, variant);
+  variant->wall_s = NAN;
+  for (size_t i = 0; i < sweep->count; i++) {
+    DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &sweep->points[i]));
+  }
+  if (last != NULL) {
+    const struct dea_profile profile = dea_profile_of_record(last);
+    DEA_TRY(ctx, dea_variant_set_profile(ctx, variant, last->voltage_V, &profile));
+  }
+  variant->curve.complete = sweep->complete;
+  variant->curve.status = sweep->status;
+  snprintf(variant->curve.stopped, sizeof variant->curve.stopped, "%s", sweep->stopped);
   return DEA_OK;
 }

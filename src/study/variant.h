@@ -18,4 +18,10 @@ struct dea_variant_run {
 dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_variant_run *run, struct dea_result *result);
 
+/* The same from the model's sweep in the result, without computing it again: its points, its end
+ * and the last profile of the model. model: that of the sweep. The time is NAN. */
+dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_type *type,
+                                const struct dea_model *model, const char *study, const char *name,
+                                struct dea_result *result);
+
 #endif

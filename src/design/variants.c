@@ -1,0 +1,81 @@
+/* Designs that a file sets beside its own: `compute.compare`. */
+#include "design/variants.h"
+
+#include "base/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Path of a file that is named in another one: it counts from that one's folder. */
+static char *path_beside(struct dea_context *ctx, const char *file, const char *name)
+{
+  const char *slash = strrchr(file, '/');
+  struct dea_text path = {.ctx = ctx};
+  dea_text_add(&path, "%.*s%s", slash != NULL && name[0] != '/' ? (int)(slash - file) + 1 : 0, file,
+               name);
+  return path.data;
+}
+
+static dea_status read_other_file(struct dea_context *ctx, const struct dea_design_source *source,
+                                  struct dea_design_variant *variant)
+{
+  char *bytes = NULL, *path = path_beside(ctx, source->name, variant->file.text);
+  struct dea_design_source other = *source;
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &bytes, &other.length);
+  if (status == DEA_E_IO) {
+    status =
+        dea_finding_add(ctx, DEA_ERROR, variant->file.place, "file: %s", dea_context_message(ctx));
+    status = status == DEA_OK ? DEA_E_DESIGN : status;
+  } else if (status == DEA_OK) {
+    other.name = path;
+    other.bytes = bytes;
+    status = dea_design_read_changed(ctx, &other, variant->set, &variant->design);
+  }
+  dea_free(ctx, bytes);
+  dea_free(ctx, path);
+  return status;
+}
+
+static dea_status check_name(struct dea_context *ctx, const struct dea_design *design, size_t i)
+{
+  const struct dea_label *name = &design->compute.compare[i].name;
+  if (strlen(name->text) >= DEA_NAME_SIZE || strchr(name->text, '/') != NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+                                 "name: at most %d characters, and no '/'", DEA_NAME_SIZE - 1));
+  }
+  for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
+    if (strcmp(design->compute.compare[k].name.text, name->text) == 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+                                   "the name '%.60s' stands twice in the list", name->text));
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_design_read_variants(struct dea_context *ctx, const struct dea_design_source *source,
+                                    struct dea_design *design)
+{
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  for (size_t i = 0; i < design->compute.compare_count; i++) {
+    struct dea_design_variant *variant = &design->compute.compare[i];
+    DEA_TRY(ctx, check_name(ctx, design, i));
+    dea_status status = DEA_OK;
+    if (variant->file.origin != DEA_ABSENT) {
+      status = read_other_file(ctx, source, variant);
+    } else if (variant->set != NULL) {
+      status = dea_design_read_changed(ctx, source, variant->set, &variant->design);
+    }
+    if (status != DEA_OK && status != DEA_E_DESIGN) {
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the designs that '%s' compares have %zu error%s",
+                    source->name, found, found > 1 ? "s" : "");
+  }
+  return DEA_OK;
+}
