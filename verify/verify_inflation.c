@@ -239,7 +239,7 @@ static double balloon_pressure(double stretch)
   return 2 * (1 / stretch - pow(stretch, -7));
 }
 
-static void balloon_rows(double H, size_t count)
+static void balloon_rows(double H, size_t count, int closer)
 {
   struct shell balloon = balloon_create(H, count);
   dea_status status = DEA_OK;
@@ -256,7 +256,7 @@ static void balloon_rows(double H, size_t count)
              100 * verify_relative("balloon", top, balloon_pressure(stretch), 1e-2), modes);
     }
   }
-  for (int i = 0; i < 2; i++) { // closer to the limit than a sixty-fourth of the last step
+  for (int i = 0; i < closer; i++) { // closer to the limit than a sixty-fourth of the last step
     double reached = dea_pressure_get(balloon.pressure) / H;
     status = inflate(&balloon, reached + (i == 0 ? 4e-3 : 1e-4), &modes);
     top = dea_pressure_get(balloon.pressure) / H;
@@ -298,9 +298,9 @@ int main(int argc, char **argv)
       "last equilibrium found.\n\n"
       "| H/R | nodes | stretch | p R/(mu H) | exact | difference | unstable modes |\n"
       "|---|---|---|---|---|---|---|");
-  balloon_rows(0.01, 2);
+  balloon_rows(0.01, 2, small ? 0 : 2);
   if (!small) {
-    balloon_rows(0.01, 4);
+    balloon_rows(0.01, 4, 2);
   }
   dea_solid_stop();
   dea_context_destroy(ctx);
