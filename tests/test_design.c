@@ -263,13 +263,15 @@ static void test_taper_and_free_end(void **state)
   const struct dea_override sets[] = {
       {"fibres.width", "3 mm"},         {"fibres.tip_width", "1 mm"},
       {"fibres.outer_end", "free"},     {"fibres.outer_gap", "2 mm unstretched"},
-      {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"}};
-  read_good(GOOD_DESIGN, sets, 6);
+      {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"},
+      {"compute.solid.side", "fibres"}};
+  read_good(GOOD_DESIGN, sets, 7);
   assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
   assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
   assert_int_equal(device->solid_domain, DEA_DOMAIN_DISC);
   assert_int_equal(device->solid_film, DEA_FILM_SOLID);
+  assert_int_equal(device->solid_side, DEA_SIDE_FIBRES);
   assert_close(device->solid_refinement, 2.5, 0, 0);
 }
 

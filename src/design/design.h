@@ -26,6 +26,7 @@ enum dea_fields_of { DEA_FIELDS_WHOLE, DEA_FIELDS_SECTOR };
 enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
 enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
+enum dea_solid_side { DEA_SIDE_ANY, DEA_SIDE_FIBRES, DEA_SIDE_BACK }; // of the centre
 
 struct dea_design;
 
@@ -105,6 +106,7 @@ struct dea_design {
     struct dea_quantity coverage;     // R itself; absent: from coverage_by
     struct {                          // model 3d
       struct dea_choice film, domain; // enum dea_solid_film, enum dea_solid_domain
+      struct dea_choice side;         // enum dea_solid_side
       struct dea_quantity refinement; // 1: the coarsest mesh; one more halves all sizes
     } solid;
   } compute;

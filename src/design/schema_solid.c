@@ -5,9 +5,10 @@
 
 #define AT(member) offsetof(struct dea_design_raw, design.compute.solid.member)
 
-// In the order of enum dea_solid_film and enum dea_solid_domain.
+// In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_solid_side.
 static const char *const films[] = {"solid", "membrane", NULL};
 static const char *const domains[] = {"sector", "disc", NULL};
+static const char *const sides[] = {"any", "fibres", "back", NULL};
 
 static const struct dea_field fields[] = {
     {.key = "film",
@@ -36,6 +37,15 @@ static const struct dea_field fields[] = {
      .default_text = "1",
      .doc = "fineness of the mesh: 1 is a preview, each one more halves all sizes in the plane",
      .example = "1.5"},
+    {.key = "side",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(side),
+     .choices = sides,
+     .default_text = "any",
+     .doc =
+         "side of the centre where a film without tension may buckle to either one; any: the one "
+         "that follows from 0 V",
+     .example = "fibres"},
 };
 
 const struct dea_record dea_solid_record = {"solid", "mesh of model 3d", fields,

@@ -24,6 +24,13 @@ dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *solid, siz
 dea_status dea_solid_leave(struct dea_context *ctx, struct dea_solid *solid, int side,
                            struct dea_solid_report *report);
 
+/* Looks for another equilibrium at the same voltage and loads: down from displacements + push_m
+ * [node_count][3] (what is held stays), to a stable one that is accepted. Where that finds none the
+ * solid stays where it was, *found is false and *report as it was. */
+dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
+                          bool (*accept)(const void *self, const double *displacement_m),
+                          const void *self, struct dea_solid_report *report, bool *found);
+
 /* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
 void dea_solid_stay(struct dea_solid *solid, bool stay);
 

@@ -76,23 +76,28 @@ static dea_status go_near(struct dea_context *ctx, struct dea_solid_trace *t,
   return status;
 }
 
-/* Regula falsi, with the older end's value halved while it stays (Illinois). */
+/* Regula falsi, with the older end's value halved while it stays (Illinois). A value between the
+ * two ends that is larger than at both is that of a K which is singular to rounding: there it is.
+ */
 static dea_status close_in(struct dea_context *ctx, struct dea_solid_trace *t, struct bracket *b)
 {
-  double first = fmax(fabs(b->value[0]), fabs(b->value[1])), value, before = -1;
+  double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
+  double value, before = -1;
   double enough = t->event == DEA_TRACE_LIMIT ? limit_near : bifurcation_near;
   int stays = -1;
   for (int i = 0; i < ROUNDS_MAX; i++) {
     double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
     DEA_TRY(ctx, go_near(ctx, t, b, &share));
     DEA_TRY(ctx, measure(ctx, t, b, &value));
-    if (fabs(share - before) < enough || fabs(value) < flat_enough * first) {
+    if (fabs(share - before) < enough || fabs(value) < flat_enough * first ||
+        fabs(value) > fmax(seen[0], seen[1])) {
       return DEA_OK;
     }
     before = share;
     int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
     b->at[end] = share;
     b->value[end] = value;
+    seen[end] = fabs(value);
     if (stays == 1 - end) {
       b->value[1 - end] /= 2;
     }

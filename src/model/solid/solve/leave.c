@@ -1,4 +1,5 @@
-/* From an unstable equilibrium down to a stable one (docs/theory/branches.md). */
+/* From an unstable equilibrium down to a stable one, and from a stable one to another
+ * (docs/theory/branches.md). */
 #include "model/solid/solve/branch.h"
 #include "model/solid/solve/internal.h"
 
@@ -110,6 +111,47 @@ dea_status dea_solid_leave_from(struct dea_context *ctx, struct dea_solid *s, in
     }
   }
   dea_free(ctx, mode);
+  dea_free(ctx, state);
+  return status;
+}
+
+/* dea_solid_push from state, which is that of the solid. */
+static dea_status push_down(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
+                            struct dea_solid_report *report)
+{
+  memset(s->step, 0, s->dofs * sizeof *s->step);
+  memcpy(s->step, push_m, 3 * s->grid->node_count * sizeof *s->step);
+  dea_solid_release_held(s, s->step);
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->u[i] += s->step[i];
+  }
+  s->factor_fits = false;
+  *report = (struct dea_solid_report){.way = 1};
+  DEA_TRY(ctx, dea_solid_settle_down(ctx, s, report));
+  return DEA_OK;
+}
+
+dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
+                          bool (*accept)(const void *self, const double *displacement_m),
+                          const void *self, struct dea_solid_report *report, bool *found)
+{
+  struct dea_solid_report before = *report;
+  *found = false;
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_solid_path_prepare(ctx, s)));
+  double *state = dea_alloc(ctx, s->path.state_count, sizeof *state);
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, state != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_solid_state_get(s, state);
+  dea_status status = push_down(ctx, s, push_m, report);
+  *found = status == DEA_OK && report->unstable_modes == 0 && accept(self, s->u);
+  if (!*found) {
+    dea_solid_state_set(s, state);
+    *report = before;
+    s->factor_fits = s->predicted_fits = false;
+  }
+  if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
   dea_free(ctx, state);
   return status;
 }

@@ -5,6 +5,7 @@
 #include "model/solid/line_profile.h"
 #include "model/solid/solve/fields.h"
 #include "model/solid/solve/press.h"
+#include "model/solid/solve/side.h"
 #include "model/solid/solve/state.h"
 
 #include <math.h>
@@ -176,6 +177,26 @@ static dea_status say_snap(struct dea_context *ctx, const struct dea_model *mode
   return DEA_OK;
 }
 
+/* To the side that the design asks for, where there is a state. */
+static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
+{
+  bool moved;
+  double before_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
+  if (model->press != NULL || model->voltage_V == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_side_take(ctx, model->solid, model->grid, &model->actuator.plate, model->centre,
+                             model->device->solid_side, &model->report, &moved));
+  if (moved) {
+    double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                                 "model 3d: at %.4g kV the centre goes over from %.4g to %.4g um "
+                                 "(compute.solid.side)",
+                                 1e-3 * model->voltage_V, 1e6 * before_m, 1e6 * after_m));
+  }
+  return DEA_OK;
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -195,6 +216,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
     }
     model->voltage_V = next;
     DEA_TRY(ctx, say_snap(ctx, model));
+    DEA_TRY(ctx, take_side(ctx, model));
   }
   DEA_TRY(ctx, report(ctx, model, out));
   return DEA_OK;
