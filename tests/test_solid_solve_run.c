@@ -97,6 +97,12 @@ static void test_preview(void **state)
   const json_t *last = json_array_get(json_object_get(root, "points"), 1);
   assert_close(number(last, "electrode_edge_u_m"), 0.245e-3, 1e-2, 0);
   assert_close(number(last, "fibre_tip_z_m"), -22.5e-6, 3e-2, 0);
+  int said = 0;
+  const json_t *notes = json_object_get(root, "notes");
+  for (size_t i = 0; i < json_array_size(notes); i++) {
+    said += strstr(json_string_value(json_array_get(notes, i)), "is a preview") != NULL;
+  }
+  assert_int_equal(said, 1);
   json_decref(root);
   command_read("preview/fields/3d_0001.vtu", command_out);
   assert_contains(command_out, "tension_N_per_m");

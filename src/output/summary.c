@@ -132,6 +132,20 @@ static json_t *provenance_json(const struct dea_provenance *p)
   return object;
 }
 
+/* What was said of the design and its models so far, errors aside. */
+static json_t *notes_json(const struct dea_context *ctx)
+{
+  json_t *notes = json_array();
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity != DEA_ERROR) { // text that is not UTF-8 is left out
+      json_array_append_new(notes, json_string(findings[i].text));
+    }
+  }
+  return notes;
+}
+
 dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *result, char **out)
 {
   json_t *root = json_object();
@@ -158,6 +172,7 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
     *out = NULL;
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
+  json_object_set_new(root, "notes", notes_json(ctx));
   json_object_set_new(root, "provenance", provenance_json(&result->provenance));
   return dea_json_text(ctx, root, out);
 }
