@@ -69,6 +69,12 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
                                  p->fibres > 0 ? "10 to 20 % off the solid film at the fibre tip; "
                                                : ""));
   }
+  if (p->membrane && model->device->pre_stretch <= 1) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+                                 "a membrane film without pre-stretch is slack under any voltage: "
+                                 "nothing will move, where a solid film buckles "
+                                 "(compute.solid.film: solid)"));
+  }
   return DEA_OK;
 }
 
