@@ -99,6 +99,11 @@ static void test_four_fibres_as_built(void **state)
   }
   assert_true(before.fibre_tip_z_m > -0.19e-3 && before.fibre_tip_z_m < -0.10e-3);
   solid->destroy(ctx, model);
+
+  device.solid_refinement = 2;
+  struct dea_load_point finer = solve_once(&device, 6e3);
+  assert_close(finer.fibre_tip_z_m, -42.3e-6, 3e-2, 0);
+  assert_close(finer.centre_z_m, -31.3e-6, 3e-2, 0);
 }
 
 /* Also stress-free, where nothing holds the film out of its plane. The capacitance is eps A/h, A
