@@ -156,7 +156,7 @@ static void check_beside_solid(const struct dea_device *device, double of_edge)
   for (int film = 0; film < 2; film++) {
     with.solid_film = film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
     struct dea_model *model = create(&with);
-    struct dea_load_point rest = solve(model, 0), point = solve(model, 3e3);
+    struct dea_load_point rest = solve(model, 0), point = solve(model, 2e3);
     tip[film] = point.fibre_tip_z_m - rest.fibre_tip_z_m;
     edge[film] = point.electrode_edge_u_m - rest.electrode_edge_u_m;
     capacitance[film] = point.capacitance_F / rest.capacitance_F;
@@ -222,7 +222,7 @@ static void test_probe(void **state)
     for (int side = 0; side < 2; side++) {
       const struct dea_probe probe = {
           .shape = DEA_PROBE_SPHERE, .radius_m = 1.5e-3, .from_fibre_side = side == 1};
-      struct dea_device device = membrane(4);
+      struct dea_device device = membrane(0);
       struct dea_load_point point;
       device.solid_film = film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
       struct dea_model *model = create(&device);
