@@ -3,7 +3,7 @@
 // ctest: solid
 #include "model/solid/grid.h"
 #include "model/solid/solve/branch.h"
-#include "testing.h"
+#include "solid_block.h"
 
 #include "context_fixture.h"
 
@@ -204,6 +204,49 @@ static void test_modes_of_a_clamped_strip(void **state)
   destroy();
 }
 
+static const struct block plate = {{1, 1, 0.01}, {4, 4, 1}, 3, 2};
+
+static int clamped_around(const void *self, const double X[3])
+{
+  (void)self;
+  bool inside = X[0] > 1e-9 && X[0] < 1 - 1e-9 && X[1] > 1e-9 && X[1] < 1 - 1e-9;
+  return inside ? 0 : 7;
+}
+
+/* Bending of a clamped square plate: lambda = (E h^2/12) (36.0/a^2)^2, and (73.4/a^2)^2 twice
+ * (Leissa 1969, with Poisson's ratio 0 as with any): eigenvalues that come twice are both found. */
+static void test_modes_of_a_square_plate(void **state)
+{
+  (void)state;
+  enum { COUNT = 4 };
+  const double h = plate.size[2], D = 2 * mu * h * h / 12;
+  const struct dea_layer layer = {.lame_mu_Pa = mu};
+  double value[COUNT];
+  grid = block_grid(ctx, &plate);
+  solid = block_solid(ctx, grid, plate.order_z, &layer, clamped_around);
+  double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
+  assert_non_null(vector);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_solid_modes(ctx, solid, COUNT, value, vector), DEA_OK);
+  assert_close(value[0], D * 35.99 * 35.99, 3e-2, 0);
+  assert_close(value[1], D * 73.41 * 73.41, 3e-2, 0);
+  assert_close(value[2], value[1], 1e-7, 0);
+  assert_close(value[3], D * 108.3 * 108.3, 4e-2, 0);
+  double product = 0; // of the two, which have to be independent
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    product += vector[3 * grid->node_count + i] * vector[6 * grid->node_count + i];
+  }
+  double size = 0;
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    size += vector[3 * grid->node_count + i] * vector[3 * grid->node_count + i];
+  }
+  assert_close(product / size, 0, 0, 0.5);
+  assert_int_equal(dea_solid_modes(ctx, solid, 2, value, NULL), DEA_OK);
+  assert_close(value[1], D * 73.41 * 73.41, 3e-2, 0);
+  dea_free(ctx, vector);
+  destroy();
+}
+
 static int start(void **state)
 {
   return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
@@ -213,6 +256,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_modes_of_a_clamped_strip),
+      cmocka_unit_test(test_modes_of_a_square_plate),
       cmocka_unit_test(test_strip_buckles_at_eulers_strain),
       cmocka_unit_test(test_both_sides_of_the_pitchfork),
       cmocka_unit_test(test_a_solve_leaves_what_is_unstable),

@@ -60,6 +60,25 @@ static void test_model_goes_to_the_side_asked_for(void **state)
   assert_close(up[1].centre_z_m, -any[1].centre_z_m, 5e-2, 0);
 }
 
+/* Without fibres the film is flat, up to a voltage between 400 and 500 V; just beyond it the energy
+ * of the buckled film is lower by a part in 10^7 only. */
+static void test_onset_without_fibres(void **state)
+{
+  (void)state;
+  struct dea_device flat = slack();
+  struct dea_load_point below, above;
+  struct dea_model *model;
+  flat.fibre_count = 0;
+  assert_int_equal(dea_solid_module.create(ctx, &flat, &model), DEA_OK);
+  assert_int_equal(dea_solid_module.solve(ctx, model, 400, &below), DEA_OK);
+  assert_int_equal(below.unstable_modes, 0);
+  assert_close(below.centre_z_m, 0, 0, 1e-9);
+  assert_int_equal(dea_solid_module.solve(ctx, model, 500, &above), DEA_OK);
+  assert_int_equal(above.unstable_modes, 0);
+  assert_true(fabs(above.centre_z_m) > 1e-5);
+  dea_solid_module.destroy(ctx, model);
+}
+
 /* ---- paths ---- */
 
 static struct dea_device device;
@@ -192,6 +211,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_model_goes_to_the_side_asked_for),
+      cmocka_unit_test(test_onset_without_fibres),
       cmocka_unit_test(test_path_from_rest_goes_down),
       cmocka_unit_test(test_other_arm_ends_at_a_limit_point),
   };

@@ -5,11 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-enum { ITERATIONS_MAX = 15, FAR = 4 };
+enum { ITERATIONS_MAX = 15 };
 
-static const double residual_small = 1e-9; // of the sum of element forces
+static const double residual_small = 1e-8; // of the sum of element forces: what kappa leaves
+static const double harder = 16;           // kappa on the way
 static const double step_small = 1e-10;    // of the solid's length
-static const double difference = 1e-5;     // of tau, for the force by tau
+static const double plane_small = 1e-9;    // of the distance to the plane
+static const double theta_small = 1e-2 * DEA_SOLID_THETA_SMALL; // kappa theta is no pressure then
+static const double difference = 1e-5;                          // of tau, for the force by tau
 
 dea_status dea_trace_load(struct dea_context *ctx, struct dea_solid_trace *t, double tau)
 {
@@ -82,20 +85,30 @@ dea_status dea_trace_look(struct dea_context *ctx, struct dea_solid_trace *t, in
   return DEA_OK;
 }
 
+/* What the plane's equation is off by. */
+static double off_plane(const struct dea_solid_trace *t)
+{
+  const struct dea_trace_plane *plane = &t->plane;
+  double off = plane->load * (t->load - plane->tau0) - plane->length;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    off += plane->weight[i] * (t->s->u[i] - plane->u0[i]);
+  }
+  return off;
+}
+
 /* s->step and *dtau: the Newton step of g = 0 and of the plane's equation, with K factorised. */
 static dea_status bordered(struct dea_context *ctx, struct dea_solid_trace *t, double *dtau)
 {
   struct dea_solid *s = t->s;
   const struct dea_trace_plane *plane = &t->plane;
-  double off = plane->load * (t->load - plane->tau0) - plane->length;
-  double along = plane->load;
+  double off = off_plane(t), along = plane->load;
   DEA_TRY(ctx, displacement_rate(ctx, t));
   for (size_t i = 0; i < s->dofs; i++) {
     s->trial[i] = -s->g[i];
   }
   DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
   for (size_t i = 0; i < s->dofs; i++) {
-    off += plane->weight[i] * (s->u[i] + s->step[i] - plane->u0[i]);
+    off += plane->weight[i] * s->step[i];
     along += plane->weight[i] * t->rate[i];
   }
   if (along == 0) {
@@ -108,41 +121,55 @@ static dea_status bordered(struct dea_context *ctx, struct dea_solid_trace *t, d
   return DEA_OK;
 }
 
-/* One iteration. stresses: whether the next one predicts them. *size: largest displacement. */
-static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, bool stresses,
-                          double *residual, double *theta, double *size)
+/* One iteration, unless *there: it is at an equilibrium in the plane. *small: the step was. */
+static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, double *residual,
+                          bool *there, bool *small)
 {
   struct dea_solid *s = t->s;
-  double dtau = 0;
+  double dtau = 0, size = 0;
   int negative;
   DEA_TRY(ctx, force_rate(ctx, t));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &t->energy_J));
   *residual = sqrt(dea_solid_dot(s, s->g, s->g)) / (s->force_scale > 0 ? s->force_scale : 1);
-  *theta = dea_solid_theta_max(s);
+  bool constrained = dea_solid_theta_max(s) < theta_small;
+  *there = constrained && *residual < residual_small &&
+           fabs(off_plane(t)) < plane_small * fabs(t->plane.length);
+  if (*there) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered(ctx, t, &dtau));
-  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, stresses, true));
-  *size = 0;
+  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, true, true));
   for (size_t i = 0; i < s->dofs; i++) {
     s->u[i] += s->step[i];
-    *size = fmax(*size, fabs(s->step[i]));
+    size = fmax(size, fabs(s->step[i]));
   }
+  *small = constrained && size < step_small * s->length_m;
   DEA_TRY(ctx, dea_trace_load(ctx, t, t->load + dtau));
   return DEA_OK;
 }
 
-dea_status dea_trace_correct(struct dea_context *ctx, struct dea_solid_trace *t, int *iterations)
+/* With a large kappa, multipliers that are pressures and predicted stresses this is Newton's
+ * method on displacements, pressures and load. */
+static dea_status newton(struct dea_context *ctx, struct dea_solid_trace *t, int *iterations)
 {
-  struct dea_solid *s = t->s;
-  double residual = 0, theta = 0, size = 0;
+  double residual = 0;
   for (*iterations = 1; *iterations <= ITERATIONS_MAX; ++*iterations) {
-    DEA_TRY(ctx, iterate(ctx, t, *iterations < FAR, &residual, &theta, &size));
-    bool there = *iterations > 1 && theta < DEA_SOLID_THETA_SMALL &&
-                 (residual < residual_small || size < step_small * s->length_m);
-    if (there && dea_solid_update_loads(s) <= 1) {
+    bool there = false, small = false;
+    DEA_TRY(ctx, iterate(ctx, t, &residual, &there, &small));
+    if ((there || (small && *iterations > 1)) && dea_solid_update_loads(t->s) <= 1) {
       return DEA_OK;
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium in the plane (residual %.1e)",
                   residual);
+}
+
+dea_status dea_trace_correct(struct dea_context *ctx, struct dea_solid_trace *t, int *iterations)
+{
+  dea_solid_change_kappa(t->s, harder);
+  dea_status status = newton(ctx, t, iterations);
+  dea_solid_change_kappa(t->s, 1 / harder);
+  t->s->predicted_fits = false;
+  return status;
 }

@@ -198,10 +198,11 @@ dea_status dea_solid_settle_down(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report);
 /* Moves the multipliers of the loads; the largest violation over what is allowed. */
 double dea_solid_update_loads(struct dea_solid *s);
-/* kappa so large that the solid is as good as incompressible, at the same pressures; s->theta has
- * to belong to s->u. Back: the same, or, with multipliers that are pressures by themselves, kappa
- * only.
- */
+/* Another kappa of all layers with a law, factor (a power of 2) times the present one. */
+void dea_solid_change_kappa(struct dea_solid *s, double factor);
+/* kappa so large that the solid is as good as incompressible, at the same pressures, and back;
+ * s->theta has to belong to s->u. soften: back with multipliers that are the pressures by
+ * themselves. */
 void dea_solid_stiffen(struct dea_solid *s);
 void dea_solid_unstiffen(struct dea_solid *s);
 void dea_solid_soften(struct dea_solid *s);
@@ -210,7 +211,13 @@ void dea_solid_soften(struct dea_solid *s);
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);
 /* One unstable mode at the equilibrium [3 node_count]: the lowest unless more than DEA_MODES_MAX
  * are. */
-dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *vector);
+dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
+                                   double *vector);
+/* From an unstable equilibrium to the next one on the path of a force along its unstable mode
+ * [3 node_count] of that value: it holds back at first and comes to nothing again. side: 1 or -1.
+ */
+dea_status dea_solid_pull(struct dea_context *ctx, struct dea_solid *s, int side, double value,
+                          const double *mode, struct dea_solid_report *report);
 /* dea_solid_leave at an unstable equilibrium that *report speaks of. */
 dea_status dea_solid_leave_from(struct dea_context *ctx, struct dea_solid *s, int side,
                                 struct dea_solid_report *report);

@@ -6,11 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS_MAX = 4, SIZES_MAX = 4 };
+enum { STEPS_MAX = 4 };
 
 static const double push_first = 0.05; // of the solid's length
-static const double push_up = 4;
-static const double equal = 1e-6; // two energies, relative to how far they fell
+static const double equal = 1e-6;      // two energies, relative to how far they fell
 
 void dea_solid_stay(struct dea_solid *solid, bool stay)
 {
@@ -32,51 +31,80 @@ static double energy_beside(struct dea_context *ctx, struct dea_solid *s, const 
              : INFINITY;
 }
 
-/* The push in metres of the largest displacement, with its sign; 0 when no side goes down. */
+/* A push along the mode, with its sign, whose largest displacement is `metres` or less where that
+ * is needed to go down, and more as long as that goes down further; 0 when no side goes down. */
 static double choose_push(struct dea_context *ctx, struct dea_solid *s, const double *u,
                           const double *mode, double metres, int side, double energy)
 {
-  double most = 0;
+  double most = 0, push = 0, lowest = energy;
   for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
     most = fmax(most, fabs(mode[i]));
   }
-  for (double size = metres / most; size > 1e-4 * metres / most; size /= 2) {
+  for (double size = metres / most; push == 0 && size > 1e-4 * metres / most; size /= 2) {
     double up = side >= 0 ? energy_beside(ctx, s, u, mode, size) : INFINITY;
     double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
-    if (fmin(up, down) < energy) {
-      bool along = up <= down + equal * fabs(energy - down);
-      return along ? size : -size;
+    lowest = fmin(up, down);
+    if (lowest < energy) {
+      push = up <= down + equal * fabs(energy - down) ? size : -size;
     }
   }
-  return 0;
+  double next = push != 0 ? energy_beside(ctx, s, u, mode, 2 * push) : INFINITY;
+  while (next < lowest) {
+    lowest = next;
+    push *= 2;
+    next = energy_beside(ctx, s, u, mode, 2 * push);
+  }
+  return push;
 }
 
-/* One mode after the other until none is unstable. state: that of the first equilibrium. */
-static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
-                          const double *state, struct dea_solid_report *report)
+/* One step down along the lowest mode: a push, or on the path of a force. */
+static dea_status go_down(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
+                          double *mode, struct dea_solid_report *report)
 {
-  double metres = push_first * s->length_m, energy = report->energy_J;
-  for (int i = 0; i < SIZES_MAX; i++, metres *= push_up) {
-    int modes = report->unstable_modes;
-    for (int k = 0; k < STEPS_MAX && modes > 0; k++) {
-      DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, mode));
-      double push = choose_push(ctx, s, s->u, mode, metres, k == 0 ? side : 0, report->energy_J);
-      if (push == 0) {
-        break;
-      }
-      energy_beside(ctx, s, s->u, mode, push);
-      memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
-      s->factor_fits = false;
-      DEA_TRY(ctx, dea_solid_settle_down(ctx, s, report));
-      modes = report->unstable_modes;
-    }
-    if (modes == 0 && report->energy_J <= energy) {
-      return DEA_OK;
-    }
-    dea_solid_state_set(s, state); // it came back: a larger push
-    DEA_TRY(ctx, dea_solid_settle_down(ctx, s, report));
+  double value;
+  DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
+  double push = choose_push(ctx, s, s->u, mode, push_first * s->length_m, side, report->energy_J);
+  if (push == 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "an unstable mode without a way down");
   }
-  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no way down from an unstable equilibrium was found");
+  s->factor_fits = false;
+  if (pull) {
+    DEA_TRY(ctx, dea_solid_pull(ctx, s, push > 0 ? 1 : -1, value, mode, report));
+    return DEA_OK;
+  }
+  energy_beside(ctx, s, s->u, mode, push);
+  memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
+  DEA_TRY(ctx, dea_solid_settle_down(ctx, s, report));
+  return DEA_OK;
+}
+
+/* Until no mode is unstable and the energy is lower. */
+static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
+                          double *mode, struct dea_solid_report *report)
+{
+  double energy = report->energy_J;
+  for (int k = 0; k < STEPS_MAX && report->unstable_modes > 0; k++) {
+    DEA_TRY(ctx, go_down(ctx, s, k == 0 ? side : 0, pull, mode, report));
+  }
+  return report->unstable_modes == 0 && report->energy_J <= energy
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no way down from an unstable equilibrium");
+}
+
+/* First by pushes; where those come back or do not end, by forces. state: where it starts. */
+static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
+                           const double *state, struct dea_solid_report *report)
+{
+  const struct dea_solid_report before = *report;
+  dea_status status = descend(ctx, s, side, false, mode, report);
+  if ((status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) && s->field == NULL) {
+    dea_context_clear(ctx);
+    dea_solid_state_set(s, state);
+    s->factor_fits = s->predicted_fits = false;
+    *report = before;
+    status = descend(ctx, s, side, true, mode, report);
+  }
+  return status;
 }
 
 dea_status dea_solid_leave(struct dea_context *ctx, struct dea_solid *s, int side,
@@ -101,7 +129,7 @@ dea_status dea_solid_leave_from(struct dea_context *ctx, struct dea_solid *s, in
   if (status == DEA_OK) {
     struct dea_solid_report before = *report;
     dea_solid_state_get(s, state);
-    status = descend(ctx, s, side, mode, state, report);
+    status = try_both(ctx, s, side, mode, state, report);
     if (status == DEA_OK) {
       report->snapped = true;
     } else {

@@ -212,7 +212,7 @@ static dea_status find(struct dea_context *ctx, struct dea_solid *s, struct lanc
                         negative + positive);
 }
 
-static void change_kappa(struct dea_solid *s, double factor)
+void dea_solid_change_kappa(struct dea_solid *s, double factor)
 {
   for (size_t k = 0; k < s->layer_count; k++) {
     s->layers[k].kappa_Pa *= factor;
@@ -232,18 +232,18 @@ static void keep_pressures(struct dea_solid *s, double factor)
 void dea_solid_stiffen(struct dea_solid *s)
 {
   keep_pressures(s, stiffer);
-  change_kappa(s, stiffer);
+  dea_solid_change_kappa(s, stiffer);
 }
 
 void dea_solid_soften(struct dea_solid *s)
 {
-  change_kappa(s, 1 / stiffer);
+  dea_solid_change_kappa(s, 1 / stiffer);
 }
 
 void dea_solid_unstiffen(struct dea_solid *s)
 {
   keep_pressures(s, 1 / stiffer);
-  change_kappa(s, 1 / stiffer);
+  dea_solid_change_kappa(s, 1 / stiffer);
 }
 
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
@@ -326,12 +326,12 @@ dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s, size_t 
   return DEA_OK;
 }
 
-dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *vector)
+dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
+                                   double *vector)
 {
-  double value;
   int negative;
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
   size_t wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : (size_t)negative;
-  DEA_TRY(ctx, modes(ctx, s, wanted, 1, &value, vector));
+  DEA_TRY(ctx, modes(ctx, s, wanted, 1, value, vector));
   return DEA_OK;
 }

@@ -6,9 +6,10 @@
 
 enum { ATTEMPTS_MAX = 16, ITERATIONS_MANY = 8 };
 
-static const double off_most = 0.5; // distance of a point from its prediction, over the step
-static const double off_good = 0.1; // the one that steps aim at
-static const double least = 1e-6;   // step over the first one
+static const double off_most = 0.3;    // distance of a point from its prediction, over the step
+static const double bend_least = 0.02; // of a unit tangent: below which it is an arc
+static const double off_good = 0.08;   // the one that steps aim at
+static const double least = 1e-6;      // step over the first one
 
 double dea_trace_size(const struct dea_solid_trace *t, const double *du)
 {
@@ -99,7 +100,34 @@ static double distance(struct dea_solid_trace *t, const double *predicted, doubl
   return sqrt(sum);
 }
 
-/* A point at t->step; *off: how far from the prediction, over the step. */
+static enum dea_trace_event event_between(const struct dea_trace_place *a,
+                                          const struct dea_trace_place *b)
+{
+  if (a->slope * b->slope < 0) {
+    return DEA_TRACE_LIMIT;
+  }
+  return a->modes != b->modes ? DEA_TRACE_BIFURCATION : DEA_TRACE_NOTHING;
+}
+
+/* How far the tangent at t->next is from that of the circle through both points with the tangent at
+ * t->last: 0 for an arc, twice the distance from the prediction for a parallel path. t->rate
+ * belongs to t->next. */
+static double bend(const struct dea_solid_trace *t)
+{
+  double chord_load = t->next.load - t->last.load, size = chord_load * chord_load;
+  double tangents = t->tangent_load, first = chord_load * t->tangent_load, second = chord_load;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    double chord = t->next.state[i] - t->last.state[i];
+    size += t->metric[i] * chord * chord;
+    first += t->metric[i] * chord * t->tangent[i];
+    second += t->metric[i] * chord * t->rate[i];
+    tangents += t->metric[i] * t->tangent[i] * t->rate[i];
+  }
+  double square = 2 + 2 * t->next.slope * tangents - 4 * first * t->next.slope * second / size;
+  return sqrt(fmax(square, 0));
+}
+
+/* A point at t->step into t->next; *off: how far from the prediction, over the step. */
 static dea_status attempt(struct dea_context *ctx, struct dea_solid_trace *t, double *off,
                           int *iterations)
 {
@@ -117,17 +145,29 @@ static dea_status attempt(struct dea_context *ctx, struct dea_solid_trace *t, do
   t->plane.length = t->step;
   DEA_TRY(ctx, dea_trace_correct(ctx, t, iterations));
   *off = distance(t, t->start, tau) / t->step;
-  return *off < off_most ? DEA_OK
-                         : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is left for another one");
+  if (*off < off_most) {
+    t->next.arc = t->last.arc + t->step;
+    DEA_TRY(ctx, dea_trace_arrive(ctx, t, t->tangent, t->tangent_load, false, &t->next));
+    if (bend(t) < fmax(*off, bend_least)) {
+      return DEA_OK;
+    }
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is left for another one");
 }
 
-static enum dea_trace_event event_between(const struct dea_trace_place *a,
-                                          const struct dea_trace_place *b)
+/* The new point becomes the last one. */
+static void accept(struct dea_solid_trace *t)
 {
-  if (a->slope * b->slope < 0) {
-    return DEA_TRACE_LIMIT;
+  struct dea_trace_place old = t->before;
+  t->before = t->last;
+  t->last = t->next;
+  t->next = old;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->tangent[i] = t->last.slope * t->rate[i];
   }
-  return a->modes != b->modes ? DEA_TRACE_BIFURCATION : DEA_TRACE_NOTHING;
+  t->tangent_load = t->last.slope;
+  t->event = event_between(&t->before, &t->last);
+  t->located = DEA_TRACE_NOTHING;
 }
 
 dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace *t,
@@ -144,17 +184,6 @@ dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace 
     }
     t->step /= 2;
   }
-  if (status == DEA_OK) {
-    struct dea_trace_place old = t->before;
-    t->before = t->last;
-    t->last = old;
-    t->last.arc = t->before.arc + t->step;
-    status = dea_trace_arrive(ctx, t, t->tangent, t->tangent_load, true, &t->last);
-    if (status != DEA_OK) {
-      t->last = t->before;
-      t->before = old;
-    }
-  }
   if (status != DEA_OK) {
     char why[200];
     strncpy(why, dea_context_message(ctx), sizeof why - 1);
@@ -164,8 +193,7 @@ dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace 
     return dea_fail(ctx, status, "the path cannot be followed beyond a load of %.6g (%s)",
                     t->last.load, why);
   }
-  t->event = event_between(&t->before, &t->last);
-  t->located = DEA_TRACE_NOTHING;
+  accept(t);
   dea_trace_tell(t, &t->last, t->event, point);
   double longer = off > 0 ? fmin(sqrt(off_good / off), 2) : 2;
   longer = iterations > ITERATIONS_MANY ? fmin(longer, 0.7) : longer;
@@ -181,16 +209,20 @@ static dea_status make(struct dea_context *ctx, struct dea_solid *s,
   double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
                               &t->rate,   &t->right,     &t->start,   &t->mode};
   double **const of_controls[] = {&t->from, &t->goal, &t->now};
-  double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state};
+  double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state,
+                                &t->next.state};
   bool all = true;
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
     *of_dofs[i] = dea_alloc(ctx, s->dofs, sizeof(double));
     all = all && *of_dofs[i] != NULL;
   }
-  for (size_t i = 0; i < 3; i++) {
+  for (size_t i = 0; i < sizeof of_controls / sizeof of_controls[0]; i++) {
     *of_controls[i] = dea_alloc(ctx, controls, sizeof(double));
+    all = all && *of_controls[i] != NULL;
+  }
+  for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
     *of_states[i] = dea_alloc(ctx, states, sizeof(double));
-    all = all && *of_controls[i] != NULL && *of_states[i] != NULL;
+    all = all && *of_states[i] != NULL;
   }
   if (dea_solid_any(!all)) {
     return DEA_E_MEMORY;
@@ -210,7 +242,7 @@ static dea_status make(struct dea_context *ctx, struct dea_solid *s,
 }
 
 /* The controls and the place to start from. */
-static dea_status begin(struct dea_context *ctx, struct dea_solid_trace *t, double voltage_V,
+static dea_status begin(struct dea_context *ctx, struct dea_solid_trace *t, const double *goal,
                         double sense)
 {
   struct dea_solid *s = t->s;
@@ -218,7 +250,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_solid_trace *t, doub
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_settle_down(ctx, s, &report));
   dea_solid_controls_get(s, t->from);
-  dea_solid_controls_goal(s, voltage_V, t->goal);
+  memcpy(t->goal, goal, s->path.control_count * sizeof(double));
   dea_solid_controls_drive(s, t->from);
   memcpy(t->held_rate, s->drive, s->dofs * sizeof(double));
   dea_solid_controls_drive(s, t->goal);
@@ -226,6 +258,29 @@ static dea_status begin(struct dea_context *ctx, struct dea_solid_trace *t, doub
     t->held_rate[i] = s->drive[i] - t->held_rate[i];
   }
   DEA_TRY(ctx, dea_trace_arrive(ctx, t, t->tangent, sense, true, &t->last));
+  return DEA_OK;
+}
+
+dea_status dea_trace_create_to(struct dea_context *ctx, struct dea_solid *s, const double *goal,
+                               const struct dea_trace_options *options,
+                               struct dea_solid_trace **out)
+{
+  *out = NULL;
+  struct dea_solid_trace *t = dea_alloc(ctx, 1, sizeof *t);
+  if (dea_solid_any(t == NULL)) {
+    dea_free(ctx, t);
+    return DEA_E_MEMORY;
+  }
+  t->s = s;
+  dea_status status = make(ctx, s, options, t);
+  if (status == DEA_OK) {
+    status = begin(ctx, t, goal, options->step);
+  }
+  if (status != DEA_OK) {
+    dea_solid_trace_destroy(ctx, t);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = t;
   return DEA_OK;
 }
 
@@ -241,22 +296,12 @@ dea_status dea_solid_trace_create(struct dea_context *ctx, struct dea_solid *s, 
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
   }
   DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_solid_path_prepare(ctx, s)));
-  struct dea_solid_trace *t = dea_alloc(ctx, 1, sizeof *t);
-  if (dea_solid_any(t == NULL)) {
-    dea_free(ctx, t);
-    return DEA_E_MEMORY;
-  }
-  t->s = s;
-  dea_status status = make(ctx, s, options, t);
-  if (status == DEA_OK) {
-    status = begin(ctx, t, voltage_V, options->step);
-  }
-  if (status != DEA_OK) {
-    dea_solid_trace_destroy(ctx, t);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = t;
-  return DEA_OK;
+  double *goal = dea_alloc(ctx, s->path.control_count, sizeof *goal);
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, goal != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_solid_controls_goal(s, voltage_V, goal);
+  dea_status status = dea_trace_create_to(ctx, s, goal, options, out);
+  dea_free(ctx, goal);
+  return status;
 }
 
 void dea_solid_trace_destroy(struct dea_context *ctx, struct dea_solid_trace *t)
@@ -264,9 +309,10 @@ void dea_solid_trace_destroy(struct dea_context *ctx, struct dea_solid_trace *t)
   if (t == NULL) {
     return;
   }
-  void *const memory[] = {t->metric, t->held_rate,    t->tangent,    t->plane.weight,  t->rate,
-                          t->right,  t->start,        t->mode,       t->from,          t->goal,
-                          t->now,    t->before.state, t->last.state, t->critical.state};
+  void *const memory[] = {t->metric,     t->held_rate,      t->tangent,   t->plane.weight,
+                          t->rate,       t->right,          t->start,     t->mode,
+                          t->from,       t->goal,           t->now,       t->before.state,
+                          t->last.state, t->critical.state, t->next.state};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

@@ -30,7 +30,7 @@ struct dea_solid_trace {
   double *from, *goal, *now; // [control_count] at tau = 0 and 1, and as they are
   double *held_rate;         // [dofs] of what is prescribed, by tau
   double load, energy_J;     // tau and energy of the solid as it is
-  struct dea_trace_place before, last, critical;
+  struct dea_trace_place before, last, next, critical;
   double *tangent, tangent_load; // of the path at last; [dofs]
   struct dea_trace_plane plane;
   double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
@@ -39,6 +39,10 @@ struct dea_solid_trace {
   enum dea_trace_event located; // what critical is
 };
 
+/* dea_solid_trace_create to the controls `goal` [control_count]; the path is prepared. */
+dea_status dea_trace_create_to(struct dea_context *ctx, struct dea_solid *s, const double *goal,
+                               const struct dea_trace_options *options,
+                               struct dea_solid_trace **out);
 /* Length of a displacement in the metric. */
 double dea_trace_size(const struct dea_solid_trace *t, const double *du);
 /* Sets all controls to those at tau, held components go along. DEA_E_DOMAIN below 0 V. */
