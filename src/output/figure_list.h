@@ -5,6 +5,8 @@
   X(field)                                                                                         \
   X(tension)                                                                                       \
   X(force)                                                                                         \
+  X(tip_force)                                                                                     \
+  X(load_line)                                                                                     \
   X(profile)                                                                                       \
   X(map)                                                                                           \
   X(surface)                                                                                       \

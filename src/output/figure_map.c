@@ -10,7 +10,7 @@ static const char caption[] = "displacement out of the plane, over the place in 
 static void add_script(struct dea_text *gp, const struct dea_space *space,
                        const struct dea_plot_format *format)
 {
-  double width_mm = 1e3 * format->width_m, left = 12, right = 20, bottom = 10, top = 3;
+  double width_mm = 1e3 * format->width_m, left = 12, right = 20, bottom = 11.5, top = 3;
   double side = width_mm - left - right, height_mm = side + bottom + top;
   double edge_mm = 1.03e3 * space->radius_m;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
