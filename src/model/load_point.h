@@ -16,6 +16,8 @@
     "stretch of the passive film relative to the pre-stretched state (lambda_p, mean)")            \
   X(centre_z_m, "m", "um", 1e6, "z centre", "displacement of the centre, positive to the fibres")  \
   X(fibre_tip_z_m, "m", "um", 1e6, "z fibre tip", "displacement of the fibre tip")                 \
+  X(highest_z_m, "m", "um", 1e6, "highest z", "largest displacement out of the plane of the film") \
+  X(lowest_z_m, "m", "um", 1e6, "lowest z", "smallest displacement out of the plane of the film")  \
   X(electrode_edge_u_m, "m", "um", 1e6, "u electrode edge",                                        \
     "radial displacement of the electrode edge between fibres")                                    \
   X(tip_depth_m, "m", "um", 1e6, "tip depth",                                                      \

@@ -14,4 +14,5 @@
   X(animation)                                                                                     \
   X(convergence)                                                                                   \
   X(designs)                                                                                       \
+  X(design_tips)                                                                                   \
   X(design_profiles)

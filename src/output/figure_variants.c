@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { TITLE_SHORT = 24 }; // signs, of which two fit side by side
+
 size_t dea_figure_variants(const struct dea_result *result, const char *study, bool profiles,
                            struct dea_figure_variant out[], size_t max)
 {
@@ -57,15 +59,15 @@ static bool is_first(const struct dea_figure_variant list[], size_t i, bool by_n
   return true;
 }
 
-/* Keys of so many entries, in two columns from the fourth on. */
-static const char *key_of(size_t entries)
+/* Keys of so many entries, in two columns from the fourth on where their titles are short. */
+static const char *key_of(size_t entries, size_t longest)
 {
   static const char *const keys[] = {
       "above horizontal maxrows 1 samplen 1.5", "above vertical maxrows 2 samplen 1.5",
       "above vertical maxrows 3 samplen 1.5",   "above vertical maxrows 4 samplen 1.5",
       "above vertical maxrows 5 samplen 1.5",   "above vertical maxrows 6 samplen 1.5",
   };
-  size_t rows = entries > 3 ? (entries + 1) / 2 : entries;
+  size_t rows = entries > 3 && longest <= TITLE_SHORT ? (entries + 1) / 2 : entries;
   return keys[rows > 6 ? 5 : rows > 0 ? rows - 1 : 0];
 }
 
@@ -100,6 +102,11 @@ dea_status dea_figure_add_variant_key(struct dea_context *ctx, struct dea_panel 
       entries++;
     }
   }
-  panel->key = key_of(entries);
+  size_t longest = 0;
+  for (size_t i = 0; i < panel->series_count; i++) {
+    size_t length = strlen(panel->series[i].title);
+    longest = length > longest ? length : longest;
+  }
+  panel->key = key_of(entries, longest);
   return DEA_OK;
 }

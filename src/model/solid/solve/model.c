@@ -119,6 +119,20 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
+/* Largest and smallest displacement out of the plane among the film's nodes. */
+static void find_heights(const struct dea_model *model, const double *u, struct dea_load_point *out)
+{
+  double face = 0.5 * model->actuator.plate.film_thickness * (1 + 1e-9);
+  out->highest_z_m = -INFINITY;
+  out->lowest_z_m = INFINITY;
+  for (size_t n = 0; n < model->grid->node_count; n++) {
+    if (fabs(model->grid->X[3 * n + 2]) <= face) {
+      out->highest_z_m = fmax(out->highest_z_m, u[3 * n + 2]);
+      out->lowest_z_m = fmin(out->lowest_z_m, u[3 * n + 2]);
+    }
+  }
+}
+
 static dea_status report(struct dea_context *ctx, struct dea_model *model,
                          struct dea_load_point *out)
 {
@@ -142,6 +156,7 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   out->electrode_edge_u_m = outwards;
   out->centre_z_m = u[3 * model->centre + 2];
   out->fibre_tip_z_m = d->fibre_count > 0 ? u[3 * model->tip + 2] : NAN;
+  find_heights(model, u, out);
   out->nominal_field_V_per_m = model->voltage_V / d->film_thickness_unstretched_m;
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
