@@ -33,6 +33,9 @@ expect 0 "one example" dea examples frdea-4
 cmp -s "$folder/out" "$source/examples/frdea-4.yaml" || { echo "frdea-4 differs"; failed=1; }
 expect 0 "an example in a folder, by its last name" dea examples fig02.yaml
 cmp -s "$folder/out" "$source/examples/paper/fig02.yaml" || { echo "fig02 differs"; failed=1; }
+for example in "$source"/examples/*.yaml "$source"/examples/paper/*.yaml; do
+  expect 0 "example ${example##*/}" dea check "$example"
+done
 expect 2 "unknown example" dea examples frdea-5
 has err "did you mean 'frdea-4'?"
 expect 2 "unknown option" dea examples --all

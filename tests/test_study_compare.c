@@ -21,6 +21,7 @@
            "        compute.voltage.values: [0 kV, 4 kV, 8 kV]\n"                                  \
            "    - name: none\n"                                                                    \
            "      set: {fibres: null, film: {law: b}}\n"
+#define COMPARE_ONE VOLTAGES "  compare: [{name: eight, set: {fibres.count: 8}}]\n"
 
 static struct dea_design *design;
 static struct dea_device *device;
@@ -194,7 +195,7 @@ static void compare_once(struct dea_context *failing)
   struct dea_design *mine = NULL;
   struct dea_device *its = NULL;
   struct dea_result *found = NULL;
-  dea_status status = read_and_build(failing, GOOD_DESIGN COMPARE, NULL, 0, &mine, &its);
+  dea_status status = read_and_build(failing, GOOD_DESIGN COMPARE_ONE, NULL, 0, &mine, &its);
   if (status == DEA_OK) {
     status = dea_result_create(failing, mine, its, &found);
   }
@@ -202,7 +203,7 @@ static void compare_once(struct dea_context *failing)
     status = dea_study_run_named(failing, dea_model_find("lumped"), only, 1, found);
   }
   if (status == DEA_OK) {
-    assert_int_equal(found->variant_count, 4);
+    assert_int_equal(found->variant_count, 2);
   }
   failing_check(failing, status);
   dea_result_destroy(failing, found);

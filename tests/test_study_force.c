@@ -1,5 +1,6 @@
 /* Study "force" with a model of one spring: F = k d + c d^3 - b V^2 on a tip at depth d. */
 #include "design_text.h"
+#include "output/figure_stops.h"
 #include "study/study.h"
 
 #include "context_fixture.h"
@@ -72,7 +73,7 @@ static void test_depths_and_preloads(void **state)
   static const struct dea_override sets[] = {
       {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
       {"compute.force",
-       "{tip: flat, radius: 2 mm, side: back, depth: [-1 mm, 1 mm], preload: [180 mN]}"}};
+       "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, -1 mm], preload: [180 mN]}"}};
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
@@ -86,7 +87,7 @@ static void test_depths_and_preloads(void **state)
   assert_non_null(curve);
   assert_true(curve->complete);
   assert_int_equal(curve->count, 9); // three stops of three voltages
-  static const double depths_m[] = {-1e-3, 1e-3};
+  static const double depths_m[] = {1e-3, -1e-3};
   for (size_t i = 0; i < 6; i++) {
     struct dea_model wanted = {.depth_m = depths_m[i / 3], .voltage_V = 1e3 * (double)(i % 3)};
     assert_close(curve->points[i].tip_depth_m, wanted.depth_m, 1e-12, 0);
@@ -94,6 +95,15 @@ static void test_depths_and_preloads(void **state)
   }
   assert_close(curve->points[6].force_N, 0.18, 1e-3, 0);
   assert_close(curve->points[6].force_N - curve->points[8].force_N, b * 4e6, 1e-9, 0);
+  struct dea_stops stops; // as the figures take it apart
+  dea_stops_find(result, &stops);
+  static const size_t by_depth[] = {1, 0, 2};
+  assert_int_equal(stops.count, 3);
+  for (size_t i = 0; i < 3; i++) {
+    assert_int_equal(stops.first[i], 3 * i);
+    assert_int_equal(stops.by_depth[i], by_depth[i]);
+  }
+  assert_int_equal(stops.first[3], 9);
   dea_result_destroy(ctx, result);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
