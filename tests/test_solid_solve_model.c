@@ -8,6 +8,9 @@
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
+#include <math.h>
+#include <string.h>
+
 extern const struct dea_model_type dea_solid_module;
 static const struct dea_model_type *const solid = &dea_solid_module;
 
@@ -270,6 +273,25 @@ static void test_what_it_refuses(void **state)
   assert_null(model);
 }
 
+/* The potential as an unknown: the plates seem longer by the fringe in the film, h ln 4/(2 pi), and
+ * by up to another 1/9 of the quarter of a millimetre of the elements at their edge. */
+static void test_potential(void **state)
+{
+  (void)state;
+  struct dea_device device = plain(DEA_FILM_SOLID);
+  double thin_F = solve(solid, &device, 4e3).capacitance_F;
+  double a = device.electrode_radius_m, fringe = device.film_thickness_m * log(4) / (2 * acos(-1));
+  double least = (a + fringe) / a, most = (a + fringe + 0.25e-3 / 9) / a;
+  device.solid_field = DEA_FIELD_COUPLED;
+  struct dea_load_point point = solve(solid, &device, 4e3);
+  assert_true(point.capacitance_F > thin_F * least * least);
+  assert_true(point.capacitance_F < thin_F * most * most);
+  device.solid_film = DEA_FILM_MEMBRANE;
+  struct dea_model *model;
+  assert_int_equal(solid->create(ctx, &device, &model), DEA_E_UNSUPPORTED);
+  assert_non_null(strstr(dea_context_message(ctx), "compute.solid.film: solid"));
+}
+
 static int tear_down(void **state)
 {
   dea_solid_stop();
@@ -288,6 +310,7 @@ int main(void)
       cmocka_unit_test(test_number_of_fibres),
       cmocka_unit_test(test_kinds_of_fibres),
       cmocka_unit_test(test_what_it_refuses),
+      cmocka_unit_test(test_potential),
   };
   return cmocka_run_group_tests(tests, context_set_up, tear_down);
 }

@@ -25,6 +25,7 @@ enum dea_fields_at { DEA_FIELDS_ALL, DEA_FIELDS_LAST, DEA_FIELDS_NONE };
 enum dea_fields_of { DEA_FIELDS_WHOLE, DEA_FIELDS_SECTOR };
 enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
 enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
+enum dea_solid_electrostatics { DEA_FIELD_THIN, DEA_FIELD_COUPLED };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
 enum dea_solid_side { DEA_SIDE_ANY, DEA_SIDE_FIBRES, DEA_SIDE_BACK }; // of the centre
 
@@ -107,6 +108,7 @@ struct dea_design {
     struct {                          // model 3d
       struct dea_choice film, domain; // enum dea_solid_film, enum dea_solid_domain
       struct dea_choice side;         // enum dea_solid_side
+      struct dea_choice field;        // enum dea_solid_electrostatics
       struct dea_quantity refinement; // 1: the coarsest mesh; one more halves all sizes
     } solid;
   } compute;

@@ -7,6 +7,8 @@
 
 // In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_solid_side.
 static const char *const films[] = {"solid", "membrane", NULL};
+static const char *const electrostatics[] = {"thin", "coupled",
+                                             NULL}; // enum dea_solid_electrostatics
 static const char *const domains[] = {"sector", "disc", NULL};
 static const char *const sides[] = {"any", "fibres", "back", NULL};
 
@@ -37,6 +39,14 @@ static const struct dea_field fields[] = {
      .default_text = "1",
      .doc = "fineness of the mesh: 1 is a preview, each one more halves all sizes in the plane",
      .example = "1.5"},
+    {.key = "field",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(field),
+     .choices = electrostatics,
+     .default_text = "thin",
+     .doc = "electric field: V/h where electrodes face each other, or from the potential as an "
+            "unknown, with the fringe at the electrode's edge (solid film only)",
+     .example = "coupled"},
     {.key = "side",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(side),

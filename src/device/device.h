@@ -29,8 +29,9 @@ struct dea_device {
   enum dea_outer_end outer_end;
   double fibre_outer_gap_m; // from a free outer end to the frame; 0 for other ends
 
-  enum dea_solid_film solid_film; // of model 3d, as the next three
+  enum dea_solid_film solid_film; // of model 3d, as the next four
   enum dea_solid_domain solid_domain;
+  enum dea_solid_electrostatics solid_field;
   enum dea_solid_side solid_side;
   double solid_refinement; // 1: the coarsest mesh
 };

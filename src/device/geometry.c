@@ -73,6 +73,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
                                                                               : ratio;
   device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
   device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
+  device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;
   device->solid_side = (enum dea_solid_side)design->compute.solid.side.value;
   device->solid_refinement = design->compute.solid.refinement.si;
   if (design->has_fibres) {

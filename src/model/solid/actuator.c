@@ -3,6 +3,8 @@
 #include "model/film.h"
 #include "model/solid/membrane.h"
 
+#include <math.h>
+
 static const double kappa_share = 100; // kappa over the shear modulus
 
 /* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
@@ -87,6 +89,11 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
                       layers[i].law->name, d->pre_stretch);
     }
   }
+  if (out->plate.membrane && d->solid_field == DEA_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "compute.solid.field: coupled needs a film with a thickness; take "
+                    "compute.solid.film: solid");
+  }
   if (out->plate.membrane) {
     DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, layers));
   }
@@ -123,6 +130,15 @@ int dea_actuator_held(const void *self, const double X[3])
 {
   const struct dea_actuator *a = self;
   return dea_plate_held(&a->plate, X);
+}
+
+bool dea_actuator_electrode(const void *self, const double X[3], double *share)
+{
+  const struct dea_actuator *a = self;
+  double face = 0.5 * a->plate.film_thickness;
+  *share = X[2] > 0 ? 1 : 0;
+  return fabs(fabs(X[2]) - face) < 1e-6 * face &&
+         hypot(X[0], X[1]) < a->plate.electrode_radius * (1 + 1e-9);
 }
 
 bool dea_actuator_frame(const void *self, const double X[3], double Q[9])

@@ -35,6 +35,8 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
 int dea_actuator_layer(const void *self, int region, int sheet);
 bool dea_actuator_active(const void *self, int region, int sheet);
 int dea_actuator_held(const void *self, const double X[3]);
+/* Of a coupled field: the two faces of the film, the one with the fibres at the voltage. */
+bool dea_actuator_electrode(const void *self, const double X[3], double *share);
 bool dea_actuator_frame(const void *self, const double X[3], double Q[9]);
 
 /* How often the domain lies in the whole actuator. */

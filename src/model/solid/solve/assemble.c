@@ -265,12 +265,15 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   if (status == DEA_OK) {
     status = add_loads(ctx, s, level, energy);
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, status));
-  collect(s, energy);
-  if (level >= DEA_TANGENT) {
+  status = dea_solid_agree(ctx, s, status);
+  if (level >= DEA_TANGENT) { // after a failure too: the matrix has to be whole for the next time
     DEA_TRY(ctx,
             dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
     DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  }
+  DEA_TRY(ctx, status);
+  collect(s, energy);
+  if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, dea_solid_add_springs(ctx, s));
   }
   return DEA_OK;

@@ -200,12 +200,13 @@ static dea_status assemble(struct dea_context *ctx, struct dea_solid *s, const d
     status = dielectric(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
   status = dea_solid_agree(NULL, s, status);
+  // after a failure too: the matrix has to be whole for the next time
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyBegin(L, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(L, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
   if (status != DEA_OK) {
     return status; // an inverted element: not worth a message in a line search
   }
   dea_solid_sum(s, s->field->right, s->grid->node_count);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyBegin(L, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(L, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
   return DEA_OK;
 }
 

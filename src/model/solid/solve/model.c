@@ -89,6 +89,10 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
                                             .layer_count = DEA_LAYER_COUNT,
                                             .layers = model->actuator.layers,
                                             .layer_of = dea_actuator_layer,
+                                            .field = device->solid_field == DEA_FIELD_COUPLED
+                                                         ? DEA_SOLID_FIELD_COUPLED
+                                                         : DEA_SOLID_FIELD_THIN,
+                                            .electrode = dea_actuator_electrode,
                                             .active = dea_actuator_active,
                                             .held = dea_actuator_held,
                                             .frame = dea_actuator_frame,
