@@ -1,10 +1,11 @@
 /* The paper's actuator with four fibres, as built, in steps of 1 kV: what a membrane film saves
  * against a solid one on the same mesh of the plane. Model made and sweep to 6 kV, and on to 8 kV,
- * where the film wrinkles. */
+ * where the film wrinkles. Times are the processor's: other work on the machine counts less. */
 #include "bench.h"
 #include "model/model.h"
 
 #include <math.h>
+#include <time.h>
 
 enum { TO_6_KV, TO_8_KV, SPANS, REPEATS = 3 };
 
@@ -18,18 +19,23 @@ static void need(dea_status status, struct dea_context *ctx)
   }
 }
 
+static double processor_s(void)
+{
+  return (double)clock() / CLOCKS_PER_SEC;
+}
+
 /* Times of one sweep, kept where they are shorter. */
 static void sweep(struct dea_context *ctx, const struct dea_device *device, double times[SPANS])
 {
   struct dea_model *model;
   struct dea_load_point point;
-  double start = bench_now_s();
+  double start = processor_s();
   need(dea_solid_module.create(ctx, device, &model), ctx);
   for (int kV = 1; kV <= 8; kV++) {
     need(dea_solid_module.solve(ctx, model, 1e3 * kV, &point), ctx);
     if (kV == 6 || kV == 8) {
       int span = kV == 6 ? TO_6_KV : TO_8_KV;
-      times[span] = fmin(times[span], bench_now_s() - start);
+      times[span] = fmin(times[span], processor_s() - start);
     }
   }
   dea_solid_module.destroy(ctx, model);
