@@ -264,8 +264,9 @@ static void test_taper_and_free_end(void **state)
       {"fibres.width", "3 mm"},         {"fibres.tip_width", "1 mm"},
       {"fibres.outer_end", "free"},     {"fibres.outer_gap", "2 mm unstretched"},
       {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"},
-      {"compute.solid.side", "fibres"}};
-  read_good(GOOD_DESIGN, sets, 7);
+      {"compute.solid.side", "fibres"}, {"compute.solid.order", "3"},
+      {"compute.solid.order_z", "1"}};
+  read_good(GOOD_DESIGN, sets, 9);
   assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
   assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
@@ -273,6 +274,8 @@ static void test_taper_and_free_end(void **state)
   assert_int_equal(device->solid_film, DEA_FILM_SOLID);
   assert_int_equal(device->solid_side, DEA_SIDE_FIBRES);
   assert_close(device->solid_refinement, 2.5, 0, 0);
+  assert_int_equal(device->solid_order, 3);
+  assert_int_equal(device->solid_order_z, 1);
 }
 
 static void test_straight_clamped_fibres_are_the_default(void **state)

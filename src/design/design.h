@@ -103,13 +103,14 @@ struct dea_design {
     } convergence;
     struct dea_design_variant compare[DEA_DESIGN_VARIANTS_MAX]; // study compare-design
     size_t compare_count;
-    struct dea_choice coverage_by;    // enum dea_coverage_by, paper eq 17
-    struct dea_quantity coverage;     // R itself; absent: from coverage_by
-    struct {                          // model 3d
-      struct dea_choice film, domain; // enum dea_solid_film, enum dea_solid_domain
-      struct dea_choice side;         // enum dea_solid_side
-      struct dea_choice field;        // enum dea_solid_electrostatics
-      struct dea_quantity refinement; // 1: the coarsest mesh; one more halves all sizes
+    struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
+    struct dea_quantity coverage;         // R itself; absent: from coverage_by
+    struct {                              // model 3d
+      struct dea_choice film, domain;     // enum dea_solid_film, enum dea_solid_domain
+      struct dea_choice side;             // enum dea_solid_side
+      struct dea_choice field;            // enum dea_solid_electrostatics
+      struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
+      struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes
     } solid;
   } compute;
 

@@ -33,7 +33,8 @@ struct dea_device {
   enum dea_solid_domain solid_domain;
   enum dea_solid_electrostatics solid_field;
   enum dea_solid_side solid_side;
-  double solid_refinement; // 1: the coarsest mesh
+  double solid_refinement;        // 1: the coarsest mesh
+  int solid_order, solid_order_z; // of the elements, 1 to 3; 0: 2
 };
 
 /* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:

@@ -76,6 +76,8 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;
   device->solid_side = (enum dea_solid_side)design->compute.solid.side.value;
   device->solid_refinement = design->compute.solid.refinement.si;
+  device->solid_order = (int)design->compute.solid.order.si;
+  device->solid_order_z = (int)design->compute.solid.order_z.si;
   if (design->has_fibres) {
     fill_fibres(design, device);
   }

@@ -215,7 +215,7 @@ size_t dea_convergence_enough(const struct dea_convergence *convergence, double 
     }
     probes++;
     for (size_t m = 0; m < convergence->mesh_count; m++) {
-      bool good = row->kind != DEA_ORDER_NOT_FALLING && row->errors[m] <= convergence->tolerance;
+      bool good = row->errors[m] <= convergence->tolerance;
       enough = !good && m + 1 > enough ? m + 1 : enough;
     }
   }

@@ -52,7 +52,7 @@ void dea_convergence_destroy(struct dea_context *ctx, struct dea_convergence *co
 /* Whether the row is one of a displacement at a probe: by these a mesh is judged. */
 bool dea_convergence_is_probe(const struct dea_convergence_row *row);
 /* The coarsest mesh that is, with all finer ones, within the tolerance for all displacements at a
- * voltage; mesh_count when there is none or one of them may diverge. */
+ * voltage; mesh_count when there is none. */
 size_t dea_convergence_enough(const struct dea_convergence *convergence, double voltage_V);
 /* "not monotone: no order": what is wrong with a sequence, "" for an observed order. */
 const char *dea_order_text(enum dea_order_kind kind);

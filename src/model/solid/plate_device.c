@@ -13,8 +13,8 @@ dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device 
   double finer = exp2(1 - fmax(1, d->solid_refinement)), a = d->electrode_radius_m;
   double l = d->pre_stretch;
   *out = (struct dea_plate){
-      .order = 2,
-      .order_z = 2,
+      .order = d->solid_order > 0 ? d->solid_order : 2,
+      .order_z = d->solid_order_z > 0 ? d->solid_order_z : 2,
       .membrane = d->solid_film == DEA_FILM_MEMBRANE,
       .fibres = d->fibre_count,
       .sectors = 1,

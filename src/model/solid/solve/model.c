@@ -19,6 +19,8 @@ struct dea_model {
   struct dea_grid *grid;
   struct dea_solid *solid;
   size_t tip, centre, between; // nodes that are reported
+  size_t centre_twin,
+      between_twin; // on the other side of the film's middle plane, or the same ones
   double voltage_V, rest_energy_J;
   struct dea_solid_report report;
   double *profile;         // what the last one lends from
@@ -40,13 +42,23 @@ static size_t nearest_node(const struct dea_grid *grid, double x, double y, doub
   return nearest;
 }
 
-/* Nodes that are reported. The tip is where film and fibre meet. */
+/* The node at the mirror image of another one by the middle plane. */
+static size_t twin_of(const struct dea_grid *grid, size_t node)
+{
+  const double *X = grid->X + 3 * node;
+  return nearest_node(grid, X[0], X[1], -X[2]);
+}
+
+/* Nodes that are reported. The tip is where film and fibre meet. Elements of odd order have no
+ * nodes in the middle plane: there two of them stand for the one between. */
 static void find_nodes(struct dea_model *model)
 {
   const struct dea_plate *p = &model->actuator.plate;
   double a = p->electrode_radius, half = dea_plate_angle(p) / p->sectors;
   model->centre = nearest_node(model->grid, 0, 0, 0);
   model->between = nearest_node(model->grid, a * cos(half), a * sin(half), 0);
+  model->centre_twin = twin_of(model->grid, model->centre);
+  model->between_twin = twin_of(model->grid, model->between);
   model->tip = nearest_node(model->grid, p->tip_radius, 0, 0.5 * p->film_thickness);
 }
 
@@ -152,13 +164,13 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
   }
   const double *X = model->grid->X + 3 * model->between;
-  double outwards =
-      (u[3 * model->between] * X[0] + u[3 * model->between + 1] * X[1]) / hypot(X[0], X[1]);
+  const double *v = u + 3 * model->between, *w = u + 3 * model->between_twin;
+  double outwards = 0.5 * ((v[0] + w[0]) * X[0] + (v[1] + w[1]) * X[1]) / hypot(X[0], X[1]);
   *out = dea_load_point_empty();
   out->voltage_V = model->voltage_V;
   out->electrode_stretch = 1 + outwards / d->electrode_radius_m;
   out->electrode_edge_u_m = outwards;
-  out->centre_z_m = u[3 * model->centre + 2];
+  out->centre_z_m = 0.5 * (u[3 * model->centre + 2] + u[3 * model->centre_twin + 2]);
   out->fibre_tip_z_m = d->fibre_count > 0 ? u[3 * model->tip + 2] : NAN;
   find_heights(model, u, out);
   out->nominal_field_V_per_m = model->voltage_V / d->film_thickness_unstretched_m;
