@@ -60,6 +60,7 @@ struct dea_trace_point {
   double energy_J;
   int unstable_modes;
   enum dea_trace_event passed; // since the point before: slope or number of unstable modes changed
+  int iterations;              // of a step, those of attempts that were too long among them
 };
 
 /* Starts at the equilibrium that the solid is at or slides into. The goals (forces, prescribed

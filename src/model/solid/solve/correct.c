@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ITERATIONS_MAX = 15 };
+enum { ITERATIONS_MAX = 15, HIDDEN_MANY = 3 };
 
 static const double residual_small = 1e-8; // of the sum of element forces: what kappa leaves
 static const double harder = 16;           // kappa on the way
@@ -121,9 +121,10 @@ static dea_status bordered(struct dea_context *ctx, struct dea_solid_trace *t, d
   return DEA_OK;
 }
 
-/* One iteration, unless *there: it is at an equilibrium in the plane. *small: the step was. */
+/* One iteration, unless *there: it is at an equilibrium in the plane. *small: the step was;
+ * *hidden: from the energy, by rounding. */
 static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, double *residual,
-                          bool *there, bool *small)
+                          bool *there, bool *small, bool *hidden)
 {
   struct dea_solid *s = t->s;
   double dtau = 0, size = 0;
@@ -139,6 +140,7 @@ static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, do
   }
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered(ctx, t, &dtau));
+  *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->g, s->step));
   DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, true, true));
   for (size_t i = 0; i < s->dofs; i++) {
     s->u[i] += s->step[i];
@@ -154,13 +156,17 @@ static dea_status iterate(struct dea_context *ctx, struct dea_solid_trace *t, do
 static dea_status newton(struct dea_context *ctx, struct dea_solid_trace *t, int *iterations)
 {
   double residual = 0;
+  int in_a_row = 0; // hidden steps
   for (*iterations = 1; *iterations <= ITERATIONS_MAX; ++*iterations) {
-    bool there = false, small = false;
-    DEA_TRY(ctx, iterate(ctx, t, &residual, &there, &small));
-    if ((there || (small && *iterations > 1)) && dea_solid_update_loads(t->s) <= 1) {
+    bool there = false, small = false, hidden = false;
+    DEA_TRY(ctx, iterate(ctx, t, &residual, &there, &small, &hidden));
+    in_a_row = hidden ? in_a_row + 1 : 0;
+    if ((there || in_a_row >= HIDDEN_MANY || (small && *iterations > 1)) &&
+        dea_solid_update_loads(t->s) <= 1) {
       return DEA_OK;
     }
   }
+  *iterations = ITERATIONS_MAX;
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium in the plane (residual %.1e)",
                   residual);
 }

@@ -182,6 +182,8 @@ bool dea_solid_controls_drive(struct dea_solid *s, const double *controls);
  * multipliers, each if it is wanted. */
 dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                              const double *step, double share, bool stresses, bool pressures);
+/* Whether the energy of the last assembly can tell a change of this size from rounding. */
+bool dea_solid_resolved(const struct dea_solid *s, double change);
 /* Largest theta of the last assembly. */
 double dea_solid_theta_max(const struct dea_solid *s);
 

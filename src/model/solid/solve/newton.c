@@ -80,8 +80,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
 }
 
-/* Whether the energy can tell a change of this size. */
-static bool resolved(const struct dea_solid *s, double change)
+bool dea_solid_resolved(const struct dea_solid *s, double change)
 {
   return fabs(change) > energy_small * s->energy_scale + s->energy_floor;
 }
@@ -100,7 +99,7 @@ static bool search(struct dea_context *ctx, struct dea_solid *s, const struct de
     }
     if (dea_solid_settle(ctx, s, d->voltage_V, s->trial) == DEA_OK &&
         dea_solid_energy(s, s->trial, d->voltage_V, &at) == DEA_OK) {
-      if (!resolved(s, slope)) {
+      if (!dea_solid_resolved(s, slope)) {
         return true;
       }
       *rise = (at - energy) / (*share * fabs(slope));
@@ -187,7 +186,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (search(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
       *done = !start && there == 0 && largest(s, s->step) < step_small * s->length_m;
-      d->unresolved = there == 0 && !start && !resolved(s, slope) ? d->unresolved + 1 : 0;
+      d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, take(ctx, s, d, share, !*done));
       if (start) {
         return DEA_OK;

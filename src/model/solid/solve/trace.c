@@ -174,11 +174,13 @@ dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace 
                                 struct dea_trace_point *point)
 {
   double off = 0;
-  int iterations = 0;
+  int iterations = 0, all = 0;
   dea_status status = DEA_OK;
   for (int i = 0; i < ATTEMPTS_MAX; i++) {
     dea_context_clear(ctx);
+    iterations = 0;
     status = attempt(ctx, t, &off, &iterations);
+    all += iterations;
     if (status == DEA_OK || status == DEA_E_MEMORY || t->step < 2 * t->step_least) {
       break;
     }
@@ -195,6 +197,7 @@ dea_status dea_solid_trace_step(struct dea_context *ctx, struct dea_solid_trace 
   }
   accept(t);
   dea_trace_tell(t, &t->last, t->event, point);
+  point->iterations = all;
   double longer = off > 0 ? fmin(sqrt(off_good / off), 2) : 2;
   longer = iterations > ITERATIONS_MANY ? fmin(longer, 0.7) : longer;
   t->step = fmin(t->step * fmax(longer, 0.5), t->step_most);
