@@ -247,6 +247,8 @@ static void test_geometry(void **state)
        {6, 44, "overlap each other at the frame, where they may be at most 15 mm"}},
       {GEOMETRY("3.75 mm stretched", "count: 4, outer_end: free, outer_gap: 12 mm stretched"),
        {6, 65, "leaves nothing of fibres that reach 11.25 mm"}},
+      {GEOMETRY("3.75 mm stretched", "count: 4}\ncompute: {force: {radius: 5 mm, depth: [1 mm]}"),
+       {7, 27, "is larger than the electrode, the part that moves: at most 3.75 mm"}},
       {GEOMETRY("3.75 mm stretched", "count: 4, overlap: 2.5 mm stretched"),
        {6, 34, "at most 1.768 mm wide, or their tips must be at least 1.414 mm from the centre"}},
   };

@@ -168,6 +168,21 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
   return check_neighbours(ctx, design, device);
 }
 
+/* A tip that is pressed against the film. */
+static dea_status check_probe(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device)
+{
+  const struct dea_quantity *radius = &design->compute.force.radius_m;
+  bool used = design->compute.force.depth_count + design->compute.force.preload_count > 0;
+  if (!used || radius->si <= device->electrode_radius_m * (1 + touching)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, radius->place,
+                         "the tip, %.4g mm in radius, is larger than the electrode, the part that "
+                         "moves: at most %.4g mm (stretched)",
+                         1e3 * radius->si, 1e3 * device->electrode_radius_m);
+}
+
 dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device)
 {
@@ -178,5 +193,6 @@ dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *
                            "frame of %.4g mm inner radius",
                            1e3 * r_a, 1e3 * frame);
   }
+  DEA_TRY(ctx, check_probe(ctx, design, device));
   return design->has_fibres ? check_fibres(ctx, design, device) : DEA_OK;
 }
