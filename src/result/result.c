@@ -197,6 +197,9 @@ struct dea_profile dea_profile_of_record(const struct dea_profile_record *record
 {
   const double *c = record->columns;
   size_t n = record->count;
+  if (c == NULL) { // of a record that could not be read
+    return (struct dea_profile){0};
+  }
   return (struct dea_profile){n, c, c + n, c + 2 * n, c + 3 * n, c + 4 * n, c + 5 * n, c + 6 * n};
 }
 
