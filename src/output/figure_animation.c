@@ -21,9 +21,9 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
   dea_space_add_settings(gp, space);
   double height_px = 0.78 * WIDTH_PX * dea_space_shape(space) + 2 * LABEL_PX;
   dea_text_add(gp,
-               "set lmargin at screen 0.01\nset rmargin at screen 0.79\n"
+               "set lmargin at screen 0.01\nset rmargin at screen 0.765\n"
                "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
-               "set colorbox user origin screen 0.82, screen 0.15 size screen 0.03, screen 0.7\n"
+               "set colorbox user origin screen 0.785, screen 0.15 size screen 0.03, screen 0.7\n"
                "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
                "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
                "screen 0.06 front\n",

@@ -10,7 +10,7 @@ static const char caption[] = "displacement out of the plane, over the place in 
 static void add_script(struct dea_text *gp, const struct dea_space *space,
                        const struct dea_plot_format *format)
 {
-  double width_mm = 1e3 * format->width_m, left = 12, right = 20, bottom = 11.5, top = 3;
+  double width_mm = 1e3 * format->width_m, left = 12, right = 21.5, bottom = 11.5, top = 3;
   double side = width_mm - left - right, height_mm = side + bottom + top;
   double edge_mm = 1.03e3 * space->radius_m;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
@@ -26,7 +26,7 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
       "set colorbox user origin screen %.4f, screen %.4f size screen %.4f, screen %.4f\n\n",
       left / width_mm, 1 - right / width_mm, bottom / height_mm, 1 - top / height_mm, -edge_mm,
       edge_mm, -edge_mm, edge_mm, dea_nice_below(0.5e3 * space->radius_m),
-      dea_nice_below(0.5e3 * space->radius_m), 1 - (right - 2) / width_mm, bottom / height_mm,
+      dea_nice_below(0.5e3 * space->radius_m), 1 - (right - 1.5) / width_mm, bottom / height_mm,
       3 / width_mm, side / height_mm);
   dea_script_terminals(gp);
   dea_text_add(gp,
