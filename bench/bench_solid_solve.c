@@ -22,14 +22,6 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = side_m * t;
 }
 
-static int film(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool under_voltage(const void *self, int region, int sheet)
 {
   (void)self;
@@ -98,12 +90,8 @@ static int run_one(double unknowns)
                             .thickness_m = thickness_m};
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
   const struct dea_sheet sheets[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &layer,
-                                            .layer_of = film,
-                                            .active = under_voltage,
-                                            .held = edges};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &layer, .active = under_voltage, .held = edges};
   struct dea_context *ctx = NULL;
   struct dea_grid *grid;
   struct dea_solid *solid;

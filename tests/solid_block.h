@@ -5,22 +5,6 @@
 #include "model/solid/solve/solid.h"
 #include "testing.h"
 
-static inline int block_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static inline bool block_passive(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 /* Size from the origin, elements along each edge, orders. */
 struct block {
   double size[3];
@@ -58,12 +42,8 @@ static inline struct dea_solid *block_solid(struct dea_context *ctx, const struc
                                             int order_z, const struct dea_layer *layer,
                                             int (*held)(const void *self, const double X[3]))
 {
-  const struct dea_solid_options options = {.order_z = order_z,
-                                            .layer_count = 1,
-                                            .layers = layer,
-                                            .layer_of = block_layer,
-                                            .active = block_passive,
-                                            .held = held};
+  const struct dea_solid_options options = {
+      .order_z = order_z, .layer_count = 1, .layers = layer, .held = held};
   struct dea_solid *solid;
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   return solid;

@@ -22,27 +22,11 @@ static int tear_down(void **state)
   return 0;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool inner_region(const void *self, int region, int sheet)
 {
   (void)self;
   (void)sheet;
   return region == 0;
-}
-
-static bool no_region(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
 }
 
 /* ---- plain disc ---- */
@@ -85,7 +69,6 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
   const struct dea_solid_options options = {.order_z = order_z,
                                             .layer_count = 1,
                                             .layers = &film,
-                                            .layer_of = only_layer,
                                             .active = inner_region,
                                             .held = disc_held};
   assert_int_equal(dea_solid_create(ctx, disc.grid, &options, &disc.solid), DEA_OK);
@@ -276,12 +259,8 @@ static void test_cantilever_under_end_shear(void **state)
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
   const struct dea_sheet sheet = {0.1, 1, 2};
   const struct dea_layer steel = {.lame_mu_Pa = 0.6e6}; // E 1.2e6, nu 0
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &steel,
-                                            .layer_of = only_layer,
-                                            .active = no_region,
-                                            .held = clamp};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &steel, .held = clamp};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -319,12 +298,8 @@ static struct dea_grid *small_grid;
 static void make_solid(struct dea_context *failing)
 {
   const struct dea_layer steel = {.lame_mu_Pa = 0.6e6};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &steel,
-                                            .layer_of = only_layer,
-                                            .active = no_region,
-                                            .held = disc_held};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &steel, .held = disc_held};
   struct dea_solid *solid = NULL;
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);

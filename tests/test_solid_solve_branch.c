@@ -26,22 +26,6 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = width * t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static bool nowhere(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 static int clamped(const void *self, const double X[3])
 {
   (void)self;
@@ -58,12 +42,8 @@ static void create(void)
   const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
   const struct dea_sheet sheet = {thickness, 1, 2};
   const struct dea_layer layer = {.lame_mu_Pa = mu};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &layer,
-                                            .layer_of = only_layer,
-                                            .active = nowhere,
-                                            .held = clamped};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &layer, .held = clamped};
   assert_int_equal(
       dea_grid_create(ctx, ORDER, &block, 1, &sheet, 1, NULL, -0.5 * thickness, length, &grid),
       DEA_OK);

@@ -180,14 +180,6 @@ static bool strip_faces(const void *self, const double X[3], double *share)
   return X[0] < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool everywhere(const void *self, int region, int sheet)
 {
   (void)self;
@@ -210,7 +202,6 @@ static struct body strip(enum dea_solid_field_kind field, const struct place *pl
                                             .field = field,
                                             .layer_count = 1,
                                             .layers = &soft,
-                                            .layer_of = only_layer,
                                             .active = everywhere,
                                             .held = strip_held,
                                             .electrode = strip_faces,

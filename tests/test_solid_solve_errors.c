@@ -17,14 +17,6 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = 1e-2 * t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool everywhere(const void *self, int region, int sheet)
 {
   (void)self;
@@ -51,7 +43,6 @@ static dea_status solve(const struct dea_layer *layer, const int *bits, double v
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,
                                             .layers = layer,
-                                            .layer_of = only_layer,
                                             .active = everywhere,
                                             .held = held_at_ends,
                                             .self = bits};

@@ -17,14 +17,6 @@ static int sheet_layer(const void *self, int region, int sheet)
   return sheet;
 }
 
-static bool nowhere(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 /* Local axes on x = 0, where y comes first. */
 static bool swapped(const void *self, const double X[3], double Q[9])
 {
@@ -94,7 +86,6 @@ static void check_capacity(int order)
                                             .layer_count = 2,
                                             .layers = layers,
                                             .layer_of = sheet_layer,
-                                            .active = nowhere,
                                             .held = held,
                                             .frame = swapped,
                                             .electrode = faces};

@@ -113,8 +113,6 @@ static void test_prescribed_in_local_axes(void **state)
   const struct dea_solid_options options = {.order_z = bar.order_z,
                                             .layer_count = 1,
                                             .layers = &soft,
-                                            .layer_of = block_layer,
-                                            .active = block_passive,
                                             .held = on_planes_turned,
                                             .frame = turned_end};
   struct dea_solid *solid;

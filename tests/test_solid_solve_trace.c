@@ -41,7 +41,6 @@ static dea_status try(struct dea_context *with, const struct block *block, const
   const struct dea_solid_options options = {.order_z = block->order_z,
                                             .layer_count = 1,
                                             .layers = &layer,
-                                            .layer_of = block_layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = block};

@@ -67,14 +67,6 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool upper(const void *self, int region, int sheet)
 {
   (void)self;
@@ -147,7 +139,6 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
                                             .field = kind,
                                             .layer_count = 1,
                                             .layers = &layer,
-                                            .layer_of = only_layer,
                                             .active = upper,
                                             .held = clamp ? clamped : mirrored,
                                             .electrode = electrode};

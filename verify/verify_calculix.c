@@ -24,22 +24,6 @@ static void map_plate(const void *self, double s, double t, double x[2])
   x[1] = half_width_m * t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static bool no_region(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 static int held(const void *self, const double X[3])
 {
   (void)self;
@@ -77,12 +61,8 @@ static struct answer ours(int elements, double stretch)
   const struct dea_sheet sheet = {half_thickness_m, 2, 2};
   struct dea_layer rubber = {
       .law = dea_law_find("yeoh"), .param = yeoh, .pre_stretch = {1, 1, 1}, .kappa_Pa = 4e7};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &rubber,
-                                            .layer_of = only_layer,
-                                            .active = no_region,
-                                            .held = held};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
   struct dea_grid *grid;
   struct dea_solid *solid;
   verify_ok(ctx, dea_layer_relax(&rubber));

@@ -14,14 +14,6 @@ struct disc {
   struct dea_solid *solid;
 };
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool inner_region(const void *self, int region, int sheet)
 {
   (void)self;
@@ -51,12 +43,8 @@ static struct disc disc_create(double a_m, double H0_m, size_t fine, double edge
   verify_ok(ctx, dea_layer_relax(&film));
   const struct dea_quarter quarter = {2, 2, a_m, frame_m, h, .fine = fine, .edge = edge_m};
   verify_ok(ctx, dea_grid_quarter(ctx, &quarter, &disc.grid));
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &film,
-                                            .layer_of = only_layer,
-                                            .active = inner_region,
-                                            .held = held};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &film, .active = inner_region, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, disc.grid, &options, &disc.solid));
   return disc;
 }

@@ -25,14 +25,6 @@ static void map_body(const void *self, double s, double t, double x[2])
   x[1] = body->size[1] * t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
 static bool all_active(const void *self, int region, int sheet)
 {
   (void)self;
@@ -65,7 +57,6 @@ static void body_create(struct body *body, struct dea_layer layer,
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,
                                             .layers = &layer,
-                                            .layer_of = only_layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = body};

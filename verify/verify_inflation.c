@@ -15,22 +15,6 @@ struct shell {
   struct dea_pressure *pressure;
 };
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static bool passive(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 /* Solid, surface and load for the grid of the shell. */
 static void shell_fill(struct shell *shell, int order,
                        int (*held)(const void *self, const double X[3]))
@@ -43,12 +27,8 @@ static void shell_fill(struct shell *shell, int order,
                              .thickness_m = shell->H};
   struct dea_hex_shape shape;
   verify_ok(ctx, dea_layer_relax(&rubber));
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &rubber,
-                                            .layer_of = only_layer,
-                                            .active = passive,
-                                            .held = held};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
   verify_ok(ctx, dea_hex_shape_create(order, 2, &shape));
   verify_ok(ctx, dea_surface_create(ctx, shell->grid, &shape, DEA_SIDE_BOTTOM, NULL, NULL,

@@ -91,22 +91,6 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = t + 0.04 * sin(pi * t) * cos(pi * s - 0.3);
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static bool nowhere(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 static int held(const void *self, const double X[3])
 {
   const struct exact *exact = self;
@@ -195,8 +179,6 @@ static void solve(const struct exact *exact, struct dea_grid *grid, double error
       .field = exact->potential != NULL ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
       .layer_count = 1,
       .layers = &exact->layer,
-      .layer_of = only_layer,
-      .active = nowhere,
       .held = held,
       .electrode = electrode,
       .self = exact};

@@ -44,22 +44,6 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = t;
 }
 
-static int only_layer(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return 0;
-}
-
-static bool passive(const void *self, int region, int sheet)
-{
-  (void)self;
-  (void)region;
-  (void)sheet;
-  return false;
-}
-
 static int not_held(const void *self, const double X[3])
 {
   (void)self;
@@ -97,12 +81,8 @@ static struct plate plate_create(const struct problem *problem, int order, const
 {
   static const double nowhere[3] = {0, 0, 0};
   const struct dea_layer layer = {.lame_mu_Pa = 0.5 * problem->modulus}; // nu = 0
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &layer,
-                                            .layer_of = only_layer,
-                                            .active = passive,
-                                            .held = not_held};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};
   struct plate plate = {.grid = unit_square(order, count, problem->thickness)};
   struct dea_surface *end;

@@ -23,8 +23,8 @@ struct dea_solid_options {
   enum dea_solid_field_kind field;
   size_t layer_count;
   const struct dea_layer *layers; // copied
-  /* Layer of an element, and whether it lies between electrodes (with a coupled field: for what
-   * fields and extremes report by V/h). */
+  /* Layer of an element (NULL: the first of all), and whether it lies between electrodes (NULL:
+   * none does; with a coupled field: for what fields and extremes report by V/h). */
   int (*layer_of)(const void *self, int region, int sheet);
   bool (*active)(const void *self, int region, int sheet);
   /* Components of a node that are held, as bits 1, 2, 4. */
