@@ -266,10 +266,8 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
     status = add_loads(ctx, s, level, energy);
   }
   status = dea_solid_agree(ctx, s, status);
-  if (level >= DEA_TANGENT) { // after a failure too: the matrix has to be whole for the next time
-    DEA_TRY(ctx,
-            dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
-    DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  if (level >= DEA_TANGENT) {
+    DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->K));
   }
   DEA_TRY(ctx, status);
   collect(s, energy);

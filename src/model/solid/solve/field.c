@@ -200,9 +200,7 @@ static dea_status assemble(struct dea_context *ctx, struct dea_solid *s, const d
     status = dielectric(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
   status = dea_solid_agree(NULL, s, status);
-  // after a failure too: the matrix has to be whole for the next time
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyBegin(L, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(L, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, L));
   if (status != DEA_OK) {
     return status; // an inverted element: not worth a message in a line search
   }

@@ -131,6 +131,9 @@ dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s
 /* What K gets for modes without stiffness; nothing without flat elements. */
 dea_status dea_solid_add_springs(struct dea_context *ctx, struct dea_solid *s);
 
+/* Ends what was added to A, which has to be done after a failure too: else its next zeroing fails.
+ */
+dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A);
 /* LDL^T of A into *factor, which is analysed when it is NULL. */
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 /* Factor of K; *negative: its negative pivots beyond those of free potentials. */

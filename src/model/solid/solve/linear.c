@@ -3,6 +3,13 @@
 
 #include <string.h>
 
+dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
+{
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  return DEA_OK;
+}
+
 /* Analysis of A's pattern. room_percent: for pivots that come later than planned. */
 static dea_status analyse(struct dea_context *ctx, Mat A, PetscInt room_percent, Mat *factor)
 {

@@ -70,10 +70,9 @@ dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double 
           "MatSetValuesBlocked");
     }
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, status));
-  DEA_TRY(ctx,
-          dea_solid_petsc(ctx, MatAssemblyBegin(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatAssemblyEnd(s->K, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd"));
+  status = dea_solid_agree(ctx, s, status);
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->K));
+  DEA_TRY(ctx, status);
   return DEA_OK;
 }
 
