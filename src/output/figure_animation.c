@@ -20,14 +20,12 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
   dea_picture_add_palette(gp, space->low_m, space->high_m);
   dea_space_add_settings(gp, space);
   double height_px = 0.78 * WIDTH_PX * dea_space_shape(space) + 2 * LABEL_PX;
+  dea_space_add_margins(gp, LABEL_PX / height_px);
   dea_text_add(gp,
-               "set lmargin at screen 0.01\nset rmargin at screen 0.765\n"
-               "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
-               "set colorbox user origin screen 0.785, screen 0.15 size screen 0.03, screen 0.7\n"
                "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
                "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
                "screen 0.06 front\n",
-               LABEL_PX / height_px, 1 - LABEL_PX / height_px, 2e3 * space->radius_m, space->times);
+               2e3 * space->radius_m, space->times);
   dea_text_add(gp, "array kV = [");
   for (size_t i = 0; i < space->count; i++) {
     dea_text_add(gp, "%s\"%.4g\"", i > 0 ? ", " : "", 1e-3 * space->pictures[i].voltage_V);

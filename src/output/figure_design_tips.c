@@ -12,10 +12,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   struct dea_panel *panel = &plot->panels[0];
   size_t count = dea_figure_variants(result, "compare-design", false, list, SHOWN_MAX);
   int column = dea_point_column_find("fibre_tip_z_m");
-  for (size_t i = 0; i < count; i++) {
-    DEA_TRY(ctx,
-            dea_figure_add(ctx, panel, &list[i].variant->curve, column, 1e6, 0, &list[i].look));
-  }
+  DEA_TRY(ctx, dea_figure_add_variants(ctx, panel, list, count, column, 1e6, 0));
   snprintf(panel->y_label, DEA_LABEL_SIZE, "Fibre tip {/:Italic z} (\302\265m)");
   dea_figure_voltage_axis(panel);
   if (panel->series_count > 0) {

@@ -7,17 +7,6 @@
 
 enum { SHOWN_MAX = 16 };
 
-static dea_status add_quantity(struct dea_context *ctx, struct dea_panel *panel,
-                               const struct dea_figure_variant list[], size_t count, int column,
-                               double factor, double shift)
-{
-  for (size_t i = 0; i < count; i++) {
-    DEA_TRY(ctx, dea_figure_add(ctx, panel, &list[i].variant->curve, column, factor, shift,
-                                &list[i].look));
-  }
-  return DEA_OK;
-}
-
 /* True where some design has a displacement beyond noise. */
 static bool moves(const struct dea_figure_variant list[], size_t count, int column)
 {
@@ -42,10 +31,10 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   plot->panel_count = moves(list, count, z) ? 2 : 1;
   struct dea_panel *last = &panels[plot->panel_count - 1];
   if (plot->panel_count == 2) {
-    DEA_TRY(ctx, add_quantity(ctx, &panels[0], list, count, z, 1e6, 0));
+    DEA_TRY(ctx, dea_figure_add_variants(ctx, &panels[0], list, count, z, 1e6, 0));
     snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
   }
-  DEA_TRY(ctx, add_quantity(ctx, last, list, count, stretch, 100, -1));
+  DEA_TRY(ctx, dea_figure_add_variants(ctx, last, list, count, stretch, 100, -1));
   snprintf(last->y_label, DEA_LABEL_SIZE, "Electrode strain (%%)");
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_figure_voltage_axis(&panels[p]);

@@ -20,12 +20,8 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
   dea_picture_add_palette(gp, space->low_m, space->high_m);
   dea_space_add_settings(gp, space);
-  dea_text_add(
-      gp,
-      "set lmargin at screen 0.01\nset rmargin at screen 0.765\n"
-      "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
-      "set colorbox user origin screen 0.785, screen 0.15 size screen 0.03, screen 0.7\n\n",
-      LABEL_MM / height_mm, 1 - LABEL_MM / height_mm);
+  dea_space_add_margins(gp, LABEL_MM / height_mm);
+  dea_text_add(gp, "\n");
   dea_script_terminals(gp);
   dea_text_add(gp,
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"

@@ -59,6 +59,17 @@ static bool is_first(const struct dea_figure_variant list[], size_t i, bool by_n
   return true;
 }
 
+dea_status dea_figure_add_variants(struct dea_context *ctx, struct dea_panel *panel,
+                                   const struct dea_figure_variant list[], size_t count, int column,
+                                   double factor, double shift)
+{
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, dea_figure_add(ctx, panel, &list[i].variant->curve, column, factor, shift,
+                                &list[i].look));
+  }
+  return DEA_OK;
+}
+
 /* Keys of so many entries, in two columns from the fourth on where their titles are short. */
 static const char *key_of(size_t entries, size_t longest)
 {

@@ -82,6 +82,15 @@ static void add_part(struct dea_text *gp, const struct dea_space *space, bool fi
   dea_text_add(gp, " using %s:(%s) with pm3d%s notitle", place, colour, look);
 }
 
+void dea_space_add_margins(struct dea_text *gp, double words)
+{
+  dea_text_add(gp,
+               "set lmargin at screen 0.01\nset rmargin at screen 0.765\n"
+               "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
+               "set colorbox user origin screen 0.785, screen 0.15 size screen 0.03, screen 0.7\n",
+               words, 1 - words);
+}
+
 void dea_space_add_command(struct dea_text *gp, const struct dea_space *space)
 {
   size_t frame = space->frame_lines, lines = space->lines;

@@ -20,6 +20,9 @@ void dea_space_measure(const struct dea_picture *pictures, size_t count, struct 
 double dea_space_shape(const struct dea_space *space);
 /* Its settings: projection and ranges, with the variables tilt and turn of the view, and times. */
 void dea_space_add_settings(struct dea_text *gp, const struct dea_space *space);
+/* Margins of a drawing in space: `words` of the height above and below it, and beside it the box of
+ * colours with room for four digits. */
+void dea_space_add_margins(struct dea_text *gp, double words);
 /* "splot ..." of the picture in the gnuplot variable k, counted from 0. Of a flat one the lines
  * come last, in space depth decides. */
 void dea_space_add_command(struct dea_text *gp, const struct dea_space *space);
