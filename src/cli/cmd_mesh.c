@@ -45,12 +45,13 @@ static void print_summary(const struct cli_design_arguments *arguments,
     json_decref(json);
     return;
   }
+  int face = (plate->order + 1) * (plate->order + 1); // nodes
   printf("%-20s %g degrees\n", "domain", degrees);
   printf("%-20s %zu, ", "elements", grid->element_count);
   if (flat > 0) {
-    printf("%zu of them flat, of 9 nodes, the others ", flat);
+    printf("%zu of them flat, of %d nodes, the others ", flat, face);
   }
-  printf("of 27 nodes\n");
+  printf("of %d nodes\n", face * (plate->order_z + 1));
   printf("%-20s %zu\n", "nodes", grid->node_count);
   printf("%-20s %zu\n", "unknowns", unknowns);
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
