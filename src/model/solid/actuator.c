@@ -37,6 +37,47 @@ static struct dea_layer bonded(double young_modulus_Pa, double poisson_ratio, do
                             .kappa_Pa = kappa_share * *mu_Pa};
 }
 
+static bool known(double density)
+{
+  return density > 0;
+}
+
+/* Densities; an electrode or a glue of which none is known is as heavy as the film. The layers that
+ * join a membrane to fibres have no mass: all of the film's is in its surface. */
+static void set_densities(const struct dea_device *d, struct dea_layer *layers)
+{
+  double film = d->film.density_kg_per_m3, electrode = d->electrode.density_kg_per_m3;
+  layers[DEA_LAYER_FILM].density_kg_per_m3 = film;
+  layers[DEA_LAYER_ELECTRODE].density_kg_per_m3 = known(electrode) ? electrode : film;
+  layers[DEA_LAYER_GLUE].density_kg_per_m3 = film;
+  layers[DEA_LAYER_FIBRE].density_kg_per_m3 = d->fibre.density_kg_per_m3;
+}
+
+dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *a)
+{
+  const struct dea_device *d = a->device;
+  bool fibres = d->fibre_count > 0;
+  if (!known(d->film.density_kg_per_m3) || (fibres && !known(d->fibre.density_kg_per_m3))) {
+    return dea_fail(ctx, DEA_E_DESIGN,
+                    "weight and inertia need the density of the material '%s' "
+                    "(materials[].density)",
+                    known(d->film.density_kg_per_m3) ? d->fibre.name : d->film.name);
+  }
+  if (a->plate.electrode_thickness > 0 && !known(d->electrode.density_kg_per_m3)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                                 "model 3d: the density of the electrodes is unknown; that of the "
+                                 "film, %.4g kg/m^3, is taken",
+                                 d->film.density_kg_per_m3));
+  }
+  if (fibres && a->plate.glue_thickness > 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                                 "model 3d: the density of the glue is unknown; that of the film, "
+                                 "%.4g kg/m^3, is taken",
+                                 d->film.density_kg_per_m3));
+  }
+  return DEA_OK;
+}
+
 /* Film and electrodes as surfaces, and what joins them to fibres (docs/theory/membrane.md). */
 static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
                                 struct dea_layer *layers)
@@ -94,6 +135,7 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
                     "compute.solid.field: coupled needs a film with a thickness; take "
                     "compute.solid.film: solid");
   }
+  set_densities(d, layers);
   if (out->plate.membrane) {
     DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, layers));
   }

@@ -31,6 +31,10 @@ dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device 
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
                                struct dea_actuator *out);
 
+/* Before anything that takes the layers' densities: DEA_E_DESIGN where that of film or fibres is
+ * unknown, a note where that of electrodes or glue is and the film's is taken. */
+dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *actuator);
+
 /* Callbacks for a solid (solve/solid.h); self: a struct dea_actuator. */
 int dea_actuator_layer(const void *self, int region, int sheet);
 bool dea_actuator_active(const void *self, int region, int sheet);

@@ -25,8 +25,9 @@ struct dea_layer {
   double permittivity_F_per_m; // eps of the flat layer, 0: no electric energy
   /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
   double permittivity_slope_F_per_m;
-  double thickness_m; // h, over which the voltage stands
-  bool relaxed;       // flat elements wrinkle instead of taking pressure (tension.h)
+  double thickness_m;       // h, over which the voltage stands
+  double density_kg_per_m3; // 0 for a part without mass
+  bool relaxed;             // flat elements wrinkle instead of taking pressure (tension.h)
 };
 
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that

@@ -28,6 +28,7 @@ dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out)
     out->node_at[q][0] = nodes[i];
     out->node_at[q][1] = nodes[j];
     for (int m = 0; m < out->nodes; m++) {
+      out->value[q][m] = value[i][m % n] * value[j][m / n];
       out->slope[q][0][m] = slope[i][m % n] * value[j][m / n];
       out->slope[q][1][m] = value[i][m % n] * slope[j][m / n];
     }
@@ -228,9 +229,8 @@ dea_status dea_membrane_point(const struct dea_layer *layer, const double F[6],
 
 /* ---- element ---- */
 
-/* Gradients [2][node] by X at a Gauss point and its reference area; 0 for an inverted element. */
-static double gradients(const struct dea_flat_shape *s, int q, const double *X,
-                        double gradient[2][DEA_FLAT_NODES_MAX])
+double dea_flat_gradients(const struct dea_flat_shape *s, int q, const double *X,
+                          double gradient[2][DEA_FLAT_NODES_MAX])
 {
   double map[4] = {0}; // dX_J/dxi_a as map[2 J + a]
   for (int n = 0; n < s->nodes; n++) {
@@ -309,7 +309,7 @@ dea_status dea_membrane_evaluate(const struct dea_flat_shape *shape, const struc
   memset(out->K, 0, level >= DEA_TANGENT ? dofs * dofs * sizeof *out->K : 0);
   out->energy_J = out->volume_m3 = 0;
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = layer->thickness_m * gradients(shape, q, X, gradient);
+    double weight = layer->thickness_m * dea_flat_gradients(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -344,7 +344,7 @@ dea_status dea_membrane_state(const struct dea_flat_shape *shape, const struct d
   out->count = shape->gauss;
   for (int q = 0; q < shape->gauss; q++) {
     struct dea_membrane_point point;
-    if (!(gradients(shape, q, X, gradient) > 0)) {
+    if (!(dea_flat_gradients(shape, q, X, gradient) > 0)) {
       return DEA_E_DOMAIN;
     }
     in_plane_columns(shape->nodes, u, gradient, F);
@@ -365,7 +365,7 @@ dea_status dea_membrane_stiffness(const struct dea_flat_shape *shape, const stru
   double modulus = 4 * layer->law->shear_modulus(layer->param) * layer->thickness_m;
   memset(out, 0, (size_t)shape->nodes * sizeof *out);
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = modulus * gradients(shape, q, X, gradient);
+    double weight = modulus * dea_flat_gradients(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -383,7 +383,7 @@ dea_status dea_membrane_metric(const struct dea_flat_shape *shape, const struct 
   size_t nodes = (size_t)shape->nodes;
   memset(laplace, 0, nodes * nodes * sizeof *laplace);
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = layer->thickness_m * gradients(shape, q, X, gradient);
+    double weight = layer->thickness_m * dea_flat_gradients(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }

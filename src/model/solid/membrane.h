@@ -23,13 +23,19 @@ enum {
  * hexahedron. */
 struct dea_flat_shape {
   int order, nodes, gauss;
-  double slope[DEA_FLAT_NODES_MAX][2][DEA_FLAT_NODES_MAX]; // at a Gauss point, by the local axes
+  double value[DEA_FLAT_NODES_MAX][DEA_FLAT_NODES_MAX];    // at a Gauss point
+  double slope[DEA_FLAT_NODES_MAX][2][DEA_FLAT_NODES_MAX]; // there, by the local axes
   double weight[DEA_FLAT_NODES_MAX];
   double node_at[DEA_FLAT_NODES_MAX][2]; // local coordinates in [-1, 1]
 };
 
 /* order: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
 dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out);
+
+/* Gradients [2][node] by X [nodes][3] at a Gauss point and its reference area; 0 for an inverted
+ * element. */
+double dea_flat_gradients(const struct dea_flat_shape *shape, int q, const double *X,
+                          double gradient[2][DEA_FLAT_NODES_MAX]);
 
 /* Whether a flat element can be of this layer: DEA_E_UNSUPPORTED without an isotropic law. */
 dea_status dea_membrane_check(const struct dea_layer *layer);

@@ -140,6 +140,16 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
 /* K += amount_Pa int grad : grad of the displacements. */
 dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount_Pa);
+/* Places X [nodes][3] of an element's nodes; returns their number. */
+int dea_solid_places(const struct dea_solid *s, size_t e, double *X);
+/* A += amount times what is the same for the three components of the displacement, made of a matrix
+ * [nodes][nodes] for each element, without the rows and columns of held components. A: K, or a
+ * matrix of its pattern. */
+dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Mat A, double amount,
+                                dea_status (*of)(const struct dea_solid *s, size_t e,
+                                                 double *scalar));
+/* A += factor M with the consistent mass matrix M (mass.h), as above. */
+dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor);
 /* Sets modulus_Pa, length_m and energy_floor. */
 void dea_solid_sizes(struct dea_solid *s);
 /* out = K^-1 right with the present factor, [dofs] both, in global components. */

@@ -1,6 +1,8 @@
 /* The matrix K of a solid: which rank has which rows and elements, and room for the entries. */
 #include "model/solid/solve/internal.h"
 
+#include <string.h>
+
 /* An element goes to the rank that has the row of a node in its middle, so that most of what it
  * adds to K stays there. */
 static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
@@ -118,5 +120,65 @@ dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(s->K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
                                "MatSetOption"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatCreateVecs(s->K, &s->solution, &s->right), "MatCreateVecs"));
+  return DEA_OK;
+}
+
+int dea_solid_places(const struct dea_solid *s, size_t e, double *X)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+  for (int n = 0; n < count; n++) {
+    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof *X);
+  }
+  return count;
+}
+
+/* amount times a matrix of numbers between the nodes of an element, as a block of K without the
+ * rows and columns of held components. */
+static void block_of(const struct dea_solid *s, int count, const int *nodes, double amount,
+                     const double *scalar, double *block)
+{
+  int per = s->per_node, dofs = per * count;
+  memset(block, 0, (size_t)(dofs * dofs) * sizeof *block);
+  for (int a = 0; a < count; a++) {
+    for (int b = 0; b < count; b++) {
+      for (int i = 0; i < 3; i++) {
+        block[(per * a + i) * dofs + per * b + i] = amount * scalar[a * count + b];
+      }
+    }
+  }
+  dea_solid_frame_matrix(s, count, nodes, block);
+  for (int i = 0; i < dofs; i++) {
+    for (int j = 0; j < dofs && s->held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
+      block[i * dofs + j] = block[j * dofs + i] = 0;
+    }
+  }
+}
+
+dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Mat A, double amount,
+                                dea_status (*of)(const struct dea_solid *s, size_t e,
+                                                 double *scalar))
+{
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    double scalar[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+    PetscInt block[DEA_HEX_NODES_MAX];
+    size_t e = s->own[k];
+    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+    status = of(s, e, scalar);
+    if (status == DEA_OK) {
+      block_of(s, count, nodes, amount, scalar, s->element->K);
+      for (int n = 0; n < count; n++) {
+        block[n] = nodes[n];
+      }
+      status = dea_solid_petsc(
+          ctx, MatSetValuesBlocked(A, count, block, count, block, s->element->K, ADD_VALUES),
+          "MatSetValuesBlocked");
+    }
+  }
+  status = dea_solid_agree(ctx, s, status);
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
+  DEA_TRY(ctx, status);
   return DEA_OK;
 }

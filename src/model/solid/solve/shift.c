@@ -11,11 +11,7 @@ static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace
                             double *volume)
 {
   double X[DEA_HEX_DOFS_MAX] = {0};
-  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
-  for (int n = 0; n < count; n++) {
-    memcpy(X + 3 * n, s->grid->X + 3 * s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
-           3 * sizeof *X);
-  }
+  int count = dea_solid_places(s, e, X);
   dea_status status =
       s->grid->flat[e] ? dea_membrane_metric(&s->flat, &s->layers[s->layer[e]], X, laplace, lumped)
                        : dea_hex_metric(&s->shape, X, laplace, lumped);
@@ -26,53 +22,15 @@ static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace
   return status;
 }
 
-/* L of an element as a block of K without the rows and columns of held components. */
-static dea_status shift_block(struct dea_solid *s, size_t e, double amount, double *block)
+static dea_status laplace_of(const struct dea_solid *s, size_t e, double *laplace)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes), per = s->per_node, dofs = per * count;
-  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, volume;
-  dea_status status = metric_of(s, e, laplace, lumped, &volume);
-  if (status != DEA_OK) {
-    return status;
-  }
-  memset(block, 0, (size_t)(dofs * dofs) * sizeof *block);
-  for (int a = 0; a < count; a++) {
-    for (int b = 0; b < count; b++) {
-      for (int i = 0; i < 3; i++) {
-        block[(per * a + i) * dofs + per * b + i] = amount * laplace[a * count + b];
-      }
-    }
-  }
-  dea_solid_frame_matrix(s, count, nodes, block);
-  for (int i = 0; i < dofs; i++) {
-    for (int j = 0; j < dofs && s->held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
-      block[i * dofs + j] = block[j * dofs + i] = 0;
-    }
-  }
-  return DEA_OK;
+  double lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+  return metric_of(s, e, laplace, lumped, &volume);
 }
 
 dea_status dea_solid_shift(struct dea_context *ctx, struct dea_solid *s, double amount_Pa)
 {
-  dea_status status = DEA_OK;
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    PetscInt block[DEA_HEX_NODES_MAX];
-    size_t e = s->own[k];
-    status = shift_block(s, e, amount_Pa, s->element->K);
-    int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
-    for (int n = 0; n < count; n++) {
-      block[n] = s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
-    }
-    if (status == DEA_OK) {
-      status = dea_solid_petsc(
-          ctx, MatSetValuesBlocked(s->K, count, block, count, block, s->element->K, ADD_VALUES),
-          "MatSetValuesBlocked");
-    }
-  }
-  status = dea_solid_agree(ctx, s, status);
-  DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->K));
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, s->K, amount_Pa, laplace_of));
   return DEA_OK;
 }
 

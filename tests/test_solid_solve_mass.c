@@ -1,0 +1,87 @@
+/* Inertia of a solid: forces of rigid motions, and the weight of the same body. */
+// ctest: solid
+#include "model/solid/loads.h"
+#include "model/solid/solve/mass.h"
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+#include <stdlib.h>
+
+static const struct block slab = {{3, 2, 0.5}, {2, 3, 1}, 2, 2};
+static const double rho = 970;
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+static int end_held(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 ? 7 : 0;
+}
+
+static double density(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return rho;
+}
+
+static void test_inertia_of_rigid_motions(void **state)
+{
+  (void)state;
+  const struct dea_layer layer = {.lame_mu_Pa = 1, .density_kg_per_m3 = rho};
+  struct dea_grid *grid = block_grid(ctx, &slab);
+  struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
+  struct dea_hex_shape shape;
+  double *v = calloc(3 * grid->node_count, sizeof *v);
+  double *inertia = calloc(3 * grid->node_count, sizeof *inertia);
+  double *weight = calloc(3 * grid->node_count, sizeof *weight);
+  assert_true(v != NULL && inertia != NULL && weight != NULL);
+  assert_int_equal(dea_hex_shape_create(slab.order, slab.order_z, &shape), DEA_OK);
+  // free fall: the inertia is the weight, node by node
+  const double fall[3] = {0.3, -2, 9.81};
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    v[i] = fall[i % 3];
+  }
+  dea_load_gravity(grid, &shape, density, NULL, fall, weight);
+  assert_int_equal(dea_solid_mass_apply(ctx, solid, v, inertia), DEA_OK);
+  double mass = rho * 3 * 2 * 0.5;
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    assert_close(inertia[i], weight[i], 1e-12, 1e-12 * mass);
+  }
+  // turning about the z axis with unit rate: twice the kinetic energy is the moment of inertia
+  double twice = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    v[3 * n] = -grid->X[3 * n + 1];
+    v[3 * n + 1] = grid->X[3 * n];
+    v[3 * n + 2] = 0;
+  }
+  assert_int_equal(dea_solid_mass_apply(ctx, solid, v, inertia), DEA_OK);
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    twice += v[i] * inertia[i];
+  }
+  assert_close(twice, mass * (3 * 3 + 2 * 2) / 3., 1e-12, 0);
+  free(v);
+  free(inertia);
+  free(weight);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_inertia_of_rigid_motions),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
