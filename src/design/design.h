@@ -27,6 +27,7 @@ enum dea_coverage_by { DEA_COVERAGE_RADIUS, DEA_COVERAGE_AREA };
 enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
 enum dea_solid_electrostatics { DEA_FIELD_THIN, DEA_FIELD_COUPLED };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
+enum dea_gravity { DEA_GRAVITY_OFF, DEA_GRAVITY_FIBRES_UP, DEA_GRAVITY_FIBRES_DOWN };
 enum dea_solid_side { DEA_SIDE_ANY, DEA_SIDE_FIBRES, DEA_SIDE_BACK }; // of the centre
 
 struct dea_design;
@@ -76,6 +77,8 @@ struct dea_design {
     struct dea_choice outer_end;          // enum dea_outer_end
     struct dea_inplane_length outer_gap;  // from a free outer end to the frame
   } fibres;
+
+  struct dea_choice gravity; // enum dea_gravity
 
   struct dea_material_data *materials; // [material_count] inline ones of this file, owned
   size_t material_count;

@@ -316,6 +316,8 @@ static const struct dea_record compute_record = {"compute", "what to compute", c
 static const struct dea_record report_record = {"report", "how to report", report_fields,
                                                 COUNT(report_fields)};
 
+static const char *const gravities[] = {"off", "fibres_up", "fibres_down", NULL}; // dea_gravity
+
 static const struct dea_field design_fields[] = {
     {.key = "dea",
      .kind = DEA_FIELD_INTEGER,
@@ -362,6 +364,13 @@ static const struct dea_field design_fields[] = {
      .present_offset = AT(has_fibres),
      .absent_text = "none",
      .doc = "radial fibres on the upper face; without this section there are none"},
+    {.key = "gravity",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(gravity),
+     .choices = gravities,
+     .default_text = "off",
+     .doc = "weight, and which way the side of the fibres faces (3d); without fibres: +z",
+     .example = "fibres_up"},
     {.key = "materials",
      .kind = DEA_FIELD_RECORD,
      .offset = RAW(materials),

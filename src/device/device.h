@@ -29,6 +29,8 @@ struct dea_device {
   enum dea_outer_end outer_end;
   double fibre_outer_gap_m; // from a free outer end to the frame; 0 for other ends
 
+  enum dea_gravity gravity;
+
   enum dea_solid_film solid_film; // of model 3d, as the next four
   enum dea_solid_domain solid_domain;
   enum dea_solid_electrostatics solid_field;

@@ -71,6 +71,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->coverage = design->compute.coverage.origin != DEA_ABSENT ? design->compute.coverage.si
                      : design->compute.coverage_by.value == DEA_COVERAGE_AREA ? ratio * ratio
                                                                               : ratio;
+  device->gravity = (enum dea_gravity)design->gravity.value;
   device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
   device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
   device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;

@@ -35,6 +35,16 @@ static void add(struct dea_plane *sum, double factor, const struct dea_plane *te
   sum->k22 += factor * term->k22;
 }
 
+dea_status dea_film_say_weight(struct dea_context *ctx, const struct dea_device *device,
+                               const char *model)
+{
+  if (device->gravity != DEA_GRAVITY_OFF) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                                 "model %s knows no weight: its film stays flat (gravity)", model));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_film_eval(const struct dea_film *film, bool active, double nominal_field_V_per_m,
                          double l1, double l2, struct dea_plane *out)
 {

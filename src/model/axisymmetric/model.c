@@ -129,6 +129,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->device = device;
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
+  DEA_TRY(ctx, dea_film_say_weight(ctx, device, "axisymmetric"));
   model->max_stretch = 10 * device->pre_stretch;
   const struct dea_path_system system = {
       .unknowns = dea_disc_unknowns(&model->disc),

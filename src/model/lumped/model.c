@@ -106,6 +106,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
                                  "without the film between them (paper eqs 18-20): upper bounds, "
                                  "far above a pre-stretched film's, and without a sign"));
   }
+  DEA_TRY(ctx, dea_film_say_weight(ctx, device, "lumped"));
   model->modulus_Pa = dea_film_modulus(&model->lumped.film);
   model->max_stretch = fmin(10 * device->pre_stretch, device->pre_stretch / device->coverage);
   struct dea_lumped_balance rest;

@@ -4,6 +4,7 @@
 #include "model/solid/actuator.h"
 #include "model/solid/line_profile.h"
 #include "model/solid/solve/fields.h"
+#include "model/solid/solve/mass.h"
 #include "model/solid/solve/press.h"
 #include "model/solid/solve/side.h"
 #include "model/solid/solve/state.h"
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 
+static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
 
 struct dea_model {
@@ -90,6 +92,42 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
   return DEA_OK;
 }
 
+/* Puts the weight of all parts among the loads of every solve: also that at 0 V. */
+static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+{
+  enum dea_gravity gravity = model->device->gravity;
+  if (gravity == DEA_GRAVITY_OFF) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  double *fall = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fall);
+  if (dea_solid_any(fall == NULL)) {
+    dea_free(ctx, fall);
+    return DEA_E_MEMORY;
+  }
+  for (size_t n = 0; n < model->grid->node_count; n++) {
+    fall[3 * n + 2] = gravity == DEA_GRAVITY_FIBRES_UP ? -free_fall_m_per_s2 : free_fall_m_per_s2;
+  }
+  dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, dea_solid_force(model->solid));
+  dea_free(ctx, fall);
+  return status;
+}
+
+/* Where the weight alone brings the film. */
+static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model)
+{
+  if (model->device->gravity != DEA_GRAVITY_OFF) {
+    const double *u = dea_solid_displacement(model->solid);
+    DEA_TRY(ctx, dea_finding_add(
+                     ctx, DEA_NOTE, (struct dea_place){0},
+                     "model 3d: with its weight the centre is at z = %.4g um without voltage, "
+                     "where the sweep starts (gravity: fibres_%s)",
+                     1e6 * 0.5 * (u[3 * model->centre + 2] + u[3 * model->centre_twin + 2]),
+                     model->device->gravity == DEA_GRAVITY_FIBRES_UP ? "up" : "down"));
+  }
+  return DEA_OK;
+}
+
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
                           struct dea_model *model)
 {
@@ -112,8 +150,10 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx, dea_solid_create(ctx, model->grid, &options, &model->solid));
   find_nodes(model);
+  DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, 0, &model->report));
   model->rest_energy_J = model->report.energy_J;
+  DEA_TRY(ctx, say_sag(ctx, model));
   return DEA_OK;
 }
 
