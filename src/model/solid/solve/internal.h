@@ -155,6 +155,9 @@ void dea_solid_sizes(struct dea_solid *s);
 /* out = K^-1 right with the present factor, [dofs] both, in global components. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
+/* A vector of K's rows as unknowns of the whole [dofs] in global components. */
+dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
+                                 double *out);
 
 /* Of a coupled field (field.c): electrodes; then its matrix, with row lengths as those of K.
  * Nothing to do for a thin film. */

@@ -83,6 +83,19 @@ static void from_nodes(const struct dea_solid *s, const double *nodes, double *s
   }
 }
 
+dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
+                                 double *out)
+{
+  const PetscScalar *values;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArrayRead(vector, &values), "VecGetArrayRead"));
+  memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
+  from_nodes(s, values, out);
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArrayRead(vector, &values), "VecRestoreArrayRead"));
+  dea_solid_sum(s, out, s->dofs);
+  dea_solid_frame_vector(s, true, out);
+  return DEA_OK;
+}
+
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
@@ -93,11 +106,6 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
   to_nodes(s, out, values);
   DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->solution, &values), "VecGetArray"));
-  memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
-  from_nodes(s, values, out);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->solution, &values), "VecRestoreArray"));
-  dea_solid_sum(s, out, s->dofs);
-  dea_solid_frame_vector(s, true, out);
+  DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out));
   return DEA_OK;
 }

@@ -6,6 +6,8 @@
 #define _POSIX_C_SOURCE 200809L // setenv
 #include "model/solid/solve/internal.h"
 
+#include <slepcsys.h>
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,6 +36,9 @@ dea_status dea_solid_start(struct dea_context *ctx)
   if (PetscInitialize(&argc, &argv, NULL, NULL) != 0) {
     return dea_fail(ctx, DEA_E_TOOL, "PETSc could not be started");
   }
+  if (SlepcInitializeNoArguments() != 0) {
+    return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
+  }
   PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   PetscMPIInt size;
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
@@ -48,6 +53,7 @@ void dea_solid_stop(void)
   PetscBool running = PETSC_FALSE;
   PetscInitialized(&running);
   if (running) {
+    SlepcFinalize(); // PETSc was started first and goes last
     PetscFinalize();
   }
 }

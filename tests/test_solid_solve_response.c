@@ -1,0 +1,268 @@
+/* Answer of a solid to a ripple of the voltage: a body of one degree of freedom in closed form, and
+ * a bender against static solves with the inertia as a load. */
+// ctest: solid
+#include "devices.h"
+#include "material/plane.h"
+#include "model/solid/solve/mass.h"
+#include "model/solid/solve/vibration.h"
+#include "solid_block.h"
+
+#include "context_fixture.h"
+
+#include <stdlib.h>
+
+static int set_up(void **state)
+{
+  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_solid_stop();
+  return context_tear_down(state);
+}
+
+/* ---- a strip of film that pulls a heavy bar ---- */
+
+static const double length = 0.02, width = 0.05, bar = 0.004, h = 50e-6, eps = 1e-11;
+static const double l1 = 1.5, l2 = 2, mass = 3e-3;
+
+static void map_strip(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = length * s;
+  x[1] = width * t;
+}
+
+static void map_bar(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = length + bar * s;
+  x[1] = width * t;
+}
+
+static int layer_of(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)sheet;
+  return region;
+}
+
+static bool strip_active(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)sheet;
+  return region == 0;
+}
+
+/* Everything goes along x only, the film's far end not at all. */
+static int along_x(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 ? 7 : 6;
+}
+
+/* Force along x of the film and stiffness, at a displacement and voltage. */
+static void film_force(const struct dea_material *material, double u, double voltage_V,
+                       double *force, double *stiffness)
+{
+  struct dea_plane f;
+  double l = l1 * (1 + u / length), H = h * l1 * l2, section = width / l2 * H;
+  assert_int_equal(dea_plane_elastic(material, l, l2, &f), DEA_OK);
+  // W_E = -eps/2 (V/H)^2 (l l2)^2 by l
+  double pull = eps * voltage_V * voltage_V / (H * H) * l2 * l2;
+  *force = section * (f.s1 - pull * l);
+  *stiffness = section * (f.k11 - pull) * l1 / length;
+}
+
+static void test_one_degree_of_freedom(void **state)
+{
+  (void)state;
+  static const double cuts[] = {0, 1}, V = 1500, ratio = 0.03;
+  struct dea_material film = test_material("gent", 43e3, 115, 0);
+  struct dea_material hard = test_material("neo-hookean", 3e8, 0, 0);
+  const struct dea_layer layers[] = {
+      {.law = film.law,
+       .param = film.param,
+       .pre_stretch = {l1, l2, 1 / (l1 * l2)},
+       .permittivity_F_per_m = eps,
+       .thickness_m = h},
+      {.law = hard.law,
+       .param = hard.param,
+       .pre_stretch = {1, 1, 1},
+       .thickness_m = h,
+       .density_kg_per_m3 = mass / (bar * width * h)},
+  };
+  const struct dea_block blocks[] = {{map_strip, NULL, cuts, cuts, 1, 1, 0},
+                                     {map_bar, NULL, cuts, cuts, 1, 1, 1}};
+  const struct dea_sheet sheet = {0, 1, 1};
+  const struct dea_solid_options options = {.order_z = 1,
+                                            .layer_count = 2,
+                                            .layers = layers,
+                                            .layer_of = layer_of,
+                                            .active = strip_active,
+                                            .held = along_x};
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  struct dea_solid_response *response;
+  assert_int_equal(dea_grid_create(ctx, 1, blocks, 2, &sheet, 1, NULL, 0, width, &grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  // a weight at the bar holds the tension of the film at rest
+  double weight, rest, force, stiffness;
+  film_force(&film, 0, 0, &weight, &rest);
+  size_t end = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    bool at_end = grid->X[3 * n] > length + bar - 1e-9;
+    dea_solid_force(solid)[3 * n] = at_end ? 0.5 * weight : 0;
+    end = at_end ? n : end;
+  }
+  assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+  double u = dea_solid_displacement(solid)[3 * end];
+  film_force(&film, u, V, &force, &stiffness);
+  assert_close(force, weight, 1e-4, 0); // the bar gives way, and K has 1e-10 of its stiffness
+  double square;
+  assert_int_equal(dea_solid_vibrations(ctx, solid, 1, &square, NULL), DEA_OK);
+  assert_close(square, stiffness / mass, 1e-4, 0);
+  // push per volt: -dF/dV at fixed u
+  double more, less, slope;
+  film_force(&film, u, V + 1, &more, &slope);
+  film_force(&film, u, V - 1, &less, &slope);
+  double push = 0.5 * (less - more), omega_0 = sqrt(stiffness / mass);
+  assert_int_equal(dea_solid_response_create(ctx, solid, 2 * omega_0, &response), DEA_OK);
+  const struct dea_damping damping = {ratio, 0, 0};
+  for (int i = 0; i <= 8; i++) {
+    double w = 0.25 * i * omega_0, re, im, real[3], imaginary[3];
+    double gap = stiffness - mass * w * w, loss = 2 * ratio * sqrt(stiffness * mass) * w;
+    re = push * gap / (gap * gap + loss * loss);
+    im = -push * loss / (gap * gap + loss * loss);
+    dea_solid_response_at(response, end, w, &damping, real, imaginary);
+    double size = hypot(re, im);
+    assert_close(real[0], re, 0, 1e-3 * size);
+    assert_close(imaginary[0], im, 0, 1e-3 * size);
+  }
+  dea_solid_response_destroy(ctx, response);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* ---- a bender: two sheets, the upper one between electrodes, clamped at one end ---- */
+
+static const struct block bender = {{10e-3, 4e-3, 0}, {3, 1, 1}, 2, 2};
+
+static bool upper(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  return sheet == 1;
+}
+
+static int clamped(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 ? 7 : 0;
+}
+
+/* Displacements at a voltage under dead loads. */
+static void at_rest(struct dea_solid *solid, size_t dofs, double voltage_V, const double *force,
+                    double share, double *u)
+{
+  struct dea_solid_report report;
+  for (size_t i = 0; i < dofs; i++) {
+    dea_solid_force(solid)[i] = share * force[i];
+  }
+  if (dea_solid_solve(ctx, solid, voltage_V, &report) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  memcpy(u, dea_solid_displacement(solid), dofs * sizeof *u);
+}
+
+/* (K - w^2 M + i w d M) q = f says K q_r = f + w^2 M q_r + w d M q_i and K q_i = w^2 M q_i - w d M
+ * q_r: the static answers to a ripple with these loads, and to these loads alone. */
+static void check_at(struct dea_solid *solid, const struct dea_solid_response *response,
+                     size_t nodes, double V, double w, double d)
+{
+  const struct dea_damping damping = {.mass_per_s = d};
+  size_t dofs = 3 * nodes;
+  double *q[2], *Mq[2], *load = calloc(dofs, sizeof *load), *u[2];
+  for (int c = 0; c < 2; c++) {
+    q[c] = calloc(dofs, sizeof *load);
+    Mq[c] = calloc(dofs, sizeof *load);
+    u[c] = calloc(dofs, sizeof *load);
+    assert_true(q[c] != NULL && Mq[c] != NULL && u[c] != NULL);
+  }
+  for (size_t n = 0; n < nodes; n++) {
+    dea_solid_response_at(response, n, w, &damping, q[0] + 3 * n, q[1] + 3 * n);
+  }
+  for (int c = 0; c < 2; c++) {
+    assert_int_equal(dea_solid_mass_apply(ctx, solid, q[c], Mq[c]), DEA_OK);
+  }
+  for (int c = 0; c < 2; c++) {
+    double step = 0.5, most = 0, wrong = 0; // volts
+    for (size_t i = 0; i < dofs; i++) {
+      load[i] = w * w * Mq[c][i] + (c == 0 ? 1 : -1) * w * d * Mq[1 - c][i];
+      most = fmax(most, fmax(fabs(q[0][i]), fabs(q[1][i])));
+    }
+    at_rest(solid, dofs, V + (c == 0 ? step : 0), load, step, u[0]);
+    at_rest(solid, dofs, V - (c == 0 ? step : 0), load, -step, u[1]);
+    for (size_t i = 0; i < dofs; i++) {
+      wrong = fmax(wrong, fabs((u[0][i] - u[1][i]) / (2 * step) - q[c][i]));
+    }
+    assert_close(wrong, 0, 0, 1e-3 * most);
+  }
+  for (int c = 0; c < 2; c++) {
+    free(q[c]);
+    free(Mq[c]);
+    free(u[c]);
+  }
+  free(load);
+}
+
+static void test_bender_against_static_solves(void **state)
+{
+  (void)state;
+  static const double t = 200e-6, V = 1500;
+  struct dea_material gent = test_material("gent", 43e3, 115, 0);
+  struct dea_layer layer = {.law = gent.law,
+                            .param = gent.param,
+                            .pre_stretch = {1, 1, 1},
+                            .kappa_Pa = 43e5,
+                            .permittivity_F_per_m = eps,
+                            .thickness_m = t,
+                            .density_kg_per_m3 = 1000};
+  static const double cuts[] = {0, 0.3, 0.6, 1};
+  static const double whole[] = {0, 1};
+  const struct dea_block strip = {block_map, &bender, cuts, whole, 3, 1, 0};
+  const struct dea_sheet sheets[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_solid_options options = {
+      .order_z = 2, .layer_count = 1, .layers = &layer, .active = upper, .held = clamped};
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  struct dea_solid_response *response;
+  double square[3];
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, sheets, 2, NULL, 0, 10e-3, &grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+  assert_int_equal(dea_solid_vibrations(ctx, solid, 3, square, NULL), DEA_OK);
+  double first = sqrt(square[0]);
+  assert_int_equal(dea_solid_response_create(ctx, solid, 3 * first, &response), DEA_OK);
+  assert_true(dea_solid_response_modes(response) >= 1);
+  const double at[] = {0, 0.7, 1, 3};
+  for (int i = 0; i < 4; i++) {
+    check_at(solid, response, grid->node_count, V, at[i] * first, 0.3 * first);
+  }
+  dea_solid_response_destroy(ctx, response);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_one_degree_of_freedom),
+      cmocka_unit_test(test_bender_against_static_solves),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
