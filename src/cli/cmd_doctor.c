@@ -140,7 +140,8 @@ static void check_engine(struct report *report)
   char path[4096];
   bool ok = dea_solid_module_find(path, sizeof path);
   say(report, WISHED, ok, "3D engine", ok ? path : "not built",
-      "install libpetsc-real-dev and build again; without it there is no model 3d");
+      "install libpetsc-real-dev and libslepc-real-dev, and build again; without it there is no "
+      "model 3d");
 }
 
 static void check_gnuplot(struct report *report)

@@ -35,7 +35,8 @@ static dea_status open_module(struct dea_context *ctx, const struct dea_model_ty
   char path[4096];
   if (!dea_solid_module_find(path, sizeof path)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "the 3D engine is not here: it is built when libpetsc-real-dev is installed; "
+                    "the 3D engine is not here: it is built when libpetsc-real-dev and "
+                    "libslepc-real-dev are installed; "
                     "DEA_MODULES may name the folder of dea_solid_module.so");
   }
   void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
