@@ -1,5 +1,6 @@
 #include "model/solid/hex_points.h"
 #include "model/solid/hex_tensor.h"
+#include "model/solid/viscous.h"
 
 #include <string.h>
 
@@ -79,6 +80,7 @@ static dea_status evaluate_point(const struct dea_hex_shape *s, const struct dea
   if (status != DEA_OK) {
     return status;
   }
+  dea_viscous_add(layer, q, at->F, at->cof, at->J, level >= DEA_TANGENT, &point);
   *energy += at->weight * point.W;
   if (level >= DEA_FORCE) {
     set_flux(s, q, at->weight, point.P, 0, work);

@@ -1,5 +1,6 @@
 /* What a film element tells of itself after a solve. */
 #include "model/solid/hex_points.h"
+#include "model/solid/viscous.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,6 +59,9 @@ dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape, const struct
       }
       status = dea_layer_stress(layer, at->F, at->cof, at->J, pressure,
                                 voltage_V / layer->thickness_m, &point);
+      if (status == DEA_OK) {
+        dea_viscous_add(layer, q, at->F, at->cof, at->J, false, &point);
+      }
       for (int i = 0; i < 3; i++) {
         N[2 * i] += w * layer->thickness_m * point.P[3 * i];
         N[2 * i + 1] += w * layer->thickness_m * point.P[3 * i + 1];

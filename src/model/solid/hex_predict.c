@@ -1,5 +1,6 @@
 /* Stresses at the end of a linear step, and what the solver measures displacements with. */
 #include "model/solid/hex_points.h"
+#include "model/solid/viscous.h"
 
 #include <string.h>
 
@@ -51,9 +52,10 @@ static void solve_moments(const struct dea_hex_shape *s,
 }
 
 /* S + share F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
-static dea_status predict_point(const struct dea_layer *layer, const struct dea_hex_point *at,
-                                double pressure, double pressure_change, double field,
-                                const double H[9], double share, double out[6])
+static dea_status predict_point(const struct dea_layer *layer, int q,
+                                const struct dea_hex_point *at, double pressure,
+                                double pressure_change, double field, const double H[9],
+                                double share, double out[6])
 {
   struct dea_point point;
   double S[9], dP[9], dS[9];
@@ -61,6 +63,7 @@ static dea_status predict_point(const struct dea_layer *layer, const struct dea_
   if (status != DEA_OK) {
     return status;
   }
+  dea_viscous_add(layer, q, at->F, at->cof, at->J, true, &point);
   dea_layer_second_stress(at->cof, at->J, point.P, S);
   for (int i = 0; i < 3; i++) {
     for (int B = 0; B < 3; B++) {
@@ -116,7 +119,7 @@ dea_status dea_hex_predict(const struct dea_hex_shape *s, const struct dea_layer
       pressure += s->pressure[q][m] * (multiplier[m] + kappa * theta[m]);
       pressure_change += s->pressure[q][m] * kappa * change[m];
     }
-    status = predict_point(layer, &points[q], pressure, pressure_change, field, H[q], share,
+    status = predict_point(layer, q, &points[q], pressure, pressure_change, field, H[q], share,
                            predicted + s->pressures + 6 * q);
   }
   return status;

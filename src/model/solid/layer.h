@@ -28,6 +28,9 @@ struct dea_layer {
   double thickness_m;       // h, over which the voltage stands
   double density_kg_per_m3; // 0 for a part without mass
   bool relaxed;             // flat elements wrinkle instead of taking pressure (tension.h)
+  /* Of a step in time (viscous.h): B [points of the element][6], lent, NULL: none; and b. */
+  const double *viscous;
+  double viscous_Pa;
 };
 
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that

@@ -1,6 +1,7 @@
 #include "model/solid/membrane.h"
 
 #include "base/quadrature.h"
+#include "model/solid/viscous.h"
 
 #include <math.h>
 #include <string.h>
@@ -262,6 +263,16 @@ static void in_plane_columns(int nodes, const double *u, double gradient[2][DEA_
   }
 }
 
+double dea_flat_columns(const struct dea_flat_shape *shape, int q, const double *X, const double *u,
+                        double F[6])
+{
+  double gradient[2][DEA_FLAT_NODES_MAX], area = dea_flat_gradients(shape, q, X, gradient);
+  if (area > 0) {
+    in_plane_columns(shape->nodes, u, gradient, F);
+  }
+  return area;
+}
+
 static void add_force(int nodes, double weight, const double P[6],
                       double gradient[2][DEA_FLAT_NODES_MAX], double *g)
 {
@@ -318,6 +329,7 @@ dea_status dea_membrane_evaluate(const struct dea_flat_shape *shape, const struc
     if (status != DEA_OK) {
       return status;
     }
+    dea_viscous_add_flat(layer, q, F, &point);
     out->energy_J += weight * point.W;
     out->volume_m3 += weight;
     if (level >= DEA_FORCE) {
@@ -339,19 +351,18 @@ dea_status dea_membrane_state(const struct dea_flat_shape *shape, const struct d
                               const double *X, const double *u, double voltage_V,
                               struct dea_hex_membrane *out)
 {
-  double gradient[2][DEA_FLAT_NODES_MAX], F[6];
-  double field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
+  double F[6], field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
   out->count = shape->gauss;
   for (int q = 0; q < shape->gauss; q++) {
     struct dea_membrane_point point;
-    if (!(dea_flat_gradients(shape, q, X, gradient) > 0)) {
+    if (!(dea_flat_columns(shape, q, X, u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    in_plane_columns(shape->nodes, u, gradient, F);
     dea_status status = dea_membrane_point(layer, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
+    dea_viscous_add_flat(layer, q, F, &point);
     out->area[q] = point.area;
     out->tension[q] = layer->thickness_m * point.tension_Pa[1];
   }

@@ -37,6 +37,11 @@ dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out);
 double dea_flat_gradients(const struct dea_flat_shape *shape, int q, const double *X,
                           double gradient[2][DEA_FLAT_NODES_MAX]);
 
+/* In-plane columns of F at a Gauss point as F[2 i + J]; returns the point's reference area, 0 for
+ * an inverted element, of which F is not set. */
+double dea_flat_columns(const struct dea_flat_shape *shape, int q, const double *X, const double *u,
+                        double F[6]);
+
 /* Whether a flat element can be of this layer: DEA_E_UNSUPPORTED without an isotropic law. */
 dea_status dea_membrane_check(const struct dea_layer *layer);
 

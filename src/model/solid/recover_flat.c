@@ -6,30 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* In-plane columns of F at a Gauss point as F[2 i + J]; returns the point's area, 0 for an element
- * that is folded. */
-static double columns_at(const struct dea_flat_shape *shape, int q, const double *X,
-                         const double *u, double F[6])
-{
-  static const double flat[6] = {1, 0, 0, 1, 0, 0};
-  double map[4] = {0};
-  for (int n = 0; n < shape->nodes; n++) {
-    for (int a = 0; a < 4; a++) {
-      map[a] += X[3 * n + a / 2] * shape->slope[q][a % 2][n];
-    }
-  }
-  double area = map[0] * map[3] - map[1] * map[2];
-  memcpy(F, flat, sizeof flat);
-  for (int n = 0; n < shape->nodes && area > 0; n++) {
-    double a = shape->slope[q][0][n], b = shape->slope[q][1][n];
-    const double gradient[2] = {(map[3] * a - map[2] * b) / area, (map[0] * b - map[1] * a) / area};
-    for (int m = 0; m < 6; m++) {
-      F[m] += u[3 * n + m / 2] * gradient[m % 2];
-    }
-  }
-  return area > 0 ? area * shape->weight[q] : 0;
-}
-
 /* F whole: its third column along the normal, such that J = 1; returns |F_1 x F_2|. */
 static double complete(const double F[6], double out[9])
 {
@@ -74,7 +50,7 @@ dea_status dea_flat_recover(const struct dea_flat_shape *shape, const struct dea
   struct dea_fit fit;
   out->volume_m3 = out->volume_error = 0;
   for (int q = 0; q < shape->gauss; q++) {
-    double area = columns_at(shape, q, X, u, F);
+    double area = dea_flat_columns(shape, q, X, u, F);
     dea_status status = area > 0 ? evaluate_point(layer, F, field, values[q], P[q]) : DEA_E_DOMAIN;
     if (status != DEA_OK) {
       return status;

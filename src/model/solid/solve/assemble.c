@@ -3,6 +3,7 @@
 
 #include "material/plane.h"
 #include "model/solid/hex_coupled.h"
+#include "model/solid/solve/inertia.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,7 +41,7 @@ static void gather(const struct dea_solid *s, size_t e, const double *u, struct 
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
                                    enum dea_level level)
 {
-  const struct dea_layer *layer = &s->layers[s->layer[e]];
+  const struct dea_layer at_step = dea_solid_layer_at(s, e), *layer = &at_step;
   struct element_place at;
   gather(s, e, u, &at);
   if (s->grid->flat[e]) {
@@ -69,10 +70,11 @@ static dea_status evaluate_own(struct dea_solid *s, size_t k, double voltage_V,
   if (level < DEA_TANGENT || !s->predicted_fits || s->grid->flat[e]) {
     return evaluate_element(s, e, s->u, voltage_V, level);
   }
+  const struct dea_layer layer = dea_solid_layer_at(s, e);
   struct element_place at;
   gather(s, e, s->u, &at);
   return dea_hex_evaluate_predicted(
-      &s->shape, &s->layers[s->layer[e]], at.X, at.u, at.multiplier, s->active[e] ? voltage_V : 0,
+      &s->shape, &layer, at.X, at.u, at.multiplier, s->active[e] ? voltage_V : 0,
       s->predicted + k * dea_hex_predicted_count(&s->shape), s->element);
 }
 
@@ -107,6 +109,7 @@ dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage
   if (status == DEA_OK) {
     dea_solid_sum(s, energy, 1);
     *energy -= dea_solid_dot(s, s->force, u);
+    status = dea_solid_inertia_energy(s, u, energy);
   }
   return status;
 }
@@ -230,8 +233,9 @@ static void keep_scales(struct dea_solid *s)
   s->energy_scale = fmax(s->energy_scale, share * s->energy_largest);
 }
 
-/* Sums over the ranks, then the dead loads, which all ranks know. */
-static void collect(struct dea_solid *s, double *energy)
+/* Sums over the ranks, then the dead loads, which all ranks know, and what there is of inertia. */
+static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea_level level,
+                          double *energy)
 {
   double sums[3] = {*energy, s->energy_scale, s->squares};
   dea_solid_sum(s, sums, 3);
@@ -244,12 +248,14 @@ static void collect(struct dea_solid *s, double *energy)
   *energy = sums[0] - dea_solid_dot(s, s->force, s->u);
   s->energy_scale = sums[1];
   s->squares = sums[2];
+  DEA_TRY(ctx, dea_solid_inertia_add(ctx, s, level, energy));
   keep_scales(s);
   memcpy(s->reaction, s->g, s->dofs * sizeof(double));
   dea_solid_release_held(s, s->g);
   for (size_t i = 0; i < s->dofs; i++) {
     s->reaction[i] -= s->g[i];
   }
+  return DEA_OK;
 }
 
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
@@ -270,7 +276,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
     DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->K));
   }
   DEA_TRY(ctx, status);
-  collect(s, energy);
+  DEA_TRY(ctx, collect(ctx, s, level, energy));
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, dea_solid_add_springs(ctx, s));
   }
@@ -282,7 +288,7 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
                               const struct dea_material *material, double pre_stretch,
                               struct dea_solid_extremes *out)
 {
-  const struct dea_layer *layer = &s->layers[s->layer[e]];
+  const struct dea_layer at_step = dea_solid_layer_at(s, e), *layer = &at_step;
   double voltage_V = s->active[e] ? s->voltage_V : 0;
   struct element_place at;
   struct dea_hex_membrane membrane;

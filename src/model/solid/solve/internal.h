@@ -8,6 +8,8 @@
 #include <petscmat.h>
 
 struct dea_solid_field;
+struct dea_solid_history;
+struct dea_solid_inertia;
 
 /* An equilibrium and a goal. State: displacements and multipliers; controls: what an equilibrium is
  * asked for at, see controls.c. */
@@ -68,6 +70,8 @@ struct dea_solid {
   double modulus_Pa;   // shear modulus of the softest layer
   double length_m;     // smallest extent of the grid
   double energy_floor; // rounding of the energy
+  struct dea_solid_history *history; // of a step in time, lent (time.h); NULL: elastic
+  struct dea_solid_inertia *inertia; // lent; NULL: none
 };
 
 #define DEA_SOLID_THETA_SMALL 1e-7 // of J - 1, projected
@@ -102,6 +106,9 @@ static inline size_t dea_solid_at(const struct dea_solid *s, int node, int i)
 {
   return i < 3 ? 3 * (size_t)node + (size_t)i : 3 * s->grid->node_count + (size_t)node;
 }
+
+/* What an element is of, with the step of its branches. */
+struct dea_layer dea_solid_layer_at(const struct dea_solid *s, size_t e);
 
 /* Scalar product over all degrees of freedom. */
 double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b);

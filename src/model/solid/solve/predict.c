@@ -22,9 +22,9 @@ static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_
   gather(s, e, s->grid->X, X);
   gather(s, e, s->u, u);
   gather(s, e, step, way);
-  dea_status status =
-      dea_hex_predict(&s->shape, &s->layers[s->layer[e]], X, u, s->multiplier + e * pressures,
-                      s->active[e] ? voltage_V : 0, way, share, stresses, out);
+  const struct dea_layer layer = dea_solid_layer_at(s, e);
+  dea_status status = dea_hex_predict(&s->shape, &layer, X, u, s->multiplier + e * pressures,
+                                      s->active[e] ? voltage_V : 0, way, share, stresses, out);
   memcpy(s->theta + e * pressures, out, pressures * sizeof *out);
   return status;
 }

@@ -1,0 +1,53 @@
+/* What the branches of a solid's layers remember, at every Gauss point (docs/theory/time.md).
+ *
+ * Every rank keeps all points: a step costs next to nothing beside its tangents. */
+#ifndef DEA_MODEL_SOLID_SOLVE_HISTORY_H
+#define DEA_MODEL_SOLID_SOLVE_HISTORY_H
+
+#include "model/solid/solve/solid.h"
+#include "model/solid/viscous.h"
+
+enum { DEA_MAXWELL_MAX = 8 };
+
+/* Branches of a layer; none: elastic. */
+struct dea_branches {
+  size_t count;
+  struct dea_maxwell branch[DEA_MAXWELL_MAX];
+};
+
+struct dea_solid_history {
+  size_t layer_count, point_count;
+  struct dea_branches *branches;   // [layer_count]
+  size_t *first;                   // [elements] its first point; point_count: elastic
+  double *b_Pa;                    // [layer_count] of the step
+  double *B;                       // [point_count][6] of the step
+  double (*inverse)[6];            // [point_count] C^-1 at the accepted state
+  double (*inverse_next)[6];       // at the end of the step that is tried
+  double step_s;                   // its length
+  double (*A)[DEA_MAXWELL_MAX][6]; // [point_count] there
+};
+
+/* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
+ * by the caller, NULL on failure. */
+dea_status dea_solid_history_create(struct dea_context *ctx, const struct dea_solid *solid,
+                                    const struct dea_branches *branches,
+                                    struct dea_solid_history **out);
+void dea_solid_history_destroy(struct dea_context *ctx, struct dea_solid_history *history);
+
+/* Sets B and b for a step from the last accepted state; step_s 0: the step that takes no time. */
+void dea_solid_history_begin(struct dea_solid_history *history, const struct dea_solid *solid,
+                             double step_s);
+
+/* Energies of the branches, of the grid [J]. */
+struct dea_solid_branch_energies {
+  double stored, dissipated; // at the state; in the step to it
+};
+
+/* At the solid's displacements as the end of a step. */
+dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_history *history,
+                                   const struct dea_solid *solid, double step_s,
+                                   struct dea_solid_branch_energies *out);
+/* The state that was closed is the accepted one. */
+void dea_solid_history_accept(struct dea_solid_history *history, const struct dea_solid *solid);
+
+#endif

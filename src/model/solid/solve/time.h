@@ -1,0 +1,67 @@
+/* Steps in time of a solid: viscous, with or without inertia (docs/theory/time.md).
+ *
+ * A step is the minimum of a potential, found by the descent of every solve:
+ *
+ *   Pi + 1/2 B : C per volume + c/2 (u - u*) . M (u - u*) + d . u
+ *
+ * without inertia the first two terms; with it generalised-alpha, Pi with its pressures at the end
+ * of the step. A step is tried, closed, looked at, and then taken or dropped. */
+#ifndef DEA_MODEL_SOLID_SOLVE_TIME_H
+#define DEA_MODEL_SOLID_SOLVE_TIME_H
+
+#include "model/solid/solve/history.h"
+
+struct dea_solid_time;
+
+struct dea_solid_time_options {
+  const struct dea_branches *branches; // [layers of the solid], copied; NULL: elastic
+  bool inertia;                        // by the layers' densities
+  /* Of the steps with inertia for what they cannot resolve, 0 to 1: 1 damps nothing, 0 takes it
+   * away in one step. */
+  double spectral_radius;
+};
+
+/* Of the grid, not of its copies [J]; sums are from the creation on. */
+struct dea_solid_energies {
+  double supply;     // work of the source, the integral of V dQ
+  double stored;     // elastic, electric and that of loads, less what it was at first
+  double branches;   // stored in them
+  double kinetic;    // with the velocity
+  double dissipated; // in the branches
+  double damped;     // by the steps themselves: what the forces' work did not bring to motion
+};
+
+/* Starts at the solid's last equilibrium, at rest and held so for long. solid: lent, and in time
+ * until *out is destroyed: solves of it are then steps. DEA_E_ARGUMENT for a radius out of range.
+ */
+dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *solid,
+                                 const struct dea_solid_time_options *options,
+                                 struct dea_solid_time **out);
+void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *time);
+
+/* Velocities [node_count][3], lent; they may be written before the start. */
+double *dea_solid_velocity(struct dea_solid_time *time);
+
+/* Tries a step to a voltage. A step that fails leaves the accepted state. */
+dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *time,
+                               double voltage_V, double step_s, struct dea_solid_report *report);
+/* The step that was tried once more, to another voltage, from where it is. */
+dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *time,
+                                double voltage_V, struct dea_solid_report *report);
+/* Finds all that goes with the step that was tried. *error_m: estimate of what the step's size
+ * costs, the largest displacement's; NULL: not wanted. */
+dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *time,
+                                double *error_m);
+/* The voltage changes at once, or the start is another one than rest: what goes on in no time.
+ * Without inertia the film answers as fast as its branches let it, with it by its acceleration.
+ * step_s: of the step that follows, roughly. It is closed already. */
+dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *time,
+                               double voltage_V, double step_s, struct dea_solid_report *report);
+/* Takes the step or jump that was tried and closed; or goes back to the accepted state. */
+void dea_solid_time_accept(struct dea_solid_time *time);
+void dea_solid_time_reject(struct dea_solid_time *time);
+
+/* At the step that was closed last. */
+struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time);
+
+#endif

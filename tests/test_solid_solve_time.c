@@ -1,0 +1,432 @@
+/* Steps in time of solids: creep, delayed pull-in, order, energy, vibration. */
+// ctest: solid
+#include "material/material.h"
+#include "model/solid/solve/state.h"
+#include "model/solid/solve/time.h"
+#include "solid_block.h"
+
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  dea_solid_stop();
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+/* ---- a film between electrodes ---- */
+
+static const double mu[DEA_LAW_PARAM_MAX] = {1e5}, eps = 4.7 * DEA_EPSILON_0;
+
+struct film {
+  struct block block; // stretched flat
+  double pre_stretch;
+  double density_kg_per_m3, radius; // density 0: without inertia
+  int (*held)(const void *self, const double X[3]);
+  struct dea_branches branches;
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_time *time;
+  size_t corner; // node that is farthest out
+};
+
+/* One element of 1 mm, free but for its planes of symmetry. */
+static int on_planes(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0) | (X[2] < 1e-12 ? 4 : 0);
+}
+
+#define SQUARE .block = {{1e-3, 1e-3, 100e-6}, {1, 1, 1}, 2, 2}, .held = on_planes
+
+static bool everywhere(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)region;
+  (void)sheet;
+  return true;
+}
+
+/* Dead loads on the sides of one element that hold the stretch: shares of a parabola's nodes. */
+static void hang_weights(struct film *film)
+{
+  const double p = film->pre_stretch, *size = film->block.size;
+  double traction = mu[0] * (p * p - pow(p, -4)); // true stress
+  for (size_t n = 0; n < film->grid->node_count; n++) {
+    const double *X = film->grid->X + 3 * n;
+    for (int i = 0; i < 2; i++) {
+      double along = X[1 - i] / size[1 - i], up = X[2] / size[2];
+      double share = (fabs(along - 0.5) < 0.1 ? 4 : 1) * (fabs(up - 0.5) < 0.1 ? 4 : 1) / 36.;
+      if (X[i] > size[i] * (1 - 1e-9)) {
+        dea_solid_force(film->solid)[3 * n + (size_t)i] = share * traction * size[1 - i] * size[2];
+      }
+    }
+  }
+}
+
+static void film_create(struct film *film)
+{
+  const double p = film->pre_stretch;
+  struct dea_layer layer = {.law = dea_law_find("neo-hookean"),
+                            .param = mu,
+                            .pre_stretch = {p, p, 1 / (p * p)},
+                            .kappa_Pa = 100 * mu[0],
+                            .permittivity_F_per_m = eps,
+                            .thickness_m = film->block.size[2],
+                            .density_kg_per_m3 = film->density_kg_per_m3};
+  struct dea_solid_report report;
+  double most = -1;
+  film->grid = block_grid(ctx, &film->block);
+  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  const struct dea_solid_options options = {.order_z = film->block.order_z,
+                                            .layer_count = 1,
+                                            .layers = &layer,
+                                            .active = everywhere,
+                                            .held = film->held,
+                                            .self = film};
+  const struct dea_solid_time_options steps = {&film->branches, film->density_kg_per_m3 > 0,
+                                               film->radius};
+  assert_int_equal(dea_solid_create(ctx, film->grid, &options, &film->solid), DEA_OK);
+  if (film->held == on_planes) {
+    hang_weights(film);
+  }
+  assert_int_equal(dea_solid_solve(ctx, film->solid, 0, &report), DEA_OK);
+  assert_int_equal(report.unstable_modes, 0);
+  assert_int_equal(dea_solid_time_create(ctx, film->solid, &steps, &film->time), DEA_OK);
+  for (size_t n = 0; n < film->grid->node_count; n++) {
+    double sum = film->grid->X[3 * n] + film->grid->X[3 * n + 1] + film->grid->X[3 * n + 2];
+    film->corner = sum > most ? n : film->corner;
+    most = fmax(most, sum);
+  }
+}
+
+static void film_destroy(struct film *film)
+{
+  dea_solid_time_destroy(ctx, film->time);
+  dea_solid_destroy(ctx, film->solid);
+  dea_grid_destroy(ctx, film->grid);
+}
+
+static double strain_of(const struct film *film)
+{
+  return dea_solid_displacement(film->solid)[3 * film->corner] / 1e-3;
+}
+
+static dea_status step_to(struct film *film, double voltage_V, double step_s)
+{
+  struct dea_solid_report report;
+  dea_status status = dea_solid_time_step(ctx, film->time, voltage_V, step_s, &report);
+  if (status == DEA_OK) {
+    status = dea_solid_time_close(ctx, film->time, NULL);
+  }
+  if (status == DEA_OK) {
+    dea_solid_time_accept(film->time);
+  }
+  return status;
+}
+
+static void jump_to(struct film *film, double voltage_V, double step_s)
+{
+  struct dea_solid_report report;
+  assert_int_equal(dea_solid_time_jump(ctx, film->time, voltage_V, step_s, &report), DEA_OK);
+  dea_solid_time_accept(film->time);
+}
+
+/* Benchmark 6a: a small step of the voltage at t = 0. */
+static void test_creep_after_a_small_step(void **state)
+{
+  (void)state;
+  struct film film = {SQUARE, .pre_stretch = 1, .radius = 1, .branches = {1, {{2e5, 0.5}}}};
+  const double field = 0.02 * sqrt(mu[0] / eps), steps = 40, end = 6;
+  double slow = 0.02 * 0.02 / 6; // equibiaxial: eps E^2 = 6 mu strain
+  const double H = film.block.size[2];
+  film_create(&film);
+  jump_to(&film, field * H, end / steps);
+  assert_close(strain_of(&film), slow / 3, 1e-3, 0);
+  for (int i = 1; i <= steps; i++) {
+    double t = end * i / steps;
+    assert_int_equal(step_to(&film, field * H, end / steps), DEA_OK);
+    assert_close(strain_of(&film), slow * (1 - 2. / 3 * exp(-t / (3 * 0.5))), 1e-3, 0);
+  }
+  film_destroy(&film);
+}
+
+/* A film at rest, and one that is held in an actuated state for long, stay where they are, for
+ * branches that are soft or much stiffer than the law, in steps short or long. */
+static void test_held_film_stays(void **state)
+{
+  (void)state;
+  for (int kind = 0; kind < 4; kind++) {
+    struct film film = {SQUARE, .pre_stretch = 1, .radius = 1,
+                        .branches = {2, {{kind % 2 ? 1e7 : 5e4, 0.5}, {5e4, 1e-3}}}};
+    double voltage_V = kind / 2 * 0.6 * sqrt(mu[0] / eps) * film.block.size[2], before;
+    film_create(&film);
+    struct dea_solid_report report;
+    if (voltage_V > 0) { // held: the branches start anew from there
+      const struct dea_solid_time_options steps = {&film.branches, false, 1};
+      dea_solid_time_destroy(ctx, film.time);
+      assert_int_equal(dea_solid_solve(ctx, film.solid, voltage_V, &report), DEA_OK);
+      assert_int_equal(dea_solid_time_create(ctx, film.solid, &steps, &film.time), DEA_OK);
+    }
+    before = strain_of(&film);
+    for (double step = 1e-5; step < 1e3; step *= 30) {
+      assert_int_equal(dea_solid_time_step(ctx, film.time, voltage_V, step, &report), DEA_OK);
+      assert_int_equal(report.unstable_modes, 0);
+      assert_int_equal(dea_solid_time_close(ctx, film.time, NULL), DEA_OK);
+      dea_solid_time_accept(film.time);
+      assert_close(strain_of(&film), before, 0, 1e-11);
+    }
+    assert_true(fabs(dea_solid_time_energies(film.time).dissipated) < 1e-18);
+    film_destroy(&film);
+  }
+}
+
+/* A clamped film at rest has no unstable mode however stiff its branches are beside the law. */
+static int all_round(const void *self, const double X[3])
+{
+  const double *size = ((const struct film *)self)->block.size;
+  bool inside = X[0] > 1e-9 && X[0] < size[0] - 1e-9 && X[1] > 1e-9 && X[1] < size[1] - 1e-9;
+  return inside ? 0 : 7;
+}
+
+static void test_no_false_modes(void **state)
+{
+  (void)state;
+  static const double stretch[] = {1, 1.25, 1.5, 2}, ratio[] = {0.5, 20, 1000};
+  for (int k = 0; k < 4; k++) {
+    for (int i = 0; i < 3; i++) {
+      struct film film = {.block = {{1e-3, 1e-3, 50e-6}, {4, 4, 1}, 2, 2},
+                          .held = all_round,
+                          .pre_stretch = stretch[k],
+                          .radius = 1,
+                          .branches = {1, {{ratio[i] * mu[0], 1}}}};
+      struct dea_solid_report report;
+      film_create(&film);
+      for (double step = 1e-4; step < 20; step *= 20) {
+        assert_int_equal(dea_solid_time_step(ctx, film.time, 0, step, &report), DEA_OK);
+        assert_int_equal(report.unstable_modes, 0);
+      }
+      film_destroy(&film);
+    }
+  }
+}
+
+/* ---- delayed pull-in ---- */
+
+/* Stretch of the homogeneous film with dead loads for the state (a, c) of its branch; NAN beyond
+ * the last equilibrium. field: V/H sqrt(eps/mu), with the thickness unstretched. */
+static double stretch_at(double pre, double G, const double state[2], double field, double from)
+{
+  double l = from;
+  for (int i = 0; i < 60; i++) {
+    double r = l / pre, force = l - pow(l, -5) - pre + pow(pre, -5) - field * field * l * l * l +
+                                G / pre * (state[0] * r - state[1] * pow(r, -5));
+    double slope = 1 + 5 * pow(l, -6) - 3 * field * field * l * l +
+                   G / (pre * pre) * (state[0] + 5 * state[1] * pow(r, -6));
+    if (!(slope > 0)) {
+      return NAN;
+    }
+    l -= force / slope;
+    if (fabs(force / slope) < 1e-13) {
+      return l;
+    }
+  }
+  return NAN;
+}
+
+static double rates(double pre, double G, const double state[2], double field, double from,
+                    double out[2])
+{
+  double l = stretch_at(pre, G, state, field, from), r = l / pre;
+  out[0] = 1 / (r * r) - state[0]; // time in units of tau
+  out[1] = pow(r, 4) - state[1];
+  return l;
+}
+
+/* The film's stretch at a time in units of tau by the classical Runge-Kutta method; *end: when it
+ * finds no equilibrium any more, NAN up to the time. */
+static double integrate(double pre, double G, double field, double time, double *end)
+{
+  static const double reach[4] = {0, 0.5, 0.5, 1}, weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+  const double step = 1e-3;
+  double state[2] = {1, 1}, l = pre;
+  *end = NAN;
+  for (int n = 0; n < (int)round(time / step); n++) {
+    double k[4][2], sum[2] = {0, 0}, first = NAN;
+    for (int i = 0; i < 4; i++) {
+      double at[2] = {state[0], state[1]};
+      for (int j = 0; j < 2 && i > 0; j++) {
+        at[j] += reach[i] * step * k[i - 1][j];
+      }
+      double now = rates(pre, G, at, field, l, k[i]);
+      first = i == 0 ? now : first;
+      sum[0] += weight[i] * k[i][0];
+      sum[1] += weight[i] * k[i][1];
+      if (isnan(now)) {
+        *end = (n + reach[i]) * step;
+        return NAN;
+      }
+    }
+    l = first;
+    state[0] += step * sum[0];
+    state[1] += step * sum[1];
+  }
+  return stretch_at(pre, G, state, field, l);
+}
+
+/* Benchmark 6b: a voltage that a fast film bears, 8 % above what a slow one does. The film creeps
+ * until there is no equilibrium any more. */
+static void test_delayed_pull_in(void **state)
+{
+  (void)state;
+  const double field = 0.45, G = 1.5, pre = 1.2, tau = 0.2;
+  struct film film = {.block = {{1e-3, 1e-3, 100e-6 / 1.44}, {1, 1, 1}, 2, 2},
+                      .held = on_planes,
+                      .pre_stretch = pre,
+                      .radius = 1,
+                      .branches = {1, {{G * 1e5, tau}}}};
+  const double voltage_V = field * 100e-6 * sqrt(mu[0] / eps);
+  double t = 0, end;
+  film_create(&film);
+  jump_to(&film, voltage_V, 0.1);
+  for (double step = 0.125; step > 1e-3;) {
+    if (step_to(&film, voltage_V, step * tau) != DEA_OK) {
+      step /= 2;
+      continue;
+    }
+    t += step;
+    double wanted = integrate(pre, G, field, t, &end);
+    if (!isnan(wanted) && wanted < 1.9) { // later the stretch runs away from any step
+      assert_close(pre * (1 + strain_of(&film)), wanted, 2e-3, 0);
+    }
+  }
+  integrate(pre, G, field, 100, &end);
+  assert_true(end > 5);
+  assert_close(t, end, 5e-3, 0);
+  film_destroy(&film);
+}
+
+/* ---- inertia ---- */
+
+/* A pre-stretched strip in plane strain whose ends glide across the film: it swings as a cosine
+ * about its middle. */
+static int gliding_ends(const void *self, const double X[3])
+{
+  const struct film *film = self;
+  double x = X[0] / film->block.size[0], z = X[2] / film->block.size[2];
+  bool middle = fabs(x - 0.5) < 1e-9 && fabs(z - 0.5) < 1e-9;
+  return (x < 1e-9 || x > 1 - 1e-9 ? 1 : 0) | 2 | (middle ? 4 : 0);
+}
+
+#define STRIP(count)                                                                               \
+  .block = {{40e-3, 4e-3, 100e-6 / 2.25}, {count, 1, 1}, 2, 2}, .held = gliding_ends,              \
+  .pre_stretch = 1.5, .density_kg_per_m3 = 1000
+
+static const double pi = 3.14159265358979323846;
+
+/* Free vibration of small amplitude: the period is that of a string of the same tension, and the
+ * steps' spectral radius says what becomes of its energy. */
+static void test_vibration_of_a_membrane(void **state)
+{
+  (void)state;
+  static const double radius[] = {1, 0.5};
+  for (int k = 0; k < 2; k++) {
+    struct film film = {STRIP(8), .radius = radius[k]};
+    double tension = mu[0] * (1.5 * 1.5 - pow(1.5, -4)), speed = 1e-3, crossing = NAN;
+    double omega = pi / 40e-3 * sqrt(tension / 1000), step = 2 * pi / omega / 64;
+    film_create(&film);
+    size_t end = 0;
+    for (size_t n = 0; n < film.grid->node_count; n++) {
+      double x = film.grid->X[3 * n];
+      dea_solid_velocity(film.time)[3 * n + 2] = speed * cos(pi * x / 40e-3);
+      end = x < 1e-9 ? n : end;
+    }
+    jump_to(&film, 0, step);
+    double first = dea_solid_time_energies(film.time).kinetic, before = 0;
+    for (int i = 1; i <= 72; i++) {
+      assert_int_equal(step_to(&film, 0, step), DEA_OK);
+      double z = dea_solid_displacement(film.solid)[3 * end + 2];
+      if (before < 0 && z >= 0) {
+        crossing = (i - z / (z - before)) * step;
+      }
+      before = z;
+    }
+    const struct dea_solid_energies e = dea_solid_time_energies(film.time);
+    double h = omega * step;
+    if (radius[k] == 1) { // the step's own share of the period is known
+      assert_close(crossing * omega / (2 * pi), 1 + h * h / 12, 5e-5, 0);
+      assert_close(e.damped, 0, 0, 1e-7 * first);
+    } else {
+      assert_true(e.damped > 5e-4 * first && e.damped < 5e-3 * first);
+    }
+    assert_close(e.kinetic + e.stored + e.damped, first, 1e-5, 0);
+    film_destroy(&film);
+  }
+}
+
+/* A voltage that rises smoothly in `end` and falls again. */
+static double smooth(double t, double end, double top)
+{
+  return top * sin(pi * t / end) * sin(pi * t / end);
+}
+
+/* Strain and pressure of the square after a pulse in so many steps. */
+static void pulse(struct film film, double end, int steps, double out[2],
+                  struct dea_solid_energies *energies)
+{
+  const double top = 0.5 * film.block.size[2] * sqrt(mu[0] / eps);
+  film_create(&film);
+  *energies = (struct dea_solid_energies){0};
+  for (int i = 1; i <= steps; i++) { // to where the voltage is falling
+    assert_int_equal(step_to(&film, smooth(0.7 * end * i / steps, end, top), 0.7 * end / steps),
+                     DEA_OK);
+  }
+  *energies = dea_solid_time_energies(film.time);
+  struct dea_state state = {0};
+  size_t displacements = 3 * film.grid->node_count, pressures = 4; // of its one element
+  assert_int_equal(dea_solid_save(ctx, film.solid, &state), DEA_OK);
+  out[0] = strain_of(&film);
+  out[1] = dea_state_find(&state, "state", displacements + pressures)[displacements];
+  film_destroy(&film);
+}
+
+/* Halving the steps divides the error by four: displacement and pressure, with branches, with
+ * inertia, with both; and the balance of energy closes as fast. */
+static void test_second_order(void **state)
+{
+  (void)state;
+  for (int kind = 0; kind < 3; kind++) {
+    struct film film = {SQUARE, .pre_stretch = 1, .density_kg_per_m3 = kind > 0 ? 1000 : 0,
+                        .radius = 0.8};
+    const struct dea_branches branches = {2, {{2e5, 1e-4}, {1e5, 1e-3}}};
+    film.branches = kind == 1 ? film.branches : branches;
+    double is[4][2], off[4];
+    for (int k = 0; k < 4; k++) {
+      struct dea_solid_energies e;
+      pulse(film, 3e-4, 20 << k, is[k], &e);
+      off[k] = (e.stored + e.branches + e.kinetic + e.dissipated + e.damped) / e.supply - 1;
+    }
+    for (int i = 0; i < 2; i++) {
+      assert_close((is[1][i] - is[2][i]) / (is[2][i] - is[3][i]), 4, 0.1, 0);
+    }
+    assert_close(off[2] / off[3], 4, 0.05, 0);
+    assert_true(fabs(off[3]) < 5e-5);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_creep_after_a_small_step), cmocka_unit_test(test_held_film_stays),
+      cmocka_unit_test(test_no_false_modes),           cmocka_unit_test(test_delayed_pull_in),
+      cmocka_unit_test(test_vibration_of_a_membrane),  cmocka_unit_test(test_second_order),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
