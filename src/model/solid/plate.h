@@ -27,6 +27,7 @@ struct dea_plate {
       size; // of elements in the plane, up to which they grow; twice of that outside the electrode
   double
       edge; // of elements at the electrode edge and the ends of fibres; about doubling from there
+  double beside; // of elements between two fibres, along the electrode edge; 0: size
 };
 
 /* Bits of an element's region: inside the electrode circle, under a fibre. */

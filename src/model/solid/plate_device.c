@@ -4,8 +4,9 @@
 #include <math.h>
 
 /* Sizes of elements over the electrode radius at refinement 1, which each refinement more halves
- * (docs/theory/mesh.md has the study that they come from). */
-static const double size_share = 0.26, edge_share = 0.05;
+ * (docs/theory/mesh.md has the study that they come from). The fine edge is for the ends of fibres:
+ * without them it is four times as large. */
+static const double size_share = 0.26, beside_share = 0.13, edge_share = 0.0125;
 
 dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device *d,
                                struct dea_plate *out)
@@ -30,7 +31,8 @@ dea_status dea_plate_of_device(struct dea_context *ctx, const struct dea_device 
       .fibre_thickness = d->fibre_thickness_m,
       .end = d->outer_end == DEA_END_HINGED ? DEA_PLATE_HINGED : DEA_PLATE_CLAMPED,
       .size = size_share * a * finer,
-      .edge = edge_share * a * finer,
+      .edge = (d->fibre_count > 0 ? 1 : 4) * edge_share * a * finer,
+      .beside = beside_share * a * finer,
   };
   if (d->film.law->anisotropic) { // its direction turns with the angle around the centre
     return dea_fail(ctx, DEA_E_UNSUPPORTED,

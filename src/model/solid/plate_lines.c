@@ -108,7 +108,7 @@ dea_status dea_plate_lines_create(struct dea_context *ctx, const struct dea_plat
     out->across = share(0.5 * width, 0.5 * p->size); // fibres are stiff and bend: half the size
     rest -= fibre_angle(p, a);
   }
-  out->count = out->across + share(rest * a, p->size);
+  out->count = out->across + share(rest * a, p->fibres > 0 && p->beside > 0 ? p->beside : p->size);
   size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
   if (out->count > DEA_PLATE_LINE_MAX) {
