@@ -127,14 +127,15 @@ static struct dea_solid_trace *trace_to(double voltage_V, double step)
   return trace;
 }
 
-/* Stable all the way, without a limit point, and the same as a sweep. */
+/* Stable all the way, without a limit point, and the same as a sweep. The two arms pass close by
+ * each other: steps twice as long can jump to the other one. */
 static void test_path_from_rest_goes_down(void **state)
 {
   (void)state;
   struct dea_trace_point point = {0};
   struct dea_solid_report report;
   create();
-  struct dea_solid_trace *trace = trace_to(1200, 0.1);
+  struct dea_solid_trace *trace = trace_to(1200, 0.05);
   while (point.load < 1) {
     assert_int_equal(dea_solid_trace_step(ctx, trace, &point), DEA_OK);
     assert_int_equal(point.unstable_modes, 0);
