@@ -2,6 +2,8 @@
 #ifndef DEA_BENCH_BENCH_H
 #define DEA_BENCH_BENCH_H
 
+#include "base/context.h"
+
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,6 +50,15 @@ static inline void bench_print(const char *name, double value, const char *unit)
 {
   printf("{\"name\": \"%s\", \"value\": %.6g, \"unit\": \"%s\"}\n", name, value, unit);
   fflush(stdout);
+}
+
+/* Ends the program when a call has failed. */
+static inline void bench_need(dea_status status, struct dea_context *ctx)
+{
+  if (status != DEA_OK) {
+    fprintf(stderr, "%s: %s\n", dea_status_message(status), dea_context_message(ctx));
+    exit(1);
+  }
 }
 
 #endif

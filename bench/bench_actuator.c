@@ -17,14 +17,6 @@ struct sweep {
   double time_s, tip_m[POINTS], edge_m[POINTS];
 };
 
-static void need(dea_status status, struct dea_context *ctx)
-{
-  if (status != DEA_OK) {
-    fprintf(stderr, "%s: %s\n", dea_status_message(status), dea_context_message(ctx));
-    exit(1);
-  }
-}
-
 static struct sweep run(struct dea_context *ctx, const char *refinement, const char *film)
 {
   const struct dea_override sets[] = {{"compute.solid.refinement", refinement},
@@ -35,12 +27,12 @@ static struct sweep run(struct dea_context *ctx, const char *refinement, const c
   struct dea_load_point point;
   struct sweep sweep;
   const struct dea_model_type *type = dea_model_find("3d");
-  need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 2, &design), ctx);
-  need(dea_device_build(ctx, design, &device), ctx);
+  bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 2, &design), ctx);
+  bench_need(dea_device_build(ctx, design, &device), ctx);
   double start = bench_now_s();
-  need(type->create(ctx, device, &model), ctx);
+  bench_need(type->create(ctx, device, &model), ctx);
   for (int i = 0; i < POINTS; i++) {
-    need(type->solve(ctx, model, 500.0 * i, &point), ctx);
+    bench_need(type->solve(ctx, model, 500.0 * i, &point), ctx);
     sweep.tip_m[i] = point.fibre_tip_z_m;
     sweep.edge_m[i] = point.electrode_edge_u_m;
   }

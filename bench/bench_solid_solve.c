@@ -44,33 +44,25 @@ struct sample {
   double of[FIGURES];
 };
 
-static void need(dea_status status, struct dea_context *ctx)
-{
-  if (status != DEA_OK) {
-    fprintf(stderr, "%s: %s\n", dea_status_message(status), dea_context_message(ctx));
-    exit(1);
-  }
-}
-
 static void measure(struct dea_context *ctx, struct dea_solid *s, struct sample *out)
 {
   double energy, start;
   int negative;
   for (int i = 0; i < 3; i++) {
     start = bench_now_s();
-    need(dea_solid_assemble(ctx, s, 2e3, DEA_TANGENT, &energy), ctx);
+    bench_need(dea_solid_assemble(ctx, s, 2e3, DEA_TANGENT, &energy), ctx);
     out->of[ASSEMBLE] = fmin(out->of[ASSEMBLE], bench_now_s() - start);
     start = bench_now_s();
-    need(dea_solid_energy(s, s->u, 2e3, &energy), ctx);
+    bench_need(dea_solid_energy(s, s->u, 2e3, &energy), ctx);
     out->of[ENERGY] = fmin(out->of[ENERGY], bench_now_s() - start);
   }
   for (int i = 0; i < 3; i++) { // the first one with the analysis
     start = bench_now_s();
-    need(dea_solid_factorise(ctx, s, &negative), ctx);
+    bench_need(dea_solid_factorise(ctx, s, &negative), ctx);
     double time = bench_now_s() - start;
     out->of[i == 0 ? FIRST : FACTOR] = fmin(out->of[i == 0 ? FIRST : FACTOR], time);
     start = bench_now_s();
-    need(dea_solid_solve_linear(ctx, s, s->g, s->step), ctx);
+    bench_need(dea_solid_solve_linear(ctx, s, s->g, s->step), ctx);
     out->of[SOLVE] = fmin(out->of[SOLVE], bench_now_s() - start);
   }
 }
@@ -105,11 +97,11 @@ static int run_one(double unknowns)
   for (int i = 0; i < FIGURES; i++) {
     sample.of[i] = INFINITY;
   }
-  need(dea_layer_relax(&layer), ctx);
-  need(dea_solid_start(ctx), ctx);
+  bench_need(dea_layer_relax(&layer), ctx);
+  bench_need(dea_solid_start(ctx), ctx);
   double start = bench_now_s();
-  need(dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, 0, side_m, &grid), ctx);
-  need(dea_solid_create(ctx, grid, &options, &solid), ctx);
+  bench_need(dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, 0, side_m, &grid), ctx);
+  bench_need(dea_solid_create(ctx, grid, &options, &solid), ctx);
   sample.of[CREATE] = bench_now_s() - start;
   measure(ctx, solid, &sample);
   sample.of[UNKNOWNS] = (double)solid->dofs;

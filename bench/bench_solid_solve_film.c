@@ -11,14 +11,6 @@ enum { TO_6_KV, TO_8_KV, SPANS, REPEATS = 3 };
 
 extern const struct dea_model_type dea_solid_module;
 
-static void need(dea_status status, struct dea_context *ctx)
-{
-  if (status != DEA_OK) {
-    fprintf(stderr, "%s: %s\n", dea_status_message(status), dea_context_message(ctx));
-    exit(1);
-  }
-}
-
 static double processor_s(void)
 {
   return (double)clock() / CLOCKS_PER_SEC;
@@ -30,9 +22,9 @@ static void sweep(struct dea_context *ctx, const struct dea_device *device, doub
   struct dea_model *model;
   struct dea_load_point point;
   double start = processor_s();
-  need(dea_solid_module.create(ctx, device, &model), ctx);
+  bench_need(dea_solid_module.create(ctx, device, &model), ctx);
   for (int kV = 1; kV <= 8; kV++) {
-    need(dea_solid_module.solve(ctx, model, 1e3 * kV, &point), ctx);
+    bench_need(dea_solid_module.solve(ctx, model, 1e3 * kV, &point), ctx);
     if (kV == 6 || kV == 8) {
       int span = kV == 6 ? TO_6_KV : TO_8_KV;
       times[span] = fmin(times[span], processor_s() - start);
@@ -49,8 +41,8 @@ int main(void)
   if (dea_context_create(NULL, &ctx) != DEA_OK) {
     return 1;
   }
-  need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design), ctx);
-  need(dea_device_build(ctx, design, &device), ctx);
+  bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design), ctx);
+  bench_need(dea_device_build(ctx, design, &device), ctx);
   for (int refinement = 1; refinement <= 2; refinement++) {
     double times[2][SPANS] = {{INFINITY, INFINITY}, {INFINITY, INFINITY}};
     device->solid_refinement = refinement;

@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "model/model.h"
 #include "model/solid/solve/solid.h"
+#include "solid_node.h"
 #include "testing.h"
 
 static struct dea_context *ctx;
@@ -171,22 +172,6 @@ static bool film_inside(const void *self, int region, int sheet)
 {
   (void)self;
   return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
-}
-
-static size_t node_near(const struct dea_grid *grid, double x, double y, double z)
-{
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
-    if (distance < best) {
-      best = distance;
-      nearest = n;
-    }
-  }
-  assert_true(best < 1e-9);
-  return nearest;
 }
 
 /* Pre-stretch 1.5, 100 um, PET fibres 2 mm x 100 um clamped at the frame, tip at the electrode

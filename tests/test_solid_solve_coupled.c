@@ -2,6 +2,7 @@
 // ctest: solid
 #include "failing_allocator.h"
 #include "model/solid/solve/branch.h"
+#include "solid_node.h"
 #include "testing.h"
 
 #include <stdlib.h>
@@ -85,20 +86,6 @@ static void body_destroy(struct body *body)
 {
   dea_solid_destroy(ctx, body->solid);
   dea_grid_destroy(ctx, body->grid);
-}
-
-static size_t node_near(const struct dea_grid *grid, double x, double y, double z)
-{
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
-    nearest = distance < best ? n : nearest;
-    best = fmin(distance, best);
-  }
-  assert_true(best < 1e-9);
-  return nearest;
 }
 
 /* ---- plain disc ---- */

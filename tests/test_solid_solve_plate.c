@@ -2,6 +2,7 @@
 // ctest: solid
 #include "model/solid/plate.h"
 #include "model/solid/solve/solid.h"
+#include "solid_node.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -37,22 +38,6 @@ struct answer {
   double tip, centre, between, energy; // z, z, outwards; of the whole actuator
   size_t nodes;
 };
-
-static size_t node_near(const struct dea_grid *grid, double x, double y, double z)
-{
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
-    if (distance < best) {
-      best = distance;
-      nearest = n;
-    }
-  }
-  assert_true(best < 1e-9);
-  return nearest;
-}
 
 /* As built at 3 kV with N fibres on a coarse mesh. */
 static struct answer run(int fibres, int sectors)

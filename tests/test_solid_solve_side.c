@@ -92,20 +92,8 @@ static void create(void)
   device = slack();
   assert_int_equal(dea_actuator_create(ctx, &device, &actuator), DEA_OK);
   assert_int_equal(dea_plate_create(ctx, &actuator.plate, &grid), DEA_OK);
-  const struct dea_solid_options options = {.order_z = actuator.plate.order_z,
-                                            .layer_count = DEA_LAYER_COUNT,
-                                            .layers = actuator.layers,
-                                            .layer_of = dea_actuator_layer,
-                                            .active = dea_actuator_active,
-                                            .held = dea_actuator_held,
-                                            .frame = dea_actuator_frame,
-                                            .self = &actuator};
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n, *C = grid->X + 3 * centre;
-    bool nearer = hypot(hypot(X[0], X[1]), X[2]) < hypot(hypot(C[0], C[1]), C[2]);
-    centre = nearer ? n : centre;
-  }
+  assert_int_equal(dea_solid_of_actuator(ctx, &actuator, grid, &solid), DEA_OK);
+  centre = dea_grid_nearest(grid, (const double[3]){0});
 }
 
 static void destroy(void)

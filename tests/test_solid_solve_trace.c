@@ -88,15 +88,8 @@ static void destroy(void)
 /* A displacement of the node nearest to a place. */
 static double displacement_at(double x, double y, double z, size_t component)
 {
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
-    nearest = distance < best ? n : nearest;
-    best = fmin(best, distance);
-  }
-  return dea_solid_displacement(solid)[3 * nearest + component];
+  const double X[3] = {x, y, z};
+  return dea_solid_displacement(solid)[3 * dea_grid_nearest(grid, X) + component];
 }
 
 /* ---- a free film: (V/h)^2 eps/mu = lambda^-2 - lambda^-8, largest at lambda = 2^(1/3) ---- */

@@ -87,21 +87,8 @@ static void solid_create(const char *refinement)
   device_create(refinement, "any");
   verify_ok(ctx, dea_actuator_create(ctx, device, &actuator));
   verify_ok(ctx, dea_plate_create(ctx, &actuator.plate, &grid));
-  const struct dea_solid_options options = {.order_z = actuator.plate.order_z,
-                                            .layer_count = DEA_LAYER_COUNT,
-                                            .layers = actuator.layers,
-                                            .layer_of = dea_actuator_layer,
-                                            .active = dea_actuator_active,
-                                            .held = dea_actuator_held,
-                                            .frame = dea_actuator_frame,
-                                            .self = &actuator};
-  verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
-  double nearest = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    double distance = fabs(grid->X[3 * n]) + fabs(grid->X[3 * n + 1]) + fabs(grid->X[3 * n + 2]);
-    centre = distance < nearest ? n : centre;
-    nearest = fmin(nearest, distance);
-  }
+  verify_ok(ctx, dea_solid_of_actuator(ctx, &actuator, grid, &solid));
+  centre = dea_grid_nearest(grid, (const double[3]){0});
 }
 
 static void solid_destroy(void)

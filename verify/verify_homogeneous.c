@@ -76,19 +76,6 @@ static void trace(struct body *body, double voltage_V, double step, double step_
   verify_ok(ctx, dea_solid_trace_create(ctx, body->solid, voltage_V, &options, &body->trace));
 }
 
-static size_t node_at(const struct body *body, double x, double z)
-{
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < body->grid->node_count; n++) {
-    const double *X = body->grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1]) + fabs(X[2] - z);
-    nearest = distance < best ? n : nearest;
-    best = fmin(best, distance);
-  }
-  return nearest;
-}
-
 /* ---- equal stretch ---- */
 
 #define UNITS .permittivity = 1, .H = 0.1
@@ -198,7 +185,7 @@ static struct body film_create(const struct film *film, int order, double kappa_
 /* Total stretch and V/H sqrt(eps/mu) where the solid is. */
 static double stretch_of(const struct film *film, const struct body *body)
 {
-  size_t n = node_at(body, body->size[0], 0);
+  size_t n = dea_grid_nearest(body->grid, (const double[3]){body->size[0], 0, 0});
   return film->pre * (1 + dea_solid_displacement(body->solid)[3 * n] / body->size[0]);
 }
 
@@ -388,7 +375,7 @@ static double follow_buckled(struct body *body, const struct dea_trace_point *fo
   struct dea_trace_point point;
   double worst = 0, h = body->size[2];
   int unstable = 0;
-  size_t middle = node_at(body, 0.5, 0.5 * h);
+  size_t middle = dea_grid_nearest(body->grid, (const double[3]){0.5, 0, 0.5 * h});
   verify_ok(ctx, dea_solid_trace_switch(ctx, body->trace, 1, 0.1, &point));
   while (point.load < 2 * fork->load) {
     double A = dea_solid_displacement(body->solid)[3 * middle + 2] / h;

@@ -31,7 +31,7 @@ static size_t choose_voltages(const struct dea_design *design, double out[DEA_DE
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
-  (void)model; // each mesh has its own
+  (void)model; // none: each mesh has its own
   const struct dea_design *design = result->design;
   size_t total = design->compute.convergence.refinement_count;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
@@ -69,4 +69,9 @@ static bool asked(const struct dea_design *design)
   return design->compute.convergence.asked;
 }
 
-const struct dea_study dea_study_convergence = {.name = "convergence", .asked = asked, .run = run};
+const struct dea_study dea_study_convergence = {
+    .name = "convergence",
+    .asked = asked,
+    .own_models = true,
+    .run = run,
+};

@@ -44,13 +44,9 @@ static dea_status load_line(struct dea_context *ctx, const struct dea_model_type
   DEA_TRY(ctx, type->create(ctx, result->device, &model));
   dea_status status = preload_N > 0 ? find_preload(ctx, type, model, tip, preload_N, tip->radius_m)
                                     : type->press(ctx, model, tip, depth_m, &point);
-  for (size_t i = 0; i < design->compute.voltage_count && status == DEA_OK; i++) {
-    if (dea_interrupted(ctx)) {
-      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", curve->count);
-      break;
-    }
-    status = type->solve(ctx, model, design->compute.voltages_V[i], &point);
-    status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &point) : status;
+  if (status == DEA_OK) {
+    status = dea_study_take_points(ctx, type, model, design->compute.voltages_V,
+                                   design->compute.voltage_count, curve);
   }
   type->destroy(ctx, model);
   return status;
@@ -59,7 +55,7 @@ static dea_status load_line(struct dea_context *ctx, const struct dea_model_type
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
-  (void)model; // each depth starts from rest
+  (void)model; // none: each depth starts from rest
   const struct dea_design *design = result->design;
   size_t depths = design->compute.force.depth_count;
   size_t stops = depths + design->compute.force.preload_count;
@@ -96,5 +92,6 @@ const struct dea_study dea_study_force = {
     .name = "force",
     .asked = asked,
     .needs = "compute.force.depth or compute.force.preload",
+    .own_models = true,
     .run = run,
 };

@@ -75,25 +75,45 @@ dea_status dea_study_check(struct dea_context *ctx, const char *const names[], s
   return DEA_OK;
 }
 
+dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
+                                 struct dea_model *model, const double *voltages_V, size_t count,
+                                 struct dea_curve *curve)
+{
+  for (size_t i = 0; i < count; i++) {
+    struct dea_load_point point;
+    if (dea_interrupted(ctx)) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
+                      1e-3 * voltages_V[i], curve->count);
+    }
+    DEA_TRY(ctx, type->solve(ctx, model, voltages_V[i], &point));
+    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
                                const char *const names[], size_t name_count,
                                struct dea_result *result)
 {
-  struct dea_model *model;
+  struct dea_model *model = NULL; // made for the first study that wants it
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
-  DEA_TRY(ctx, type->create(ctx, result->device, &model));
   dea_status first = DEA_OK;
   for (size_t i = 0; i < STUDIES; i++) {
     if (!is_wanted(studies[i], names, name_count, result->design)) {
       continue;
     }
-    dea_status status = studies[i]->run(ctx, type, model, result);
+    if (!studies[i]->own_models && model == NULL) {
+      DEA_TRY(ctx, type->create(ctx, result->device, &model));
+    }
+    dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
     first = first == DEA_OK ? status : first;
     if (status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
       break;
     }
   }
-  type->destroy(ctx, model);
+  if (model != NULL) {
+    type->destroy(ctx, model);
+  }
   return first;
 }
 

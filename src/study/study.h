@@ -11,6 +11,7 @@ struct dea_study {
   /* Whether the design asks for it; NULL: every design does. */
   bool (*asked)(const struct dea_design *design);
   const char *needs; // keys of the design without which it cannot run; NULL: none
+  bool own_models;   // makes its own: `run` gets none
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
@@ -30,6 +31,11 @@ dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_t
 /* Whether these names can be run for a design, as above. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
+/* Solves at voltages [count] in their order and adds the points to a curve. DEA_E_INTERRUPTED when
+ * the run is ended on the way. */
+dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
+                                 struct dea_model *model, const double *voltages_V, size_t count,
+                                 struct dea_curve *curve);
 /* All studies in their order; static storage. */
 const struct dea_study *const *dea_study_all(size_t *count);
 

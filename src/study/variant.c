@@ -1,5 +1,7 @@
 #include "study/variant.h"
 
+#include "study/study.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,22 +12,6 @@ static double now_s(void)
   struct timespec now;
   return timespec_get(&now, TIME_UTC) == TIME_UTC ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec
                                                   : 0;
-}
-
-static dea_status take_points(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_variant_run *run,
-                              struct dea_curve *curve)
-{
-  for (size_t i = 0; i < run->voltage_count; i++) {
-    struct dea_load_point point;
-    if (dea_interrupted(ctx)) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
-                      1e-3 * run->voltages_V[i], curve->count);
-    }
-    DEA_TRY(ctx, type->solve(ctx, model, run->voltages_V[i], &point));
-    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
-  }
-  return DEA_OK;
 }
 
 static void take_size(const struct dea_model_type *type, const struct dea_model *model,
@@ -44,7 +30,8 @@ static dea_status use_model(struct dea_context *ctx, const struct dea_model_type
 {
   struct dea_profile profile;
   take_size(type, model, run->device, variant);
-  DEA_TRY(ctx, take_points(ctx, type, model, run, &variant->curve));
+  DEA_TRY(ctx, dea_study_take_points(ctx, type, model, run->voltages_V, run->voltage_count,
+                                     &variant->curve));
   if (type->profile != NULL && variant->curve.count > 0) {
     DEA_TRY(ctx, type->profile(ctx, model, &profile));
     DEA_TRY(ctx, dea_variant_set_profile(ctx, variant,

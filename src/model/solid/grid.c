@@ -296,3 +296,18 @@ void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
     dea_free(ctx, grid);
   }
 }
+
+size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3])
+{
+  size_t nearest = 0;
+  double best = INFINITY;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    double distance = hypot(hypot(X[0] - X_m[0], X[1] - X_m[1]), X[2] - X_m[2]);
+    if (distance < best) {
+      best = distance;
+      nearest = n;
+    }
+  }
+  return nearest;
+}

@@ -52,6 +52,9 @@ dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
                                     double bottom_m, double length_m, struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
+/* The node nearest to a place [m]. */
+size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
+
 /* Least of all elements' smallest Jacobian in the plane (at the nodes) over the mean one of the
  * element: 1 for a parallelogram, 0 or less for an element that is folded. */
 double dea_grid_smallest_jacobian(const struct dea_grid *grid);

@@ -29,26 +29,12 @@ struct dea_model {
   struct dea_press *press; // NULL: no probe
 };
 
-static size_t nearest_node(const struct dea_grid *grid, double x, double y, double z)
-{
-  size_t nearest = 0;
-  double best = INFINITY;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n;
-    double distance = fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z);
-    if (distance < best) {
-      best = distance;
-      nearest = n;
-    }
-  }
-  return nearest;
-}
-
 /* The node at the mirror image of another one by the middle plane. */
 static size_t twin_of(const struct dea_grid *grid, size_t node)
 {
   const double *X = grid->X + 3 * node;
-  return nearest_node(grid, X[0], X[1], -X[2]);
+  const double mirrored[3] = {X[0], X[1], -X[2]};
+  return dea_grid_nearest(grid, mirrored);
 }
 
 /* Nodes that are reported. The tip is where film and fibre meet. Elements of odd order have no
@@ -57,11 +43,13 @@ static void find_nodes(struct dea_model *model)
 {
   const struct dea_plate *p = &model->actuator.plate;
   double a = p->electrode_radius, half = dea_plate_angle(p) / p->sectors;
-  model->centre = nearest_node(model->grid, 0, 0, 0);
-  model->between = nearest_node(model->grid, a * cos(half), a * sin(half), 0);
+  const double centre[3] = {0}, between[3] = {a * cos(half), a * sin(half), 0};
+  const double tip[3] = {p->tip_radius, 0, 0.5 * p->film_thickness};
+  model->centre = dea_grid_nearest(model->grid, centre);
+  model->between = dea_grid_nearest(model->grid, between);
   model->centre_twin = twin_of(model->grid, model->centre);
   model->between_twin = twin_of(model->grid, model->between);
-  model->tip = nearest_node(model->grid, p->tip_radius, 0, 0.5 * p->film_thickness);
+  model->tip = dea_grid_nearest(model->grid, tip);
 }
 
 /* What is about to be solved, and what it cannot show. */
@@ -135,20 +123,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_actuator_create(ctx, device, &model->actuator));
   DEA_TRY(ctx, dea_plate_create(ctx, &model->actuator.plate, &model->grid));
   DEA_TRY(ctx, say_mesh(ctx, model));
-  const struct dea_solid_options options = {.order_z = model->actuator.plate.order_z,
-                                            .layer_count = DEA_LAYER_COUNT,
-                                            .layers = model->actuator.layers,
-                                            .layer_of = dea_actuator_layer,
-                                            .field = device->solid_field == DEA_FIELD_COUPLED
-                                                         ? DEA_SOLID_FIELD_COUPLED
-                                                         : DEA_SOLID_FIELD_THIN,
-                                            .electrode = dea_actuator_electrode,
-                                            .active = dea_actuator_active,
-                                            .held = dea_actuator_held,
-                                            .frame = dea_actuator_frame,
-                                            .self = &model->actuator};
   DEA_TRY(ctx, dea_solid_start(ctx));
-  DEA_TRY(ctx, dea_solid_create(ctx, model->grid, &options, &model->solid));
+  DEA_TRY(ctx, dea_solid_of_actuator(ctx, &model->actuator, model->grid, &model->solid));
   find_nodes(model);
   DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, 0, &model->report));

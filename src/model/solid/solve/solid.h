@@ -13,6 +13,7 @@
 #include "model/solid/load.h"
 
 struct dea_solid;
+struct dea_actuator;
 
 /* Where the field comes from: V/h in every active element, or a potential as a fourth unknown of
  * every node (docs/theory/coupled.md). */
@@ -63,6 +64,9 @@ bool dea_solid_any(bool here);
 /* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */
 dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid,
                             const struct dea_solid_options *options, struct dea_solid **out);
+/* The solid of an actuator on its mesh. actuator, grid: lent, outlive the solid. */
+dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
+                                 const struct dea_grid *grid, struct dea_solid **out);
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
 
 /* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
