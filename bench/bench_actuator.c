@@ -2,7 +2,7 @@
  * 0.5 kV on the symmetric sector; the default mesh, a preview with a membrane film, and meshes that
  * are finer, with what each is off from the finest below 7 kV.
  *
- *   bench_actuator [REFINEMENT...]     default: 1 1.5 2 3; the last is what the others are held to
+ *   bench_actuator [REFINEMENT...]     default: 1 1.5 2; the last is what the others are held to
  */
 #include "bench.h"
 #include "design/design.h"
@@ -61,9 +61,9 @@ static void print(const char *name, const char *what, double value, const char *
 
 int main(int argc, char **argv)
 {
-  char *defaults[] = {argv[0], "1", "1.5", "2", "3"};
+  char *defaults[] = {argv[0], "1", "1.5", "2"};
   char **refinements = argc > 1 ? argv + 1 : defaults + 1;
-  int count = argc > 1 ? argc - 1 : 4;
+  int count = argc > 1 ? argc - 1 : (int)(sizeof defaults / sizeof *defaults) - 1;
   struct dea_context *ctx = NULL;
   struct sweep sweeps[MESHES_MAX], membrane;
   if (count > MESHES_MAX || dea_context_create(NULL, &ctx) != DEA_OK) {

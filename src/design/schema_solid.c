@@ -37,7 +37,8 @@ static const struct dea_field fields[] = {
      .min = 1,
      .max = 6,
      .default_text = "1",
-     .doc = "fineness of the mesh: 1 is a preview, each one more halves all sizes in the plane",
+     .doc = "fineness of the mesh: 1 is within about 1 % at a fibre tip, each one more halves all "
+            "sizes in the plane",
      .example = "1.5"},
     {.key = "order",
      .kind = DEA_FIELD_INTEGER,
