@@ -44,6 +44,7 @@ extern "C" {
 #include "model/state.h"
 #include "output/csv.h"
 #include "output/plot.h"
+#include "output/report/report.h"
 #include "output/run_folder.h"
 #include "output/store.h"
 #include "output/summary.h"

@@ -34,6 +34,7 @@ struct dea_command {
   X(cmd_materials)                                                                                 \
   X(cmd_plot)                                                                                      \
   X(cmd_compare)                                                                                   \
+  X(cmd_report)                                                                                    \
   X(cmd_examples)                                                                                  \
   X(cmd_doctor)                                                                                    \
   X(cmd_completion)

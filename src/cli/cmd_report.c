@@ -1,0 +1,55 @@
+/* dea report: runs as one HTML file. */
+#define _GNU_SOURCE // getopt_long
+#include "cli/cli.h"
+
+#include "output/file.h"
+#include "output/report/report.h"
+
+#include <getopt.h>
+#include <stdint.h>
+
+static int run(struct dea_cli *cli, int argc, char **argv)
+{
+  static const struct option options[] = {{"output", required_argument, NULL, 'o'}, {0}};
+  const char *output = NULL;
+  int letter;
+  opterr = 0;
+  while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
+    if (letter != 'o') {
+      return cli_option_error(cli, &cmd_report, letter, argv);
+    }
+    output = optarg;
+  }
+  size_t count = (size_t)(argc - optind);
+  if (count == 0 || count > DEA_REPORT_RUNS_MAX) {
+    return cli_usage_error(cli, &cmd_report,
+                           count == 0 ? "which run? Give its folder" : "too many runs");
+  }
+  const char *first = argv[optind];
+  char *path = output != NULL              ? dea_copy_text(cli->ctx, output, SIZE_MAX)
+               : dea_path_is_folder(first) ? dea_path_join(cli->ctx, first, "report.html")
+                                           : dea_copy_text(cli->ctx, "report.html", SIZE_MAX);
+  const struct dea_report_options chosen = {.command = cli->command_line};
+  dea_status status = path == NULL ? DEA_E_MEMORY
+                                   : dea_report_write(cli->ctx, (const char *const *)argv + optind,
+                                                      count, &chosen, path);
+  if (status == DEA_OK && !cli->quiet) {
+    fprintf(stderr, "the report is %s\n", path);
+  }
+  dea_free(cli->ctx, path);
+  return cli_report(cli, status);
+}
+
+const struct dea_command cmd_report = {
+    .name = "report",
+    .summary = "Write runs as one HTML page that needs no network",
+    .usage =
+        "dea report RUN... [-o FILE]\n"
+        "\n"
+        "One file with everything: drawing, curves, limits, convergence, materials with their\n"
+        "sources, provenance. Several runs are set beside each other.\n"
+        "\n"
+        "  RUN                folder of a run\n"
+        "  -o, --output FILE  the page; report.html in the first run's folder if not given\n",
+    .run = run,
+};

@@ -1,0 +1,12 @@
+/* The files of web/ that go into a page, embedded by CMake (cmake/embed.cmake). */
+#ifndef DEA_OUTPUT_REPORT_ASSETS_H
+#define DEA_OUTPUT_REPORT_ASSETS_H
+
+#include <stddef.h>
+
+extern const char dea_asset_style[]; // report.css
+extern const size_t dea_asset_style_length;
+extern const char dea_asset_script[]; // the scripts, one after the other
+extern const size_t dea_asset_script_length;
+
+#endif

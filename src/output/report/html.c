@@ -1,0 +1,214 @@
+#include "output/report/html.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Length of the UTF-8 sequence at c; 0 for what is none. */
+static size_t sequence_length(const unsigned char *c)
+{
+  static const struct {
+    unsigned char mask, lead, least, most; // of the first byte; range of the second one
+  } kinds[] = {
+      {0xFF, 0xE0, 0xA0, 0xBF}, {0xFF, 0xED, 0x80, 0x9F}, {0xF0, 0xE0, 0x80, 0xBF},
+      {0xFF, 0xF0, 0x90, 0xBF}, {0xFF, 0xF4, 0x80, 0x8F}, {0xFC, 0xF0, 0x80, 0xBF},
+  };
+  if (c[0] < 0x80) {
+    return c[0] >= ' ' || c[0] == '\t' || c[0] == '\n' ? c[0] != 0x7F : 0;
+  }
+  if (c[0] >= 0xC2 && c[0] <= 0xDF) { // C1 controls are none of text
+    bool control = c[0] == 0xC2 && c[1] < 0xA0;
+    return (c[1] & 0xC0) == 0x80 && !control ? 2 : 0;
+  }
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    if ((c[0] & kinds[k].mask) == kinds[k].lead) {
+      size_t length = c[0] >= 0xF0 ? 4 : 3;
+      bool good = c[1] >= kinds[k].least && c[1] <= kinds[k].most && (c[2] & 0xC0) == 0x80 &&
+                  (length == 3 || (c[3] & 0xC0) == 0x80);
+      return good ? length : 0;
+    }
+  }
+  return 0;
+}
+
+static const char *html_name(char c)
+{
+  switch (c) {
+  case '<':
+    return "&lt;";
+  case '>':
+    return "&gt;";
+  case '&':
+    return "&amp;";
+  case '"':
+    return "&quot;";
+  case '\'':
+    return "&#39;";
+  default:
+    return NULL;
+  }
+}
+
+/* What JSON within HTML has to write in another way; buffer[8] for the answer. */
+static const char *json_name(char c, char *buffer)
+{
+  if (c == '<' || c == '>' || c == '&' || c == '"' || c == '\\' || c == '\'' ||
+      (unsigned char)c < ' ') {
+    snprintf(buffer, 8, "\\u%04x", (unsigned)(unsigned char)c);
+    return buffer;
+  }
+  return NULL;
+}
+
+static void add_safe(struct dea_text *out, const char *text, bool json)
+{
+  char buffer[8];
+  const char *from = text, *c = text;
+  while (c != NULL && *c != '\0') {
+    size_t length = sequence_length((const unsigned char *)c);
+    const char *name = length == 0 ? "\357\277\275" : json ? json_name(*c, buffer) : html_name(*c);
+    if (name != NULL) {
+      dea_text_add(out, "%.*s%s", (int)(c - from), from, name);
+      from = c + (length > 0 ? length : 1);
+    }
+    c += length > 0 ? length : 1;
+  }
+  if (c != from) {
+    dea_text_add(out, "%.*s", (int)(c - from), from);
+  }
+}
+
+void dea_html_text(struct dea_text *out, const char *text)
+{
+  add_safe(out, text, false);
+}
+
+void dea_html_json_text(struct dea_text *out, const char *text)
+{
+  add_safe(out, text, true);
+}
+
+void dea_html_element(struct dea_text *out, const char *tag, const char *text)
+{
+  dea_text_add(out, "<%s>", tag);
+  dea_html_text(out, text);
+  dea_text_add(out, "</%.*s>", (int)strcspn(tag, " "), tag);
+}
+
+void dea_html_number(struct dea_text *out, double value, int digits)
+{
+  char number[40];
+  if (!isfinite(value)) {
+    dea_text_add(out, "\342\200\223"); // en dash
+    return;
+  }
+  snprintf(number, sizeof number, "%.*g", digits, fabs(value));
+  char *power = strchr(number, 'e');
+  bool zero = strtod(number, NULL) == 0;
+  dea_text_add(out, "%s", value < 0 && !zero ? "\342\210\222" : ""); // minus sign
+  if (power != NULL) {
+    *power = '\0';
+    dea_text_add(out, "%s\302\26710<sup>%s%d</sup>", number, power[1] == '-' ? "\342\210\222" : "",
+                 abs(atoi(power + 1)));
+  } else {
+    dea_text_add(out, "%s", number);
+  }
+}
+
+void dea_html_cell(struct dea_text *out, double value, int digits)
+{
+  dea_text_add(out, "<td class=\"n\">");
+  dea_html_number(out, value, digits);
+  dea_text_add(out, "</td>");
+}
+
+void dea_html_json_number(struct dea_text *out, double value, int digits)
+{
+  if (isfinite(value)) {
+    dea_text_add(out, "%.*g", digits, value);
+  } else {
+    dea_text_add(out, "null");
+  }
+}
+
+/* One sign of a label, escaped; returns what follows. A backslash before it is dropped. */
+static const char *add_sign(struct dea_text *out, const char *c)
+{
+  while (*c == '\\') {
+    c++;
+  }
+  size_t length = *c == '\0' ? 0 : sequence_length((const unsigned char *)c);
+  char sign[5] = {0};
+  memcpy(sign, c, length);
+  dea_html_text(out, sign);
+  return c + (length > 0 ? length : *c != '\0');
+}
+
+/* The inside of braces or one sign, raised or lowered. */
+static const char *add_shifted(struct dea_text *out, const char *c, bool up, bool plain)
+{
+  dea_text_add(out, "%s",
+               plain ? (up ? "^" : "")
+               : up  ? "<tspan class=\"small\" dy=\"-0.4em\">"
+                     : "<tspan class=\"small\" dy=\"0.25em\">");
+  if (*c == '{') {
+    for (c++; *c != '\0' && *c != '}';) {
+      c = add_sign(out, c);
+    }
+    c += *c == '}';
+  } else {
+    c = add_sign(out, c);
+  }
+  // the next sign goes back to the line; one of no width, as nothing may follow
+  dea_text_add(out, "%s",
+               plain ? ""
+               : up  ? "</tspan><tspan dy=\"0.3em\">\342\200\213</tspan>"
+                     : "</tspan><tspan dy=\"-0.19em\">\342\200\213</tspan>");
+  return c;
+}
+
+void dea_html_label(struct dea_text *out, const char *label, bool plain)
+{
+  static const char italic[] = "{/:Italic ";
+  bool slanted = false;
+  for (const char *c = label; *c != '\0';) {
+    if (strncmp(c, italic, sizeof italic - 1) == 0) {
+      c += sizeof italic - 1;
+      slanted = true;
+      dea_text_add(out, "%s", plain ? "" : "<tspan class=\"it\">");
+    } else if (*c == '}') {
+      dea_text_add(out, "%s", slanted && !plain ? "</tspan>" : "");
+      slanted = false;
+      c++;
+    } else if (*c == '{') {
+      c++;
+    } else if (*c == '_' || *c == '^') {
+      c = add_shifted(out, c + 1, *c == '^', plain);
+    } else {
+      c = add_sign(out, c);
+    }
+  }
+  dea_text_add(out, "%s", slanted && !plain ? "</tspan>" : "");
+}
+
+void dea_html_base64(struct dea_text *out, const void *bytes, size_t length)
+{
+  static const char signs[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  enum { LINE = 768 }; // a multiple of 3
+  const unsigned char *in = bytes;
+  for (size_t from = 0; from < length; from += LINE) {
+    char line[LINE / 3 * 4 + 1];
+    size_t end = from + LINE < length ? from + LINE : length, n = 0;
+    for (size_t i = from; i < end; i += 3) {
+      size_t have = end - i < 3 ? end - i : 3;
+      unsigned three = (unsigned)in[i] << 16 | (have > 1 ? (unsigned)in[i + 1] << 8 : 0) |
+                       (have > 2 ? (unsigned)in[i + 2] : 0);
+      for (unsigned k = 0; k < 4; k++) {
+        line[n++] = k <= have ? signs[three >> (18 - 6 * k) & 63] : '=';
+      }
+    }
+    line[n] = '\0';
+    dea_text_add(out, "%s", line);
+  }
+}

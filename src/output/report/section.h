@@ -1,0 +1,67 @@
+/* What the sections of a report share. A section appends to the text of the report; one that has
+ * nothing to show adds nothing. Numbers are formatted in the C locale. */
+#ifndef DEA_OUTPUT_REPORT_SECTION_H
+#define DEA_OUTPUT_REPORT_SECTION_H
+
+#include "output/report/html.h"
+#include "output/report/report.h"
+#include "output/store.h"
+
+/* One of the runs. design, device: NULL when the file cannot be read any more. */
+struct dea_report_run {
+  const char *path;           // as given
+  char title[DEA_TITLE_SIZE]; // of the design, or the file's name
+  int number;                 // from 1
+  struct dea_run *run;
+  struct dea_design *design;
+  struct dea_device *device;
+  char *missing; // why there is no device; NULL
+  char **notes;  // [note_count] what the run has said of itself
+  size_t note_count;
+};
+
+struct dea_report {
+  struct dea_context *ctx;
+  const struct dea_report_options *options;
+  struct dea_report_run *runs; // [count]
+  size_t count;
+  struct dea_text text;
+  int level;   // of the headings of a run's sections
+  int figures; // so far
+};
+
+/* Reads a run, its design, its notes. *out: dea_report_run_close, also after a failure. */
+dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int number,
+                               struct dea_report_run *out);
+void dea_report_run_close(struct dea_context *ctx, struct dea_report_run *run);
+
+/* "<section ...><h2>title</h2>": of a run, or of the page (number 0), with an id made of both. */
+void dea_section_begin(struct dea_report *report, const char *name, int number, const char *title);
+void dea_section_end(struct dea_report *report);
+/* A heading within a section of a run. */
+void dea_section_heading(struct dea_report *report, const char *text);
+/* A table that scrolls sideways: caption, then the header's cells (ours). */
+void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
+void dea_table_end(struct dea_report *report);
+
+/* Figures of a run whose names begin with prefix; NULL: those that belong to no study. */
+dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
+                               const char *prefix);
+
+typedef dea_status (*dea_run_section)(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_glance(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_design(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_materials(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_curves(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_convergence(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_designs(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_provenance(struct dea_report *report, const struct dea_report_run *run);
+/* Of all runs: curves in one figure, last points in one table. */
+dea_status dea_section_compare(struct dea_report *report);
+
+/* The actuator from above and cut along a fibre, with its measures. */
+void dea_device_add_svg(struct dea_text *out, const struct dea_device *device, int number);
+
+#endif

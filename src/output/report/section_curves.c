@@ -1,0 +1,199 @@
+/* Curves: the figures of a run, and those of several runs beside each other. */
+#include "output/figure.h"
+#include "output/report/plot_svg.h"
+#include "output/report/section.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Adds a figure; the notes of a plot that was not asked for are nobody's. */
+static dea_status add_figure(struct dea_report *report, const struct dea_figure *figure,
+                             const struct dea_result *result)
+{
+  struct dea_plot *plot;
+  DEA_TRY(report->ctx, dea_plot_create(report->ctx, figure->name, figure->caption, &plot));
+  dea_status status = figure->build(report->ctx, result, plot);
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
+/* Whether a figure belongs to the studies convergence or compare-design. */
+static bool is_of_study(const char *name)
+{
+  return strcmp(name, "convergence") == 0 || strncmp(name, "design", 6) == 0;
+}
+
+dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
+                               const char *prefix)
+{
+  size_t count;
+  const struct dea_figure *const *figures = dea_figure_all(&count);
+  dea_text_add(&report->text, "<div class=\"plots\">");
+  for (size_t i = 0; i < count; i++) {
+    bool wanted = prefix != NULL ? strncmp(figures[i]->name, prefix, strlen(prefix)) == 0
+                                 : !is_of_study(figures[i]->name);
+    if (wanted && figures[i]->build != NULL) {
+      DEA_TRY(report->ctx, add_figure(report, figures[i], run->run->result));
+    }
+  }
+  dea_text_add(&report->text, "</div>");
+  return DEA_OK;
+}
+
+dea_status dea_section_curves(struct dea_report *report, const struct dea_report_run *run)
+{
+  if (run->run->result->curve_count == 0) {
+    return DEA_OK;
+  }
+  dea_section_begin(report, "curves", run->number, "Curves");
+  DEA_TRY(report->ctx, dea_section_figures(report, run, NULL));
+  dea_section_end(report);
+  return DEA_OK;
+}
+
+dea_status dea_section_designs(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  struct dea_text *out = &report->text;
+  bool any = false;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    if (strcmp(variant->curve.kind, "compare-design") != 0) {
+      continue;
+    }
+    if (!any) {
+      dea_section_begin(report, "designs", run->number, "Designs beside each other");
+      DEA_TRY(report->ctx, dea_section_figures(report, run, "design"));
+      dea_table_begin(report, "Designs at their last voltage",
+                      "<th scope=\"col\">Design</th><th scope=\"col\">Model</th>"
+                      "<th scope=\"col\" class=\"n\">V (kV)</th>"
+                      "<th scope=\"col\" class=\"n\">strain (%)</th>"
+                      "<th scope=\"col\" class=\"n\">z centre (\302\265m)</th>"
+                      "<th scope=\"col\" class=\"n\">z fibre tip (\302\265m)</th>"
+                      "<th scope=\"col\" class=\"n\">true field (V/\302\265m)</th>"
+                      "<th scope=\"col\">Ended</th>");
+      any = true;
+    }
+    struct dea_load_point p = variant->curve.count > 0
+                                  ? variant->curve.points[variant->curve.count - 1]
+                                  : dea_load_point_empty();
+    dea_text_add(out, "<tr>");
+    dea_html_element(out, "th scope=\"row\"", variant->name);
+    dea_html_element(out, "td", variant->curve.model);
+    dea_html_cell(out, 1e-3 * p.voltage_V, 4);
+    dea_html_cell(out, 100 * (p.electrode_stretch - 1), 4);
+    dea_html_cell(out, 1e6 * p.centre_z_m, 5);
+    dea_html_cell(out, 1e6 * p.fibre_tip_z_m, 5);
+    dea_html_cell(out, 1e-6 * p.true_field_V_per_m, 4);
+    dea_html_element(out, "td", variant->curve.complete ? "complete" : variant->curve.stopped);
+    dea_text_add(out, "</tr>");
+  }
+  if (any) {
+    dea_table_end(report);
+    dea_section_end(report);
+  }
+  return DEA_OK;
+}
+
+// Several runs ------------------------------------------------------------------------------------
+
+/* What is set beside each other, each in a figure of its own: factor * (member + shift). */
+static const struct compared {
+  const char *key, *label, *caption;
+  double factor, shift;
+} compared[] = {
+    {"electrode_stretch", "Radial strain of the electrode (%)", "radial strain of the electrode",
+     100, -1},
+    {"centre_z_m", "{/:Italic z} of the centre (\302\265m)", "displacement of the centre", 1e6, 0},
+    {"fibre_tip_z_m", "{/:Italic z} of the fibre tip (\302\265m)", "displacement of the fibre tip",
+     1e6, 0},
+    {"force_N", "Force (mN)", "out-of-plane force", 1e3, 0},
+    {"true_field_V_per_m", "True field {/:Italic E} (V/\302\265m)", "largest true field", 1e-6, 0},
+};
+enum { COMPARED = sizeof compared / sizeof compared[0] };
+
+static dea_status fill(struct dea_report *report, const struct compared *what,
+                       struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  size_t looks = 0;
+  for (size_t r = 0; r < report->count; r++) {
+    const struct dea_result *result = report->runs[r].run->result;
+    const char *models[DEA_DESIGN_MODELS_MAX];
+    size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+    for (size_t m = 0; m < count && looks < DEA_PANEL_SERIES_MAX / 2; m++) {
+      char title[DEA_NAME_SIZE + 16];
+      snprintf(title, sizeof title, "%d %s", report->runs[r].number, models[m]);
+      struct dea_series look = dea_figure_look(title, looks);
+      look.colour = (enum dea_colour)(looks % 7);
+      size_t before = panel->series_count;
+      DEA_TRY(report->ctx,
+              dea_figure_add(report->ctx, panel, dea_figure_curve(result, models[m], false),
+                             dea_point_column_find(what->key), what->factor, what->shift, &look));
+      looks += panel->series_count > before;
+    }
+  }
+  snprintf(panel->y_label, sizeof panel->y_label, "%s", what->label);
+  dea_figure_voltage_axis(panel);
+  return DEA_OK;
+}
+
+static void add_last_points(struct dea_report *report)
+{
+  struct dea_text *out = &report->text;
+  dea_table_begin(report, "Last point of every sweep",
+                  "<th scope=\"col\">Run</th><th scope=\"col\">Model</th>"
+                  "<th scope=\"col\" class=\"n\">V (kV)</th>"
+                  "<th scope=\"col\" class=\"n\">strain (%)</th>"
+                  "<th scope=\"col\" class=\"n\">z centre (\302\265m)</th>"
+                  "<th scope=\"col\" class=\"n\">z fibre tip (\302\265m)</th>"
+                  "<th scope=\"col\" class=\"n\">breakdown margin (%)</th>");
+  for (size_t r = 0; r < report->count; r++) {
+    const struct dea_result *result = report->runs[r].run->result;
+    for (size_t c = 0; c < result->curve_count; c++) {
+      const struct dea_curve *curve = &result->curves[c];
+      if (strcmp(curve->kind, "sweep") != 0 || curve->count == 0) {
+        continue;
+      }
+      const struct dea_load_point *p = &curve->points[curve->count - 1];
+      dea_text_add(out, "<tr><th scope=\"row\">%d ", report->runs[r].number);
+      dea_html_text(out, report->runs[r].title);
+      dea_text_add(out, "</th>");
+      dea_html_element(out, "td", curve->model);
+      dea_html_cell(out, 1e-3 * p->voltage_V, 4);
+      dea_html_cell(out, 100 * (p->electrode_stretch - 1), 4);
+      dea_html_cell(out, 1e6 * p->centre_z_m, 5);
+      dea_html_cell(out, 1e6 * p->fibre_tip_z_m, 5);
+      dea_html_cell(out, 100 * p->breakdown_margin, 3);
+      dea_text_add(out, "</tr>");
+    }
+  }
+  dea_table_end(report);
+}
+
+dea_status dea_section_compare(struct dea_report *report)
+{
+  if (report->count < 2) {
+    return DEA_OK;
+  }
+  dea_section_begin(report, "compare", 0, "The runs beside each other");
+  dea_text_add(&report->text, "<div class=\"plots\">");
+  for (size_t i = 0; i < COMPARED; i++) {
+    struct dea_plot *plot;
+    DEA_TRY(report->ctx, dea_plot_create(report->ctx, compared[i].key, compared[i].caption, &plot));
+    dea_status status = fill(report, &compared[i], plot);
+    if (status == DEA_OK && dea_plot_shows(plot)) {
+      dea_plot_add_svg(&report->text, plot, ++report->figures);
+    }
+    dea_plot_destroy(report->ctx, plot);
+    DEA_TRY(report->ctx, status);
+  }
+  dea_text_add(&report->text, "</div>");
+  add_last_points(report);
+  dea_section_end(report);
+  return DEA_OK;
+}

@@ -1,0 +1,206 @@
+/* The design: drawing, every value with its place, materials with their sources. */
+#include "output/report/section.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *origin_of(const struct dea_listed *value, char *text, size_t size)
+{
+  switch (value->origin) {
+  case DEA_GIVEN:
+    snprintf(text, size, "line %zu", value->place.line);
+    return text;
+  case DEA_OVERRIDE:
+    return "--set";
+  case DEA_DEFAULT:
+    return "default";
+  default:
+    return "not given";
+  }
+}
+
+static void add_values(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_listing *values = &run->design->values;
+  struct dea_text *out = &report->text;
+  dea_table_begin(report, "Every value of the design and where it comes from",
+                  "<th scope=\"col\">Key</th><th scope=\"col\">Value</th>"
+                  "<th scope=\"col\">From</th>");
+  for (size_t i = 0; i < values->count; i++) {
+    const struct dea_listed *value = &values->items[i];
+    char origin[40];
+    dea_text_add(out, "<tr class=\"%s\">",
+                 value->origin == DEA_GIVEN || value->origin == DEA_OVERRIDE ? "" : "faint");
+    dea_html_element(out, "th scope=\"row\" class=\"code\"", value->path);
+    dea_html_element(out, "td", value->text);
+    dea_html_element(out, "td", origin_of(value, origin, sizeof origin));
+    dea_text_add(out, "</tr>");
+  }
+  dea_table_end(report);
+}
+
+dea_status dea_section_design(struct dea_report *report, const struct dea_report_run *run)
+{
+  dea_section_begin(report, "design", run->number, "Design");
+  if (run->device == NULL) {
+    dea_text_add(&report->text, "<p class=\"note\">The design cannot be built again, so that there "
+                                "is no drawing: ");
+    dea_html_text(&report->text, run->missing);
+    dea_text_add(&report->text, ".</p>");
+    dea_section_end(report);
+    return DEA_OK;
+  }
+  dea_device_add_svg(&report->text, run->device, run->number);
+  dea_text_add(&report->text, "<details><summary>All values</summary>");
+  add_values(report, run);
+  dea_text_add(&report->text, "</details>");
+  dea_section_end(report);
+  return DEA_OK;
+}
+
+static void add_notes(struct dea_text *out, const struct dea_data_notes *notes)
+{
+  dea_html_element(out, "td", notes->uncertainty);
+  dea_html_element(out, "td", notes->range);
+  dea_text_add(out, "<td>");
+  dea_html_text(out, notes->source != NULL ? notes->source : "no source");
+  if (notes->note != NULL) {
+    dea_text_add(out, "<br><small>");
+    dea_html_text(out, notes->note);
+    dea_text_add(out, "</small>");
+  }
+  dea_text_add(out, "</td></tr>");
+}
+
+/* Row up to its notes: what, value with unit. */
+static void add_row(struct dea_text *out, const char *what, double value, const char *unit)
+{
+  dea_text_add(out, "<tr>");
+  dea_html_element(out, "th scope=\"row\"", what);
+  dea_text_add(out, "<td class=\"n\">");
+  dea_html_number(out, value, 6);
+  dea_text_add(out, "%s", strcmp(unit, "1") != 0 ? " " : "");
+  dea_html_text(out, strcmp(unit, "1") != 0 ? unit : "");
+  dea_text_add(out, "</td>");
+}
+
+/* A pressure in the unit that people read. */
+static void add_pressure(struct dea_text *out, const char *what, double Pa)
+{
+  bool mega = fabs(Pa) >= 1e6;
+  add_row(out, what, Pa * (mega ? 1e-6 : 1e-3), mega ? "MPa" : "kPa");
+}
+
+static void add_law(struct dea_text *out, const struct dea_law_set *set)
+{
+  for (size_t i = 0; set->law != NULL && i < set->law->param_count; i++) {
+    char what[128];
+    const struct dea_law_param *param = &set->law->params[i];
+    snprintf(what, sizeof what, "%s: %s", set->law->name, param->key);
+    if (isnan(set->param[i].si)) {
+      continue;
+    }
+    if (strcmp(param->unit, "Pa") == 0) {
+      add_pressure(out, what, set->param[i].si);
+    } else {
+      add_row(out, what, set->param[i].si, param->unit);
+    }
+    add_notes(out, &set->notes);
+  }
+}
+
+/* Index of the set of that id, the first for "". */
+#define FIND_SET(sets, count, wanted, found)                                                       \
+  size_t found = 0;                                                                                \
+  for (size_t set_ = 0; set_ < (count); set_++) {                                                  \
+    found = strcmp((sets)[set_].id.text, (wanted)) == 0 ? set_ : found;                            \
+  }
+
+static void add_material(struct dea_report *report, const struct dea_material_data *data,
+                         const struct dea_material *used, const char *permittivity,
+                         const char *breakdown, const char *part)
+{
+  struct dea_text *out = &report->text;
+  char caption[2 * DEA_TITLE_SIZE];
+  snprintf(caption, sizeof caption, "%s: %s%s%s%s", part, used->name,
+           data->title.text[0] != '\0' ? " (" : "", data->title.text,
+           data->title.text[0] != '\0' ? ")" : "");
+  dea_table_begin(report, caption,
+                  "<th scope=\"col\">Property</th><th scope=\"col\" class=\"n\">Value</th>"
+                  "<th scope=\"col\">Uncertainty</th><th scope=\"col\">Range</th>"
+                  "<th scope=\"col\">Source</th>");
+  if (used->law != NULL) {
+    FIND_SET(data->laws, data->law_count, used->law_id, law)
+    add_law(out, &data->laws[law]);
+  }
+  if (data->permittivity_count > 0) {
+    FIND_SET(data->permittivity, data->permittivity_count, permittivity, set)
+    add_row(out, "relative permittivity", data->permittivity[set].at_rest.si, "1");
+    add_notes(out, &data->permittivity[set].notes);
+  }
+  if (data->breakdown_count > 0) {
+    FIND_SET(data->breakdown, data->breakdown_count, breakdown, set)
+    add_row(out, "breakdown field", 1e-6 * data->breakdown[set].at_rest_V_per_m.si, "V/\302\265m");
+    add_notes(out, &data->breakdown[set].notes);
+  }
+  if (data->has_elastic) {
+    add_pressure(out, "Young's modulus", data->elastic.young_modulus_Pa.si);
+    add_notes(out, &data->elastic.notes);
+    add_row(out, "Poisson's ratio", data->elastic.poisson_ratio.si, "1");
+    add_notes(out, &data->elastic.notes);
+  }
+  if (data->has_density) {
+    add_row(out, "density", data->density.value_kg_per_m3.si, "kg/m\302\263");
+    add_notes(out, &data->density.notes);
+  }
+  dea_table_end(report);
+}
+
+/* The data of a material: the design's own, else the catalogue's (*entry is the caller's). */
+static const struct dea_material_data *find_data(struct dea_context *ctx,
+                                                 const struct dea_design *design, const char *name,
+                                                 struct dea_catalogue_entry **entry)
+{
+  *entry = NULL;
+  for (size_t i = 0; i < design->material_count; i++) {
+    if (strcmp(design->materials[i].name.text, name) == 0) {
+      return &design->materials[i];
+    }
+  }
+  if (dea_catalogue_read(ctx, name, (struct dea_place){0}, entry) != DEA_OK) {
+    dea_context_clear(ctx); // the device was built with it, so this is rare
+    return NULL;
+  }
+  return &(*entry)->data;
+}
+
+dea_status dea_section_materials(struct dea_report *report, const struct dea_report_run *run)
+{
+  if (run->device == NULL) {
+    return DEA_OK;
+  }
+  const struct dea_design *design = run->design;
+  const struct {
+    const struct dea_material *used;
+    const char *permittivity, *breakdown, *part;
+  } parts[] = {
+      {&run->device->film, design->film.permittivity.text, design->film.breakdown.text, "Film"},
+      {&run->device->electrode, "", "", "Electrodes"},
+      {&run->device->fibre, "", "", "Fibres"},
+  };
+  dea_section_begin(report, "materials", run->number, "Materials and their sources");
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    struct dea_catalogue_entry *entry = NULL;
+    const struct dea_material_data *data =
+        parts[i].used->name[0] != '\0' ? find_data(report->ctx, design, parts[i].used->name, &entry)
+                                       : NULL;
+    if (data != NULL) {
+      add_material(report, data, parts[i].used, parts[i].permittivity, parts[i].breakdown,
+                   parts[i].part);
+    }
+    dea_catalogue_destroy(report->ctx, entry);
+  }
+  dea_section_end(report);
+  return DEA_OK;
+}

@@ -1,0 +1,331 @@
+/* Numbers of a run: what matters at a glance, limits, all points, convergence. */
+#include "output/csv.h"
+#include "output/report/section.h"
+#include "result/convergence.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The first event of that kind on the model's path; NULL when there is none. */
+static const struct dea_event *first_event(const struct dea_result *result, const char *model,
+                                           enum dea_event_kind kind)
+{
+  const struct dea_curve *path = dea_result_find(result, model, "path");
+  for (size_t i = 0; path != NULL && i < path->event_count; i++) {
+    if (path->events[i].kind == kind) {
+      return &path->events[i];
+    }
+  }
+  return NULL;
+}
+
+static void add_card(struct dea_text *out, const char *what, double value, const char *unit,
+                     int digits)
+{
+  if (!isfinite(value)) {
+    return;
+  }
+  dea_text_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
+  dea_html_number(out, fabs(value) < 1e-9 ? 0 : value, digits);
+  dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
+}
+
+/* Cards of one model at the last point of its sweep. */
+static void add_cards(struct dea_report *report, const struct dea_result *result,
+                      const struct dea_curve *sweep)
+{
+  struct dea_text *out = &report->text;
+  const struct dea_load_point *p = &sweep->points[sweep->count - 1];
+  const struct dea_event *slack = first_event(result, sweep->model, DEA_EVENT_SLACK);
+  const struct dea_event *pull_in = first_event(result, sweep->model, DEA_EVENT_PULL_IN);
+  const struct dea_event *breakdown = first_event(result, sweep->model, DEA_EVENT_BREAKDOWN);
+  char heading[2 * DEA_NAME_SIZE];
+  snprintf(heading, sizeof heading, "Model %s at %.4g kV%s", sweep->model, 1e-3 * p->voltage_V,
+           p->stable ? "" : ", unstable");
+  dea_section_heading(report, heading);
+  dea_text_add(out, "<dl class=\"cards\">");
+  add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", 3);
+  add_card(out, "centre", 1e6 * p->centre_z_m, "\302\265m", 4);
+  add_card(out, "fibre tip", 1e6 * p->fibre_tip_z_m, "\302\265m", 4);
+  add_card(out, "force", 1e3 * p->force_N, "mN", 3);
+  add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", 3);
+  add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", 3);
+  add_card(out, "slack from", slack != NULL ? 1e-3 * slack->point.voltage_V : NAN, "kV", 4);
+  add_card(out, "breakdown at", breakdown != NULL ? 1e-3 * breakdown->point.voltage_V : NAN, "kV",
+           4);
+  add_card(out, "pull-in at", pull_in != NULL ? 1e-3 * pull_in->point.voltage_V : NAN, "kV", 4);
+  dea_text_add(out, "</dl>");
+}
+
+dea_status dea_section_glance(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  dea_section_begin(report, "glance", run->number, "At a glance");
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    if (strcmp(curve->kind, "sweep") == 0 && curve->count > 0) {
+      add_cards(report, result, curve);
+    }
+    if (!curve->complete) {
+      dea_text_add(&report->text, "<p class=\"warning\">Model ");
+      dea_html_text(&report->text, curve->model);
+      dea_text_add(&report->text, ", %s, was stopped: ", curve->kind);
+      dea_html_text(&report->text, curve->stopped);
+      dea_text_add(&report->text, "</p>");
+    }
+  }
+  if (run->note_count > 0) {
+    dea_section_heading(report, "What the run says of itself");
+    dea_text_add(&report->text, "<ul class=\"notes\">");
+    for (size_t i = 0; i < run->note_count; i++) {
+      dea_html_element(&report->text, "li", run->notes[i]);
+    }
+    dea_text_add(&report->text, "</ul>");
+  }
+  dea_section_end(report);
+  return DEA_OK;
+}
+
+/* A limit's row: where it is, and how far the sweep stays below it. */
+static void add_limit(struct dea_text *out, const char *model, const char *what,
+                      const struct dea_event *event, double last_V)
+{
+  dea_text_add(out, "<tr>");
+  dea_html_element(out, "th scope=\"row\"", model);
+  dea_text_add(out, "<td>%s</td>", what);
+  if (event == NULL) {
+    dea_text_add(out, "<td colspan=\"4\">none on the path</td></tr>");
+    return;
+  }
+  double at_V = event->point.voltage_V;
+  dea_html_cell(out, 1e-3 * at_V, 5);
+  dea_html_cell(out, event->point.electrode_stretch, 5);
+  dea_html_cell(out, 1e-3 * (at_V - last_V), 4);
+  dea_text_add(out, "<td class=\"%s\">%s</td></tr>", last_V < at_V ? "good" : "bad",
+               last_V < at_V ? "the sweep stays below" : "the sweep goes beyond");
+}
+
+/* What the sweep itself says of stability: models without a path have nothing else. */
+static void add_worst(struct dea_text *out, const struct dea_curve *sweep)
+{
+  double margin = INFINITY, tension = INFINITY, margin_V = NAN, tension_V = NAN;
+  size_t unstable = 0;
+  for (size_t i = 0; i < sweep->count; i++) {
+    const struct dea_load_point *p = &sweep->points[i];
+    unstable += !p->stable;
+    if (p->breakdown_margin < margin) {
+      margin = p->breakdown_margin;
+      margin_V = p->voltage_V;
+    }
+    if (p->min_tension_N_per_m < tension) {
+      tension = p->min_tension_N_per_m;
+      tension_V = p->voltage_V;
+    }
+  }
+  dea_text_add(out, "<li>Model ");
+  dea_html_text(out, sweep->model);
+  dea_text_add(out, ": ");
+  dea_text_add(out, unstable == 0 ? "all %zu points of the sweep are stable" : "of %zu points",
+               sweep->count);
+  if (unstable > 0) {
+    dea_text_add(out, " %zu are unstable", unstable);
+  }
+  if (isfinite(margin)) {
+    dea_text_add(out, "; smallest breakdown margin ");
+    dea_html_number(out, 100 * margin, 3);
+    dea_text_add(out, " %% at ");
+    dea_html_number(out, 1e-3 * margin_V, 4);
+    dea_text_add(out, " kV");
+  }
+  if (isfinite(tension)) {
+    dea_text_add(out, "; smallest tension ");
+    dea_html_number(out, tension, 3);
+    dea_text_add(out, " N/m at ");
+    dea_html_number(out, 1e-3 * tension_V, 4);
+    dea_text_add(out, " kV%s", tension < 0 ? ": the film is slack there" : "");
+  }
+  dea_text_add(out, ".</li>");
+}
+
+dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run)
+{
+  static const struct {
+    enum dea_event_kind kind;
+    const char *what;
+  } limits[] = {{DEA_EVENT_SLACK, "loss of tension"},
+                {DEA_EVENT_BREAKDOWN, "breakdown"},
+                {DEA_EVENT_PULL_IN, "pull-in"},
+                {DEA_EVENT_SNAP_BACK, "snap-back"}};
+  const struct dea_result *result = run->run->result;
+  struct dea_text *out = &report->text;
+  if (result->curve_count == 0) {
+    return DEA_OK;
+  }
+  bool any = false;
+  dea_section_begin(report, "limits", run->number, "Stability and limits");
+  for (size_t c = 0; c < result->curve_count; c++) {
+    const struct dea_curve *path = &result->curves[c];
+    if (strcmp(path->kind, "path") != 0 || path->count == 0) {
+      continue;
+    }
+    const struct dea_curve *sweep = dea_result_find(result, path->model, "sweep");
+    double last_V =
+        sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].voltage_V : NAN;
+    if (!any) {
+      dea_table_begin(report, "First event of each kind along the equilibrium path",
+                      "<th scope=\"col\">Model</th><th scope=\"col\">Limit</th>"
+                      "<th scope=\"col\" class=\"n\">V (kV)</th>"
+                      "<th scope=\"col\" class=\"n\">electrode stretch</th>"
+                      "<th scope=\"col\" class=\"n\">margin (kV)</th>"
+                      "<th scope=\"col\">Sweep</th>");
+      any = true;
+    }
+    for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
+      const struct dea_event *event = first_event(result, path->model, limits[k].kind);
+      if (event != NULL || limits[k].kind != DEA_EVENT_SNAP_BACK) {
+        add_limit(out, path->model, limits[k].what, event, last_V);
+      }
+    }
+  }
+  if (any) {
+    dea_table_end(report);
+  }
+  dea_text_add(out, "<ul>");
+  for (size_t c = 0; c < result->curve_count; c++) {
+    if (strcmp(result->curves[c].kind, "sweep") == 0 && result->curves[c].count > 0) {
+      add_worst(out, &result->curves[c]);
+    }
+  }
+  dea_text_add(out, "</ul>");
+  dea_section_end(report);
+  return DEA_OK;
+}
+
+static void add_curve_points(struct dea_report *report, const struct dea_curve *curve)
+{
+  struct dea_text *out = &report->text, header = {.ctx = report->ctx};
+  char caption[3 * DEA_NAME_SIZE];
+  bool shown[DEA_LOAD_POINT_COLUMNS];
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    char title[96];
+    shown[c] = dea_points_have(curve->points, curve->count, c);
+    dea_column_title(&dea_point_columns[c], title, sizeof title);
+    if (shown[c]) {
+      dea_html_element(&header, "th scope=\"col\" class=\"n\"", title);
+    }
+  }
+  dea_html_element(&header, "th scope=\"col\"", "stable");
+  out->failed = out->failed || header.failed;
+  snprintf(caption, sizeof caption, "Model %s, %s: %zu points", curve->model, curve->kind,
+           curve->count);
+  dea_text_add(out, "<details><summary>");
+  dea_html_text(out, caption);
+  dea_text_add(out, "</summary>");
+  dea_table_begin(report, caption, dea_text_get(&header));
+  for (size_t i = 0; i < curve->count; i++) {
+    dea_text_add(out, "<tr>");
+    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+      if (shown[c]) {
+        dea_html_cell(out, dea_point_columns[c].factor * dea_point_get(&curve->points[i], c), 5);
+      }
+    }
+    dea_text_add(out, "<td>%s</td></tr>", curve->points[i].stable ? "yes" : "no");
+  }
+  dea_table_end(report);
+  dea_text_add(out, "</details>");
+  dea_text_free(&header);
+}
+
+dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  bool any = false;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    if (curve->count == 0 || strcmp(curve->kind, "path") == 0) { // a path is for its curve
+      continue;
+    }
+    if (!any) {
+      dea_section_begin(report, "points", run->number, "Points");
+      any = true;
+    }
+    add_curve_points(report, curve);
+  }
+  if (any) {
+    dea_section_end(report);
+  }
+  return DEA_OK;
+}
+
+static void add_error_row(struct dea_text *out, const struct dea_convergence *c,
+                          const struct dea_convergence_row *row)
+{
+  char title[96];
+  dea_column_title(&dea_point_columns[row->column], title, sizeof title);
+  dea_text_add(out, "<tr>");
+  dea_html_cell(out, 1e-3 * row->voltage_V, 4);
+  dea_html_element(out, "th scope=\"row\"", title);
+  for (size_t m = 0; m < c->mesh_count; m++) {
+    dea_html_cell(out, 100 * row->errors[m], 2);
+  }
+  dea_html_cell(out, row->order, 2);
+  dea_html_cell(out, dea_point_columns[row->column].factor * row->extrapolated, 5);
+  dea_html_element(out, "td", dea_order_text(row->kind));
+  dea_text_add(out, "</tr>");
+}
+
+static void add_convergence(struct dea_report *report, const char *model,
+                            const struct dea_convergence *c)
+{
+  struct dea_text *out = &report->text, header = {.ctx = report->ctx},
+                  verdict = {.ctx = report->ctx};
+  dea_section_heading(report, model);
+  dea_convergence_verdict(c, &verdict);
+  dea_html_element(out, "p class=\"verdict\"", dea_text_get(&verdict));
+  dea_text_add(&header, "<th scope=\"col\" class=\"n\">V (kV)</th><th scope=\"col\">Estimated "
+                        "error (%%) of</th>");
+  for (size_t m = 0; m < c->mesh_count; m++) {
+    dea_text_add(&header, "<th scope=\"col\" class=\"n\">");
+    dea_html_text(&header, c->meshes[m]->name);
+    dea_text_add(&header, "<br><small>%zu unknowns</small></th>", c->meshes[m]->size.unknowns);
+  }
+  dea_text_add(&header, "<th scope=\"col\" class=\"n\">Order</th><th scope=\"col\" class=\"n\">"
+                        "Extrapolated</th><th scope=\"col\">Remark</th>");
+  dea_table_begin(report, "Estimated errors on each mesh", dea_text_get(&header));
+  for (size_t i = 0; i < c->row_count; i++) {
+    add_error_row(out, c, &c->rows[i]);
+  }
+  dea_table_end(report);
+  out->failed = out->failed || header.failed || verdict.failed;
+  dea_text_free(&header);
+  dea_text_free(&verdict);
+}
+
+dea_status dea_section_convergence(struct dea_report *report, const struct dea_report_run *run)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(run->run->result, models, DEA_DESIGN_MODELS_MAX);
+  bool any = false;
+  for (size_t m = 0; m < count; m++) {
+    struct dea_convergence *convergence;
+    DEA_TRY(report->ctx,
+            dea_convergence_create(report->ctx, run->run->result, models[m], &convergence));
+    if (convergence == NULL) {
+      continue;
+    }
+    dea_status status = DEA_OK;
+    if (!any) {
+      dea_section_begin(report, "convergence", run->number, "Convergence");
+      status = dea_section_figures(report, run, "convergence");
+      any = true;
+    }
+    add_convergence(report, models[m], convergence);
+    dea_convergence_destroy(report->ctx, convergence);
+    DEA_TRY(report->ctx, status);
+  }
+  if (any) {
+    dea_section_end(report);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,352 @@
+/* dea report: what comes from a run arrives as text; the page is whole and asks for nothing. */
+#define _GNU_SOURCE // mkdtemp
+#include "command.h"
+#include "failing_allocator.h"
+#include "fake_result.h"
+#include "output/plot.h"
+#include "output/report/axis.h"
+#include "output/report/html.h"
+#include "output/report/report.h"
+#include "output/store.h"
+
+#include <ctype.h>
+
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  return dea_context_create(NULL, &ctx) == DEA_OK ? command_set_up(state) : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_context_destroy(ctx);
+  return command_tear_down(state);
+}
+
+static const char *in_folder(const char *name)
+{
+  static char path[700];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  return path;
+}
+
+// Writing HTML ------------------------------------------------------------------------------------
+
+typedef void (*writer)(struct dea_text *out, const char *text);
+
+static void label(struct dea_text *out, const char *text)
+{
+  dea_html_label(out, text, false);
+}
+
+static void plain_label(struct dea_text *out, const char *text)
+{
+  dea_html_label(out, text, true);
+}
+
+static void base64(struct dea_text *out, const char *text)
+{
+  dea_html_base64(out, text, strlen(text));
+}
+
+static void assert_writes(writer write, const char *text, const char *wanted)
+{
+  struct dea_text out = {.ctx = ctx};
+  write(&out, text);
+  assert_string_equal(dea_text_get(&out), wanted);
+  dea_text_free(&out);
+}
+
+static void test_escaping(void **state)
+{
+  (void)state;
+  assert_writes(dea_html_text, "<b>&\"'", "&lt;b&gt;&amp;&quot;&#39;");
+  assert_writes(dea_html_text, "\302\265m \342\210\222 \360\237\231\202",
+                "\302\265m \342\210\222 \360\237\231\202");
+  // cut, overlong, surrogate, beyond the last plane, control: each wrong byte once
+  assert_writes(dea_html_text, "a\302", "a\357\277\275");
+  assert_writes(dea_html_text, "\300\257", "\357\277\275\357\277\275");
+  assert_writes(dea_html_text, "\355\240\200", "\357\277\275\357\277\275\357\277\275");
+  assert_writes(dea_html_text, "\364\220\200\200",
+                "\357\277\275\357\277\275\357\277\275\357\277\275");
+  assert_writes(dea_html_text, "\001\177", "\357\277\275\357\277\275");
+  assert_writes(dea_html_json_text, "</script>\n\"\\\302\265",
+                "\\u003c/script\\u003e\\u000a\\u0022\\u005c\302\265");
+}
+
+static void test_base64(void **state)
+{
+  (void)state; // RFC 4648, section 10
+  static const char *const pairs[][2] = {{"", ""},
+                                         {"f", "Zg=="},
+                                         {"fo", "Zm8="},
+                                         {"foo", "Zm9v"},
+                                         {"foob", "Zm9vYg=="},
+                                         {"fooba", "Zm9vYmE="},
+                                         {"foobar", "Zm9vYmFy"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+    assert_writes(base64, pairs[i][0], pairs[i][1]);
+  }
+}
+
+static void test_labels(void **state)
+{
+  (void)state;
+  assert_writes(plain_label, "Voltage {/:Italic V} (kV)", "Voltage V (kV)");
+  assert_writes(label, "{/:Italic V} <", "<tspan class=\"it\">V</tspan> &lt;");
+  assert_writes(plain_label, "a\\\\_b {/:Italic x}_a", "a_b xa");
+  char escaped[64];
+  dea_label_escape("two_words {x}", escaped, sizeof escaped);
+  assert_writes(plain_label, escaped, "two_words {x}");
+}
+
+static void test_axes(void **state)
+{
+  (void)state;
+  const double open[2] = {NAN, NAN}, closed[2] = {0, 8};
+  struct dea_axis axis = dea_axis_create(-3.2, 41, open, false, 7);
+  axis.at_high = 100;
+  double value;
+  assert_true(dea_axis_tic(&axis, 0, &value));
+  assert_close(value, -10, 1e-12, 0);
+  assert_close(axis.high, 50, 1e-12, 0);
+  assert_close(dea_axis_place(&axis, 20), 50, 1e-12, 0);
+  axis = dea_axis_create(0, 3, closed, false, 8);
+  assert_close(axis.high, 8, 0, 0);
+  assert_true(dea_axis_tic(&axis, 8, &value) && !dea_axis_tic(&axis, 9, &value));
+  axis = dea_axis_create(5, 5, open, false, 5); // one value alone still has room around it
+  assert_true(axis.low < 5 && axis.high > 5);
+  axis = dea_axis_create(0.02, 30, open, true, 5);
+  assert_close(axis.low, 0.01, 1e-12, 0);
+  assert_close(axis.high, 100, 1e-12, 0);
+}
+
+// The page ----------------------------------------------------------------------------------------
+
+static char *page;
+
+static void read_page(const char *name)
+{
+  FILE *file = fopen(in_folder(name), "rb");
+  assert_non_null(file);
+  free(page);
+  page = calloc(1, 4 << 20);
+  assert_non_null(page);
+  assert_true(fread(page, 1, (4 << 20) - 1, file) > 1000);
+  fclose(file);
+}
+
+/* Every element that is opened is closed, in the right order; attributes are quoted. */
+static void assert_well_formed(void)
+{
+  static const char *const void_tags[] = {"meta", "br", "path", "rect", "circle", "input"};
+  char open[64][24];
+  size_t depth = 0;
+  assert_memory_equal(page, "<!DOCTYPE html>", 15);
+  for (const char *c = page + 15; (c = strchr(c, '<')) != NULL; c++) {
+    char tag[24] = {0};
+    bool end = c[1] == '/';
+    size_t n = 0;
+    for (const char *t = c + 1 + end; isalnum((unsigned char)*t) && n < sizeof tag - 1; t++) {
+      tag[n++] = *t;
+    }
+    assert_true(n > 0);
+    const char *close = strchr(c, '>');
+    assert_non_null(close);
+    bool alone = close[-1] == '/';
+    for (size_t i = 0; i < sizeof void_tags / sizeof void_tags[0]; i++) {
+      alone = alone || strcmp(tag, void_tags[i]) == 0;
+    }
+    if (end) {
+      if (depth == 0 || strcmp(open[depth - 1], tag) != 0) {
+        fail_msg("</%s> closes <%s>", tag, depth > 0 ? open[depth - 1] : "nothing");
+      }
+      depth--;
+    } else if (!alone) {
+      assert_true(depth < 64);
+      memcpy(open[depth++], tag, sizeof tag);
+    }
+    if (!end && (strcmp(tag, "script") == 0 || strcmp(tag, "style") == 0)) {
+      char stop[30];
+      snprintf(stop, sizeof stop, "</%s>", tag);
+      c = strstr(c, stop) - 1; // what is inside is not HTML
+    }
+  }
+  assert_int_equal(depth, 0);
+}
+
+/* Nothing is loaded, and nothing is styled or run but what the policy knows by its hash. */
+static void assert_self_contained(void)
+{
+  assert_contains(page, "default-src 'none'");
+  assert_contains(page, "style-src 'sha256-");
+  assert_contains(page, "script-src 'sha256-");
+  static const char *const never[] = {" src=",   "href=\"http", "url(http",      "@import",
+                                      " style=", " onclick=",   "unsafe-inline", "unsafe-eval'>"};
+  for (size_t i = 0; i < sizeof never / sizeof never[0]; i++) {
+    if (strstr(page, never[i]) != NULL) {
+      fail_msg("the page has '%s'", never[i]);
+    }
+  }
+}
+
+static const char evil[] =
+    "dea: 1\n"
+    "title: '</title><script>alert(1)</script> & \"film\"'\n"
+    "# </pre><img src=x onerror=alert(2)>\n"
+    "film: {material: '<i>mine</i>', thickness: 100 um}\n"
+    "pre_stretch: 1.5\n"
+    "frame: {inner_diameter: 30 mm}\n"
+    "electrodes: {radius: 3.75 mm stretched}\n"
+    "fibres: {count: 4, width: 2 mm, thickness: 100 um, overlap: 0 mm stretched, material: pet,\n"
+    "         outer_end: clamped}\n"
+    "materials:\n"
+    "  - name: '<i>mine</i>'\n"
+    "    kind: elastomer\n"
+    "    laws:\n"
+    "      - {id: one, law: neo-hookean, parameters: {mu: 100 kPa}, source: "
+    "'<script>alert(3)</script>'}\n"
+    "    permittivity: [{id: one, at_rest: 2.8, source: '<b>bold</b>'}]\n"
+    "compute: {models: [lumped, axisymmetric], voltage: {from: 0 kV, to: 2 kV, step: 0.5 kV}}\n";
+
+static void test_text_of_a_design_is_text(void **state)
+{
+  (void)state;
+  command_write("evil.yaml", evil);
+  if (command_run("run evil.yaml --no-figures -o evil.run") != 0) {
+    fail_msg("%s", command_err);
+  }
+  assert_int_equal(command_run("report evil.run -o evil.html"), 0);
+  read_page("evil.html");
+  assert_null(strstr(page, "<script>alert"));
+  assert_null(strstr(page, "<img"));
+  assert_null(strstr(page, "<i>mine"));
+  assert_null(strstr(page, "<b>bold"));
+  assert_contains(page,
+                  "&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;film&quot;");
+  assert_contains(page, "&lt;/pre&gt;&lt;img src=x onerror=alert(2)&gt;");
+  assert_contains(page, "&lt;script&gt;alert(3)&lt;/script&gt;");
+  assert_well_formed();
+  assert_contains(page, "default-src 'none'");
+}
+
+static void test_page_of_an_example(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --set "
+                               "'compute.voltage={from: 0 kV, to: 4 kV, step: 2 kV}' -o a.run"),
+                   0);
+  assert_int_equal(command_run("report a.run"), 0);
+  read_page("a.run/report.html");
+  assert_well_formed();
+  assert_self_contained();
+  assert_contains(page, "<h1>Fibre-reinforced actuator, four fibres, 100 um film</h1>");
+  assert_contains(page, "178.4 kPa");       // a parameter
+  assert_contains(page, "Table 1");         // and its source
+  assert_contains(page, "sha256-");         // of style and script
+  assert_contains(page, "compute.voltage"); // a value of the design
+  assert_contains(page, "--set");           // and that it was overridden
+  assert_contains(page, "smallest breakdown margin");
+  assert_contains(page, "class=\"fibre\"");         // drawing
+  assert_contains(page, "upper bounds, far above"); // what lumped says of itself
+  const char *figures = page;
+  size_t count = 0;
+  while ((figures = strstr(figures, "<figure class=\"plot\"")) != NULL) {
+    figures++;
+    count++;
+  }
+  assert_true(count >= 5);
+}
+
+static void test_runs_beside_each_other(void **state)
+{
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(
+        command_run(i == 0 ? "run @/examples/plain-disc.yaml --no-figures -o one.run "
+                             "--set 'compute.voltage={from: 0 kV, to: 1 kV, step: 1 kV}'"
+                           : "run @/examples/plain-disc.yaml --no-figures -o two.run "
+                             "--set 'compute.voltage={from: 0 kV, to: 2 kV, step: 1 kV}'"),
+        0);
+  }
+  assert_int_equal(command_run("report one.run two.run -o both.html --quiet"), 0);
+  assert_string_equal(command_err, "");
+  read_page("both.html");
+  assert_well_formed();
+  assert_self_contained();
+  assert_contains(page, "The runs beside each other");
+  assert_contains(page, "id=\"run-2\"");
+  assert_contains(page, "1 lumped");
+  assert_contains(page, "2 lumped");
+  assert_int_equal(command_run("report one.run nowhere.run -o none.html"), 5);
+  assert_contains(command_err, "nowhere.run");
+  assert_true(access(in_folder("none.html"), F_OK) != 0);
+  assert_int_equal(command_run("report"), 2);
+}
+
+/* A run whose design cannot be read any more still has a page, which says why there is no drawing.
+ */
+static void write_made_up_run(void)
+{
+  const struct dea_design design = fake_design();
+  struct dea_result *result;
+  assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
+  assert_int_equal(dea_store_write(ctx, result, in_folder("made-up.h5")), DEA_OK);
+  dea_result_destroy(ctx, result);
+}
+
+static void test_design_that_is_gone(void **state)
+{
+  (void)state;
+  write_made_up_run();
+  assert_int_equal(command_run("report made-up.h5 -o made-up.html"), 0);
+  read_page("made-up.html");
+  assert_well_formed();
+  assert_contains(page, "cannot be built again");
+  assert_contains(page, "A made-up actuator, \302\265 and &quot;quotes&quot;");
+  assert_contains(page, "pull-in"); // its path has one, and it stands in the table
+}
+
+static dea_status write_report(struct dea_context *own)
+{
+  const char *const runs[] = {in_folder("made-up.h5")};
+  const struct dea_report_options options = {.command = "dea report"};
+  char from[700];
+  snprintf(from, sizeof from, "%s", runs[0]);
+  const char *const copies[] = {from};
+  return dea_report_write(own, copies, 1, &options, in_folder("memory.html"));
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  write_made_up_run();
+  struct failing_attempt attempt = {.call = write_report};
+  struct failing_count count;
+  long n = 0, step = 1;
+  for (; failing_run(failing_attempt_run, &attempt, n, &count); n += step) {
+    assert_int_equal(attempt.status, DEA_E_MEMORY);
+    step = n < 20 ? 1 : 61; // the later ones are much alike
+  }
+  assert_int_equal(attempt.status, DEA_OK);
+  assert_true(n > 60);
+  free(page);
+  page = NULL;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_escaping),
+      cmocka_unit_test(test_base64),
+      cmocka_unit_test(test_labels),
+      cmocka_unit_test(test_axes),
+      cmocka_unit_test(test_text_of_a_design_is_text),
+      cmocka_unit_test(test_page_of_an_example),
+      cmocka_unit_test(test_runs_beside_each_other),
+      cmocka_unit_test(test_design_that_is_gone),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
