@@ -2,7 +2,8 @@
 #ifndef DEA_CLI_CLI_H
 #define DEA_CLI_CLI_H
 
-#include "design/design.h"
+#include "base/text.h"
+#include "device/device.h"
 
 #include <stdio.h>
 
@@ -29,6 +30,7 @@ struct dea_command {
 #define DEA_COMMAND_LIST(X)                                                                        \
   X(cmd_run)                                                                                       \
   X(cmd_check)                                                                                     \
+  X(cmd_fab)                                                                                       \
   X(cmd_mesh)                                                                                      \
   X(cmd_schema)                                                                                    \
   X(cmd_materials)                                                                                 \
@@ -52,19 +54,27 @@ int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, cons
 /* Takes "key=value" of --set (text is cut at the '='); false when it is not of that form or there
  * is no room. Keys and values lend from text. */
 bool cli_parse_override(char *text, struct dea_override *overrides, size_t room, size_t *count);
-/* What a command takes that looks at one design: DESIGN, --set, --json and, where it writes one
- * file, --output. */
+/* What a command takes that looks at one design: DESIGN, --set, --json; where it writes one file,
+ * --output; where it writes a folder, --force and --drawing too. */
 enum { CLI_OVERRIDES_MAX = 256 };
+enum cli_writes { CLI_WRITES_NOTHING, CLI_WRITES_FILE, CLI_WRITES_FOLDER };
 struct cli_design_arguments {
   const char *design;
   const char *output; // NULL: not given
-  bool json;
+  bool json, force, drawing;
   struct dea_override overrides[CLI_OVERRIDES_MAX];
   size_t override_count;
 };
-/* -1, or the exit code after a usage error. writes: whether --output is an option. */
-int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command, bool writes,
-                               int argc, char **argv, struct cli_design_arguments *out);
+/* -1, or the exit code after a usage error. */
+int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command,
+                               enum cli_writes writes, int argc, char **argv,
+                               struct cli_design_arguments *out);
+/* Reads the design and builds its device; both owned by the caller, also after a failure. */
+dea_status cli_build_device(struct dea_cli *cli, const struct cli_design_arguments *arguments,
+                            struct dea_design **design, struct dea_device **device);
+/* Folder for the results of a design: its file name without ending, plus ".ENDING", in the current
+ * folder. */
+void cli_folder_name(const char *design, const char *ending, struct dea_text *out);
 /* Usage error for what getopt_long answered: ':' or '?'. */
 int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
                      char **argv);

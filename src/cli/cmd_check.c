@@ -173,7 +173,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   struct cli_design_arguments arguments;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
-  int wrong = cli_parse_design_arguments(cli, &cmd_check, false, argc, argv, &arguments);
+  int wrong =
+      cli_parse_design_arguments(cli, &cmd_check, CLI_WRITES_NOTHING, argc, argv, &arguments);
   if (wrong >= 0) {
     return wrong;
   }

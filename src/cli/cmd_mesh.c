@@ -69,15 +69,11 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   struct dea_device *device = NULL;
   struct dea_grid *grid = NULL;
   struct dea_plate plate;
-  int wrong = cli_parse_design_arguments(cli, &cmd_mesh, true, argc, argv, &arguments);
+  int wrong = cli_parse_design_arguments(cli, &cmd_mesh, CLI_WRITES_FILE, argc, argv, &arguments);
   if (wrong >= 0) {
     return wrong;
   }
-  dea_status status = dea_design_read(cli->ctx, arguments.design, arguments.overrides,
-                                      arguments.override_count, &design);
-  if (status == DEA_OK) {
-    status = dea_device_build(cli->ctx, design, &device);
-  }
+  dea_status status = cli_build_device(cli, &arguments, &design, &device);
   if (status == DEA_OK) {
     status = dea_plate_of_device(cli->ctx, device, &plate);
   }

@@ -119,7 +119,6 @@ static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_
  * folder; empty when the summary goes to stdout alone. */
 static void choose_directory(const struct run_options *options, struct dea_text *out)
 {
-  const char *file = options->file;
   if (options->directory != NULL) {
     dea_text_add(out, "%s", options->directory);
     return;
@@ -127,10 +126,7 @@ static void choose_directory(const struct run_options *options, struct dea_text 
   if (options->json) {
     return;
   }
-  const char *slash = strrchr(file, '/'), *name = slash != NULL ? slash + 1 : file;
-  const char *dot = strrchr(name, '.');
-  size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
-  dea_text_add(out, "%.*s.run", (int)length, name);
+  cli_folder_name(options->file, "run", out);
 }
 
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown

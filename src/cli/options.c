@@ -17,6 +17,14 @@ bool cli_parse_override(char *text, struct dea_override *overrides, size_t room,
   return true;
 }
 
+void cli_folder_name(const char *design, const char *ending, struct dea_text *out)
+{
+  const char *slash = strrchr(design, '/'), *name = slash != NULL ? slash + 1 : design;
+  const char *dot = strrchr(name, '.');
+  size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+  dea_text_add(out, "%.*s.%s", (int)length, name, ending);
+}
+
 int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
                      char **argv)
 {
@@ -27,20 +35,20 @@ int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int
   return cli_usage_error(cli, command, "there is no option '%s'", word);
 }
 
-int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command, bool writes,
-                               int argc, char **argv, struct cli_design_arguments *out)
+int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command,
+                               enum cli_writes writes, int argc, char **argv,
+                               struct cli_design_arguments *out)
 {
-  static const struct option longs[] = {{"set", required_argument, NULL, 's'},
-                                        {"json", no_argument, NULL, 'j'},
-                                        {"output", required_argument, NULL, 'o'},
-                                        {NULL, 0, NULL, 0}};
-  static const struct option reads[] = {
-      {"set", required_argument, NULL, 's'}, {"json", no_argument, NULL, 'j'}, {NULL, 0, NULL, 0}};
+  static const struct option longs[] = {
+      {"drawing", no_argument, NULL, 'd'},      {"force", no_argument, NULL, 'f'},
+      {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, 's'},
+      {"json", no_argument, NULL, 'j'},         {NULL, 0, NULL, 0}};
+  static const char *const letters[] = {":", ":o:", ":o:f"};
+  static const int first[] = {3, 2, 0}; // of longs
   int option;
   *out = (struct cli_design_arguments){0};
   opterr = 0;
-  while ((option = getopt_long(argc, argv, writes ? ":o:" : ":", writes ? longs : reads, NULL)) !=
-         -1) {
+  while ((option = getopt_long(argc, argv, letters[writes], longs + first[writes], NULL)) != -1) {
     switch (option) {
     case 's':
       if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
@@ -53,6 +61,12 @@ int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *co
     case 'o':
       out->output = optarg;
       break;
+    case 'f':
+      out->force = true;
+      break;
+    case 'd':
+      out->drawing = true;
+      break;
     default:
       return cli_option_error(cli, command, option, argv);
     }
@@ -63,4 +77,13 @@ int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *co
   }
   out->design = argv[optind];
   return -1;
+}
+
+dea_status cli_build_device(struct dea_cli *cli, const struct cli_design_arguments *arguments,
+                            struct dea_design **design, struct dea_device **device)
+{
+  *device = NULL;
+  DEA_TRY(cli->ctx, dea_design_read(cli->ctx, arguments->design, arguments->overrides,
+                                    arguments->override_count, design));
+  return dea_device_build(cli->ctx, *design, device);
 }

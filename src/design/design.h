@@ -7,6 +7,7 @@
 #define DEA_DESIGN_DESIGN_H
 
 #include "base/value.h"
+#include "design/fabrication.h"
 #include "material/catalogue.h"
 
 enum {
@@ -78,7 +79,8 @@ struct dea_design {
     struct dea_inplane_length outer_gap;  // from a free outer end to the frame
   } fibres;
 
-  struct dea_choice gravity; // enum dea_gravity
+  struct dea_choice gravity;          // enum dea_gravity
+  struct dea_fabrication fabrication; // what the workshop needs
 
   struct dea_material_data *materials; // [material_count] inline ones of this file, owned
   size_t material_count;

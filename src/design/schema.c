@@ -385,6 +385,10 @@ static const struct dea_field design_fields[] = {
      .kind = DEA_FIELD_RECORD,
      .record = &compute_record,
      .doc = "what to compute"},
+    {.key = "fabrication",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_fabrication_record,
+     .doc = "what `dea fab` needs to make files for the workshop"},
     {.key = "report", .kind = DEA_FIELD_RECORD, .record = &report_record, .doc = "how to report"},
 };
 

@@ -1,0 +1,120 @@
+#include "fabricate/contour.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+size_t dea_contour_pieces(const struct dea_contour *contour)
+{
+  return contour->count - (contour->closed || contour->count == 0 ? 0 : 1);
+}
+
+/* For a bulge b and a chord c: angle 4 atan(b), radius c (1 + b^2)/(4 |b|); the centre lies beside
+ * the chord's middle, at c (1 - b^2)/(4 b) to the left. */
+struct dea_piece dea_contour_piece(const struct dea_contour *contour, size_t i)
+{
+  const struct dea_vertex *p = &contour->vertex[i];
+  const struct dea_vertex *q = &contour->vertex[(i + 1) % contour->count];
+  struct dea_piece piece = {.from = {p->x_m, p->y_m}, .to = {q->x_m, q->y_m}};
+  double dx = q->x_m - p->x_m, dy = q->y_m - p->y_m, b = p->bulge, chord = hypot(dx, dy);
+  piece.length_m = chord;
+  if (b != 0 && chord > 0) {
+    double side = (1 - b * b) / (4 * b);
+    piece.arc = true;
+    piece.centre[0] = 0.5 * (p->x_m + q->x_m) - side * dy;
+    piece.centre[1] = 0.5 * (p->y_m + q->y_m) + side * dx;
+    piece.radius_m = chord * (1 + b * b) / (4 * fabs(b));
+    piece.start = atan2(p->y_m - piece.centre[1], p->x_m - piece.centre[0]);
+    piece.sweep = 4 * atan(b);
+    piece.length_m = piece.radius_m * fabs(piece.sweep);
+  }
+  return piece;
+}
+
+void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2])
+{
+  if (piece->arc) {
+    double angle = piece->start + (at_end ? piece->sweep : 0), way = piece->sweep > 0 ? 1 : -1;
+    out[0] = -way * sin(angle);
+    out[1] = way * cos(angle);
+    return;
+  }
+  out[0] = (piece->to[0] - piece->from[0]) / piece->length_m;
+  out[1] = (piece->to[1] - piece->from[1]) / piece->length_m;
+}
+
+double dea_contour_area_m2(const struct dea_contour *contour)
+{
+  double twice = 0;
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece p = dea_contour_piece(contour, i);
+    twice += p.from[0] * p.to[1] - p.from[1] * p.to[0];
+    if (p.arc) { // the segment between chord and arc
+      twice += p.radius_m * p.radius_m * (p.sweep - sin(p.sweep));
+    }
+  }
+  return 0.5 * twice;
+}
+
+double dea_contour_length_m(const struct dea_contour *contour)
+{
+  double length = 0;
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    length += dea_contour_piece(contour, i).length_m;
+  }
+  return length;
+}
+
+/* Whether a direction from the centre meets the arc. */
+static bool arc_has(const struct dea_piece *piece, double angle)
+{
+  double along = piece->sweep > 0 ? angle - piece->start : piece->start - angle;
+  along -= 2 * pi * floor(along / (2 * pi));
+  return along <= fabs(piece->sweep);
+}
+
+static void grow(double box[4], double x, double y)
+{
+  box[0] = fmin(box[0], x);
+  box[1] = fmin(box[1], y);
+  box[2] = fmax(box[2], x);
+  box[3] = fmax(box[3], y);
+}
+
+void dea_contour_grow_box(const struct dea_contour *contour, double box[4])
+{
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece p = dea_contour_piece(contour, i);
+    grow(box, p.from[0], p.from[1]);
+    grow(box, p.to[0], p.to[1]);
+    for (int quarter = 0; p.arc && quarter < 4; quarter++) {
+      static const int x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
+      if (arc_has(&p, 0.5 * pi * quarter)) {
+        grow(box, p.centre[0] + x[quarter] * p.radius_m, p.centre[1] + y[quarter] * p.radius_m);
+      }
+    }
+  }
+}
+
+/* Angle by which the direction from the point to the contour turns along a piece. Seen from within
+ * its circle, an arc always turns the same way. */
+static double turn_along(const struct dea_piece *piece, double x, double y)
+{
+  double ax = piece->from[0] - x, ay = piece->from[1] - y;
+  double bx = piece->to[0] - x, by = piece->to[1] - y;
+  double turn = atan2(ax * by - ay * bx, ax * bx + ay * by);
+  if (piece->arc && hypot(x - piece->centre[0], y - piece->centre[1]) < piece->radius_m) {
+    turn += piece->sweep > 0 && turn < 0 ? 2 * pi : piece->sweep < 0 && turn > 0 ? -2 * pi : 0;
+  }
+  return turn;
+}
+
+bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_m)
+{
+  double turn = 0;
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece piece = dea_contour_piece(contour, i);
+    turn += turn_along(&piece, x_m, y_m);
+  }
+  return fabs(turn) > pi;
+}

@@ -1,0 +1,61 @@
+/* Contours: lines and circular arcs in a plane, with exact measures. The form is that of the
+ * LWPOLYLINE of a DXF file: a vertex says how the contour goes on to the next one.
+ *
+ * Closed contours of a part go counter-clockwise, so their inside lies on the left. */
+#ifndef DEA_FABRICATE_CONTOUR_H
+#define DEA_FABRICATE_CONTOUR_H
+
+#include "base/context.h"
+
+struct dea_vertex {
+  double x_m, y_m;
+  double bulge; // tan of a quarter of the arc's angle to the next vertex; > 0: counter-clockwise,
+                // 0: straight
+  struct dea_place place; // of the value in the design that made this piece
+};
+
+struct dea_contour {
+  const struct dea_vertex *vertex; // [count], lent
+  size_t count;
+  bool closed; // the last vertex goes on to the first
+};
+
+/* A piece of a contour: a line, or an arc about a centre. */
+struct dea_piece {
+  double from[2], to[2];
+  bool arc;
+  double centre[2], radius_m, start, sweep; // of an arc; angles in radian, sweep signed
+  double length_m;
+};
+
+/* Number of pieces, and one of them (0 <= i < count). */
+size_t dea_contour_pieces(const struct dea_contour *contour);
+struct dea_piece dea_contour_piece(const struct dea_contour *contour, size_t i);
+/* Unit tangent of a piece at its start or end. */
+void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]);
+
+/* Enclosed area, > 0 for a counter-clockwise one; of a closed contour. */
+double dea_contour_area_m2(const struct dea_contour *contour);
+double dea_contour_length_m(const struct dea_contour *contour);
+/* Grows a box {x min, y min, x max, y max} so that it holds the contour. */
+void dea_contour_grow_box(const struct dea_contour *contour, double box[4]);
+/* Whether a point, not on it, lies inside a closed contour. */
+bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_m);
+
+/* The contour at a distance outwards (< 0: inwards), with round corners where it opens. Pieces keep
+ * their places. out: room for 2 count vertices. false when a piece vanishes: *at is its number. */
+bool dea_contour_offset(const struct dea_contour *contour, double distance_m,
+                        struct dea_vertex *out, size_t *out_count, size_t *at);
+
+/* The narrowest place between two pieces that face each other. */
+struct dea_gap {
+  double width_m; // 0: they cross; INFINITY: none below the limit
+  double x_m, y_m;
+  size_t piece; // of the first contour
+};
+/* Within one contour (second NULL; neighbours do not count), or between two of them. Only places
+ * narrower than `limit_m` are looked for. */
+struct dea_gap dea_contour_gap(const struct dea_contour *first, const struct dea_contour *second,
+                               double limit_m);
+
+#endif

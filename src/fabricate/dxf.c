@@ -1,0 +1,419 @@
+/* Groups of a code and a value, as the DXF reference of AutoCAD 2000 has them: sections HEADER,
+ * TABLES, BLOCKS, ENTITIES and OBJECTS, of which readers ask for the least that is legal. Handles
+ * are hexadecimal numbers; 1 to 0x2f are used by tables and blocks. */
+#include "fabricate/dxf.h"
+
+#include "base/version.h"
+#include "fabricate/words.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum handle {
+  BLOCK_RECORDS = 1,
+  LAYERS,
+  STYLES,
+  LINE_TYPES,
+  VIEWS,
+  USER_SYSTEMS,
+  VIEWPORTS,
+  APPLICATIONS,
+  DIMENSIONS,
+  MODEL_RECORD,
+  PAPER_RECORD,
+  MODEL_BEGIN,
+  MODEL_END,
+  PAPER_BEGIN,
+  PAPER_END,
+  ROOT,
+  GROUPS,
+  LAYER_ZERO,
+  STYLE,
+  BY_BLOCK,
+  BY_LAYER,
+  CONTINUOUS,
+  APPLICATION,
+  VIEWPORT,
+  DIMENSION,
+  FIRST_LAYER,
+  FIRST_ENTITY = 0x30,
+};
+
+struct file {
+  struct dea_text *text;
+  unsigned handle; // of the next entity
+};
+
+static void group(struct file *file, int code, const char *value)
+{
+  dea_text_add(file->text, "%3d\n%s\n", code, value);
+}
+
+static void number(struct file *file, int code, int value)
+{
+  dea_text_add(file->text, "%3d\n%d\n", code, value);
+}
+
+static void handle(struct file *file, int code, unsigned value)
+{
+  dea_text_add(file->text, "%3d\n%X\n", code, value);
+}
+
+/* A length in mm, to the picometre. */
+static void length(struct file *file, int code, double si)
+{
+  double mm = 1e3 * si;
+  dea_text_add(file->text, "%3d\n%.9f\n", code, fabs(mm) < 5e-10 ? 0 : mm);
+}
+
+static void point(struct file *file, int code, double x, double y)
+{
+  length(file, code, x);
+  length(file, code + 10, y);
+}
+
+/* ---- what stands before the drawing ---- */
+
+static void write_header(struct file *file, const struct dea_layout *sheet, unsigned handles)
+{
+  group(file, 999, "libdea " DEA_VERSION);
+  group(file, 0, "SECTION");
+  group(file, 2, "HEADER");
+  group(file, 9, "$ACADVER");
+  group(file, 1, "AC1015");
+  group(file, 9, "$DWGCODEPAGE");
+  group(file, 3, "ANSI_1252");
+  group(file, 9, "$INSUNITS"); // millimetres
+  number(file, 70, 4);
+  group(file, 9, "$MEASUREMENT"); // metric
+  number(file, 70, 1);
+  group(file, 9, "$EXTMIN");
+  point(file, 10, 0, 0);
+  length(file, 30, 0);
+  group(file, 9, "$EXTMAX");
+  point(file, 10, sheet->width_m, sheet->height_m);
+  length(file, 30, 0);
+  group(file, 9, "$HANDSEED");
+  handle(file, 5, handles);
+  group(file, 0, "ENDSEC");
+}
+
+static void begin_table(struct file *file, const char *name, unsigned own, int entries)
+{
+  group(file, 0, "TABLE");
+  group(file, 2, name);
+  handle(file, 5, own);
+  handle(file, 330, 0);
+  group(file, 100, "AcDbSymbolTable");
+  number(file, 70, entries);
+}
+
+static void begin_entry(struct file *file, const char *type, unsigned own, unsigned owner,
+                        const char *subclass, const char *name)
+{
+  group(file, 0, type);
+  handle(file, 5, own);
+  handle(file, 330, owner);
+  group(file, 100, "AcDbSymbolTableRecord");
+  group(file, 100, subclass);
+  group(file, 2, name);
+  number(file, 70, 0);
+}
+
+static void end_table(struct file *file)
+{
+  group(file, 0, "ENDTAB");
+}
+
+static void write_viewport(struct file *file, const struct dea_layout *sheet)
+{
+  begin_table(file, "VPORT", VIEWPORTS, 1);
+  begin_entry(file, "VPORT", VIEWPORT, VIEWPORTS, "AcDbViewportTableRecord", "*Active");
+  dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 11\n1.0\n 21\n1.0\n");
+  point(file, 12, 0.5 * sheet->width_m, 0.5 * sheet->height_m);
+  length(file, 40, 1.05 * sheet->height_m); // shown height
+  dea_text_add(file->text, " 41\n%.6f\n", sheet->width_m / sheet->height_m);
+  end_table(file);
+}
+
+static void write_line_types(struct file *file)
+{
+  static const struct {
+    enum handle own;
+    const char *name, *meaning;
+  } types[] = {{BY_BLOCK, "ByBlock", ""},
+               {BY_LAYER, "ByLayer", ""},
+               {CONTINUOUS, "Continuous", "Solid line"}};
+  begin_table(file, "LTYPE", LINE_TYPES, 3);
+  for (size_t i = 0; i < 3; i++) {
+    begin_entry(file, "LTYPE", types[i].own, LINE_TYPES, "AcDbLinetypeTableRecord", types[i].name);
+    group(file, 3, types[i].meaning);
+    number(file, 72, 65);
+    number(file, 73, 0);
+    dea_text_add(file->text, " 40\n0.0\n");
+  }
+  end_table(file);
+}
+
+static void write_layers(struct file *file)
+{
+  begin_table(file, "LAYER", LAYERS, DEA_LAYER_COUNT + 1);
+  begin_entry(file, "LAYER", LAYER_ZERO, LAYERS, "AcDbLayerTableRecord", "0");
+  number(file, 62, 7);
+  group(file, 6, "Continuous");
+#define LAYER_ROW(name, meaning, colour, screen)                                                   \
+  begin_entry(file, "LAYER", FIRST_LAYER + DEA_LAYER_##name, LAYERS, "AcDbLayerTableRecord",       \
+              #name);                                                                              \
+  number(file, 62, colour);                                                                        \
+  group(file, 6, "Continuous");                                                                    \
+  number(file, 290, DEA_LAYER_##name != DEA_LAYER_NOTE); // plotted or not
+  DEA_LAYER_LIST(LAYER_ROW)
+#undef LAYER_ROW
+  end_table(file);
+}
+
+static void write_styles(struct file *file)
+{
+  begin_table(file, "STYLE", STYLES, 1);
+  begin_entry(file, "STYLE", STYLE, STYLES, "AcDbTextStyleTableRecord", "Standard");
+  dea_text_add(file->text, " 40\n0.0\n 41\n1.0\n 50\n0.0\n 71\n0\n 42\n2.5\n");
+  group(file, 3, "txt");
+  group(file, 4, "");
+  end_table(file);
+}
+
+static void write_dimension_style(struct file *file)
+{
+  begin_table(file, "DIMSTYLE", DIMENSIONS, 1);
+  group(file, 100, "AcDbDimStyleTable");
+  group(file, 0, "DIMSTYLE");
+  handle(file, 105, DIMENSION);
+  handle(file, 330, DIMENSIONS);
+  group(file, 100, "AcDbSymbolTableRecord");
+  group(file, 100, "AcDbDimStyleTableRecord");
+  group(file, 2, "Standard");
+  number(file, 70, 0);
+  end_table(file);
+}
+
+static void write_block_records(struct file *file)
+{
+  begin_table(file, "BLOCK_RECORD", BLOCK_RECORDS, 2);
+  for (int paper = 0; paper < 2; paper++) {
+    group(file, 0, "BLOCK_RECORD");
+    handle(file, 5, paper ? PAPER_RECORD : MODEL_RECORD);
+    handle(file, 330, BLOCK_RECORDS);
+    group(file, 100, "AcDbSymbolTableRecord");
+    group(file, 100, "AcDbBlockTableRecord");
+    group(file, 2, paper ? "*Paper_Space" : "*Model_Space");
+  }
+  end_table(file);
+}
+
+static void write_tables(struct file *file, const struct dea_layout *sheet)
+{
+  group(file, 0, "SECTION");
+  group(file, 2, "TABLES");
+  write_viewport(file, sheet);
+  write_line_types(file);
+  write_layers(file);
+  write_styles(file);
+  begin_table(file, "VIEW", VIEWS, 0);
+  end_table(file);
+  begin_table(file, "UCS", USER_SYSTEMS, 0);
+  end_table(file);
+  begin_table(file, "APPID", APPLICATIONS, 1);
+  begin_entry(file, "APPID", APPLICATION, APPLICATIONS, "AcDbRegAppTableRecord", "ACAD");
+  end_table(file);
+  write_dimension_style(file);
+  write_block_records(file);
+  group(file, 0, "ENDSEC");
+}
+
+static void write_blocks(struct file *file)
+{
+  group(file, 0, "SECTION");
+  group(file, 2, "BLOCKS");
+  for (int paper = 0; paper < 2; paper++) {
+    const char *name = paper ? "*Paper_Space" : "*Model_Space";
+    group(file, 0, "BLOCK");
+    handle(file, 5, paper ? PAPER_BEGIN : MODEL_BEGIN);
+    handle(file, 330, paper ? PAPER_RECORD : MODEL_RECORD);
+    group(file, 100, "AcDbEntity");
+    group(file, 8, "0");
+    group(file, 100, "AcDbBlockBegin");
+    group(file, 2, name);
+    number(file, 70, 0);
+    dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 30\n0.0\n");
+    group(file, 3, name);
+    group(file, 1, "");
+    group(file, 0, "ENDBLK");
+    handle(file, 5, paper ? PAPER_END : MODEL_END);
+    handle(file, 330, paper ? PAPER_RECORD : MODEL_RECORD);
+    group(file, 100, "AcDbEntity");
+    group(file, 8, "0");
+    group(file, 100, "AcDbBlockEnd");
+  }
+  group(file, 0, "ENDSEC");
+}
+
+static void write_objects(struct file *file)
+{
+  group(file, 0, "SECTION");
+  group(file, 2, "OBJECTS");
+  group(file, 0, "DICTIONARY");
+  handle(file, 5, ROOT);
+  handle(file, 330, 0);
+  group(file, 100, "AcDbDictionary");
+  number(file, 281, 1);
+  group(file, 3, "ACAD_GROUP");
+  handle(file, 350, GROUPS);
+  group(file, 0, "DICTIONARY");
+  handle(file, 5, GROUPS);
+  handle(file, 330, ROOT);
+  group(file, 100, "AcDbDictionary");
+  number(file, 281, 1);
+  group(file, 0, "ENDSEC");
+}
+
+/* ---- the drawing ---- */
+
+static const char *layer_name(enum dea_layer layer)
+{
+  static const char *const names[] = {
+#define LAYER_NAME(name, meaning, dxf, screen) #name,
+      DEA_LAYER_LIST(LAYER_NAME)
+#undef LAYER_NAME
+  };
+  return names[layer];
+}
+
+static void begin_entity(struct file *file, const char *type, const char *subclass,
+                         enum dea_layer layer)
+{
+  group(file, 0, type);
+  handle(file, 5, file->handle++);
+  handle(file, 330, MODEL_RECORD);
+  group(file, 100, "AcDbEntity");
+  group(file, 8, layer_name(layer));
+  group(file, 100, subclass);
+}
+
+static void write_path(struct file *file, const struct dea_part_contour *contour,
+                       const struct dea_vertex *v, size_t count, const double at[2])
+{
+  if (contour->circle) {
+    begin_entity(file, "CIRCLE", "AcDbCircle", contour->layer);
+    point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
+    length(file, 30, 0);
+    length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
+    return;
+  }
+  begin_entity(file, "LWPOLYLINE", "AcDbPolyline", contour->layer);
+  number(file, 90, (int)count);
+  number(file, 70, contour->closed);
+  length(file, 43, 0);
+  for (size_t i = 0; i < count; i++) {
+    point(file, 10, at[0] + v[i].x_m, at[1] + v[i].y_m);
+    if (v[i].bulge != 0) {
+      dea_text_add(file->text, " 42\n%.15f\n", v[i].bulge);
+    }
+  }
+}
+
+/* Letters beyond ASCII are written as \\U+XXXX. */
+static void add_escaped(struct dea_text *out, const char *text)
+{
+  for (unsigned code; (code = dea_letter_next(&text)) != 0;) {
+    if (code < 0x80) {
+      dea_text_add(out, "%c", (char)code);
+    } else {
+      dea_text_add(out, code <= 0xffff ? "\\U+%04X" : "?", code);
+    }
+  }
+}
+
+static void write_words(struct file *file, enum dea_layer layer, double x, double y, double height,
+                        bool centred, const char *text)
+{
+  begin_entity(file, "TEXT", "AcDbText", layer);
+  point(file, 10, x, y);
+  length(file, 30, 0);
+  length(file, 40, height);
+  dea_text_add(file->text, "  1\n");
+  add_escaped(file->text, text);
+  dea_text_add(file->text, "\n");
+  if (centred) {
+    number(file, 72, 1);
+    point(file, 11, x, y);
+    length(file, 31, 0);
+  }
+  group(file, 100, "AcDbText");
+}
+
+static dea_status write_copy(struct file *file, const struct dea_workshop *workshop,
+                             const struct dea_part *part, const double at[2])
+{
+  for (size_t i = 0; i < part->contour_count; i++) {
+    struct dea_vertex *path;
+    size_t count;
+    DEA_TRY(part->ctx, dea_workshop_path(workshop, part, i, &path, &count));
+    write_path(file, &part->contour[i], path, count, at);
+    dea_free(part->ctx, path);
+  }
+  for (size_t i = 0; i < part->text_count; i++) {
+    const struct dea_part_text *text = &part->text[i];
+    write_words(file, DEA_LAYER_MARK, at[0] + text->x_m, at[1] + text->y_m, text->height_m, true,
+                text->text);
+  }
+  return DEA_OK;
+}
+
+static dea_status write_entities(struct file *file, const struct dea_workshop *workshop,
+                                 size_t index)
+{
+  const struct dea_layout *layout = &workshop->layout[index];
+  const struct dea_part *part = &workshop->part[index];
+  const struct dea_part_contour edge = {DEA_LAYER_NOTE, true, false, 0, 4};
+  const struct dea_vertex corners[4] = {{.x_m = 0, .y_m = 0},
+                                        {.x_m = layout->width_m, .y_m = 0},
+                                        {.x_m = layout->width_m, .y_m = layout->height_m},
+                                        {.x_m = 0, .y_m = layout->height_m}};
+  const double origin[2] = {0, 0};
+  struct dea_text words = {.ctx = part->ctx};
+  group(file, 0, "SECTION");
+  group(file, 2, "ENTITIES");
+  write_path(file, &edge, corners, 4, origin);
+  dea_sheet_words(workshop, index, &words);
+  double height = dea_sheet_words_height(layout);
+  write_words(file, DEA_LAYER_NOTE, 2e-3, -2 * height, height, false, dea_text_get(&words));
+  dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
+  dea_text_free(&words);
+  for (int copy = 0; copy < layout->count && status == DEA_OK; copy++) {
+    double at[2];
+    dea_layout_place(layout, copy, at);
+    status = write_copy(file, workshop, part, at);
+  }
+  group(file, 0, "ENDSEC");
+  return status;
+}
+
+/* Number of entities, for the handles. */
+static unsigned count_entities(const struct dea_workshop *workshop, size_t index)
+{
+  const struct dea_part *part = &workshop->part[index];
+  return 2 + (unsigned)workshop->layout[index].count *
+                 (unsigned)(part->contour_count + part->text_count);
+}
+
+dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
+{
+  struct file file = {out, FIRST_ENTITY};
+  write_header(&file, &workshop->layout[index], FIRST_ENTITY + count_entities(workshop, index));
+  write_tables(&file, &workshop->layout[index]);
+  write_blocks(&file);
+  dea_status status = write_entities(&file, workshop, index);
+  write_objects(&file);
+  group(&file, 0, "EOF");
+  return status == DEA_OK && out->failed ? DEA_E_MEMORY : status;
+}

@@ -1,0 +1,13 @@
+/* A sheet as DXF (AC1015, which is AutoCAD 2000): tool paths in mm, a layer for each way of
+ * working.
+ */
+#ifndef DEA_FABRICATE_DXF_H
+#define DEA_FABRICATE_DXF_H
+
+#include "base/text.h"
+#include "fabricate/workshop.h"
+
+/* The file of part number `index` with all its copies. DEA_E_MEMORY is the only failure. */
+dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
+
+#endif

@@ -1,0 +1,154 @@
+#include "fabricate/part.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Room for one more item of an array; false when memory is short. */
+static bool make_room(struct dea_part *part, void **items, size_t size, size_t count, size_t *room)
+{
+  if (part->failed || count < *room) {
+    return !part->failed;
+  }
+  size_t more = *room > 0 ? 2 * *room : 32;
+  void *bigger = dea_resize(part->ctx, *items, more, size);
+  if (bigger == NULL) {
+    part->failed = true;
+    return false;
+  }
+  *items = bigger;
+  *room = more;
+  return true;
+}
+
+void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed)
+{
+  void *items = part->contour;
+  if (make_room(part, &items, sizeof *part->contour, part->contour_count, &part->contour_room)) {
+    part->contour = items;
+    part->contour[part->contour_count++] =
+        (struct dea_part_contour){layer, closed, false, part->vertex_count, 0};
+  }
+}
+
+static void add_vertex(struct dea_part *part, double x, double y, double bulge,
+                       struct dea_place place)
+{
+  void *items = part->vertex;
+  if (make_room(part, &items, sizeof *part->vertex, part->vertex_count, &part->vertex_room)) {
+    part->vertex = items;
+    part->vertex[part->vertex_count++] = (struct dea_vertex){x, y, bulge, place};
+    part->contour[part->contour_count - 1].count++;
+  }
+}
+
+void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_place place)
+{
+  add_vertex(part, x_m, y_m, 0, place);
+}
+
+void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
+                  double to_rad, struct dea_place place)
+{
+  int pieces = (int)ceil(fabs(to_rad - from_rad) / (0.5 * pi) - 1e-9); // of a quarter at most
+  pieces = pieces < 1 ? 1 : pieces;
+  double step = (to_rad - from_rad) / pieces;
+  for (int i = 0; i < pieces; i++) {
+    double angle = from_rad + i * step;
+    add_vertex(part, centre_m[0] + radius_m * cos(angle), centre_m[1] + radius_m * sin(angle),
+               tan(0.25 * step), place);
+  }
+}
+
+void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
+                     double radius_m, struct dea_place place)
+{
+  dea_part_begin(part, layer, true);
+  add_vertex(part, x_m + radius_m, y_m, 1, place);
+  add_vertex(part, x_m - radius_m, y_m, 1, place);
+  if (!part->failed) {
+    part->contour[part->contour_count - 1].circle = true;
+  }
+}
+
+void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
+                   double x1_m, double y1_m, struct dea_place place)
+{
+  dea_part_begin(part, layer, false);
+  add_vertex(part, x0_m, y0_m, 0, place);
+  add_vertex(part, x1_m, y1_m, 0, place);
+}
+
+void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
+                    const char *format, ...)
+{
+  if (part->text_count < DEA_PART_TEXTS_MAX) {
+    struct dea_part_text *text = &part->text[part->text_count++];
+    *text = (struct dea_part_text){.x_m = x_m, .y_m = y_m, .height_m = height_m};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text->text, sizeof text->text, format, args);
+    va_end(args);
+  }
+}
+
+void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
+                      double x1_m, double y1_m, const char *what, struct dea_place place)
+{
+  if (part->measure_count < DEA_PART_MEASURES_MAX) {
+    part->measure[part->measure_count++] =
+        (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what, place};
+  }
+}
+
+struct dea_contour dea_part_contour_get(const struct dea_part *part, size_t i)
+{
+  const struct dea_part_contour *c = &part->contour[i];
+  return (struct dea_contour){part->vertex + c->first, c->count, c->closed};
+}
+
+void dea_part_box(const struct dea_part *part, double box_m[4])
+{
+  box_m[0] = box_m[1] = INFINITY;
+  box_m[2] = box_m[3] = -INFINITY;
+  for (size_t i = 0; i < part->contour_count; i++) {
+    const struct dea_contour contour = dea_part_contour_get(part, i);
+    dea_contour_grow_box(&contour, box_m);
+  }
+}
+
+double dea_part_area_m2(const struct dea_part *part)
+{
+  double area = 0;
+  for (size_t i = 0; i < part->contour_count; i++) {
+    const struct dea_contour contour = dea_part_contour_get(part, i);
+    enum dea_layer layer = part->contour[i].layer;
+    area += layer == DEA_LAYER_CUT_OUTER   ? dea_contour_area_m2(&contour)
+            : layer == DEA_LAYER_CUT_INNER ? -dea_contour_area_m2(&contour)
+                                           : 0;
+  }
+  return area;
+}
+
+double dea_part_length_m(const struct dea_part *part, enum dea_layer layer)
+{
+  double length = 0;
+  for (size_t i = 0; i < part->contour_count; i++) {
+    const struct dea_contour contour = dea_part_contour_get(part, i);
+    length += part->contour[i].layer == layer ? dea_contour_length_m(&contour) : 0;
+  }
+  return length;
+}
+
+void dea_part_free(struct dea_part *part)
+{
+  if (part->ctx != NULL) {
+    dea_free(part->ctx, part->vertex);
+    dea_free(part->ctx, part->contour);
+    part->vertex = NULL;
+    part->contour = NULL;
+    part->vertex_count = part->vertex_room = part->contour_count = part->contour_room = 0;
+  }
+}

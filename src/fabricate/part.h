@@ -1,0 +1,100 @@
+/* A part as it is cut from a sheet: contours, lines that are only drawn, and words on it. Lengths
+ * in metres, of the finished part: the kerf comes in where tool paths are written. */
+#ifndef DEA_FABRICATE_PART_H
+#define DEA_FABRICATE_PART_H
+
+#include "design/design.h"
+#include "fabricate/contour.h"
+
+// X(name, what it is, colour of the DXF, colour of the screen), in the order of the work
+#define DEA_LAYER_LIST(X)                                                                          \
+  X(MARK, "mark: drawn or engraved, not cut", 3, 0x008000)                                         \
+  X(CUT_INNER, "cut: holes, before the outer edge", 5, 0x0000ff)                                   \
+  X(CUT_OUTER, "cut: outer edge, last", 1, 0xff0000)                                               \
+  X(NOTE, "note: words and the edge of the sheet, for people", 8, 0x808080)
+
+enum dea_layer {
+#define DEA_LAYER_ENUM(name, meaning, dxf, screen) DEA_LAYER_##name,
+  DEA_LAYER_LIST(DEA_LAYER_ENUM)
+#undef DEA_LAYER_ENUM
+      DEA_LAYER_COUNT
+};
+
+struct dea_part_contour {
+  enum dea_layer layer;
+  bool closed, circle; // a circle has two vertices
+  size_t first, count; // of the part's vertices
+};
+
+enum { DEA_PART_TEXT_SIZE = 64, DEA_PART_TEXTS_MAX = 4, DEA_PART_MEASURES_MAX = 16 };
+
+/* Words on a part, on layer MARK; x, y: middle of the first line. */
+struct dea_part_text {
+  double x_m, y_m, height_m;
+  char text[DEA_PART_TEXT_SIZE];
+};
+
+/* A dimension for drawings. */
+enum dea_measure_kind { DEA_MEASURE_DIAMETER, DEA_MEASURE_LENGTH };
+struct dea_part_measure {
+  enum dea_measure_kind kind;
+  double from_m[2], to_m[2]; // ends; of a diameter: at opposite places of the circle
+  const char *what;          // "electrode"
+  struct dea_place place;
+};
+
+struct dea_part {
+  struct dea_context *ctx; // failed stays set when memory was short, as in struct dea_text
+  bool failed;
+  const char *name;  // of the files: "frame"
+  const char *title; // "Pre-stretch frame"
+  const char *seen;  // from where: "seen from the fibres"
+  enum dea_film_state state;
+  bool paper; // printed at 1:1, one for all copies, not cut
+  struct dea_vertex *vertex;
+  size_t vertex_count, vertex_room;
+  struct dea_part_contour *contour;
+  size_t contour_count, contour_room;
+  struct dea_part_text text[DEA_PART_TEXTS_MAX];
+  size_t text_count;
+  struct dea_part_measure measure[DEA_PART_MEASURES_MAX];
+  size_t measure_count;
+};
+
+/* ---- making one ---- */
+
+/* What follows is one contour on a layer. */
+void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed);
+/* A vertex from which a line goes on. */
+void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_place place);
+/* Vertices of an arc from an angle to another about a centre, without its end. */
+void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
+                  double to_rad, struct dea_place place);
+void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
+                     double radius_m, struct dea_place place);
+void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
+                   double x1_m, double y1_m, struct dea_place place);
+void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
+                    const char *format, ...) DEA_PRINTF(5, 6);
+void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
+                      double x1_m, double y1_m, const char *what, struct dea_place place);
+
+/* ---- looking at one ---- */
+
+/* Contour i; lent until the part changes. */
+struct dea_contour dea_part_contour_get(const struct dea_part *part, size_t i);
+/* {x min, y min, x max, y max} of all contours. */
+void dea_part_box(const struct dea_part *part, double box_m[4]);
+/* Material of the finished part: outer edges less holes. */
+double dea_part_area_m2(const struct dea_part *part);
+/* Length of all contours of a layer. */
+double dea_part_length_m(const struct dea_part *part, enum dea_layer layer);
+
+/* Adds a finding for each thing that cannot be cut: webs, slots and holes narrower than `feature`,
+ * contours that cross or lie outside of the part, pieces that a cutter of that kerf cannot follow.
+ * Fails only for memory. */
+dea_status dea_part_check(const struct dea_part *part, double feature_m, double kerf_m);
+
+void dea_part_free(struct dea_part *part);
+
+#endif

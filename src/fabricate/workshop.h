@@ -1,0 +1,40 @@
+/* From a design to what a workshop needs: parts, and sheets with as many copies as are asked for.
+ * Theory and defaults: docs/fabrication.md. */
+#ifndef DEA_FABRICATE_WORKSHOP_H
+#define DEA_FABRICATE_WORKSHOP_H
+
+#include "fabricate/part.h"
+#include "fabricate/plan.h"
+
+enum { DEA_WORKSHOP_PARTS_MAX = 8 };
+
+/* Copies of a part on its sheet: rows from the upper left corner. All parts of the unstretched film
+ * have the same places, and all of the stretched one. */
+struct dea_layout {
+  double width_m, height_m; // of the sheet; origin at its lower left corner
+  double first_m[2];        // centre of the first copy
+  double pitch_m;           // from one to the next, to the right and downwards
+  int columns, count;
+};
+
+struct dea_workshop {
+  struct dea_plan plan;
+  struct dea_part part[DEA_WORKSHOP_PARTS_MAX]; // in the order of the work
+  struct dea_layout layout[DEA_WORKSHOP_PARTS_MAX];
+  size_t count;
+};
+
+/* Makes and checks everything. What does not fit gives findings with their place in the design and
+ * DEA_E_DESIGN. design, device: lent, outlive it. out: owned by the caller. */
+dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design *design,
+                               const struct dea_device *device, struct dea_workshop **out);
+void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop);
+
+/* Centre of a copy on its sheet. */
+void dea_layout_place(const struct dea_layout *layout, int copy, double out_m[2]);
+/* Tool path of contour i: the kerf's half outside of outer edges and inside of holes; what is only
+ * marked stays as it is. out: [*count], owned by the caller. */
+dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,
+                             size_t i, struct dea_vertex **out, size_t *count);
+
+#endif

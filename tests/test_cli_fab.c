@@ -1,0 +1,133 @@
+/* dea fab as a user runs it. */
+#define _GNU_SOURCE // mkdtemp
+#include "command.h"
+
+#include <jansson.h>
+
+static void read_into(const char *name, char **out)
+{
+  static char text[COMMAND_TEXT_MAX];
+  command_read(name, text);
+  *out = text;
+}
+
+static void test_files(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 0);
+  assert_contains(command_err, "files for the workshop are in frdea-4.fab");
+  assert_string_equal(command_out, "");
+  char *text;
+  read_into("frdea-4.fab/frame.dxf", &text);
+  assert_contains(text, "AC1015");
+  assert_contains(text, "$INSUNITS\n 70\n4\n");
+  read_into("frdea-4.fab/fibres.svg", &text);
+  assert_contains(text, "width=\"210.000000mm\" height=\"297.000000mm\"");
+  // what is there stays, unless it is to be replaced
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 5);
+  assert_contains(command_err, "--force");
+  assert_int_equal(command_run("--quiet fab @/examples/frdea-4.yaml --force"), 0);
+  assert_true(strstr(command_err, "are in") == NULL);
+}
+
+static void test_summary(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml -o four --json "
+                               "--set fabrication.copies=2"),
+                   0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  assert_non_null(root);
+  assert_int_equal(json_integer_value(json_object_get(root, "copies")), 2);
+  assert_string_equal(json_string_value(json_object_get(root, "folder")), "four");
+  json_t *frame = NULL, *row;
+  size_t i;
+  json_array_foreach(json_object_get(root, "parts"), i, row)
+  {
+    if (strcmp(json_string_value(json_object_get(row, "name")), "frame") == 0) {
+      frame = row;
+    }
+  }
+  // a ring of 15 to 25 mm with three marks of 1.5 mm and a window of 3 mm
+  const double pi = acos(-1);
+  assert_close(json_number_value(json_object_get(frame, "area_m2")),
+               pi * 1e-6 * (625 - 225 - 3 * 0.75 * 0.75 - 1.5 * 1.5), 1e-10, 0);
+  char path[700];
+  json_array_foreach(json_object_get(root, "files"), i, row)
+  {
+    snprintf(path, sizeof path, "%s/four/%s", command_folder, json_string_value(row));
+    assert_int_equal(access(path, R_OK), 0);
+  }
+  assert_true(i >= 12);
+  json_decref(root);
+}
+
+static void test_without_fibres(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc"), 0);
+  char path[700];
+  snprintf(path, sizeof path, "%s/disc/fibres.dxf", command_folder);
+  assert_int_not_equal(access(path, R_OK), 0);
+}
+
+/* Files are the same however often they are written, and whatever the locale. */
+static void test_same_bytes(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab @/examples/frdea-8.yaml -o one"), 0);
+  assert_int_equal(command_run("fab @/examples/frdea-8.yaml -o two"), 0);
+  char text[1400];
+  snprintf(text, sizeof text, "diff -r '%s/one' '%s/two'", command_folder, command_folder);
+  assert_int_equal(system(text), 0);
+}
+
+static void test_hostile_names(void **state)
+{
+  (void)state;
+  command_write("a<script>&.yaml", "dea: 1\n"
+                                   "title: '</title><script>alert(1)</script>&\"'\n"
+                                   "film: {material: elastosil-2030, thickness: 100 um}\n"
+                                   "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
+                                   "electrodes: {diameter: 5 mm unstretched}\n");
+  assert_int_equal(command_run("fab 'a<script>&.yaml' -o hostile"), 0);
+  static const char *const names[] = {"hostile/frame.svg"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char *text;
+    read_into(names[i], &text);
+    assert_true(strstr(text, "<script>") == NULL);
+    assert_contains(text, "&lt;script&gt;");
+  }
+}
+
+static void test_what_goes_wrong(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab"), 2);
+  assert_int_equal(command_run("fab a b"), 2);
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml --laser"), 2);
+  assert_int_equal(command_run("fab no-such-file.yaml"), 5);
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml -o bad --set fabrication.kerf=1mm"), 3);
+  assert_contains(command_err, "--set fabrication.kerf: error: kerf: a cut of 1 mm width");
+  assert_int_equal(
+      command_run("fab @/examples/frdea-4.yaml -o bad --set fabrication.sheet.width=30mm"), 3);
+  assert_contains(command_err, "too small for the part");
+  assert_int_equal(
+      command_run("fab @/examples/frdea-4.yaml -o bad --set fabrication.holder.anchor=12mm"), 3);
+  assert_contains(command_err, "a fibre is longer than the frame");
+  char path[700];
+  snprintf(path, sizeof path, "%s/bad", command_folder);
+  assert_int_not_equal(access(path, F_OK), 0); // nothing was begun
+  command_write("file", "x");
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml -o file"), 5);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_files),          cmocka_unit_test(test_summary),
+      cmocka_unit_test(test_without_fibres), cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_hostile_names),  cmocka_unit_test(test_what_goes_wrong),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
