@@ -5,9 +5,11 @@ install(TARGETS libdea dea
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-if(TARGET dea_solid_module)
-  install(TARGETS dea_solid_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
-endif()
+foreach(module IN ITEMS dea_solid_module dea_cairo_module)
+  if(TARGET ${module})
+    install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
+  endif()
+endforeach()
 
 # The public headers are those that dea.h names; base/version.h is made at configuration.
 set(headers ${PROJECT_SOURCE_DIR}/src/dea.h)

@@ -1,10 +1,14 @@
 #include "fabricate/files.h"
 
 #include "fabricate/dxf.h"
+#include "fabricate/pages.h"
+#include "fabricate/picture.h"
+#include "fabricate/process.h"
 #include "fabricate/svg.h"
 #include "output/file.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { NAME_SIZE = 64 };
 
@@ -15,21 +19,49 @@ static const struct {
 } formats[] = {{"dxf", dea_dxf_write}, {"svg", dea_svg_write}};
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
+/* Drawings by a canvas. */
+struct drawing {
+  const char *name;
+  enum dea_canvas_format format;
+  bool always; // with drawing_only too
+  void (*size)(const struct dea_workshop *workshop, double out_mm[2]);
+  void (*draw)(const struct dea_paper *paper, const struct dea_workshop *workshop);
+};
+
+/* The process sheet, in two forms. */
+#define PROCESS_PDF "process.pdf"
+#define PROCESS_HTML "process.html"
+
+static const struct drawing drawings[] = {
+    {"drawing.svg", DEA_CANVAS_SVG, true, dea_picture_size, dea_picture_draw},
+    {"drawing.pdf", DEA_CANVAS_PDF, true, dea_picture_size, dea_picture_draw},
+    {"drawing.png", DEA_CANVAS_PNG, true, dea_picture_size, dea_picture_draw},
+    {"parts.pdf", DEA_CANVAS_PDF, false, dea_pages_first_size, dea_pages_draw},
+};
+enum { DRAWINGS = sizeof drawings / sizeof drawings[0] };
+
 dea_status dea_workshop_files(const struct dea_workshop *workshop,
                               const struct dea_workshop_options *options, dea_file_sink sink,
                               void *user)
 {
   char name[NAME_SIZE];
+  dea_status status = DEA_OK;
   for (size_t i = 0; i < workshop->count && !options->drawing_only; i++) {
-    for (size_t f = 0; f < FORMATS; f++) {
+    for (size_t f = 0; f < FORMATS && status == DEA_OK; f++) {
       snprintf(name, sizeof name, "%s.%s", workshop->part[i].name, formats[f].ending);
-      dea_status status = sink(user, name);
-      if (status != DEA_OK) {
-        return status;
-      }
+      status = sink(user, name);
     }
   }
-  return DEA_OK;
+  for (size_t i = 0; i < DRAWINGS && status == DEA_OK; i++) {
+    if (drawings[i].always || !options->drawing_only) {
+      status = sink(user, drawings[i].name);
+    }
+  }
+  if (status == DEA_OK && !options->drawing_only) {
+    status = sink(user, PROCESS_PDF);
+    status = status == DEA_OK ? sink(user, PROCESS_HTML) : status;
+  }
+  return status;
 }
 
 struct place {
@@ -79,6 +111,115 @@ static dea_status write_sheet(struct dea_context *ctx, const struct dea_workshop
   return status;
 }
 
+static dea_status write_bytes(struct dea_context *ctx, const char *directory, const char *name,
+                              const char *bytes, size_t length)
+{
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_file_write(ctx, path, bytes, length);
+  dea_free(ctx, path);
+  return status;
+}
+
+/* Draws a page or pages and gives the file; canvas: to be destroyed, NULL after a failure. */
+static dea_status draw(struct dea_context *ctx, const struct dea_canvas_type *type,
+                       const struct dea_workshop *workshop, const struct drawing *drawing,
+                       struct dea_canvas **canvas, const char **bytes, size_t *length)
+{
+  const char *title = workshop->plan.design->title.text;
+  double size[2];
+  drawing->size(workshop, size);
+  DEA_TRY(ctx, type->create(ctx, drawing->format, size[0], size[1],
+                            title[0] != '\0' ? title : "Actuator", canvas));
+  const struct dea_paper paper = {type, *canvas};
+  drawing->draw(&paper, workshop);
+  return type->finish(*canvas, bytes, length);
+}
+
+static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas_type *type,
+                                const struct dea_workshop *workshop, const char *directory,
+                                const struct drawing *drawing)
+{
+  struct dea_canvas *canvas = NULL;
+  const char *bytes;
+  size_t length;
+  dea_status status = draw(ctx, type, workshop, drawing, &canvas, &bytes, &length);
+  if (status == DEA_OK) {
+    status = write_bytes(ctx, directory, drawing->name, bytes, length);
+  }
+  type->destroy(canvas);
+  return status;
+}
+
+static dea_status write_process_pdf(struct dea_context *ctx, const struct dea_canvas_type *type,
+                                    const struct dea_document *document, const char *directory)
+{
+  struct dea_paper paper = {.type = type};
+  const char *bytes;
+  size_t length;
+  DEA_TRY(ctx,
+          type->create(ctx, DEA_CANVAS_PDF, 210, 297, document->block[0].cell[0], &paper.canvas));
+  dea_document_pages(&paper, document);
+  dea_status status = type->finish(paper.canvas, &bytes, &length);
+  if (status == DEA_OK) {
+    status = write_bytes(ctx, directory, PROCESS_PDF, bytes, length);
+  }
+  type->destroy(paper.canvas);
+  return status;
+}
+
+/* With the drawing of the actuator in it. */
+static dea_status write_process_html(struct dea_context *ctx, const struct dea_canvas_type *type,
+                                     const struct dea_workshop *workshop,
+                                     const struct dea_document *document, const char *directory)
+{
+  struct dea_canvas *canvas = NULL;
+  const char *bytes;
+  size_t length;
+  struct dea_text svg = {.ctx = ctx}, html = {.ctx = ctx};
+  dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
+  if (status == DEA_OK) {
+    dea_text_add(&svg, "%.*s", (int)length, bytes);
+    const char *start = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
+    dea_document_html(document, start != NULL ? start : "", &html);
+    status = svg.failed ? DEA_E_MEMORY : dea_text_write(ctx, &html, directory, PROCESS_HTML);
+  }
+  type->destroy(canvas);
+  dea_text_free(&svg);
+  dea_text_free(&html);
+  return status;
+}
+
+static dea_status write_process(struct dea_context *ctx, const struct dea_canvas_type *type,
+                                const struct dea_workshop *workshop, const char *directory)
+{
+  struct dea_document document = {.ctx = ctx};
+  dea_status status = dea_process_write(ctx, workshop, &document);
+  if (status == DEA_OK) {
+    status = write_process_pdf(ctx, type, &document, directory);
+  }
+  if (status == DEA_OK) {
+    status = write_process_html(ctx, type, workshop, &document, directory);
+  }
+  dea_document_free(&document);
+  return status;
+}
+
+static dea_status write_drawings(struct dea_context *ctx, const struct dea_workshop *workshop,
+                                 const char *directory, const struct dea_workshop_options *options)
+{
+  const struct dea_canvas_type *type = NULL;
+  DEA_TRY(ctx, dea_canvas_open(ctx, &type));
+  for (size_t i = 0; i < DRAWINGS; i++) {
+    if (drawings[i].always || !options->drawing_only) {
+      DEA_TRY(ctx, write_drawing(ctx, type, workshop, directory, &drawings[i]));
+    }
+  }
+  return options->drawing_only ? DEA_OK : write_process(ctx, type, workshop, directory);
+}
+
 dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                               const char *directory, const struct dea_workshop_options *options)
 {
@@ -87,5 +228,5 @@ dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop
       DEA_TRY(ctx, write_sheet(ctx, workshop, directory, i, f));
     }
   }
-  return DEA_OK;
+  return write_drawings(ctx, workshop, directory, options);
 }

@@ -1,13 +1,10 @@
 /* Model "3d" as the rest of the library sees it: a door to a module that is loaded only when a
  * model is made, since PETSc and what it brings along take longer to load than most commands to
  * run. */
-#define _POSIX_C_SOURCE 200809L // access
+#include "base/module.h"
 #include "model/model.h"
 
-#include <dlfcn.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
+static const char module_file[] = "dea_solid_module.so";
 
 struct dea_model {
   const struct dea_model_type *type; // of the module
@@ -16,34 +13,18 @@ struct dea_model {
 
 bool dea_solid_module_find(char *out, size_t size)
 {
-  const char *const folders[] = {getenv("DEA_MODULES"), DEA_INSTALL_MODULE_DIR,
-                                 DEA_BUILD_MODULE_DIR};
-  for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
-    if (folders[i] != NULL && folders[i][0] != '\0') {
-      snprintf(out, size, "%s/dea_solid_module.so", folders[i]);
-      if (access(out, R_OK) == 0) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return dea_module_find(module_file, out, size);
 }
 
-/* The handle stays open: MPI cannot be unloaded. */
+/* It cannot be unloaded: MPI. */
 static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
 {
-  char path[4096];
-  if (!dea_solid_module_find(path, sizeof path)) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "the 3D engine is not here: it is built when libpetsc-real-dev and "
-                    "libslepc-real-dev are installed; "
-                    "DEA_MODULES may name the folder of dea_solid_module.so");
-  }
-  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  *out = handle != NULL ? dlsym(handle, "dea_solid_module") : NULL;
-  if (*out == NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the 3D engine cannot be loaded: %.300s", dlerror());
-  }
+  const void *type = NULL;
+  DEA_TRY(ctx, dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine",
+                               "it is built when libpetsc-real-dev and libslepc-real-dev are "
+                               "installed",
+                               &type));
+  *out = type;
   return DEA_OK;
 }
 
@@ -59,7 +40,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
                          struct dea_model **out)
 {
   *out = NULL;
-  const struct dea_model_type *type;
+  const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, &type));
   struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
   if (model == NULL) {

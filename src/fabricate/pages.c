@@ -1,0 +1,163 @@
+#include "fabricate/pages.h"
+
+#include "fabricate/draft.h"
+#include "fabricate/words.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double millimetres = 1e3; // per metre of a contour, at 1:1
+
+/* The smallest page of the ISO sizes that takes a width and a height, else one of just that size.
+ */
+static void page_size(double width, double height, double out[2])
+{
+  static const double sizes[][2] = {{210, 297}, {297, 210}, {297, 420}, {420, 297},  {420, 594},
+                                    {594, 420}, {594, 841}, {841, 594}, {841, 1189}, {1189, 841}};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+    if (width <= sizes[i][0] && height <= sizes[i][1]) {
+      memcpy(out, sizes[i], sizeof sizes[i]);
+      return;
+    }
+  }
+  out[0] = width;
+  out[1] = height;
+}
+
+/* A part with its labels beside it. */
+static void part_page(const struct dea_part *part, double out[2])
+{
+  double box[4];
+  dea_part_box(part, box);
+  page_size(1e3 * (box[2] - box[0]) + 2 * 68, 1e3 * (box[3] - box[1]) + 2 * 30, out);
+}
+
+void dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2])
+{
+  part_page(&workshop->part[0], out_mm);
+}
+
+static void add_contours(const struct dea_paper *paper, const struct dea_part *part,
+                         enum dea_layer layer, double x, double y)
+{
+  for (size_t i = 0; i < part->contour_count; i++) {
+    if (part->contour[i].layer == layer) {
+      const struct dea_contour contour = dea_part_contour_get(part, i);
+      paper->type->contour(paper->canvas, &contour, millimetres, x, y);
+    }
+  }
+}
+
+/* The finished part: its material grey, edges black, marks thin. */
+static void draw_part(const struct dea_paper *paper, const struct dea_part *part, double x,
+                      double y)
+{
+  if (!part->paper) {
+    add_contours(paper, part, DEA_LAYER_CUT_OUTER, x, y);
+    add_contours(paper, part, DEA_LAYER_CUT_INNER, x, y);
+    paper->type->fill(paper->canvas, 0xeef1f4, 1, true);
+    paper->type->stroke(paper->canvas, 0.25, 0x202020, 0);
+  }
+  add_contours(paper, part, DEA_LAYER_MARK, x, y);
+  paper->type->stroke(paper->canvas, 0.18, 0x2a6f3a, 0);
+  for (size_t i = 0; i < part->text_count; i++) {
+    const struct dea_part_text *text = &part->text[i];
+    paper->type->text(paper->canvas, x + 1e3 * text->x_m, y + 1e3 * text->y_m,
+                      1.4e3 * text->height_m, 0, DEA_ALIGN_CENTRE, false, 0x2a6f3a, text->text);
+  }
+}
+
+/* The label of a dimension; of a part of the film also in the film's other state. */
+static void describe(const struct dea_workshop *w, const struct dea_part *part,
+                     const struct dea_part_measure *m, double length_m, struct dea_callout *out)
+{
+  char here[32], there[32];
+  bool film = part->paper || part->state == DEA_UNSTRETCHED;
+  double factor = part->state == DEA_UNSTRETCHED ? w->plan.stretch : 1 / w->plan.stretch;
+  dea_length_text(here, sizeof here, length_m);
+  dea_length_text(there, sizeof there, length_m * factor);
+  snprintf(out->label, sizeof out->label, "%s%s mm",
+           m->kind == DEA_MEASURE_DIAMETER ? "\xc3\x98 " : "", here);
+  if (film && strcmp(m->what, "stencil") != 0) {
+    snprintf(out->note, sizeof out->note, "%s; %s %s", m->what, there,
+             part->state == DEA_UNSTRETCHED ? "stretched" : "unstretched");
+  } else {
+    snprintf(out->note, sizeof out->note, "%s", m->what);
+  }
+}
+
+static void draw_measures(const struct dea_paper *paper, const struct dea_workshop *w,
+                          const struct dea_part *part, double x, double y)
+{
+  struct dea_callout callouts[DEA_PART_MEASURES_MAX];
+  double box[4];
+  dea_part_box(part, box);
+  const double around[4] = {x + 1e3 * box[0], y + 1e3 * box[1], x + 1e3 * box[2], y + 1e3 * box[3]};
+  for (size_t i = 0; i < part->measure_count; i++) {
+    const struct dea_part_measure *m = &part->measure[i];
+    const double from[2] = {x + 1e3 * m->from_m[0], y + 1e3 * m->from_m[1]};
+    const double to[2] = {x + 1e3 * m->to_m[0], y + 1e3 * m->to_m[1]};
+    double length = hypot(to[0] - from[0], to[1] - from[1]);
+    callouts[i] =
+        (struct dea_callout){.x_mm = 0.5 * (from[0] + to[0]), .y_mm = 0.5 * (from[1] + to[1])};
+    describe(w, part, m, 1e-3 * length, &callouts[i]);
+    if (m->kind == DEA_MEASURE_DIAMETER) {
+      callouts[i].radius_mm = 0.5 * length;
+    } else {
+      dea_draft_dimension(paper, from, to, &callouts[i]);
+    }
+  }
+  dea_draft_callouts(paper, around, callouts, part->measure_count);
+}
+
+static void draw_part_page(const struct dea_paper *paper, const struct dea_workshop *w,
+                           const struct dea_part *part, const double size[2])
+{
+  char below[320];
+  double x = 0.5 * size[0], y = 0.5 * size[1];
+  snprintf(below, sizeof below,
+           "%.80s; %s; lengths of the %s film, pre-stretch %.4g; finished part, "
+           "without kerf",
+           dea_file_name(w->plan.design->file), part->seen,
+           part->state == DEA_STRETCHED ? "stretched" : "unstretched", w->plan.stretch);
+  dea_draft_head(paper, size[0], size[1], part->title, below);
+  dea_draft_scale(paper, size[0],
+                  "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");
+  double box[4];
+  dea_part_box(part, box);
+  dea_draft_centre(paper, x, y, 1e3 * box[2] + 4);
+  draw_part(paper, part, x, y);
+  draw_measures(paper, w, part, x, y);
+}
+
+/* All copies on their sheet; the page is the sheet. */
+static void draw_sheet_page(const struct dea_paper *paper, const struct dea_workshop *w,
+                            size_t index)
+{
+  const struct dea_layout *layout = &w->layout[index];
+  for (int copy = 0; copy < layout->count; copy++) {
+    double at[2];
+    dea_layout_place(layout, copy, at);
+    draw_part(paper, &w->part[index], 1e3 * at[0], 1e3 * at[1]);
+  }
+}
+
+void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
+{
+  for (size_t i = 0; i < workshop->count; i++) {
+    double size[2];
+    part_page(&workshop->part[i], size);
+    if (i > 0) {
+      paper->type->page(paper->canvas, size[0], size[1]);
+    }
+    draw_part_page(paper, workshop, &workshop->part[i], size);
+  }
+  for (size_t i = 0; i < workshop->count; i++) {
+    const struct dea_layout *layout = &workshop->layout[i];
+    if (layout->count > 1) {
+      paper->type->page(paper->canvas, 1e3 * layout->width_m, 1e3 * layout->height_m);
+      draw_sheet_page(paper, workshop, i);
+    }
+  }
+}
