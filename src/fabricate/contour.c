@@ -39,8 +39,9 @@ void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]
     out[1] = way * cos(angle);
     return;
   }
-  out[0] = (piece->to[0] - piece->from[0]) / piece->length_m;
-  out[1] = (piece->to[1] - piece->from[1]) / piece->length_m;
+  double dx = piece->to[0] - piece->from[0], dy = piece->to[1] - piece->from[1];
+  out[0] = dx / hypot(dx, dy); // its length may be that of a piece that was not yet cut off
+  out[1] = dy / hypot(dx, dy);
 }
 
 double dea_contour_area_m2(const struct dea_contour *contour)

@@ -53,20 +53,20 @@ static size_t fit(const struct dea_paper *paper, double size, bool bold, double 
   return taken;
 }
 
-/* Draws a text in a column, or only counts its lines. */
-static int flow(const struct writer *w, bool draw, double x, double y, double size, bool bold,
-                unsigned colour, double room, const char *text)
+/* Draws a text in a column of a table, or only counts its lines. */
+static int flow(const struct writer *w, bool draw, double x, bool bold, double room,
+                const char *text)
 {
   int lines = 0;
   do {
     char line[WORDS_MAX];
     const char *next;
-    if (fit(w->paper, size, bold, room, text, line, &next) == 0) {
+    if (fit(w->paper, small_size, bold, room, text, line, &next) == 0) {
       break;
     }
     if (draw) {
-      w->paper->type->text(w->paper->canvas, x, y - size * (lines * leading + 1), size, 0,
-                           DEA_ALIGN_LEFT, bold, colour, line);
+      w->paper->type->text(w->paper->canvas, x, w->y - 1 - small_size * (lines * leading + 1),
+                           small_size, 0, DEA_ALIGN_LEFT, bold, INK, line);
     }
     text = next;
     lines++;
@@ -95,15 +95,23 @@ static bool need(struct writer *w, double needed)
   return true;
 }
 
+/* before: room above; also: what has to fit below it on the same page. */
 static void write_text(struct writer *w, double before, double indent, double size, bool bold,
                        unsigned colour, double also, const char *text)
 {
-  double room = width - 2 * left - indent;
-  int lines = flow(w, false, 0, 0, size, bold, colour, room, text);
-  need(w, before + lines * size * leading + also);
+  double room = width - 2 * left - indent, line_height = size * leading;
+  need(w, before + line_height + also);
   w->y -= before;
-  flow(w, true, left + indent, w->y, size, bold, colour, room, text);
-  w->y -= lines * size * leading;
+  while (*text != '\0') {
+    char line[WORDS_MAX];
+    if (fit(w->paper, size, bold, room, text, line, &text) == 0) {
+      break;
+    }
+    need(w, line_height);
+    w->paper->type->text(w->paper->canvas, left + indent, w->y - size, size, 0, DEA_ALIGN_LEFT,
+                         bold, colour, line);
+    w->y -= line_height;
+  }
 }
 
 static void rule(struct writer *w, double thickness, unsigned colour)
@@ -117,7 +125,7 @@ static double row_height(const struct writer *w, const struct dea_block *row, bo
   int lines = 1;
   for (size_t c = 0; c < row->cells; c++) {
     double room = w->head->width[c] * (width - 2 * left) - 3;
-    int its = flow(w, false, 0, 0, small_size, bold, INK, room, row->cell[c]);
+    int its = flow(w, false, 0, bold, room, row->cell[c]);
     lines = its > lines ? its : lines;
   }
   return lines * small_size * leading + 2.4;
@@ -128,7 +136,7 @@ static void draw_row(struct writer *w, const struct dea_block *row, bool bold)
   double x = left, tall = row_height(w, row, bold);
   for (size_t c = 0; c < row->cells && c < w->head->cells; c++) {
     double column = w->head->width[c] * (width - 2 * left);
-    flow(w, true, x, w->y - 1, small_size, bold, INK, column - 3, row->cell[c]);
+    flow(w, true, x, bold, column - 3, row->cell[c]);
     x += column;
   }
   w->y -= tall;
@@ -152,8 +160,7 @@ static void write_step(struct writer *w, const char *text)
   static const double box = 2.6;
   char number[16];
   double before = 1.6;
-  int lines = flow(w, false, 0, 0, text_size, false, INK, width - 2 * left - 12, text);
-  need(w, before + lines * text_size * leading);
+  need(w, before + 2 * text_size * leading);
   double line = w->y - before - text_size;
   w->paper->type->box(w->paper->canvas, left, line - 0.3, box, box);
   w->paper->type->stroke(w->paper->canvas, 0.2, INK, 0);

@@ -18,7 +18,7 @@ enum {
 };
 
 static const double page_width = 170, page_height = 176;
-static const double ring_radius = 34;        // of the ring in the top view
+static const double ring_radius = 32;        // of the ring in the top view
 static const double top_x = 85, top_y = 108; // centre of the top view
 static const double section_y = 34;          // middle of the film in the section
 static const double film_height = 5;         // of the film in the section
@@ -84,7 +84,7 @@ static void set_note(struct dea_callout *c, const char *what, double length, dou
 {
   char text[32];
   dea_length_text(text, sizeof text, length / stretch);
-  snprintf(c->note, sizeof c->note, stretch != 1 ? "%s (%s unstretched)" : "%s", what, text);
+  snprintf(c->note, sizeof c->note, stretch != 1 ? "%s; %s unstretched" : "%s", what, text);
 }
 
 static void add_round(struct picture *p, struct dea_callout *c, double x, double y, double radius,
@@ -151,9 +151,9 @@ static void label_top(struct picture *p)
   add_round(p, &c[n++], 0, 0, plan->electrode_m, "electrode", plan->stretch);
   double a = plan->lead_angle_rad[DEA_PLAN_TOP], b = plan->lead_angle_rad[DEA_PLAN_BOTTOM];
   add_round(p, &c[n++], plan->pad_centre_m * cos(a), plan->pad_centre_m * sin(a), plan->pad_m,
-            "pad, above", plan->stretch);
+            "pad above", plan->stretch);
   add_round(p, &c[n++], plan->pad_centre_m * cos(b), plan->pad_centre_m * sin(b), plan->pad_m,
-            "pad, below", plan->stretch);
+            "pad below", plan->stretch);
   if (plan->device->fibre_count > 0) {
     n += add_fibre_lengths(p, &c[n]);
   }
@@ -222,7 +222,7 @@ static void add_layer_label(struct picture *p, struct dea_callout *c, double x, 
     snprintf(c->label, sizeof c->label, "not given");
   }
   if (unstretched > 0) {
-    snprintf(c->note, sizeof c->note, "%s (%.4g unstretched)", what, 1e6 * unstretched);
+    snprintf(c->note, sizeof c->note, "%s; %.4g unstretched", what, 1e6 * unstretched);
   } else {
     snprintf(c->note, sizeof c->note, "%s", what);
   }

@@ -1,0 +1,369 @@
+/* Drawings and process sheets: words that do not lie on each other, amounts by closed forms,
+ * sensitivities against designs that are changed by hand, and allocations that fail. */
+#include "design_text.h"
+#include "fabricate/document.h"
+#include "fabricate/pages.h"
+#include "fabricate/picture.h"
+#include "fabricate/process.h"
+#include "fabricate/sensitivity.h"
+#include "failing_allocator.h"
+#include "model/model.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- a canvas that notes where words are ---- */
+
+enum { WORDS_MAX = 4000 };
+static struct {
+  double box[4];
+  char text[80];
+} words[WORDS_MAX];
+static size_t word_count, page_start, pages;
+static double page_width, page_height;
+
+static void check_page(void)
+{
+  for (size_t i = page_start; i < word_count; i++) {
+    const double *a = words[i].box;
+    if (a[0] < 0 || a[1] < 0 || a[2] > page_width || a[3] > page_height) {
+      fail_msg("page %zu: '%s' leaves the page", pages, words[i].text);
+    }
+    for (size_t j = page_start; j < i; j++) {
+      const double *b = words[j].box;
+      if (a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]) {
+        fail_msg("page %zu: '%s' lies on '%s'", pages, words[i].text, words[j].text);
+      }
+    }
+  }
+  page_start = word_count;
+  pages++;
+}
+
+static void fake_page(struct dea_canvas *canvas, double width_mm, double height_mm)
+{
+  (void)canvas;
+  check_page();
+  page_width = width_mm;
+  page_height = height_mm;
+}
+
+static void fake_contour(struct dea_canvas *canvas, const struct dea_contour *contour, double scale,
+                         double x_mm, double y_mm)
+{
+  (void)canvas;
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece piece = dea_contour_piece(contour, i);
+    assert_true(isfinite(x_mm + scale * piece.from[0]) && isfinite(y_mm + scale * piece.from[1]));
+  }
+}
+
+static void fake_line(struct dea_canvas *canvas, double x0, double y0, double x1, double y1)
+{
+  (void)canvas;
+  assert_true(isfinite(x0) && isfinite(y0) && isfinite(x1) && isfinite(y1));
+}
+
+static void fake_fill(struct dea_canvas *canvas, unsigned colour, double opacity, bool keep)
+{
+  (void)canvas, (void)colour, (void)opacity, (void)keep;
+}
+
+static void fake_stroke(struct dea_canvas *canvas, double width_mm, unsigned colour, double dash_mm)
+{
+  (void)canvas, (void)width_mm, (void)colour, (void)dash_mm;
+}
+
+static double fake_width(struct dea_canvas *canvas, double size_mm, bool bold, const char *text)
+{
+  (void)canvas;
+  return size_mm * (bold ? 0.68 : 0.6) * (double)strlen(text); // as DejaVu Sans has it, about
+}
+
+static void fake_text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm,
+                      double angle, enum dea_align align, bool bold, unsigned colour,
+                      const char *text)
+{
+  (void)colour;
+  assert_true(word_count < WORDS_MAX && angle == 0);
+  double width = fake_width(canvas, size_mm, bold, text);
+  double x = x_mm - (align == DEA_ALIGN_LEFT ? 0 : align == DEA_ALIGN_CENTRE ? 0.5 : 1) * width;
+  double *box = words[word_count].box;
+  box[0] = x, box[1] = y_mm - 0.2 * size_mm, box[2] = x + width, box[3] = y_mm + 0.75 * size_mm;
+  snprintf(words[word_count++].text, 80, "%.79s", text);
+}
+
+static const struct dea_canvas_type fake = {.page = fake_page,
+                                            .contour = fake_contour,
+                                            .line = fake_line,
+                                            .box = fake_line,
+                                            .fill = fake_fill,
+                                            .stroke = fake_stroke,
+                                            .text = fake_text,
+                                            .text_width = fake_width};
+static const struct dea_paper paper = {&fake, NULL};
+
+static void begin(double width_mm, double height_mm)
+{
+  word_count = page_start = pages = 0;
+  page_width = width_mm;
+  page_height = height_mm;
+}
+
+/* ---- designs ---- */
+
+static struct dea_context *ctx;
+static struct dea_design *design;
+static struct dea_device *device;
+static struct dea_workshop *workshop;
+
+static void clear(void)
+{
+  dea_workshop_destroy(ctx, workshop);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  workshop = NULL;
+  device = NULL;
+  design = NULL;
+  dea_finding_clear(ctx);
+}
+
+static void make(const struct dea_override *sets, size_t count)
+{
+  clear();
+  dea_status status = read_and_build(ctx, GOOD_DESIGN, sets, count, &design, &device);
+  if (status == DEA_OK) {
+    status = dea_workshop_create(ctx, design, device, &workshop);
+  }
+  if (status != DEA_OK) {
+    print_findings(ctx);
+    fail_msg("%s", dea_context_message(ctx));
+  }
+}
+
+static int set_up(void **state)
+{
+  (void)state;
+  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  clear();
+  dea_context_destroy(ctx);
+  return 0;
+}
+
+static const struct variant {
+  struct dea_override sets[4];
+  size_t count;
+} variants[] = {
+    {.count = 0},
+    {{{"fibres", "null"}}, 1},
+    {{{"fibres.count", "1"},
+      {"title", "A title that is far too long to fit onto the first line of "
+                "a page of A4, so that it has to be cut somewhere"}},
+     2},
+    {{{"fibres.count", "8"},
+      {"fibres.tip_width", "1 mm"},
+      {"fabrication.leads.width", "0.5 mm unstretched"},
+      {"fibres.bond.thickness", "50 um"}},
+     4},
+    {{{"fibres.outer_end", "free"},
+      {"electrodes.diameter", "20 mm stretched"},
+      {"fabrication.copies", "3"}},
+     3},
+    {{{"frame.inner_diameter", "200 mm"}, {"fabrication.sheet", "{width: 1 m, height: 1 m}"}}, 2},
+    {{{"pre_stretch", "1"}}, 1},
+};
+enum { VARIANTS = sizeof variants / sizeof variants[0] };
+
+static void test_words_do_not_overlap(void **state)
+{
+  (void)state;
+  for (size_t v = 0; v < VARIANTS; v++) {
+    double size[2];
+    make(variants[v].sets, variants[v].count);
+    dea_picture_size(workshop, size);
+    begin(size[0], size[1]);
+    dea_picture_draw(&paper, workshop);
+    check_page();
+    assert_true(word_count > 8);
+    dea_pages_first_size(workshop, size);
+    begin(size[0], size[1]);
+    dea_pages_draw(&paper, workshop);
+    check_page();
+    assert_int_equal(pages,
+                     workshop->count + (workshop->plan.copies > 1 ? workshop->count - 1 : 0));
+    struct dea_document document = {.ctx = ctx};
+    assert_int_equal(dea_process_write(ctx, workshop, &document), DEA_OK);
+    begin(210, 297);
+    dea_document_pages(&paper, &document);
+    check_page();
+    assert_true(pages >= 2 && pages <= 4);
+    dea_document_free(&document);
+  }
+}
+
+/* Words of any length go onto their lines. */
+static void test_long_words(void **state)
+{
+  (void)state;
+  static const double widths[] = {0.1, 0.9};
+  char word[3000];
+  memset(word, 'x', sizeof word - 1);
+  word[sizeof word - 1] = '\0';
+  struct dea_document document = {.ctx = ctx};
+  dea_document_add(&document, DEA_BLOCK_TITLE, "%s", word);
+  dea_document_add(&document, DEA_BLOCK_TEXT, "%s %s", word, word);
+  dea_document_add(&document, DEA_BLOCK_TEXT, "%s", "");
+  dea_document_add(&document, DEA_BLOCK_HEAD, "a");
+  dea_document_cell(&document, "b");
+  dea_document_widths(&document, widths);
+  for (int i = 0; i < 40; i++) {
+    dea_document_add(&document, DEA_BLOCK_ROW, "%.40s", word);
+    dea_document_cell(&document, "%.300s", word);
+  }
+  assert_false(document.failed);
+  begin(210, 297);
+  dea_document_pages(&paper, &document);
+  check_page();
+  assert_true(pages > 2);
+  dea_document_free(&document);
+}
+
+/* ---- numbers ---- */
+
+static void test_amounts(void **state)
+{
+  (void)state;
+  const struct dea_override sets[] = {{"electrodes.thickness", "10 um"},
+                                      {"electrodes.material", "stiff"},
+                                      {"fibres.bond.thickness", "50 um"},
+                                      {"fabrication.marks.diameter", "1.2 mm unstretched"}};
+  struct dea_amounts a;
+  make(sets, 4);
+  dea_amounts_find(workshop, &a);
+  // blank of 70/1.5 mm; disc of 5, pad of 5/1.5, lead of 1 mm between them, three marks
+  double r = 2.5, p = 2.5 / 1.5, w = 1, apart = 20 / 1.5;
+  double cut_r = r * r * asin(0.5 * w / r) - 0.5 * w * sqrt(r * r - 0.25 * w * w);
+  double cut_p = p * p * asin(0.5 * w / p) - 0.5 * w * sqrt(p * p - 0.25 * w * w);
+  double lead = w * (apart - sqrt(r * r - 0.25 * w * w) - sqrt(p * p - 0.25 * w * w));
+  double one = pi * (r * r + p * p) - cut_r - cut_p + lead, marks = 3 * pi * 0.36;
+  assert_close(a.film_area_m2, 1e-6 * pi * 35 * 35 / 2.25, 1e-9, 0);
+  assert_close(a.ink_area_m2, 2e-6 * (one + marks), 1e-9, 0);
+  assert_close(a.ink_volume_m3, 2e-6 * (one + marks) * 10e-6, 1e-9, 0);
+  assert_close(a.transfer_glue_area_m2, 1e-6 * (one - pi * p * p), 1e-9, 0);
+  // four strips of 2 mm from 3.75 to 15 mm and 3 mm more, ends along circles
+  double area = 0;
+  for (int i = 0; i < 100000; i++) {
+    double y = -1 + 2 * (i + 0.5) / 100000;
+    area += 4 * (sqrt(18 * 18 - y * y) - sqrt(3.75 * 3.75 - y * y)) * 2 / 100000;
+  }
+  assert_close(a.bond_area_m2, 1e-6 * area, 1e-7, 0);
+  assert_close(a.bond_volume_m3, 1e-6 * area * 50e-6, 1e-7, 0);
+  make(NULL, 0);
+  dea_amounts_find(workshop, &a);
+  assert_true(isnan(a.ink_volume_m3) && isnan(a.bond_volume_m3)); // never invented
+}
+
+/* The displacement of a model for a design with one value changed. */
+static double displacement(const char *model, bool tip, const char *key, const char *value,
+                           double voltage_V)
+{
+  const struct dea_override set = {key, value};
+  const struct dea_model_type *type = dea_model_find(model);
+  struct dea_model *m;
+  struct dea_load_point point;
+  make(&set, 1);
+  assert_int_equal(type->create(ctx, device, &m), DEA_OK);
+  assert_int_equal(type->solve(ctx, m, voltage_V, &point), DEA_OK);
+  type->destroy(ctx, m);
+  return tip ? point.fibre_tip_z_m : point.electrode_edge_u_m;
+}
+
+static void test_sensitivities(void **state)
+{
+  (void)state;
+  static const struct {
+    enum dea_deviation which;
+    const char *key, *low, *high;
+  } rows[] = {
+      {DEA_DEVIATION_THICKNESS, "film.thickness", "95 um", "105 um"},
+      {DEA_DEVIATION_PRE_STRETCH, "pre_stretch", "1.48", "1.52"},
+      {DEA_DEVIATION_ELECTRODE, "electrodes.diameter", "4.9 mm unstretched", "5.1 mm unstretched"},
+      {DEA_DEVIATION_FRAME, "frame.inner_diameter", "29.9 mm", "30.1 mm"},
+      {DEA_DEVIATION_FIBRE, "fibres.overlap", "0.2 mm stretched", "-0.2 mm stretched"},
+  };
+  struct dea_sensitivity found[DEA_SENSITIVITIES];
+  double voltage;
+  make(NULL, 0);
+  assert_int_equal(dea_sensitivities_find(ctx, design, device, &voltage, found), DEA_OK);
+  assert_close(voltage, 8e3, 1e-12, 0);
+  for (int q = 0; q < DEA_SENSITIVITIES; q++) {
+    bool tip = strcmp(found[q].model, "lumped") == 0;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+      if (!tip && rows[i].which == DEA_DEVIATION_FIBRE) {
+        assert_true(isnan(found[q].effect_m[rows[i].which])); // this model knows no fibres
+        continue;
+      }
+      double low = displacement(found[q].model, tip, rows[i].key, rows[i].low, voltage);
+      double high = displacement(found[q].model, tip, rows[i].key, rows[i].high, voltage);
+      assert_close(found[q].effect_m[rows[i].which], 0.5 * (high - low), 1e-6, 1e-12);
+    }
+  }
+  // thicker film moves less
+  assert_true(found[0].effect_m[DEA_DEVIATION_THICKNESS] < 0);
+  // without fibres nothing is said of them; beyond pull-in nothing at all
+  const struct dea_override none = {"fibres", "null"};
+  make(&none, 1);
+  assert_int_equal(dea_sensitivities_find(ctx, design, device, &voltage, found), DEA_OK);
+  assert_true(isnan(found[1].displacement_m) && !isnan(found[0].displacement_m));
+  const struct dea_override far[] = {
+      {"compute.voltage", "{from: 900 kV, to: 1000 kV, step: 50 kV}"}, {"film.law", "b"}};
+  make(far, 2);
+  assert_int_equal(dea_sensitivities_find(ctx, design, device, &voltage, found), DEA_OK);
+  assert_true(isnan(voltage) && isnan(found[0].effect_m[0]));
+}
+
+static dea_status write_document(struct dea_context *failing)
+{
+  struct dea_document document = {.ctx = failing};
+  struct dea_text html = {.ctx = failing};
+  dea_status status = dea_process_write(failing, workshop, &document);
+  if (status == DEA_OK) {
+    dea_document_html(&document, "", &html);
+    status = html.failed ? DEA_E_MEMORY : DEA_OK;
+  }
+  dea_text_free(&html);
+  dea_document_free(&document);
+  return status;
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  make(NULL, 0);
+  design->compute.voltages_V[design->compute.voltage_count - 1] = 1e3; // quick
+  design->compute.voltage_count = 1;
+  struct failing_attempt attempt = {.call = write_document};
+  struct failing_count count;
+  long n = 0;
+  for (; failing_run(failing_attempt_run, &attempt, n, &count); n += n < 60 ? 1 : 17) {
+    assert_int_equal(attempt.status, DEA_E_MEMORY); // the models' own are tested elsewhere
+  }
+  assert_int_equal(attempt.status, DEA_OK);
+  assert_true(n > 100);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_words_do_not_overlap),
+      cmocka_unit_test(test_long_words),
+      cmocka_unit_test(test_amounts),
+      cmocka_unit_test(test_sensitivities),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
