@@ -58,7 +58,7 @@ static void test_summary(void **state)
     snprintf(path, sizeof path, "%s/four/%s", command_folder, json_string_value(row));
     assert_int_equal(access(path, R_OK), 0);
   }
-  assert_true(i >= 12);
+  assert_int_equal(i, 18);
   json_decref(root);
 }
 
@@ -91,13 +91,28 @@ static void test_hostile_names(void **state)
                                    "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
                                    "electrodes: {diameter: 5 mm unstretched}\n");
   assert_int_equal(command_run("fab 'a<script>&.yaml' -o hostile"), 0);
-  static const char *const names[] = {"hostile/frame.svg"};
+  static const char *const names[] = {"hostile/frame.svg", "hostile/process.html"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     char *text;
     read_into(names[i], &text);
     assert_true(strstr(text, "<script>") == NULL);
     assert_contains(text, "&lt;script&gt;");
   }
+}
+
+static void test_drawing_only(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml --drawing -o only"), 0);
+  static const char *const names[] = {"only/drawing.svg", "only/drawing.pdf", "only/drawing.png"};
+  for (size_t i = 0; i < 3; i++) {
+    char *text;
+    read_into(names[i], &text);
+    assert_true(text[0] != '\0');
+  }
+  char path[700];
+  snprintf(path, sizeof path, "%s/only/frame.dxf", command_folder);
+  assert_int_not_equal(access(path, F_OK), 0);
 }
 
 static void test_what_goes_wrong(void **state)
@@ -125,9 +140,10 @@ static void test_what_goes_wrong(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_files),          cmocka_unit_test(test_summary),
-      cmocka_unit_test(test_without_fibres), cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_hostile_names),  cmocka_unit_test(test_what_goes_wrong),
+      cmocka_unit_test(test_files),           cmocka_unit_test(test_summary),
+      cmocka_unit_test(test_without_fibres),  cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_drawing_only),    cmocka_unit_test(test_hostile_names),
+      cmocka_unit_test(test_what_goes_wrong),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -1,48 +1,11 @@
 /* Files for the workshop, read back: areas, lengths and places against those of the design, by
  * closed forms, for designs drawn at random. */
 #include "cut_file.h"
-#include "design_text.h"
 #include "fabricate/dxf.h"
 #include "fabricate/svg.h"
+#include "workshop_fixture.h"
 
 static const double pi = 3.14159265358979323846;
-
-static struct dea_context *ctx;
-static struct dea_design *design;
-static struct dea_device *device;
-static struct dea_workshop *workshop;
-
-static void clear(void)
-{
-  dea_workshop_destroy(ctx, workshop);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
-  workshop = NULL;
-  device = NULL;
-  design = NULL;
-  dea_finding_clear(ctx);
-}
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  clear();
-  dea_context_destroy(ctx);
-  return 0;
-}
-
-static dea_status make(const char *text, const struct dea_override *sets, size_t count)
-{
-  clear();
-  dea_status status = read_and_build(ctx, text, sets, count, &design, &device);
-  return status == DEA_OK ? dea_workshop_create(ctx, design, device, &workshop) : status;
-}
 
 /* ---- designs drawn at random, all lengths in mm ---- */
 
@@ -310,7 +273,7 @@ static void test_designs_drawn_at_random(void **state)
   for (int i = 0; i < 200; i++) {
     struct drawn d;
     draw_design(&d);
-    dea_status status = make(d.text, NULL, 0);
+    dea_status status = workshop_make(d.text, NULL, 0);
     if (status != DEA_OK) { // fibres too close, for example
       assert_int_equal(status, DEA_E_DESIGN);
       assert_true(dea_finding_count(ctx, DEA_ERROR) > 0);
@@ -360,7 +323,7 @@ static void test_the_stretched_electrode_is_the_simulated_one(void **state)
   for (int i = 0; i < 40; i++) {
     struct drawn d;
     draw_design(&d);
-    if (make(d.text, NULL, 0) != DEA_OK) {
+    if (workshop_make(d.text, NULL, 0) != DEA_OK) {
       continue;
     }
     const struct dea_contour top = contour_of("stencil-top", DEA_LAYER_CUT_INNER, 0);
@@ -419,7 +382,7 @@ static void test_marks_meet_in_all_sheets(void **state)
                                         {"fibres.width", "1 mm"},
                                         {"fabrication.kerf", "0 mm"},
                                         {"fabrication.leads.width", "0.6 mm unstretched"}};
-    assert_int_equal(make(GOOD_DESIGN, sets, 4), DEA_OK);
+    assert_int_equal(workshop_make(GOOD_DESIGN, sets, 4), DEA_OK);
     double frame[3][2], mark[3][2];
     read_marks("frame", "CUT_INNER", frame);
     for (size_t i = 0; i < sizeof sheets / sizeof sheets[0]; i++) {
@@ -449,7 +412,7 @@ static void test_copies_keep_apart(void **state)
   const struct dea_override sets[] = {{"fabrication.copies", "7"},
                                       {"fabrication.sheet.width", "200 mm"},
                                       {"fabrication.sheet.gap", "4 mm"}};
-  assert_int_equal(make(GOOD_DESIGN, sets, 3), DEA_OK);
+  assert_int_equal(workshop_make(GOOD_DESIGN, sets, 3), DEA_OK);
   for (size_t i = 0; i < workshop->count; i++) {
     const struct dea_layout *layout = &workshop->layout[i];
     double box[4];
@@ -477,5 +440,5 @@ int main(void)
       cmocka_unit_test(test_marks_meet_in_all_sheets),
       cmocka_unit_test(test_copies_keep_apart),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

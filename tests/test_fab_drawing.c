@@ -1,6 +1,5 @@
 /* Drawings and process sheets: words that do not lie on each other, amounts by closed forms,
  * sensitivities against designs that are changed by hand, and allocations that fail. */
-#include "design_text.h"
 #include "fabricate/document.h"
 #include "fabricate/pages.h"
 #include "fabricate/picture.h"
@@ -8,6 +7,7 @@
 #include "fabricate/sensitivity.h"
 #include "failing_allocator.h"
 #include "model/model.h"
+#include "workshop_fixture.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -111,47 +111,12 @@ static void begin(double width_mm, double height_mm)
 
 /* ---- designs ---- */
 
-static struct dea_context *ctx;
-static struct dea_design *design;
-static struct dea_device *device;
-static struct dea_workshop *workshop;
-
-static void clear(void)
-{
-  dea_workshop_destroy(ctx, workshop);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
-  workshop = NULL;
-  device = NULL;
-  design = NULL;
-  dea_finding_clear(ctx);
-}
-
 static void make(const struct dea_override *sets, size_t count)
 {
-  clear();
-  dea_status status = read_and_build(ctx, GOOD_DESIGN, sets, count, &design, &device);
-  if (status == DEA_OK) {
-    status = dea_workshop_create(ctx, design, device, &workshop);
-  }
-  if (status != DEA_OK) {
+  if (workshop_make(GOOD_DESIGN, sets, count) != DEA_OK) {
     print_findings(ctx);
     fail_msg("%s", dea_context_message(ctx));
   }
-}
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  clear();
-  dea_context_destroy(ctx);
-  return 0;
 }
 
 static const struct variant {
@@ -364,5 +329,5 @@ int main(void)
       cmocka_unit_test(test_sensitivities),
       cmocka_unit_test(test_each_allocation),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

@@ -1,4 +1,5 @@
 #define _GNU_SOURCE // popen, access
+#include "base/module.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/cli.h"
@@ -144,6 +145,14 @@ static void check_engine(struct report *report)
       "model 3d");
 }
 
+static void check_cairo(struct report *report)
+{
+  char path[4096];
+  bool ok = dea_module_find("dea_cairo_module.so", path, sizeof path);
+  say(report, WISHED, ok, "drawings of dea fab", ok ? path : "not built",
+      "install libcairo2-dev, and build again; without it dea fab writes DXF and SVG only");
+}
+
 static void check_gnuplot(struct report *report)
 {
   char output[OUTPUT_SIZE];
@@ -185,6 +194,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   }
   check_gnuplot(&report);
   check_engine(&report);
+  check_cairo(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {
     status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");
