@@ -16,6 +16,7 @@ enum {
   DEA_DESIGN_MATERIALS_MAX = 16,
   DEA_DESIGN_VOLTAGES_MAX = 10000,
   DEA_DESIGN_STOPS_MAX = 32,
+  DEA_DESIGN_MODES_MAX = 10, // their shapes are fields of one mesh
   DEA_DESIGN_FIELDS_MAX = 100,
   DEA_DESIGN_MESHES_MAX = 8,
   DEA_DESIGN_VARIANTS_MAX = 8,
@@ -106,6 +107,18 @@ struct dea_design {
       size_t refinement_count, voltage_count;
       struct dea_quantity tolerance; // relative
     } convergence;
+    struct {                                                // study of vibrations
+      bool asked;                                           // the section is there
+      struct dea_quantity count;                            // modes
+      struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: 0 and quarters of the highest
+      size_t voltage_count;
+    } modal;
+    struct { // study of the answer to a ripple; without a bias nothing is computed
+      struct dea_quantity biases_V[DEA_DESIGN_STOPS_MAX];
+      size_t bias_count;
+      struct dea_quantity ripple_V, from_Hz, to_Hz, points;
+      struct dea_quantity damping, damping_mass_per_s, damping_stiffness_s;
+    } frequency;
     struct dea_design_variant compare[DEA_DESIGN_VARIANTS_MAX]; // study compare-design
     size_t compare_count;
     struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17

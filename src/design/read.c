@@ -136,6 +136,18 @@ static dea_status take_convergence(struct dea_context *ctx, struct dea_design *d
   return DEA_OK;
 }
 
+/* Frequencies rise. */
+static dea_status take_vibration(struct dea_context *ctx, struct dea_design *design)
+{
+  const struct dea_quantity *to = &design->compute.frequency.to_Hz;
+  design->compute.modal.asked = has_section(design, "modal");
+  if (to->si <= design->compute.frequency.from_Hz.si) {
+    return dea_finding_add(ctx, DEA_ERROR, to->place, "to: %g Hz is not above `from`, %g Hz",
+                           to->si, design->compute.frequency.from_Hz.si);
+  }
+  return DEA_OK;
+}
+
 static dea_status check_models(struct dea_context *ctx, const struct dea_design *design)
 {
   for (size_t i = 1; i < design->compute.model_count; i++) {
@@ -249,6 +261,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
     DEA_TRY(ctx, take_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
     DEA_TRY(ctx, take_convergence(ctx, design));
+    DEA_TRY(ctx, take_vibration(ctx, design));
     take_figures(raw);
     DEA_TRY(ctx, take_fields(ctx, raw));
   }

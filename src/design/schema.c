@@ -226,6 +226,16 @@ static const struct dea_field compute_fields[] = {
      .doc =
          "study of convergence, made when this section is there ({}) or with --study: the same on "
          "ever finer meshes (3d)"},
+    {.key = "modal",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_modal_record,
+     .doc =
+         "study of vibrations, made when this section is there ({}) or with --study: frequencies "
+         "and shapes about voltages (3d)"},
+    {.key = "frequency",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_frequency_record,
+     .doc = "study of the answer to a small ripple of the voltage about a bias (3d)"},
     {.key = "coverage_by",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(compute.coverage_by),

@@ -34,7 +34,22 @@
   X(pull_in_distance_V, "V", "kV", 1e-3, "distance to pull-in",                                    \
     "voltage of the next limit point of this branch minus voltage")                                \
   X(energy_J, "J", "uJ", 1e6, "energy", "potential energy at this voltage, 0 at rest")             \
-  X(capacitance_F, "F", "pF", 1e12, "capacitance", "charge over voltage")
+  X(capacitance_F, "F", "pF", 1e12, "capacitance", "charge over voltage")                          \
+  X(mode, "1", "1", 1.0, "mode", "number of the mode, from the lowest on")                         \
+  X(frequency_Hz, "Hz", "Hz", 1.0, "frequency",                                                    \
+    "of the mode, in vacuo (negative: unstable, growing at this rate over 2 pi), or of the "       \
+    "ripple")                                                                                      \
+  X(mode_out_of_plane, "1", "%", 100.0, "out of plane",                                            \
+    "share of the mode's kinetic energy that is out of the plane")                                 \
+  X(mode_centre, "1", "%", 100.0, "centre",                                                        \
+    "displacement of the centre out of the plane over the mode's largest one")                     \
+  X(ripple_V, "V", "V", 1.0, "ripple", "amplitude of the ripple upon the voltage")                 \
+  X(centre_amplitude_m, "m", "nm", 1e9, "amplitude centre", "of the centre's z, by the ripple")    \
+  X(centre_phase_rad, "rad", "deg", 57.29577951308232, "phase centre",                             \
+    "of the centre's z against the ripple")                                                        \
+  X(fibre_tip_amplitude_m, "m", "nm", 1e9, "amplitude fibre tip", "of the fibre tip's z")          \
+  X(fibre_tip_phase_rad, "rad", "deg", 57.29577951308232, "phase fibre tip",                       \
+    "of the fibre tip's z against the ripple")
 
 struct dea_load_point {
 #define DEA_LOAD_POINT_MEMBER(member, si, display, factor, header, meaning) double member;

@@ -60,6 +60,18 @@ struct dea_probe {
   bool from_fibre_side; // comes from +z
 };
 
+/* A small ripple of the voltage upon a bias, and the viscous damping of what it moves: a share of
+ * the critical damping of each mode, and shares of mass and stiffness. */
+struct dea_ripple {
+  double amplitude_V;
+  double damping_ratio, damping_mass_per_s, damping_stiffness_s;
+};
+
+/* Name of the fields that hold shapes of modes in the film's middle surface, counted from 1; and
+ * what is added to a model's name for surfaces of a result that hold them. */
+#define DEA_SHAPE_FIELD "mode_%d"
+#define DEA_SHAPES_SUFFIX "_modal"
+
 /* How large the system of a model on a mesh is. */
 struct dea_model_size {
   size_t elements, nodes, unknowns;
@@ -90,6 +102,17 @@ struct dea_model_type {
    * tip of the first call stays. NULL when the model knows no tips. */
   dea_status (*press)(struct dea_context *ctx, struct dea_model *model, const struct dea_probe *tip,
                       double depth_m, struct dea_load_point *out);
+  /* The lowest modes of small motions about the last point solved, `at`: copies of it with the keys
+   * of a mode, [count]. shapes: the film's middle surface there with a field a mode; owned by the
+   * caller, NULL on failure. NULL when the model has no mass. */
+  dea_status (*modes)(struct dea_context *ctx, struct dea_model *model,
+                      const struct dea_load_point *at, size_t count, struct dea_load_point *points,
+                      struct dea_field_mesh **shapes);
+  /* Answer to a ripple upon the voltage of the last point solved, `at`, which has to be stable:
+   * copies of it with the keys of an answer, [count]. NULL as above. */
+  dea_status (*respond)(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_load_point *at, const struct dea_ripple *ripple,
+                        const double *frequency_Hz, size_t count, struct dea_load_point *points);
   /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
    * (dea_field_mesh_destroy), NULL on failure. */
   dea_status (*fields)(struct dea_context *ctx, struct dea_model *model, enum dea_fields_part part,

@@ -76,6 +76,22 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   return DEA_OK;
 }
 
+static dea_status modes(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_load_point *at, size_t count,
+                        struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  DEA_TRY(ctx, model->type->modes(ctx, model->inner, at, count, points, shapes));
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_load_point *at, const struct dea_ripple *ripple,
+                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+{
+  DEA_TRY(ctx, model->type->respond(ctx, model->inner, at, ripple, frequency_Hz, count, points));
+  return DEA_OK;
+}
+
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
@@ -108,6 +124,8 @@ const struct dea_model_type dea_model_3d = {
     .destroy = destroy,
     .solve = solve,
     .press = press,
+    .modes = modes,
+    .respond = respond,
     .profile = profile,
     .fields = fields,
     .save = save,

@@ -12,6 +12,9 @@
   X(surface)                                                                                       \
   X(section)                                                                                       \
   X(animation)                                                                                     \
+  X(modes)                                                                                         \
+  X(mode_shapes)                                                                                   \
+  X(bode)                                                                                          \
   X(convergence)                                                                                   \
   X(designs)                                                                                       \
   X(design_tips)                                                                                   \

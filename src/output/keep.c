@@ -1,6 +1,7 @@
 #include "output/keep.h"
 
 #include "output/file.h"
+#include "output/picture.h"
 #include "output/state_file.h"
 #include "output/store.h"
 #include "output/vtu.h"
@@ -148,6 +149,21 @@ static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *ke
     forget(ctx, keep->directory, name);
   }
   DEA_TRY(ctx, write_pvd(ctx, keep->directory, type->name, curve));
+  return DEA_OK;
+}
+
+dea_status dea_keep_shapes(struct dea_context *ctx, const struct dea_result *result,
+                           const char *directory)
+{
+  bool whole = result->design == NULL || result->design->report.fields_of.value == DEA_FIELDS_WHOLE;
+  for (size_t i = 0; i < result->surface_count; i++) {
+    const struct dea_surface_record *record = &result->surfaces[i];
+    if (dea_surface_has_shapes(record)) {
+      char name[NAME_SIZE];
+      field_name(record->model, record->point, name);
+      DEA_TRY(ctx, write_vtu(ctx, directory, name, record->mesh, record->voltage_V, whole));
+    }
+  }
   return DEA_OK;
 }
 

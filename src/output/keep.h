@@ -28,6 +28,11 @@ bool dea_keep_refused(const struct dea_keep *keep);
 dea_status dea_keep_restore(struct dea_context *ctx, const char *directory,
                             struct dea_result *result);
 
+/* Shapes of modes that a result has, as fields for ParaView: fields/MODEL_modal_0000.vtu, one for
+ * each voltage. */
+dea_status dea_keep_shapes(struct dea_context *ctx, const struct dea_result *result,
+                           const char *directory);
+
 /* Removes what a model has kept in a folder: its state, and the fields of a sweep of that many
  * points. */
 void dea_keep_forget(struct dea_context *ctx, const char *directory, const char *model,

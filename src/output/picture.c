@@ -43,6 +43,13 @@ size_t dea_surface_spread(const struct dea_result *result, size_t max,
   return taken;
 }
 
+bool dea_surface_has_shapes(const struct dea_surface_record *record)
+{
+  char first[32];
+  snprintf(first, sizeof first, DEA_SHAPE_FIELD, 1);
+  return dea_field_mesh_find(record->mesh, first) != NULL;
+}
+
 dea_status dea_picture_create(struct dea_context *ctx, const struct dea_surface_record *record,
                               size_t pieces, struct dea_picture *out)
 {

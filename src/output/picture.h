@@ -13,6 +13,9 @@ const struct dea_surface_record *dea_surface_choose(const struct dea_result *res
 size_t dea_surface_spread(const struct dea_result *result, size_t max,
                           const struct dea_surface_record *out[]);
 
+/* Whether it has shapes of modes. */
+bool dea_surface_has_shapes(const struct dea_surface_record *record);
+
 /* A surface ready to be drawn. */
 struct dea_picture {
   double voltage_V;

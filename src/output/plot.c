@@ -332,13 +332,17 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
   return l;
 }
 
-/* 1, 2 and 5 of each decade: those in the range are drawn. */
-static void add_log_tics(struct dea_text *gp, const char *axis)
+/* 1, 2 and 5 of each decade, or of many decades 1 only: those in the range are drawn. */
+static void add_log_tics(struct dea_text *gp, const char *axis, double low, double high)
 {
+  bool many = high > 300 * low;
   dea_text_add(gp, "  set %stics (", axis);
-  for (int decade = -4; decade < 7; decade++) {
+  for (int decade = -6; decade < 7; decade++) {
     double power = pow(10.0, decade);
-    dea_text_add(gp, "%s%.10g, %.10g, %.10g", decade > -4 ? ", " : "", power, 2 * power, 5 * power);
+    dea_text_add(gp, "%s%.10g", decade > -6 ? ", " : "", power);
+    if (!many) {
+      dea_text_add(gp, ", %.10g, %.10g", 2 * power, 5 * power);
+    }
   }
   dea_text_add(gp, ")\n");
 }
@@ -356,8 +360,12 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
   dea_text_add(gp, "  set format y \"%s\"\n", panel->y_format != NULL ? panel->y_format : "%h");
   if (panel->logarithmic) {
     dea_text_add(gp, "  set logscale xy\n");
-    add_log_tics(gp, "x");
-    add_log_tics(gp, "y");
+    add_log_tics(gp, "x", panel->x_min, panel->x_max);
+    add_log_tics(gp, "y", panel->y_min, panel->y_max);
+  } else if (panel->logarithmic_x) {
+    dea_text_add(gp, "  unset logscale\n  set logscale x\n");
+    add_log_tics(gp, "x", panel->x_min, panel->x_max);
+    dea_text_add(gp, "  set ytics %.10g\n", panel->y_step);
   } else if (panel->y_step > 0.0) {
     dea_text_add(gp, "  set ytics %.10g\n", panel->y_step);
   } else {

@@ -57,6 +57,7 @@ struct dea_panel {
   char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE], y2_label[DEA_LABEL_SIZE];
   double x_min, x_max, y_min, y_max, y2_max;
   bool logarithmic;     // both axes
+  bool logarithmic_x;   // the x axis
   const char *key;      // "top left", "above ..."; static storage
   double y_step;        // between tics of the left axis; 0: gnuplot's choice
   const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage

@@ -84,6 +84,8 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
       forget(ctx, directory, name);
       dea_keep_forget(ctx, directory, curve->model, curve->count);
+      snprintf(name, sizeof name, "%s_%s", curve->model, curve->kind); // shapes of modes
+      dea_keep_forget(ctx, directory, name, curve->count);
     }
     for (size_t i = 0; i < old->result->variant_count; i++) {
       const struct dea_curve *curve = &old->result->variants[i].curve;
@@ -191,6 +193,7 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
     }
   }
   DEA_TRY(ctx, write_tables(ctx, result, directory));
+  DEA_TRY(ctx, dea_keep_shapes(ctx, result, directory));
   if (result->provenance.input != NULL) {
     DEA_TRY(ctx, write_text(ctx, directory, "design.yaml", result->provenance.input));
   }

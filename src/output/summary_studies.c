@@ -117,10 +117,26 @@ static void put_designs(const struct dea_result *result, const char *model, json
   }
 }
 
+/* All points of a curve of that kind, where there is one. */
+static void put_curve(const struct dea_result *result, const char *model, const char *kind,
+                      json_t *parent)
+{
+  const struct dea_curve *curve = dea_result_find(result, model, kind);
+  if (curve != NULL) {
+    json_t *points = json_array();
+    for (size_t i = 0; i < curve->count; i++) {
+      json_array_append_new(points, dea_point_json(&curve->points[i]));
+    }
+    json_object_set_new(parent, kind, points);
+  }
+}
+
 dea_status dea_summary_put_studies(struct dea_context *ctx, const struct dea_result *result,
                                    const char *model, json_t *object)
 {
   DEA_TRY(ctx, put_convergence(ctx, result, model, object));
   put_designs(result, model, object);
+  put_curve(result, model, "modal", object);
+  put_curve(result, model, "frequency", object);
   return DEA_OK;
 }

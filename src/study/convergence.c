@@ -6,28 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { QUARTERS = 4 };
-
-/* The design's voltages, or else the quarters of the highest of the sweep; returns their number. */
-static size_t choose_voltages(const struct dea_design *design, double out[DEA_DESIGN_STOPS_MAX])
-{
-  double highest_V = 0;
-  size_t count = design->compute.convergence.voltage_count;
-  for (size_t i = 0; i < count; i++) {
-    out[i] = design->compute.convergence.voltages_V[i].si;
-  }
-  if (count > 0) {
-    return count;
-  }
-  for (size_t i = 0; i < design->compute.voltage_count; i++) {
-    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
-  }
-  for (int i = 1; i <= QUARTERS; i++) {
-    out[i - 1] = highest_V * i / QUARTERS;
-  }
-  return QUARTERS;
-}
-
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
@@ -50,7 +28,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                                 .name = name,
                                 .device = &device,
                                 .voltages_V = voltages_V,
-                                .voltage_count = choose_voltages(design, voltages_V)};
+                                .voltage_count = dea_study_stops(
+                                    design, design->compute.convergence.voltages_V,
+                                    design->compute.convergence.voltage_count, false, voltages_V)};
   for (size_t i = 0; i < total; i++) {
     device.solid_refinement = design->compute.convergence.refinements[i].si;
     snprintf(name, sizeof name, "refinement %.4g", device.solid_refinement);

@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "study/study_list.h"
 
+#include <math.h>
 #include <string.h>
 
 #define STUDY_DECLARE(name) extern const struct dea_study name;
@@ -20,6 +21,24 @@ const struct dea_study *const *dea_study_all(size_t *count)
 {
   *count = STUDIES;
   return studies;
+}
+
+size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
+                       size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX])
+{
+  enum { QUARTERS = 4 };
+  double highest_V = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < given_count; i++) {
+    out[i] = given[i].si;
+  }
+  for (size_t i = 0; i < design->compute.voltage_count; i++) {
+    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
+  }
+  for (int i = with_rest ? 0 : 1; i <= QUARTERS && given_count == 0; i++) {
+    out[count++] = highest_V * i / QUARTERS;
+  }
+  return given_count > 0 ? given_count : count;
 }
 
 static bool is_asked(const struct dea_study *study, const struct dea_design *design)

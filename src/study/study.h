@@ -36,6 +36,10 @@ dea_status dea_study_check(struct dea_context *ctx, const char *const names[], s
 dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
                                  struct dea_model *model, const double *voltages_V, size_t count,
                                  struct dea_curve *curve);
+/* Voltages that a study stops at: those of the design, or without any the quarters of the highest
+ * of the sweep, with 0 V if that is wanted. Returns their number. */
+size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
+                       size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX]);
 /* All studies in their order; static storage. */
 const struct dea_study *const *dea_study_all(size_t *count);
 

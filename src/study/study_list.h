@@ -5,5 +5,7 @@
   X(dea_study_path)                                                                                \
   X(dea_study_sweep)                                                                               \
   X(dea_study_force)                                                                               \
+  X(dea_study_modal)                                                                               \
+  X(dea_study_frequency)                                                                           \
   X(dea_study_convergence)                                                                         \
   X(dea_study_compare_design)

@@ -5,6 +5,7 @@
 #include "model/solid/line_profile.h"
 #include "model/solid/solve/fields.h"
 #include "model/solid/solve/mass.h"
+#include "model/solid/solve/motions.h"
 #include "model/solid/solve/press.h"
 #include "model/solid/solve/side.h"
 #include "model/solid/solve/state.h"
@@ -295,15 +296,65 @@ static dea_status press(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* What small motions are of; notes say what they leave out. */
+static dea_status find_motions(struct dea_context *ctx, const struct dea_model *model,
+                               struct dea_motions *out)
+{
+  const struct dea_plate *p = &model->actuator.plate;
+  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  DEA_TRY(ctx,
+          dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                          "model 3d: frequencies are those in vacuo; the air that moves with a "
+                          "film makes it slower, by up to a fifth%s",
+                          p->sectors == dea_plate_sectors(p)
+                              ? ""
+                              : ". A sector has only those modes that have its symmetry "
+                                "(compute.solid.domain: disc has all)"));
+  *out = (struct dea_motions){.solid = model->solid,
+                              .grid = model->grid,
+                              .centre = model->centre,
+                              .centre_twin = model->centre_twin,
+                              .tip = model->tip,
+                              .has_tip = model->device->fibre_count > 0};
+  return DEA_OK;
+}
+
+static void set_symmetry(const struct dea_model *model, struct dea_field_mesh *mesh)
+{
+  const struct dea_plate *p = &model->actuator.plate;
+  mesh->fold = p->sectors == 1 ? dea_plate_sectors(p) / 2 : 0;
+  mesh->fibres = model->device->fibre_count;
+}
+
+static dea_status modes(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_load_point *at, size_t count,
+                        struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  struct dea_motions motions;
+  *shapes = NULL;
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
+  DEA_TRY(ctx, dea_motions_modes(ctx, &motions, DEA_PLATE_FILM, at, count, points, shapes));
+  set_symmetry(model, *shapes);
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_load_point *at, const struct dea_ripple *ripple,
+                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+{
+  struct dea_motions motions;
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
+  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, ripple, frequency_Hz, count, points));
+  return DEA_OK;
+}
+
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  const struct dea_plate *p = &model->actuator.plate;
   DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
                    ? dea_solid_volume(ctx, model->solid, out)
                    : dea_solid_surface(ctx, model->solid, DEA_PLATE_FILM, out));
-  (*out)->fold = p->sectors == 1 ? dea_plate_sectors(p) / 2 : 0;
-  (*out)->fibres = model->device->fibre_count;
+  set_symmetry(model, *out);
   return DEA_OK;
 }
 
@@ -358,6 +409,8 @@ const struct dea_model_type dea_solid_module = {
     .destroy = destroy,
     .solve = solve,
     .press = press,
+    .modes = modes,
+    .respond = respond,
     .profile = profile,
     .fields = fields,
     .save = save,

@@ -1,0 +1,225 @@
+/* Studies "modal" and "frequency" with a model of one mass on a spring that the voltage softens:
+ * what they ask for, and what of it arrives in files and figures. */
+#define _GNU_SOURCE // mkdtemp
+#include "design_text.h"
+#include "fake_surface.h"
+#include "output/run_folder.h"
+#include "output/store.h"
+#include "own_folder.h"
+#include "study/study.h"
+
+struct dea_model {
+  double voltage_V;
+};
+
+static const double pi = 3.14159265358979323846, rest_Hz = 100, slack_V = 4e3, push = 1e-9;
+static bool with_mass = true;
+
+static dea_status create(struct dea_context *context, const struct dea_device *device,
+                         struct dea_model **out)
+{
+  (void)device;
+  *out = dea_alloc(context, 1, sizeof **out);
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+static void destroy(struct dea_context *context, struct dea_model *model)
+{
+  dea_free(context, model);
+}
+
+static dea_status solve(struct dea_context *context, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  (void)context;
+  *out = dea_load_point_empty();
+  out->voltage_V = model->voltage_V = voltage_V;
+  return DEA_OK;
+}
+
+/* Square of the first frequency, negative beyond slack_V. */
+static double square_Hz2(double voltage_V)
+{
+  return rest_Hz * rest_Hz * (1 - voltage_V * voltage_V / (slack_V * slack_V));
+}
+
+static dea_status modes(struct dea_context *context, struct dea_model *model,
+                        const struct dea_load_point *at, size_t count,
+                        struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  *shapes = fake_surface(context, model->voltage_V);
+  if (*shapes == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t k = 0; k < count; k++) {
+    double square = (double)(k + 1) * square_Hz2(at->voltage_V), *values;
+    struct dea_mesh_field field = {.unit = "1", .kind = DEA_MESH_VECTOR, .components = 3};
+    points[k] = *at;
+    points[k].mode = (double)(k + 1);
+    points[k].frequency_Hz = copysign(sqrt(fabs(square)), square);
+    points[k].mode_out_of_plane = k % 2 == 0 ? 1 : 0;
+    snprintf(field.name, sizeof field.name, DEA_SHAPE_FIELD, (int)k + 1);
+    dea_status status = dea_field_mesh_add(context, *shapes, &field, &values);
+    if (status != DEA_OK) {
+      return dea_field_mesh_finish(context, status, shapes);
+    }
+    for (size_t i = 2; i < 3 * (*shapes)->point_count; i += 3) {
+      values[i] = k % 2 == 0 ? 1 : 0;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *context, struct dea_model *model,
+                          const struct dea_load_point *at, const struct dea_ripple *ripple,
+                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+{
+  (void)context;
+  double square = square_Hz2(model->voltage_V);
+  for (size_t i = 0; i < count; i++) {
+    double f = frequency_Hz[i], gap = 1 - f * f / square;
+    double loss = 2 * ripple->damping_ratio * f / sqrt(square);
+    points[i] = *at;
+    points[i].frequency_Hz = f;
+    points[i].ripple_V = ripple->amplitude_V;
+    points[i].centre_amplitude_m = push * ripple->amplitude_V / hypot(gap, loss);
+    points[i].centre_phase_rad = pi - atan2(loss, gap);
+  }
+  return DEA_OK;
+}
+
+static struct dea_model_type spring(void)
+{
+  return (struct dea_model_type){.name = "spring",
+                                 .long_name = "mass on a spring",
+                                 .create = create,
+                                 .destroy = destroy,
+                                 .solve = solve,
+                                 .modes = with_mass ? modes : NULL,
+                                 .respond = with_mass ? respond : NULL};
+}
+
+static const struct dea_override sets[] = {
+    {"compute.voltage", "{from: 0 kV, to: 8 kV, step: 2 kV}"},
+    {"compute.modal", "{count: 3}"},
+    {"compute.frequency",
+     "{bias: [1 kV, 2 kV], ripple: 10 V, from: 1 Hz, to: 1 kHz, points: 31, damping: 0.1}"}};
+
+static struct dea_design *design;
+static struct dea_device *device;
+static struct dea_result *result;
+
+static void compute(void)
+{
+  const struct dea_model_type type = spring();
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 3, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &type, result), DEA_OK);
+}
+
+static void release(void)
+{
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+static void test_points(void **state)
+{
+  (void)state;
+  compute();
+  const struct dea_curve *curve = dea_result_find(result, "spring", "modal");
+  assert_non_null(curve);
+  assert_true(curve->complete);
+  assert_int_equal(curve->count, 15); // 0 V and the quarters of 8 kV, three modes each
+  for (size_t i = 0; i < 15; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    assert_close(p->voltage_V, 2e3 * (double)(i / 3), 0, 0);
+    assert_close(p->mode, (double)(i % 3 + 1), 0, 0);
+  }
+  assert_close(curve->points[0].frequency_Hz, rest_Hz, 1e-12, 0);
+  assert_true(curve->points[14].frequency_Hz < 0); // beyond slack_V
+  curve = dea_result_find(result, "spring", "frequency");
+  assert_non_null(curve);
+  assert_int_equal(curve->count, 62);
+  assert_close(curve->points[0].frequency_Hz, 1, 1e-12, 0);
+  assert_close(curve->points[15].frequency_Hz, sqrt(1e3), 1e-12, 0); // evenly by its logarithm
+  assert_close(curve->points[61].frequency_Hz, 1e3, 1e-12, 0);
+  assert_close(curve->points[61].voltage_V, 2e3, 0, 0);
+  assert_close(curve->points[0].centre_amplitude_m, 10 * push, 1e-3, 0);
+  release();
+}
+
+/* Curves, shapes and figures of a run folder, there and back; and gone when it is cleared. */
+static void test_files(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"spring_modal.csv",
+                                      "spring_frequency.csv",
+                                      "fields/spring_modal_0000.vtu",
+                                      "fields/spring_modal_0004.vtu",
+                                      "figures/modes.gp",
+                                      "figures/mode_shapes.gp",
+                                      "figures/bode.gp"};
+  struct dea_run *run;
+  compute();
+  design->report.svg = design->report.pdf = design->report.png = false;
+  const struct dea_run_folder_options options = {.force = true};
+  assert_int_equal(dea_run_folder_write(ctx, result, folder, &options), DEA_OK);
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    if (!there(names[i])) {
+      fail_msg("%s is missing", names[i]);
+    }
+  }
+  assert_int_equal(dea_run_read(ctx, folder, &run), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(run->result, "spring", "modal");
+  assert_non_null(curve);
+  assert_close(curve->points[4].frequency_Hz,
+               dea_result_find(result, "spring", "modal")->points[4].frequency_Hz, 0, 0);
+  assert_int_equal(run->result->surface_count, 5);
+  assert_non_null(dea_field_mesh_find(run->result->surfaces[0].mesh, "mode_3"));
+  dea_run_destroy(ctx, run);
+  dea_run_folder_clear(ctx, folder);
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    assert_false(there(names[i]));
+  }
+  release();
+}
+
+static void test_models_without_mass(void **state)
+{
+  (void)state;
+  with_mass = false;
+  compute();
+  assert_null(dea_result_find(result, "spring", "modal"));
+  assert_null(dea_result_find(result, "spring", "frequency"));
+  assert_true(dea_finding_count(ctx, DEA_NOTE) > 0); // it says so
+  release();
+  with_mass = true;
+}
+
+static void test_wrong_range(void **state)
+{
+  (void)state;
+  static const struct dea_override wrong = {"compute.frequency",
+                                            "{bias: [1 kV], from: 1 kHz, to: 10 Hz}"};
+  struct dea_design *bad;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), &wrong, 1, &bad),
+      DEA_E_DESIGN);
+  dea_finding_clear(ctx);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_points),
+      cmocka_unit_test(test_files),
+      cmocka_unit_test(test_models_without_mass),
+      cmocka_unit_test(test_wrong_range),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
