@@ -4,6 +4,7 @@
 #include "study/study_list.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define STUDY_DECLARE(name) extern const struct dea_study name;
@@ -107,6 +108,42 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
     DEA_TRY(ctx, type->solve(ctx, model, voltages_V[i], &point));
     DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   }
+  return DEA_OK;
+}
+
+dea_status dea_study_stop_by_stop(
+    struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
+    const char *kind, bool able, const double *voltages_V, size_t count,
+    dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_model *model, const struct dea_load_point *at, size_t stop,
+                       struct dea_result *result, struct dea_curve *curve))
+{
+  struct dea_model *model = NULL;
+  struct dea_curve *curve;
+  char what[2 * DEA_NAME_SIZE];
+  if (!able) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                           "model %s has no mass: no study '%s'", type->name, kind);
+  }
+  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
+  snprintf(what, sizeof what, "%s %s", type->name, kind);
+  dea_status status = type->create(ctx, result->device, &model);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    struct dea_load_point at;
+    if (dea_interrupted(ctx)) {
+      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", curve->count);
+      break;
+    }
+    status = type->solve(ctx, model, voltages_V[i], &at);
+    status = status == DEA_OK ? take(ctx, type, model, &at, i, result, curve) : status;
+    if (status == DEA_OK) {
+      dea_progress(ctx, what, i + 1, count);
+    }
+  }
+  if (model != NULL) {
+    type->destroy(ctx, model);
+  }
+  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
   return DEA_OK;
 }
 

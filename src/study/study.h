@@ -40,6 +40,14 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
  * of the sweep, with 0 V if that is wanted. Returns their number. */
 size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
                        size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX]);
+/* A model of its own goes through voltages [count] in their order; `take` adds what there is at
+ * each stop to the curve of that kind. Nothing but a note where the model is not `able`. */
+dea_status dea_study_stop_by_stop(
+    struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
+    const char *kind, bool able, const double *voltages_V, size_t count,
+    dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_model *model, const struct dea_load_point *at, size_t stop,
+                       struct dea_result *result, struct dea_curve *curve));
 /* All studies in their order; static storage. */
 const struct dea_study *const *dea_study_all(size_t *count);
 

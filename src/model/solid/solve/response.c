@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Modes that there are at least, where there are so many: what is far below the first one still has
+ * its damping from them. */
+enum { MODES_LEAST = 8, DOUBLINGS = 12 };
 enum { TERMS = 5 };                    // of the series
 static const double beyond = 2;        // modes up to so many times the highest frequency
 static const double part_of_V2 = 1e-3; // step of V^2, which forces are linear in
@@ -103,11 +106,17 @@ static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, doub
                     "the equilibrium that the voltage ripples about is unstable (%zu modes)",
                     unstable);
   }
-  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, beyond * highest * beyond * highest, count));
+  double range = beyond * highest;
+  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
   if (*count > DEA_VIBRATIONS_MAX) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "%zu modes lie below %g times the highest frequency, more than %d", *count,
                     beyond, DEA_VIBRATIONS_MAX);
+  }
+  for (int i = 0; i < DOUBLINGS && *count < MODES_LEAST; i++) {
+    range *= 2;
+    DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
+    *count = *count < MODES_LEAST ? *count : MODES_LEAST;
   }
   return DEA_OK;
 }

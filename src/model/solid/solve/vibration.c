@@ -141,8 +141,9 @@ static dea_status count_below(struct dea_context *ctx, struct found *f, double s
 static dea_status certify(struct dea_context *ctx, struct found *f, int count, bool *all)
 {
   *all = false;
-  for (int k = count; k < f->count; k++) {
-    double low = f->square[f->order[k - 1]], high = f->square[f->order[k]];
+  for (int k = count; k <= f->count; k++) { // behind the last found there may be none
+    double low = f->square[f->order[k - 1]];
+    double high = k < f->count ? f->square[f->order[k]] : low + fabs(low);
     if (high - low > apart * (fabs(low) + fabs(high))) {
       int below;
       DEA_TRY(ctx, count_below(ctx, f, 0.5 * (low + high), &below));
