@@ -1,4 +1,3 @@
-'use strict';
 // The contents: a link to each section, the one in view marked.
 (() => {
   const list = document.querySelector('nav ul');

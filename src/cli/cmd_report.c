@@ -2,6 +2,7 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "base/units.h"
 #include "output/file.h"
 #include "output/report/report.h"
 
@@ -10,15 +11,24 @@
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  static const struct option options[] = {{"output", required_argument, NULL, 'o'}, {0}};
+  static const struct option options[] = {
+      {"output", required_argument, NULL, 'o'}, {"finger", required_argument, NULL, 'f'}, {0}};
   const char *output = NULL;
+  double finger = 500; // N/m: an assumption, which the page states
   int letter;
   opterr = 0;
   while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter != 'o') {
+    if (letter == 'f') {
+      char why[DEA_WHY_SIZE];
+      const struct dea_measure stiffness = {"N/m", "0.5 N/mm"};
+      if (!dea_units_read(cli->ctx, optarg, stiffness, &finger, why)) {
+        return cli_usage_error(cli, &cmd_report, "--finger: %s", why);
+      }
+    } else if (letter == 'o') {
+      output = optarg;
+    } else {
       return cli_option_error(cli, &cmd_report, letter, argv);
     }
-    output = optarg;
   }
   size_t count = (size_t)(argc - optind);
   if (count == 0 || count > DEA_REPORT_RUNS_MAX) {
@@ -29,7 +39,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   char *path = output != NULL              ? dea_copy_text(cli->ctx, output, SIZE_MAX)
                : dea_path_is_folder(first) ? dea_path_join(cli->ctx, first, "report.html")
                                            : dea_copy_text(cli->ctx, "report.html", SIZE_MAX);
-  const struct dea_report_options chosen = {.command = cli->command_line};
+  const struct dea_report_options chosen = {.command = cli->command_line, .finger_N_per_m = finger};
   dea_status status = path == NULL ? DEA_E_MEMORY
                                    : dea_report_write(cli->ctx, (const char *const *)argv + optind,
                                                       count, &chosen, path);
@@ -50,6 +60,7 @@ const struct dea_command cmd_report = {
         "sources, provenance. Several runs are set beside each other.\n"
         "\n"
         "  RUN                folder of a run\n"
-        "  -o, --output FILE  the page; report.html in the first run's folder if not given\n",
+        "  -o, --output FILE  the page; report.html in the first run's folder if not given\n"
+        "  --finger STIFFNESS stiffness of a fingertip that is pushed, '0.5 N/mm' if not given\n",
     .run = run,
 };

@@ -1,6 +1,7 @@
 #include "model/path.h"
 
-#include <lapacke.h>
+#include "base/dense.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -37,10 +38,7 @@ static dea_status solve_bordered(struct dea_path *path, const double *a, double 
     path->bordered[n * m + j] = path->gV[j] * path->system.voltage_scale_V;
   }
   path->bordered[n * m + n] = b;
-  lapack_int pivot[ROWS_MAX];
-  lapack_int info = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, (lapack_int)m, 1, path->bordered,
-                                       (lapack_int)m, pivot, right, (lapack_int)m);
-  return info == 0 ? DEA_OK : DEA_E_NOT_CONVERGED;
+  return dea_dense_solve(m, path->bordered, right);
 }
 
 static dea_status evaluate(struct dea_path *path, const double *u, double voltage_V)
@@ -84,28 +82,6 @@ static dea_status correct(struct dea_path *path, const struct dea_path_state *or
   return DEA_E_NOT_CONVERGED;
 }
 
-/* Negative eigenvalues of K, from its LDL^T: a 2 x 2 pivot has one of each sign. */
-static dea_status count_negative(struct dea_path *path, int *negative)
-{
-  lapack_int n = (lapack_int)path->system.unknowns, pivot[ROWS_MAX];
-  double work[64 * ROWS_MAX];
-  lapack_int info = LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, path->K, n, pivot, work,
-                                        (lapack_int)(sizeof work / sizeof work[0]));
-  if (info < 0) {
-    return DEA_E_NOT_CONVERGED;
-  }
-  *negative = 0;
-  for (lapack_int i = 0; i < n; i++) {
-    if (pivot[i] < 0) {
-      *negative += 1;
-      i++;
-    } else {
-      *negative += path->K[i * n + i] < 0;
-    }
-  }
-  return DEA_OK;
-}
-
 /* Tangent and inertia at a converged state; the tangent goes on in the direction of (u, V) given.
  */
 static dea_status finish(struct dea_path *path, const double *along_u, double along_V,
@@ -126,7 +102,7 @@ static dea_status finish(struct dea_path *path, const double *along_u, double al
     at->tangent_u[i] = right[i] / length;
   }
   at->tangent_V = right[n] * scale / length;
-  return count_negative(path, &at->negative);
+  return dea_dense_negative(n, path->K, &at->negative); // destroys K, which is evaluated anew
 }
 
 /* One step of arc length ds from `from` to `to`. */

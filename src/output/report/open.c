@@ -4,6 +4,7 @@
 #include "output/report/section.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -27,27 +28,45 @@ static size_t split_overrides(char *text, struct dea_override *out)
   return count;
 }
 
-/* Design and device of the text that the run keeps. */
-static dea_status build(struct dea_context *ctx, struct dea_report_run *out)
+dea_status dea_report_run_build(struct dea_context *ctx, const struct dea_report_run *run,
+                                const struct dea_override *more, struct dea_design **design,
+                                struct dea_device **device)
 {
-  const struct dea_provenance *p = &out->run->result->provenance;
-  struct dea_override overrides[OVERRIDES_MAX];
+  const struct dea_provenance *p = &run->run->result->provenance;
+  struct dea_override overrides[OVERRIDES_MAX + 1];
   const char *given = p->overrides != NULL ? p->overrides : "";
-  char *text = dea_copy_text(ctx, given, strlen(given));
   const char *input = p->input != NULL ? p->input : "";
-  if (text == NULL) {
-    return DEA_E_MEMORY;
+  *design = NULL;
+  *device = NULL;
+  char *text = dea_copy_text(ctx, given, strlen(given));
+  const char *name = dea_intern(ctx, run->run->design_file);
+  dea_status status = text == NULL || name == NULL ? DEA_E_MEMORY : DEA_OK;
+  size_t count = text != NULL ? split_overrides(text, overrides) : 0;
+  if (more != NULL) { // the last one of a key holds
+    overrides[count++] = *more;
   }
-  const char *name = dea_intern(ctx, out->run->design_file);
-  dea_status status = name == NULL
-                          ? DEA_E_MEMORY
-                          : dea_design_read_memory(ctx, name, input, strlen(input), overrides,
-                                                   split_overrides(text, overrides), &out->design);
   if (status == DEA_OK) {
-    status = dea_device_build(ctx, out->design, &out->device);
+    status = dea_design_read_memory(ctx, name, input, strlen(input), overrides, count, design);
+  }
+  if (status == DEA_OK) {
+    status = dea_device_build(ctx, *design, device);
   }
   dea_free(ctx, text);
   return status;
+}
+
+double dea_report_run_voltage(const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  double highest = 0;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    for (size_t k = 0; k < result->curves[i].count; k++) {
+      if (strcmp(result->curves[i].kind, "path") != 0) {
+        highest = fmax(highest, result->curves[i].points[k].voltage_V);
+      }
+    }
+  }
+  return highest;
 }
 
 /* First error found, or the message of the failure; owned by the caller. */
@@ -133,7 +152,7 @@ dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int nu
   dea_finding_clear(ctx);
   DEA_TRY(ctx, dea_run_read(ctx, path, &out->run));
   name_run(out);
-  dea_status status = build(ctx, out);
+  dea_status status = dea_report_run_build(ctx, out, NULL, &out->design, &out->device);
   if (status == DEA_E_MEMORY) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }

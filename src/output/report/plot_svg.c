@@ -166,7 +166,7 @@ static void add_band(struct dea_text *out, const struct view *v, const struct de
 {
   double at[2];
   bool first = true;
-  dea_text_add(out, "<path class=\"band\" d=\"");
+  dea_text_add(out, "<path class=\"band b%d\" d=\"", (int)series->colour);
   for (size_t k = 0; k < 2; k++) {
     for (size_t j = 0; j < series->count; j++) {
       if (place(v, series, k == 0 ? j : series->count - 1 - j, 1 + k, at)) {

@@ -103,9 +103,10 @@ static void add_header(struct dea_report *report)
 static dea_status add_run(struct dea_report *report, const struct dea_report_run *run)
 {
   static const dea_run_section sections[] = {
-      dea_section_glance, dea_section_design,      dea_section_curves,
-      dea_section_limits, dea_section_convergence, dea_section_designs,
-      dea_section_points, dea_section_materials,   dea_section_provenance};
+      dea_section_glance,    dea_section_design,      dea_section_membrane, dea_section_curves,
+      dea_section_limits,    dea_section_map,         dea_section_touch,    dea_section_explorer,
+      dea_section_designs,   dea_section_convergence, dea_section_points,   dea_section_materials,
+      dea_section_provenance};
   bool alone = report->count == 1; // then the page's heading is the run's
   dea_text_add(&report->text, "<article id=\"run-%d\" aria-label=\"Run %d\">", run->number,
                run->number);
@@ -137,7 +138,9 @@ static void add_end(struct dea_report *report)
     dea_html_text(out, report->options->command);
     dea_text_add(out, "</span>");
   }
-  dea_text_add(out, "</p></footer>\n<script>%s</script>\n</body>\n</html>\n", dea_asset_script);
+  dea_text_add(out, "</p></footer>\n");
+  dea_explorer_add_core(report);
+  dea_text_add(out, "<script>%s</script>\n</body>\n</html>\n", dea_asset_script);
 }
 
 static dea_status add_page(struct dea_report *report)

@@ -7,7 +7,8 @@
 enum { DEA_REPORT_RUNS_MAX = 8 };
 
 struct dea_report_options {
-  const char *command; // command line of the report, for its last section; NULL: none
+  const char *command;   // command line of the report, for its last line; NULL: none
+  double finger_N_per_m; // stiffness of a fingertip against which a load line is set; 0: none
 };
 
 /* Reads the runs (folders, or results.h5 files) and writes one page of them as a whole or not at

@@ -33,6 +33,13 @@ struct dea_report {
 /* Reads a run, its design, its notes. *out: dea_report_run_close, also after a failure. */
 dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int number,
                                struct dea_report_run *out);
+/* The run's design once more with an override on top; both owned by the caller, NULL where it
+ * failed. */
+dea_status dea_report_run_build(struct dea_context *ctx, const struct dea_report_run *run,
+                                const struct dea_override *more, struct dea_design **design,
+                                struct dea_device **device);
+/* Highest voltage that the run's sweeps have reached [V]; 0 for none. */
+double dea_report_run_voltage(const struct dea_report_run *run);
 void dea_report_run_close(struct dea_context *ctx, struct dea_report_run *run);
 
 /* "<section ...><h2>title</h2>": of a run, or of the page (number 0), with an id made of both. */
@@ -53,11 +60,17 @@ dea_status dea_section_glance(struct dea_report *report, const struct dea_report
 dea_status dea_section_design(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_materials(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_curves(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_membrane(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_map(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_touch(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_explorer(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_convergence(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_designs(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_provenance(struct dea_report *report, const struct dea_report_run *run);
+/* The C core that the explorers of a page share. */
+void dea_explorer_add_core(struct dea_report *report);
 /* Of all runs: curves in one figure, last points in one table. */
 dea_status dea_section_compare(struct dea_report *report);
 

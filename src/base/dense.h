@@ -1,0 +1,19 @@
+/* Small dense systems, of at most DEA_DENSE_MAX unknowns. Here LAPACK does it (dense.c); a page's
+ * explorer has web/dense.c in its place. */
+#ifndef DEA_BASE_DENSE_H
+#define DEA_BASE_DENSE_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+enum { DEA_DENSE_MAX = 128 };
+
+/* Solves A x = b in place: A [n x n] by columns is destroyed, b [n] becomes x. DEA_E_NOT_CONVERGED
+ * when A is singular to the bit, DEA_E_ARGUMENT for more than DEA_DENSE_MAX unknowns. */
+dea_status dea_dense_solve(size_t n, double *A, double *b);
+/* Number of negative eigenvalues of a symmetric A [n x n], which is destroyed: those of D in its
+ * LDL^T with pivots (Sylvester). Errors as above; a singular matrix is none. */
+dea_status dea_dense_negative(size_t n, double *A, int *negative);
+
+#endif

@@ -1,0 +1,271 @@
+/* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2),
+ * and the load line of model lumped against a fingertip.
+ *
+ * Nothing here knows frequency: the models are quasi-static. */
+#include "model/lumped/lumped.h"
+#include "output/report/plot_svg.h"
+#include "output/report/section.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LINES = 4, LINE_POINTS = 41 };
+
+static const struct threshold {
+  const char *what, *source;
+  bool force;
+  double least; // m or N
+} thresholds[] = {
+    {"felt at the tip of the thumb", "paper section 5.2, its reference 31", false, 30e-6},
+    {"felt at the fingertip, at 5 to 10 Hz", "paper section 5.2, its reference 32", true, 10e-3},
+    {"device made for touch: displacement", "paper section 5.2, its reference 33", false, 450e-6},
+    {"device made for touch: force", "paper section 5.2, its reference 33", true, 14e-3},
+};
+enum { THRESHOLDS = sizeof thresholds / sizeof thresholds[0] };
+
+/* What a model reaches; NAN: it does not say. */
+struct reach {
+  const char *model;
+  double displacement_m, displacement_V, force_N, force_V;
+  const char *how; // the force was found
+  bool bound;      // both are upper bounds
+};
+
+/* Largest displacement of the centre, where the finger lies, over stable points. */
+static void find_displacement(const struct dea_curve *sweep, struct reach *out)
+{
+  for (size_t i = 0; i < sweep->count; i++) {
+    const struct dea_load_point *p = &sweep->points[i];
+    if (p->stable && isfinite(p->centre_z_m) &&
+        !(fabs(p->centre_z_m - sweep->points[0].centre_z_m) <= out->displacement_m)) {
+      out->displacement_m = fabs(p->centre_z_m - sweep->points[0].centre_z_m);
+      out->displacement_V = p->voltage_V;
+    }
+  }
+}
+
+/* Largest force of the sweep; of study force the largest change at a depth that is held. */
+static void find_force(const struct dea_result *result, struct reach *out)
+{
+  const struct dea_curve *sweep = dea_result_find(result, out->model, "sweep");
+  const struct dea_curve *held = dea_result_find(result, out->model, "force");
+  for (size_t i = 0; held != NULL && i < held->count; i++) {
+    for (size_t k = 0; k < i; k++) {
+      const struct dea_load_point *a = &held->points[k], *b = &held->points[i];
+      double change = fabs(b->force_N - a->force_N);
+      if (a->voltage_V == 0 && fabs(a->tip_depth_m - b->tip_depth_m) < 1e-9 &&
+          !(change <= out->force_N)) {
+        out->force_N = change;
+        out->force_V = b->voltage_V;
+        out->how = "change of the force on a tip that is held";
+      }
+    }
+  }
+  for (size_t i = 0; held == NULL && sweep != NULL && i < sweep->count; i++) {
+    if (sweep->points[i].stable && !(sweep->points[i].force_N <= out->force_N) &&
+        isfinite(sweep->points[i].force_N)) {
+      out->force_N = sweep->points[i].force_N;
+      out->force_V = sweep->points[i].voltage_V;
+      out->how = "largest of the load line";
+    }
+  }
+}
+
+static void add_row(struct dea_text *out, const struct threshold *t, const struct reach *r)
+{
+  double has = t->force ? r->force_N : r->displacement_m, factor = t->force ? 1e3 : 1e6;
+  const char *unit = t->force ? "mN" : "\302\265m";
+  if (!isfinite(has)) {
+    return;
+  }
+  dea_text_add(out, "<tr><th scope=\"row\">%s</th><td class=\"n\">%g %s</td>", t->what,
+               factor * t->least, unit);
+  dea_html_element(out, "td", r->model);
+  dea_text_add(out, "<td class=\"n\">");
+  dea_html_number(out, factor * has, 3);
+  dea_text_add(out, " %s</td><td class=\"n\">", unit);
+  dea_html_number(out, 1e-3 * (t->force ? r->force_V : r->displacement_V), 4);
+  dea_text_add(out, " kV</td><td class=\"n\">");
+  dea_html_number(out, has / t->least, 3);
+  bool enough = has >= t->least;
+  dea_text_add(out, "</td><td class=\"%s\">%s%s</td><td>%s%s%s</td></tr>",
+               enough && !r->bound ? "good"
+               : enough            ? ""
+                                   : "bad",
+               enough ? "above" : "below", enough && r->bound ? ", but an upper bound" : "",
+               t->source, t->force ? "; " : "", t->force ? r->how : "");
+}
+
+// Load line ---------------------------------------------------------------------------------------
+
+/* Model lumped and its rods at a device. */
+struct load_line {
+  struct dea_lumped lumped;
+  struct dea_lift lift;
+};
+
+static double force_at(const struct load_line *line, double voltage_V, double z)
+{
+  double force;
+  dea_status status = dea_lift_force(&line->lumped, &line->lift,
+                                     voltage_V / line->lumped.film.thickness_m, z, &force);
+  return status == DEA_OK ? force : NAN;
+}
+
+/* Height [m] at which no force is left at a voltage; NAN when there is no equilibrium. */
+static double free_height(struct dea_context *ctx, const struct dea_device *device,
+                          double voltage_V)
+{
+  const struct dea_model_type *type = dea_model_find("lumped");
+  struct dea_model *model;
+  struct dea_load_point point = dea_load_point_empty();
+  if (type->create(ctx, device, &model) != DEA_OK) {
+    return NAN;
+  }
+  dea_status status = type->solve(ctx, model, voltage_V, &point);
+  type->destroy(ctx, model);
+  dea_context_clear(ctx);
+  dea_finding_clear(ctx);
+  return status == DEA_OK ? point.fibre_tip_z_m : NAN;
+}
+
+/* Height at which the actuator's force is that of a spring that it pushes: bisection, the force
+ * minus the spring's falls from positive to negative between the maximum and the free height. */
+static double meet(const struct load_line *line, double voltage_V, double high, double k)
+{
+  double low = 0;
+  for (int i = 1; i <= 200; i++) { // the highest place where it is still positive
+    double z = high * i / 200;
+    low = force_at(line, voltage_V, z) > k * z ? z : low;
+  }
+  for (int i = 0; i < 60 && low > 0; i++) {
+    double middle = 0.5 * (low + high);
+    *(force_at(line, voltage_V, middle) > k * middle ? &low : &high) = middle;
+  }
+  return low;
+}
+
+static dea_status fill_lines(struct dea_report *report, const struct dea_report_run *run,
+                             const struct load_line *line, double last_V, struct dea_plot *plot,
+                             double *highest)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  for (int n = 1; n <= LINES; n++) {
+    double voltage_V = last_V * n / LINES;
+    double high = free_height(report->ctx, run->device, voltage_V);
+    if (!(high > 0)) {
+      continue;
+    }
+    struct dea_series *series;
+    DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, LINE_POINTS, &series));
+    series->colour = (enum dea_colour)(n - 1);
+    snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * voltage_V);
+    for (int i = 0; i < LINE_POINTS; i++) {
+      double z = high * i / (LINE_POINTS - 1);
+      series->values[i] = 1e6 * z;
+      series->values[LINE_POINTS + i] = 1e3 * (i == 0 ? 0 : force_at(line, voltage_V, z));
+    }
+    *highest = fmax(*highest, high);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_finger(struct dea_report *report, struct dea_panel *panel, double k,
+                             double highest)
+{
+  struct dea_series *finger;
+  double top = 0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    for (size_t i = 0; i < panel->series[s].count; i++) {
+      top = fmax(top, panel->series[s].values[panel->series[s].count + i]);
+    }
+  }
+  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, 2, &finger));
+  finger->style = DEA_DASHED;
+  finger->colour = DEA_BLACK;
+  snprintf(finger->title, sizeof finger->title, "fingertip, %.3g N/mm", 1e-3 * k);
+  finger->values[0] = finger->values[2] = 0;
+  finger->values[1] = 1e6 * fmin(highest, 1e-3 * top / k);
+  finger->values[3] = k * finger->values[1] * 1e-3;
+  snprintf(panel->x_label, sizeof panel->x_label, "Height {/:Italic z} (\302\265m)");
+  snprintf(panel->y_label, sizeof panel->y_label, "Force (mN)");
+  return DEA_OK;
+}
+
+static dea_status add_load_line(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_device *device = run->device;
+  double last_V = dea_report_run_voltage(run), k = report->options->finger_N_per_m, highest = 0;
+  if (device == NULL || device->fibre_count == 0 || !(last_V > 0) || !(k > 0) ||
+      dea_result_find(run->run->result, "lumped", "sweep") == NULL) {
+    return DEA_OK;
+  }
+  struct load_line line = {.lift = dea_lift_create(device)};
+  DEA_TRY(report->ctx, dea_film_create(report->ctx, device, &line.lumped.film));
+  line.lumped.pre_stretch = device->pre_stretch;
+  line.lumped.coverage = device->coverage;
+  line.lumped.electrode_radius_m = device->electrode_radius_m;
+  struct dea_plot *plot;
+  DEA_TRY(report->ctx, dea_plot_create(report->ctx, "touch",
+                                       "load line of model lumped against a fingertip", &plot));
+  dea_status status = fill_lines(report, run, &line, last_V, plot, &highest);
+  if (status == DEA_OK && highest > 0) {
+    status = add_finger(report, &plot->panels[0], k, highest);
+    double z = meet(&line, last_V, free_height(report->ctx, device, last_V), k);
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+    dea_text_add(&report->text, "<p>A fingertip taken as a spring of ");
+    dea_html_number(&report->text, 1e-3 * k, 3);
+    dea_text_add(&report->text, " N/mm (an assumption: real ones stiffen as they are pressed) that "
+                                "touches the flat film is moved by ");
+    dea_html_number(&report->text, 1e6 * z, 3);
+    dea_text_add(&report->text, " \302\265m with ");
+    dea_html_number(&report->text, 1e3 * k * z, 3);
+    dea_text_add(&report->text, " mN at ");
+    dea_html_number(&report->text, 1e-3 * last_V, 3);
+    dea_text_add(&report->text, " kV, by model lumped, whose force is an upper bound.</p>");
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
+dea_status dea_section_touch(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  struct reach reaches[DEA_DESIGN_MODELS_MAX];
+  bool any = false;
+  for (size_t m = 0; m < count; m++) {
+    const struct dea_curve *sweep = dea_result_find(result, models[m], "sweep");
+    reaches[m] =
+        (struct reach){models[m], NAN, NAN, NAN, NAN, "", strcmp(models[m], "lumped") == 0};
+    if (sweep != NULL) {
+      find_displacement(sweep, &reaches[m]);
+    }
+    find_force(result, &reaches[m]);
+    any = any || isfinite(reaches[m].displacement_m) || isfinite(reaches[m].force_N);
+  }
+  if (!any) {
+    return DEA_OK;
+  }
+  dea_section_begin(report, "touch", run->number, "Touch: can a finger feel it?");
+  dea_text_add(&report->text,
+               "<p>Displacement of the centre and force, against thresholds of touch. "
+               "<strong>Quasi-static</strong>: the run says nothing of 5 to 10 Hz, where viscosity "
+               "takes some of both.</p>");
+  dea_table_begin(report, "Thresholds of touch and what this actuator reaches",
+                  "<th scope=\"col\">Threshold</th><th scope=\"col\" class=\"n\">Needed</th>"
+                  "<th scope=\"col\">Model</th><th scope=\"col\" class=\"n\">Reached</th>"
+                  "<th scope=\"col\" class=\"n\">at</th><th scope=\"col\" class=\"n\">Ratio</th>"
+                  "<th scope=\"col\">Verdict</th><th scope=\"col\">Source; how</th>");
+  for (size_t t = 0; t < THRESHOLDS; t++) {
+    for (size_t m = 0; m < count; m++) {
+      add_row(&report->text, &thresholds[t], &reaches[m]);
+    }
+  }
+  dea_table_end(report);
+  DEA_TRY(report->ctx, add_load_line(report, run));
+  dea_section_end(report);
+  return DEA_OK;
+}

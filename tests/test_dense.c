@@ -1,0 +1,120 @@
+/* Small dense systems: LAPACK and what a page has in its place give the same answers. */
+#include "base/dense.h"
+#include "testing.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+dea_status small_dense_solve(size_t n, double *A, double *b);
+dea_status small_dense_negative(size_t n, double *A, int *negative);
+
+enum { N_MAX = 40 };
+
+/* Numbers in (-1, 1), the same in every run. */
+static double next(uint32_t *state)
+{
+  *state = 1664525u * *state + 1013904223u;
+  return (double)(*state >> 8) / (1 << 23) - 1;
+}
+
+static void test_solve(void **state)
+{
+  (void)state;
+  uint32_t seed = 7;
+  for (size_t n = 1; n <= N_MAX; n += 3) {
+    double A[N_MAX * N_MAX], copy[2][N_MAX * N_MAX], b[2][N_MAX] = {{0}}, x[N_MAX];
+    for (size_t i = 0; i < n * n; i++) {
+      A[i] = next(&seed);
+    }
+    for (size_t j = 0; j < n; j++) {
+      x[j] = next(&seed);
+      for (size_t i = 0; i < n; i++) {
+        b[0][i] += A[j * n + i] * x[j];
+      }
+    }
+    memcpy(b[1], b[0], sizeof b[0]);
+    memcpy(copy[0], A, n * n * sizeof *A);
+    memcpy(copy[1], A, n * n * sizeof *A);
+    assert_int_equal(dea_dense_solve(n, copy[0], b[0]), DEA_OK);
+    assert_int_equal(small_dense_solve(n, copy[1], b[1]), DEA_OK);
+    for (size_t i = 0; i < n; i++) {
+      assert_close(b[0][i], x[i], 0, 1e-10);
+      assert_close(b[1][i], x[i], 0, 1e-10);
+    }
+  }
+}
+
+/* C D C^T with a known D has as many negative eigenvalues as D (Sylvester). zeros: on the diagonal,
+ * so that pivots of one row do not do. */
+static void test_negative(void **state)
+{
+  (void)state;
+  uint32_t seed = 3;
+  for (size_t n = 1; n <= N_MAX; n++) {
+    double C[N_MAX][N_MAX], A[2][N_MAX * N_MAX] = {{0}};
+    int wanted = 0, found[2];
+    for (size_t i = 0; i < n; i++) {
+      for (size_t j = 0; j < n; j++) {
+        C[i][j] = next(&seed) + (i == j ? 2.0 : 0.0);
+      }
+    }
+    for (size_t k = 0; k < n; k++) {
+      double d = next(&seed);
+      wanted += d < 0;
+      for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+          A[0][j * n + i] += C[i][k] * d * C[j][k];
+        }
+      }
+    }
+    memcpy(A[1], A[0], sizeof A[0]);
+    assert_int_equal(dea_dense_negative(n, A[0], &found[0]), DEA_OK);
+    assert_int_equal(small_dense_negative(n, A[1], &found[1]), DEA_OK);
+    assert_int_equal(found[0], wanted);
+    assert_int_equal(found[1], wanted);
+  }
+}
+
+static void test_pivots_of_two_rows(void **state)
+{
+  (void)state;
+  typedef dea_status (*counter)(size_t n, double *A, int *negative);
+  static const counter counters[] = {dea_dense_negative, small_dense_negative};
+  for (size_t i = 0; i < 2; i++) {
+    double saddle[16] = {0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 3, 0}; // 1, -1, 3, -3
+    double lower[4] = {1, 2, 99, 1};                                      // 3, -1: 99 is not read
+    double zero[4] = {0};
+    int negative = -1;
+    assert_int_equal(counters[i](4, saddle, &negative), DEA_OK);
+    assert_int_equal(negative, 2);
+    assert_int_equal(counters[i](2, lower, &negative), DEA_OK);
+    assert_int_equal(negative, 1);
+    assert_int_equal(counters[i](2, zero, &negative), DEA_OK);
+    assert_int_equal(negative, 0);
+  }
+}
+
+static void test_what_cannot_be_solved(void **state)
+{
+  (void)state;
+  static double big[(DEA_DENSE_MAX + 1) * (DEA_DENSE_MAX + 1)], b[DEA_DENSE_MAX + 1];
+  double singular[4] = {1, 2, 2, 4}, right[2] = {1, 1}, again[4] = {1, 2, 2, 4};
+  int negative;
+  assert_int_equal(dea_dense_solve(2, singular, right), DEA_E_NOT_CONVERGED);
+  assert_int_equal(small_dense_solve(2, again, right), DEA_E_NOT_CONVERGED);
+  assert_int_equal(dea_dense_solve(DEA_DENSE_MAX + 1, big, b), DEA_E_ARGUMENT);
+  assert_int_equal(small_dense_solve(DEA_DENSE_MAX + 1, big, b), DEA_E_ARGUMENT);
+  assert_int_equal(dea_dense_negative(DEA_DENSE_MAX + 1, big, &negative), DEA_E_ARGUMENT);
+  assert_int_equal(small_dense_negative(DEA_DENSE_MAX + 1, big, &negative), DEA_E_ARGUMENT);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_solve),
+      cmocka_unit_test(test_negative),
+      cmocka_unit_test(test_pivots_of_two_rows),
+      cmocka_unit_test(test_what_cannot_be_solved),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,344 @@
+/* The page of dea report in a browser: it opens from disk without an error and without a request,
+ * its sliders move what they say, and what it computes is what the command computes. */
+// ctest: browser
+#define _GNU_SOURCE // mkdtemp
+#include "browser.h"
+#include "command.h"
+#include "fake_result.h"
+#include "fake_surface.h"
+#include "output/store.h"
+
+static struct browser browser;
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  if (dea_context_create(NULL, &ctx) != DEA_OK || command_set_up(state) != 0) {
+    return -1;
+  }
+  browser_start(&browser, DEA_CHROMIUM, command_folder);
+  return 0;
+}
+
+static int tear_down(void **state)
+{
+  browser_stop(&browser);
+  dea_context_destroy(ctx);
+  return command_tear_down(state);
+}
+
+static void open_page(const char *name)
+{
+  char path[700];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  browser_open(&browser, path);
+  browser_ready(&browser);
+}
+
+static void assert_quiet(void)
+{
+  if (browser.trouble[0] != '\0') {
+    fail_msg("%s", browser.trouble);
+  }
+  assert_int_equal(browser.requests, 1); // the page itself
+}
+
+static void assert_holds(const char *expression)
+{
+  if (browser_number(&browser, expression) != 1) {
+    fail_msg("not so in the page: %s", expression);
+  }
+}
+
+// What a design says is text ----------------------------------------------------------------------
+
+static void test_text_is_text(void **state)
+{
+  (void)state;
+  command_write("evil.yaml",
+                "dea: 1\n"
+                "title: '</title><script>alert(1)</script><img src=x onerror=alert(2)>'\n"
+                "film: {material: '<svg onload=alert(3)>', thickness: 100 um}\n"
+                "pre_stretch: 1.5\n"
+                "frame: {inner_diameter: 30 mm}\n"
+                "electrodes: {radius: 3.75 mm stretched}\n"
+                "materials:\n"
+                "  - name: '<svg onload=alert(3)>'\n"
+                "    kind: elastomer\n"
+                "    laws:\n"
+                "      - {id: '</script><script>alert(4)</script>', law: neo-hookean,\n"
+                "         parameters: {mu: 100 kPa}, source: '\"><script>alert(5)</script>'}\n"
+                "    permittivity: [{id: one, at_rest: 2.8, source: none}]\n"
+                "compute: {models: [lumped], voltage: {from: 0 kV, to: 1 kV, step: 0.5 kV}}\n");
+  assert_int_equal(command_run("run evil.yaml --no-figures -o evil.run"), 0);
+  assert_int_equal(command_run("report evil.run -o evil.html"), 0);
+  open_page("evil.html");
+  assert_quiet();
+  assert_holds(
+      "document.title === '</title><script>alert(1)</script><img src=x onerror=alert(2)>'");
+  assert_holds("document.querySelector('h1').textContent === document.title");
+  assert_holds("document.querySelectorAll('img, iframe, object, embed, link').length === 0");
+  assert_holds("document.querySelectorAll('script:not([type])').length === 1");
+  assert_holds("document.body.textContent.includes('<svg onload=alert(3)>')");
+}
+
+// The example -------------------------------------------------------------------------------------
+
+static void open_example(void)
+{
+  static bool made;
+  if (!made) {
+    assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures -o a.run --set "
+                                 "'compute.voltage={from: 0 kV, to: 8 kV, step: 0.5 kV}'"),
+                     0);
+    assert_int_equal(command_run("report a.run -o a.html"), 0);
+    made = true;
+  }
+  open_page("a.html");
+}
+
+static void test_opens_without_a_request(void **state)
+{
+  (void)state;
+  open_example();
+  assert_quiet();
+  assert_holds("document.querySelectorAll('figure.plot svg.chart').length >= 7");
+  assert_holds("document.querySelectorAll('nav a').length >= 8");
+  // each link has its target, each image its words, each id is there once
+  assert_holds("[...document.querySelectorAll('a')].every((a) => "
+               "document.querySelector(a.getAttribute('href')) !== null)");
+  assert_holds("[...document.querySelectorAll('svg[role=img]')].every((s) => "
+               "s.getAttribute('aria-label') || "
+               "document.getElementById(s.getAttribute('aria-labelledby')) !== null)");
+  assert_holds("new Set([...document.querySelectorAll('[id]')].map((e) => e.id)).size === "
+               "document.querySelectorAll('[id]').length");
+  assert_holds("[...document.querySelectorAll('table')].every((t) => t.closest('.scroll'))");
+  // the style has arrived: its hash is that of the policy
+  assert_holds("getComputedStyle(document.querySelector('.cards')).display === 'grid'");
+  browser_do(
+      &browser, "Emulation.setEmulatedMedia",
+      json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value", "dark"));
+  assert_holds("getComputedStyle(document.body).backgroundColor === 'rgb(15, 19, 25)'");
+  // narrow: nothing but tables that scroll is wider than the window
+  browser_do(&browser, "Emulation.setDeviceMetricsOverride",
+             json_pack("{s:i, s:i, s:i, s:b}", "width", 360, "height", 800, "deviceScaleFactor", 1,
+                       "mobile", 0));
+  assert_holds("document.documentElement.scrollWidth <= 360");
+  assert_quiet();
+}
+
+static void test_network_is_shut(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("fetch('data:text/plain,x').then(() => 0, () => 1)");
+  assert_holds("new Promise((done) => { const s = document.createElement('script'); "
+               "s.textContent = 'window.ran = 1'; document.body.append(s); "
+               "done(window.ran === undefined ? 1 : 0); })");
+}
+
+static void test_values_under_the_pointer(void **state)
+{
+  (void)state;
+  open_example();
+  // the same voltage on all curves; that of the drawing is what the table of points says
+  assert_holds(
+      "(() => { dea.setVoltage(6, null); const text = (n) => [...document.querySelectorAll("
+      "'.readout')][n].textContent; return text(0).includes('6') && "
+      "text(0).includes('lumped, strain') && text(1).includes('axisymmetric'); })()");
+  json_t *shown = browser_value(
+      &browser,
+      "[...document.querySelectorAll('.readout')][0].querySelectorAll('b')[1].textContent");
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --json --model lumped --set "
+                               "'compute.voltage={from: 0 kV, to: 6 kV, step: 6 kV}'"),
+                   0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  const json_t *point = json_array_get(json_object_get(run, "points"), 1);
+  double stretch = json_number_value(json_object_get(point, "electrode_stretch"));
+  assert_close(atof(json_string_value(shown)), 100 * (stretch - 1), 1e-3, 0);
+  json_decref(shown);
+  json_decref(run);
+  assert_quiet();
+}
+
+// The explorer ------------------------------------------------------------------------------------
+
+/* What the command says of a model at a voltage, with values of the design changed. */
+static json_t *command_point(const char *model, const char *sets, double voltage_V)
+{
+  char arguments[1000];
+  snprintf(arguments, sizeof arguments,
+           "run @/examples/frdea-4.yaml --json --study sweep --model %s %s --set "
+           "'compute.voltage={from: 0 V, to: %.17g V, step: %.17g V}'",
+           model, sets, voltage_V, voltage_V / 4);
+  if (command_run(arguments) != 0) {
+    fail_msg("%s", command_err);
+  }
+  json_t *run = json_loads(command_out, 0, NULL);
+  json_t *points = json_object_get(run, "points");
+  assert_int_equal(json_array_size(points), 5);
+  json_t *point = json_incref(json_array_get(points, 4));
+  json_decref(run);
+  return point;
+}
+
+static void test_explorer_computes_what_the_command_computes(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *model, *sets, *values;
+    double voltage_V;
+  } cases[] = {
+      {"lumped", "", "", 6000},
+      {"axisymmetric", "", "", 7300},
+      {"lumped", "--set pre_stretch=2.1", "pre_stretch: 2.1", 4100},
+      {"axisymmetric", "--set film.thickness=63um --set frame.inner_diameter=44mm",
+       "thickness_m: 63e-6, frame_radius_m: 22e-3", 2900},
+      {"lumped", "--set 'electrodes.diameter=7 mm unstretched' --set pre_stretch=1.2",
+       "electrode_radius_m: 3.5e-3, pre_stretch: 1.2", 5000},
+  };
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip(); // built without the compiler for it
+  }
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char expression[400];
+    snprintf(expression, sizeof expression, "dea.explorers[0].solve('%s', {voltage_V: %.17g%s%s})",
+             cases[i].model, cases[i].voltage_V, cases[i].values[0] != '\0' ? ", " : "",
+             cases[i].values);
+    json_t *page = browser_value(&browser, expression);
+    json_t *wanted = command_point(cases[i].model, cases[i].sets, cases[i].voltage_V);
+    const char *key;
+    json_t *value;
+    size_t compared = 0;
+    json_object_foreach(wanted, key, value)
+    {
+      if (json_is_real(value) && strcmp(key, "pull_in_distance_V") != 0) {
+        double there = json_number_value(json_object_get(page, key));
+        double here = json_number_value(value);
+        if (!(fabs(there - here) <= 1e-9 * fabs(here))) {
+          fail_msg("case %zu, %s: %.15g in the page, %.15g by the command", i, key, there, here);
+        }
+        compared++;
+      }
+    }
+    assert_true(compared >= 9);
+    json_decref(page);
+    json_decref(wanted);
+  }
+  assert_quiet();
+}
+
+static void test_explorer_follows_its_sliders(void **state)
+{
+  (void)state;
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip();
+  }
+  static const char move[] =
+      "(async () => { const host = document.querySelector('.explorer'); "
+      "const cell = () => host.querySelector('tbody td').textContent; const before = cell(); "
+      "const input = host.querySelectorAll('input')[1]; input.value = 2; "
+      "input.dispatchEvent(new Event('input')); "
+      "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
+      "return before !== cell() && host.querySelectorAll('.plot svg').length >= 3; })()";
+  assert_holds(move);
+  // every material of the list can be computed
+  assert_holds(
+      "(async () => { const host = document.querySelector('.explorer'); "
+      "const select = host.querySelector('select'); "
+      "for (let i = 0; i < select.options.length; i++) { select.value = i; "
+      "select.dispatchEvent(new Event('change')); "
+      "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
+      "if (!host.querySelector('.warning').hidden) { return host.textContent; } } "
+      "return select.options.length > 2; })()");
+  assert_quiet();
+}
+
+// The membrane ------------------------------------------------------------------------------------
+
+enum { STEPS = 3 };
+static const double step_V[STEPS] = {0, 3000, 6000};
+
+static void write_membrane(void)
+{
+  const struct dea_design design = fake_design();
+  struct dea_result *result;
+  char path[700];
+  assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
+  for (size_t i = 0; i < STEPS; i++) {
+    assert_int_equal(
+        dea_result_add_surface(ctx, result, "3d", i, step_V[i], fake_surface(ctx, step_V[i])),
+        DEA_OK);
+  }
+  snprintf(path, sizeof path, "%s/film.h5", command_folder);
+  assert_int_equal(dea_store_write(ctx, result, path), DEA_OK);
+  dea_result_destroy(ctx, result);
+  assert_int_equal(command_run("report film.h5 -o film.html"), 0);
+}
+
+static void test_membrane_is_the_surface(void **state)
+{
+  (void)state;
+  write_membrane();
+  open_page("film.html");
+  assert_quiet();
+  assert_holds("dea.films.length === 1 && dea.films[0].film.voltages.length === 3");
+  struct dea_field_mesh *mesh = fake_surface(ctx, step_V[2]);
+  double range = browser_number(&browser, "dea.films[0].film.channels[2].high - "
+                                          "dea.films[0].film.channels[2].low");
+  for (size_t p = 0; p < mesh->point_count; p += 17) {
+    char expression[120];
+    double wanted = fake_height_m(mesh->X[3 * p], mesh->X[3 * p + 1], step_V[2]);
+    snprintf(expression, sizeof expression, "dea.films[0].film.channels[2].steps[2][%zu]", p);
+    assert_close(browser_number(&browser, expression), wanted, 0, range / 65535);
+    snprintf(expression, sizeof expression, "dea.films[0].film.y[%zu]", p);
+    assert_close(browser_number(&browser, expression), mesh->X[3 * p + 1], 0,
+                 2 * fake_radius_m / 65535);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+}
+
+static void test_slider_moves_the_membrane(void **state)
+{
+  (void)state;
+  write_membrane();
+  open_page("film.html");
+  assert_holds("document.querySelector('.membrane canvas') !== null"); // WebGL is there
+  assert_holds("(() => { const { canvas } = dea.films[0]; const slider = "
+               "document.querySelector('.membrane input'); const words = () => "
+               "document.querySelector('.membrane .readout').textContent; "
+               "const before = [canvas.toDataURL(), words()]; slider.value = 1; "
+               "slider.dispatchEvent(new Event('input')); "
+               "return canvas.toDataURL() !== before[0] && words() !== before[1] && "
+               "words().startsWith('3 kV'); })()");
+  // the colour of the electrode's middle is not the background's
+  assert_holds(
+      "(() => { const { canvas } = dea.films[0]; const small = "
+      "document.createElement('canvas'); small.width = small.height = 1; const c = "
+      "small.getContext('2d'); c.drawImage(canvas, canvas.width / 2, canvas.height / 2, 1, "
+      "1, 0, 0, 1, 1); return c.getImageData(0, 0, 1, 1).data[3] === 255; })()");
+  // arrow keys turn it; a voltage chosen on a curve moves it
+  assert_holds("(() => { const { canvas, state } = dea.films[0]; const before = state.turn; "
+               "canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' })); "
+               "return state.turn !== before; })()");
+  assert_holds("(() => { dea.setVoltage(1.5, null); return Math.abs(dea.films[0].state.at - 0.5) < "
+               "1e-9; })()");
+  assert_quiet();
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_text_is_text),
+      cmocka_unit_test(test_opens_without_a_request),
+      cmocka_unit_test(test_network_is_shut),
+      cmocka_unit_test(test_values_under_the_pointer),
+      cmocka_unit_test(test_explorer_computes_what_the_command_computes),
+      cmocka_unit_test(test_explorer_follows_its_sliders),
+      cmocka_unit_test(test_membrane_is_the_surface),
+      cmocka_unit_test(test_slider_moves_the_membrane),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

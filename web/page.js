@@ -1,0 +1,59 @@
+'use strict';
+// What the parts of the page share. Everything here adds to a page that is complete without it.
+const dea = {
+  voltage_kV: null,
+  listeners: [],
+  // One voltage for curves, membrane and explorer; source: who says so, and is not told again.
+  setVoltage(value, source) {
+    this.voltage_kV = value;
+    for (const [listener, tell] of this.listeners) {
+      if (listener !== source) {
+        tell(value);
+      }
+    }
+  },
+  onVoltage(listener, tell) {
+    this.listeners.push([listener, tell]);
+  },
+  number(value, digits = 4) {
+    if (!Number.isFinite(value)) {
+      return '–';
+    }
+    return String(Number(value.toPrecision(digits))).replace('-', '−');
+  },
+  element(tag, attributes = {}, ...content) {
+    const node = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+      node.setAttribute(name, value);
+    }
+    node.append(...content);
+    return node;
+  },
+  svg(tag, attributes = {}) {
+    const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+    for (const [name, value] of Object.entries(attributes)) {
+      node.setAttribute(name, value);
+    }
+    return node;
+  },
+  // A labelled slider with its value beside it; show: value -> text.
+  slider(label, low, high, step, value, show, change) {
+    const output = this.element('output', {}, show(value));
+    const input = this.element('input', { type: 'range', min: low, max: high, step, value });
+    input.addEventListener('input', () => {
+      output.textContent = show(input.valueAsNumber);
+      change(input.valueAsNumber);
+    });
+    const node = this.element('label', { class: 'slider' }, this.element('span', {}, label), input, output);
+    return {
+      node, input,
+      set(to) { input.value = to; output.textContent = show(input.valueAsNumber); },
+    };
+  },
+  choice(label, options, change) {
+    const select = this.element('select');
+    options.forEach((text, i) => select.append(this.element('option', { value: i }, text)));
+    select.addEventListener('change', () => change(Number(select.value)));
+    return { node: this.element('label', { class: 'choice' }, this.element('span', {}, label), select), select };
+  },
+};
