@@ -331,6 +331,29 @@ static void test_memory(void **state)
   }
   assert_int_equal(attempt.status, DEA_OK);
   assert_true(n > 60);
+}
+
+static dea_status write_whole_report(struct dea_context *own)
+{
+  char from[700];
+  snprintf(from, sizeof from, "%s", in_folder("a.run"));
+  const char *const runs[] = {from};
+  const struct dea_report_options options = {.command = "dea report", .finger_N_per_m = 500};
+  return dea_report_write(own, runs, 1, &options, in_folder("memory.html"));
+}
+
+/* The same with all sections; a material that could not be read is left out there. */
+static void test_memory_of_all_sections(void **state)
+{
+  (void)state;
+  struct failing_attempt attempt = {.call = write_whole_report};
+  struct failing_count count;
+  long n = 0;
+  for (; failing_run(failing_attempt_run, &attempt, n, &count); n += n / 2 + 1) {
+    assert_true(attempt.status == DEA_E_MEMORY || attempt.status == DEA_OK);
+  }
+  assert_int_equal(attempt.status, DEA_OK);
+  assert_true(n > 10000); // the maps read the design again and again
   free(page);
   page = NULL;
 }
@@ -347,6 +370,7 @@ int main(void)
       cmocka_unit_test(test_runs_beside_each_other),
       cmocka_unit_test(test_design_that_is_gone),
       cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_memory_of_all_sections),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

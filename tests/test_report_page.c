@@ -161,6 +161,33 @@ static void test_values_under_the_pointer(void **state)
   assert_quiet();
 }
 
+/* The map's limit at the design's own pre-stretch is that of the path, and the ratio of the
+ * displacement to the threshold of touch that of the numbers. */
+static void test_map_and_touch(void **state)
+{
+  (void)state;
+  open_example();
+  static const char map[] =
+      "(() => { const figure = document.querySelector('[id^=map] figure'); const { series } = "
+      "JSON.parse(figure.querySelector('.numbers').textContent)[0]; const { v: [x, y] } = "
+      "series.find((s) => s.t.startsWith('breakdown')); const i = x.findIndex((at) => at > 1.5); "
+      "return y[i - 1] + (1.5 - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]); })()";
+  static const char ratio[] = "Number([...document.querySelectorAll('[id^=touch] tbody tr')][0]"
+                              ".children[5].textContent)";
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --json --model lumped --set "
+                               "'compute.voltage={from: 0 kV, to: 8 kV, step: 8 kV}'"),
+                   0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  double breakdown_V =
+      json_number_value(json_object_get(json_object_get(run, "limits"), "breakdown_voltage_V"));
+  const json_t *last = json_array_get(json_object_get(run, "points"), 1);
+  double z = json_number_value(json_object_get(last, "centre_z_m"));
+  assert_close(browser_number(&browser, map), 1e-3 * breakdown_V, 2e-3,
+               0);                                                   // linear between columns
+  assert_close(browser_number(&browser, ratio), z / 30e-6, 5e-3, 0); // three digits
+  json_decref(run);
+}
+
 // The explorer ------------------------------------------------------------------------------------
 
 /* What the command says of a model at a voltage, with values of the design changed. */
@@ -335,6 +362,7 @@ int main(void)
       cmocka_unit_test(test_opens_without_a_request),
       cmocka_unit_test(test_network_is_shut),
       cmocka_unit_test(test_values_under_the_pointer),
+      cmocka_unit_test(test_map_and_touch),
       cmocka_unit_test(test_explorer_computes_what_the_command_computes),
       cmocka_unit_test(test_explorer_follows_its_sliders),
       cmocka_unit_test(test_membrane_is_the_surface),

@@ -153,7 +153,7 @@
       };
       spec(0, 'Electrode strain against the voltage', 'Radial strain of the electrode (%)', (p) => 100 * (p.electrode_stretch - 1));
       if (base.fibres > 0) {
-        spec(1, 'Displacement of the fibre tip against the voltage', 'z of model lumped, upper bound (mm)', (p) => 1e3 * p.fibre_tip_z_m, 'lumped');
+        spec(1, 'Displacement of the fibre tip against the voltage, an upper bound', 'z of the fibre tip, lumped (mm)', (p) => 1e3 * p.fibre_tip_z_m, 'lumped');
       } else {
         spec(1, 'Smallest tension against the voltage', 'Smallest tension (N/m)', (p) => p.min_tension_N_per_m);
       }

@@ -258,7 +258,7 @@
     const extent = [1e6 * Math.min(0, z.low), 1e6 * Math.max(0, z.high)];
     const drawProfile = () => dea.plot(profile, {
       label: 'Displacement along the radius',
-      xl: 'Radius in the stretched flat film (mm)', yl: 'Displacement z (µm)', height: 200, yRange: extent,
+      xl: 'Radius in the stretched flat film (mm)', yl: 'Displacement z (µm)', height: 200, yRange: extent, xRange: [0, 1e3 * film.radius],
       series: points.map(({ title, c, ray: on }) => ({ title, c, points: on.map(([r, i]) => [1e3 * r, 1e6 * valueAt(z, i)]) })),
     });
     const choose = () => {

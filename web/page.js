@@ -44,7 +44,7 @@ const dea = {
       output.textContent = show(input.valueAsNumber);
       change(input.valueAsNumber);
     });
-    const node = this.element('label', { class: 'slider' }, this.element('span', {}, label), input, output);
+    const node = this.element('label', { class: 'slider' }, this.element('span', {}, label), output, input);
     return {
       node, input,
       set(to) { input.value = to; output.textContent = show(input.valueAsNumber); },

@@ -104,6 +104,9 @@ void dea_html_number(struct dea_text *out, double value, int digits)
     return;
   }
   snprintf(number, sizeof number, "%.*g", digits, fabs(value));
+  if (strchr(number, 'e') != NULL && fabs(value) >= 1 && fabs(value) < 1e6) {
+    snprintf(number, sizeof number, "%.0f", fabs(value)); // 5017 rather than 5.02 10^3
+  }
   char *power = strchr(number, 'e');
   bool zero = strtod(number, NULL) == 0;
   dea_text_add(out, "%s", value < 0 && !zero ? "\342\210\222" : ""); // minus sign

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Measures of a drawing in its own units: about pixels. */
-enum { WIDTH = 640, LEFT = 66, RIGHT = 18, RIGHT_AXIS = 62, TOP = 12, BOTTOM = 46, HEIGHT = 330 };
+enum { WIDTH = 640, LEFT = 66, RIGHT = 18, RIGHT_AXIS = 76, TOP = 12, BOTTOM = 46, HEIGHT = 330 };
 
 struct view {
   struct dea_axis x, y, y2;

@@ -56,6 +56,9 @@ static double first_of(double before, double now)
 static dea_status take_point(void *user, const struct dea_load_point *point)
 {
   struct map *map = user;
+  if (isnan(map->before.voltage_V) && point->min_tension_N_per_m < 1e-6) {
+    map->now->slack_V = 0; // a film without pre-stretch
+  }
   double from = level_value(map, &map->before), to = level_value(map, point);
   for (size_t k = 0; k < map->level_count && point->stable; k++) {
     double level = map->step * (double)(k + 1);

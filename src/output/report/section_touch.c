@@ -130,20 +130,48 @@ static double free_height(struct dea_context *ctx, const struct dea_device *devi
   return status == DEA_OK ? point.fibre_tip_z_m : NAN;
 }
 
-/* Height at which the actuator's force is that of a spring that it pushes: bisection, the force
- * minus the spring's falls from positive to negative between the maximum and the free height. */
-static double meet(const struct load_line *line, double voltage_V, double high, double k)
+/* Height at which the actuator's force is that of a spring that it pushes; 0 when the spring is
+ * stiffer than all of the load line, whose largest F/z goes to *stiffest. */
+static double meet(const struct load_line *line, double voltage_V, double high, double k,
+                   double *stiffest)
 {
   double low = 0;
-  for (int i = 1; i <= 200; i++) { // the highest place where it is still positive
-    double z = high * i / 200;
-    low = force_at(line, voltage_V, z) > k * z ? z : low;
+  *stiffest = 0;
+  for (int i = 1; i <= 200; i++) { // the highest place where the actuator is still the stronger
+    double z = high * i / 200, force = force_at(line, voltage_V, z);
+    *stiffest = fmax(*stiffest, force / z);
+    low = force > k * z ? z : low;
   }
   for (int i = 0; i < 60 && low > 0; i++) {
     double middle = 0.5 * (low + high);
     *(force_at(line, voltage_V, middle) > k * middle ? &low : &high) = middle;
   }
   return low;
+}
+
+static void add_meeting(struct dea_text *out, const struct load_line *line, double last_V,
+                        double high, double k)
+{
+  double stiffest, z = meet(line, last_V, high, k, &stiffest);
+  dea_text_add(out, "<p>A fingertip taken as a spring of ");
+  dea_html_number(out, 1e-3 * k, 3);
+  dea_text_add(out, " N/mm (an assumption: real ones stiffen as they are pressed) that touches the "
+                    "flat film is ");
+  if (z > 0) {
+    dea_text_add(out, "moved by ");
+    dea_html_number(out, 1e6 * z, 3);
+    dea_text_add(out, " \302\265m with ");
+    dea_html_number(out, 1e3 * k * z, 3);
+    dea_text_add(out, " mN");
+  } else {
+    dea_text_add(out, "not moved");
+  }
+  dea_text_add(out, " at ");
+  dea_html_number(out, 1e-3 * last_V, 3);
+  dea_text_add(out, " kV. Rods that lie flat begin without force, so that what is stiffer than ");
+  dea_html_number(out, 1e-3 * stiffest, 2);
+  dea_text_add(out, " N/mm stays where it is; all this by model lumped, whose force is an upper "
+                    "bound.</p>");
 }
 
 static dea_status fill_lines(struct dea_report *report, const struct dea_report_run *run,
@@ -212,18 +240,10 @@ static dea_status add_load_line(struct dea_report *report, const struct dea_repo
   dea_status status = fill_lines(report, run, &line, last_V, plot, &highest);
   if (status == DEA_OK && highest > 0) {
     status = add_finger(report, &plot->panels[0], k, highest);
-    double z = meet(&line, last_V, free_height(report->ctx, device, last_V), k);
+    dea_text_add(&report->text, "<div class=\"plots\">");
     dea_plot_add_svg(&report->text, plot, ++report->figures);
-    dea_text_add(&report->text, "<p>A fingertip taken as a spring of ");
-    dea_html_number(&report->text, 1e-3 * k, 3);
-    dea_text_add(&report->text, " N/mm (an assumption: real ones stiffen as they are pressed) that "
-                                "touches the flat film is moved by ");
-    dea_html_number(&report->text, 1e6 * z, 3);
-    dea_text_add(&report->text, " \302\265m with ");
-    dea_html_number(&report->text, 1e3 * k * z, 3);
-    dea_text_add(&report->text, " mN at ");
-    dea_html_number(&report->text, 1e-3 * last_V, 3);
-    dea_text_add(&report->text, " kV, by model lumped, whose force is an upper bound.</p>");
+    add_meeting(&report->text, &line, last_V, free_height(report->ctx, device, last_V), k);
+    dea_text_add(&report->text, "</div>");
   }
   dea_plot_destroy(report->ctx, plot);
   return status;
