@@ -75,15 +75,20 @@ static void film_force(const struct dea_material *material, double u, double vol
   *stiffness = section * (f.k11 - pull) * l1 / length;
 }
 
-static void test_one_degree_of_freedom(void **state)
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+static size_t end; // a node at the end of the bar
+static double displacement, weight;
+
+/* A strip at a voltage, under a weight at the bar that holds the tension of the film at rest. */
+static void strip_create(const struct dea_material *film, double voltage_V)
 {
-  (void)state;
-  static const double cuts[] = {0, 1}, V = 1500, ratio = 0.03;
-  struct dea_material film = test_material("gent", 43e3, 115, 0);
-  struct dea_material hard = test_material("neo-hookean", 3e8, 0, 0);
+  static const double cuts[] = {0, 1};
+  static struct dea_material hard; // layers lend its parameters
+  hard = test_material("neo-hookean", 3e8, 0, 0);
   const struct dea_layer layers[] = {
-      {.law = film.law,
-       .param = film.param,
+      {.law = film->law,
+       .param = film->param,
        .pre_stretch = {l1, l2, 1 / (l1 * l2)},
        .permittivity_F_per_m = eps,
        .thickness_m = h},
@@ -102,48 +107,98 @@ static void test_one_degree_of_freedom(void **state)
                                             .layer_of = layer_of,
                                             .active = strip_active,
                                             .held = along_x};
-  struct dea_grid *grid;
-  struct dea_solid *solid;
   struct dea_solid_report report;
-  struct dea_solid_response *response;
+  double rest;
   assert_int_equal(dea_grid_create(ctx, 1, blocks, 2, &sheet, 1, NULL, 0, width, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  // a weight at the bar holds the tension of the film at rest
-  double weight, rest, force, stiffness;
-  film_force(&film, 0, 0, &weight, &rest);
-  size_t end = 0;
+  film_force(film, 0, 0, &weight, &rest);
   for (size_t n = 0; n < grid->node_count; n++) {
     bool at_end = grid->X[3 * n] > length + bar - 1e-9;
     dea_solid_force(solid)[3 * n] = at_end ? 0.5 * weight : 0;
     end = at_end ? n : end;
   }
-  assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
-  double u = dea_solid_displacement(solid)[3 * end];
-  film_force(&film, u, V, &force, &stiffness);
+  assert_int_equal(dea_solid_solve(ctx, solid, voltage_V, &report), DEA_OK);
+  displacement = dea_solid_displacement(solid)[3 * end];
+}
+
+static void strip_destroy(void)
+{
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Push per volt: -dF/dV at fixed u. */
+static double strip_push(const struct dea_material *film, double voltage_V)
+{
+  double more, less, slope;
+  film_force(film, displacement, voltage_V + 1, &more, &slope);
+  film_force(film, displacement, voltage_V - 1, &less, &slope);
+  return 0.5 * (less - more);
+}
+
+static const double V = 1500;
+
+static void test_one_degree_of_freedom(void **state)
+{
+  (void)state;
+  static const double ratio = 0.03;
+  const struct dea_material film = test_material("gent", 43e3, 115, 0);
+  struct dea_solid_response *response;
+  double force, stiffness, square;
+  strip_create(&film, V);
+  film_force(&film, displacement, V, &force, &stiffness);
   assert_close(force, weight, 1e-4, 0); // the bar gives way, and K has 1e-10 of its stiffness
-  double square;
   assert_int_equal(dea_solid_vibrations(ctx, solid, 1, &square, NULL), DEA_OK);
   assert_close(square, stiffness / mass, 1e-4, 0);
-  // push per volt: -dF/dV at fixed u
-  double more, less, slope;
-  film_force(&film, u, V + 1, &more, &slope);
-  film_force(&film, u, V - 1, &less, &slope);
-  double push = 0.5 * (less - more), omega_0 = sqrt(stiffness / mass);
+  double push = strip_push(&film, V), omega_0 = sqrt(stiffness / mass);
   assert_int_equal(dea_solid_response_create(ctx, solid, 2 * omega_0, &response), DEA_OK);
   const struct dea_damping damping = {ratio, 0, 0};
   for (int i = 0; i <= 8; i++) {
-    double w = 0.25 * i * omega_0, re, im, real[3], imaginary[3];
+    double w = 0.25 * i * omega_0, real[3], imaginary[3];
     double gap = stiffness - mass * w * w, loss = 2 * ratio * sqrt(stiffness * mass) * w;
-    re = push * gap / (gap * gap + loss * loss);
-    im = -push * loss / (gap * gap + loss * loss);
+    double size = push / hypot(gap, loss);
     dea_solid_response_at(response, end, w, &damping, real, imaginary);
-    double size = hypot(re, im);
-    assert_close(real[0], re, 0, 1e-3 * size);
-    assert_close(imaginary[0], im, 0, 1e-3 * size);
+    assert_close(real[0], size * gap / hypot(gap, loss), 0, 1e-3 * size);
+    assert_close(imaginary[0], -size * loss / hypot(gap, loss), 0, 1e-3 * size);
   }
   dea_solid_response_destroy(ctx, response);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  strip_destroy();
+}
+
+/* The same strip with two branches: held for long, they know C and push back by 4 G/l^2 per strain
+ * and volume, less what they have relaxed; l is the stretch since the flat film. */
+static void test_branches(void **state)
+{
+  (void)state;
+  enum { FREQUENCIES = 7 };
+  const struct dea_material film = test_material("gent", 43e3, 115, 0);
+  const struct dea_branches branches[2] = {{2, {{30e3, 0.01}, {20e3, 1}}}, {0}};
+  const struct dea_damping damping = {.mass_per_s = 5};
+  static const double share[FREQUENCIES] = {0, 1e-3, 0.03, 0.3, 1, 1.3, 4};
+  double w[FREQUENCIES], force, stiffness, out[FREQUENCIES][2][3];
+  strip_create(&film, V);
+  film_force(&film, displacement, V, &force, &stiffness);
+  double push = strip_push(&film, V), l = 1 + displacement / length;
+  double per_Pa = 4 / (l * l) * h * width / length;
+  for (int i = 0; i < FREQUENCIES; i++) {
+    w[i] = share[i] * sqrt(stiffness / mass);
+  }
+  if (dea_solid_respond_viscous(ctx, solid, branches, &damping, w, FREQUENCIES, &end, 1, out) !=
+      DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  for (int i = 0; i < FREQUENCIES; i++) {
+    double gap = stiffness - mass * w[i] * w[i], loss = 5 * mass * w[i];
+    for (size_t k = 0; k < branches[0].count; k++) { // G (x^2 + i x)/(1 + x^2), x = w tau
+      double x = w[i] * branches[0].branch[k].time_s, G = branches[0].branch[k].modulus_Pa;
+      gap += per_Pa * G * x * x / (1 + x * x);
+      loss += per_Pa * G * x / (1 + x * x);
+    }
+    double size = push / hypot(gap, loss);
+    assert_close(out[i][0][0], size * gap / hypot(gap, loss), 0, 1e-3 * size);
+    assert_close(out[i][1][0], -size * loss / hypot(gap, loss), 0, 1e-3 * size);
+  }
+  strip_destroy();
 }
 
 /* ---- a bender: two sheets, the upper one between electrodes, clamped at one end ---- */
@@ -164,8 +219,7 @@ static int clamped(const void *self, const double X[3])
 }
 
 /* Displacements at a voltage under dead loads. */
-static void at_rest(struct dea_solid *solid, size_t dofs, double voltage_V, const double *force,
-                    double share, double *u)
+static void at_rest(size_t dofs, double voltage_V, const double *force, double share, double *u)
 {
   struct dea_solid_report report;
   for (size_t i = 0; i < dofs; i++) {
@@ -179,11 +233,10 @@ static void at_rest(struct dea_solid *solid, size_t dofs, double voltage_V, cons
 
 /* (K - w^2 M + i w d M) q = f says K q_r = f + w^2 M q_r + w d M q_i and K q_i = w^2 M q_i - w d M
  * q_r: the static answers to a ripple with these loads, and to these loads alone. */
-static void check_at(struct dea_solid *solid, const struct dea_solid_response *response,
-                     size_t nodes, double V, double w, double d)
+static void check_at(const struct dea_solid_response *response, double w, double d)
 {
   const struct dea_damping damping = {.mass_per_s = d};
-  size_t dofs = 3 * nodes;
+  size_t nodes = grid->node_count, dofs = 3 * nodes;
   double *q[2], *Mq[2], *load = calloc(dofs, sizeof *load), *u[2];
   for (int c = 0; c < 2; c++) {
     q[c] = calloc(dofs, sizeof *load);
@@ -203,8 +256,8 @@ static void check_at(struct dea_solid *solid, const struct dea_solid_response *r
       load[i] = w * w * Mq[c][i] + (c == 0 ? 1 : -1) * w * d * Mq[1 - c][i];
       most = fmax(most, fmax(fabs(q[0][i]), fabs(q[1][i])));
     }
-    at_rest(solid, dofs, V + (c == 0 ? step : 0), load, step, u[0]);
-    at_rest(solid, dofs, V - (c == 0 ? step : 0), load, -step, u[1]);
+    at_rest(dofs, V + (c == 0 ? step : 0), load, step, u[0]);
+    at_rest(dofs, V - (c == 0 ? step : 0), load, -step, u[1]);
     for (size_t i = 0; i < dofs; i++) {
       wrong = fmax(wrong, fabs((u[0][i] - u[1][i]) / (2 * step) - q[c][i]));
     }
@@ -218,10 +271,28 @@ static void check_at(struct dea_solid *solid, const struct dea_solid_response *r
   free(load);
 }
 
+/* Superposition of modes against the system solved at the frequency, with both kinds of damping. */
+static void check_direct(const struct dea_solid_response *response, double w,
+                         const struct dea_damping *damping)
+{
+  const struct dea_branches none[1] = {{0}};
+  double out[1][2][3], real[3], imaginary[3];
+  size_t far = dea_grid_nearest(grid, (const double[3]){bender.size[0], 0, 0});
+  if (dea_solid_respond_viscous(ctx, solid, none, damping, &w, 1, &far, 1, out) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  dea_solid_response_at(response, far, w, damping, real, imaginary);
+  double size = hypot(hypot(out[0][0][0], out[0][0][2]), hypot(out[0][1][0], out[0][1][2]));
+  for (int i = 0; i < 3; i++) {
+    assert_close(real[i], out[0][0][i], 0, 1e-3 * size);
+    assert_close(imaginary[i], out[0][1][i], 0, 1e-3 * size);
+  }
+}
+
 static void test_bender_against_static_solves(void **state)
 {
   (void)state;
-  static const double t = 200e-6, V = 1500;
+  static const double t = 200e-6;
   struct dea_material gent = test_material("gent", 43e3, 115, 0);
   struct dea_layer layer = {.law = gent.law,
                             .param = gent.param,
@@ -236,8 +307,6 @@ static void test_bender_against_static_solves(void **state)
   const struct dea_sheet sheets[] = {{t, 1, 2}, {t, 1, 2}};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .active = upper, .held = clamped};
-  struct dea_grid *grid;
-  struct dea_solid *solid;
   struct dea_solid_report report;
   struct dea_solid_response *response;
   double square[3];
@@ -251,17 +320,19 @@ static void test_bender_against_static_solves(void **state)
   assert_true(dea_solid_response_modes(response) >= 1);
   const double at[] = {0, 0.7, 1, 3};
   for (int i = 0; i < 4; i++) {
-    check_at(solid, response, grid->node_count, V, at[i] * first, 0.3 * first);
+    const struct dea_damping damping = {0, 0.1 * first, 0.2 / first};
+    check_direct(response, at[i] * first, &damping);
+    check_at(response, at[i] * first, 0.3 * first);
   }
   dea_solid_response_destroy(ctx, response);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  strip_destroy();
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_one_degree_of_freedom),
+      cmocka_unit_test(test_branches),
       cmocka_unit_test(test_bender_against_static_solves),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -157,11 +157,20 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
                                                  double *scalar));
 /* A += factor M with the consistent mass matrix M (mass.h), as above. */
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor);
+/* M as a matrix of K's pattern, owned by the caller. DEA_E_ARGUMENT where there is no mass. */
+dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *out);
+/* Force on the unknowns [dofs] per volt at the equilibrium and fixed displacements, without what is
+ * held. */
+dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, double *force);
 /* Sets modulus_Pa, length_m and energy_floor. */
 void dea_solid_sizes(struct dea_solid *s);
 /* out = K^-1 right with the present factor, [dofs] both, in global components. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
+/* Unknowns of the whole [dofs] in global components into a vector of K's rows; they are in local
+ * ones after that. */
+dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
+                               Vec vector);
 /* A vector of K's rows as unknowns of the whole [dofs] in global components. */
 dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
                                  double *out);
@@ -231,6 +240,8 @@ void dea_solid_change_kappa(struct dea_solid *s, double factor);
 void dea_solid_stiffen(struct dea_solid *s);
 void dea_solid_unstiffen(struct dea_solid *s);
 void dea_solid_soften(struct dea_solid *s);
+/* K with a kappa so large that its inertia is that of the incompressible solid, at s->u. */
+dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s);
 /* Factor of K with a kappa so large that its inertia is that of the incompressible solid, at s->u
  * (docs/theory/branches.md). */
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);

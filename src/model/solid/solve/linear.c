@@ -96,15 +96,22 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
   return DEA_OK;
 }
 
+dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
+                               Vec vector)
+{
+  PetscScalar *rows;
+  dea_solid_frame_vector(s, false, values);
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(vector, &rows), "VecGetArray"));
+  to_nodes(s, values, rows);
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(vector, &rows), "VecRestoreArray"));
+  return DEA_OK;
+}
+
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
-  PetscScalar *values;
   memmove(out, right, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, false, out);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(s->right, &values), "VecGetArray"));
-  to_nodes(s, out, values);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(s->right, &values), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->right));
   DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(s->factor, s->right, s->solution), "MatSolve"));
   DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out));
   return DEA_OK;

@@ -20,6 +20,18 @@ dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat 
   return DEA_OK;
 }
 
+dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *M)
+{
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, M), "MatDuplicate"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
+                               "MatSetOption"));
+  DEA_TRY(ctx, dea_solid_add_mass(ctx, s, *M, 1));
+  PetscReal size;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatNorm(*M, NORM_INFINITY, &size), "MatNorm"));
+  return size > 0 ? DEA_OK
+                  : dea_fail(ctx, DEA_E_ARGUMENT, "the solid has no mass: no density is known");
+}
+
 dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *s, const double *v,
                                 double *out)
 {

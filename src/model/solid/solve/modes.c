@@ -246,7 +246,7 @@ void dea_solid_unstiffen(struct dea_solid *s)
   dea_solid_change_kappa(s, 1 / stiffer);
 }
 
-dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
+dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)
 {
   double energy;
   s->predicted_fits = s->factor_fits = false;
@@ -254,7 +254,12 @@ dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, 
   dea_solid_stiffen(s);
   dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
   dea_solid_unstiffen(s);
-  DEA_TRY(ctx, status);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, s));
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, negative));
   return DEA_OK;
 }

@@ -33,8 +33,8 @@ void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_respon
   }
 }
 
-/* -dg/dV = -2 V dg/d(V^2) at the equilibrium, without what is held; [dofs of the solid]. */
-static dea_status find_force(struct dea_context *ctx, struct dea_solid *s, double *force)
+/* -dg/dV = -2 V dg/d(V^2). */
+dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, double *force)
 {
   double energy, square = s->voltage_V * s->voltage_V, step = part_of_V2 * square;
   memset(force, 0, s->dofs * sizeof *force);
@@ -127,7 +127,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   size_t count;
   DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
   DEA_TRY(ctx, make_room(ctx, s, count, r));
-  DEA_TRY(ctx, find_force(ctx, s, force));
+  DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, force));
   if (count > 0) { // K stays there for the rest
     DEA_TRY(ctx, dea_solid_vibrations(ctx, s, count, r->square, r->shape));
   }

@@ -32,18 +32,6 @@ static dea_status prepare_tangent(struct dea_context *ctx, struct dea_solid *s, 
   return DEA_OK;
 }
 
-static dea_status make_mass(struct dea_context *ctx, struct dea_solid *s, Mat *M)
-{
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, M), "MatDuplicate"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
-                               "MatSetOption"));
-  DEA_TRY(ctx, dea_solid_add_mass(ctx, s, *M, 1));
-  PetscReal size;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatNorm(*M, NORM_INFINITY, &size), "MatNorm"));
-  return size > 0 ? DEA_OK
-                  : dea_fail(ctx, DEA_E_ARGUMENT, "the solid has no mass: no density is known");
-}
-
 /* y = K^-1 x with the factor that is there. */
 static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
 {
@@ -235,7 +223,7 @@ static dea_status vibrations(struct dea_context *ctx, struct found *f, size_t co
                     negative);
   }
   int needed = negative > (int)count ? negative : (int)count;
-  DEA_TRY(ctx, make_mass(ctx, f->solid, &f->M));
+  DEA_TRY(ctx, dea_solid_create_mass(ctx, f->solid, &f->M));
   DEA_TRY(ctx, make_room(ctx, f, needed));
   DEA_TRY(ctx, find(ctx, f, needed));
   DEA_TRY(ctx, hand_over(ctx, f, count, square, vector));

@@ -3,7 +3,7 @@
 #ifndef DEA_MODEL_SOLID_SOLVE_VIBRATION_H
 #define DEA_MODEL_SOLID_SOLVE_VIBRATION_H
 
-#include "model/solid/solve/solid.h"
+#include "model/solid/solve/history.h"
 
 enum { DEA_VIBRATIONS_MAX = 200 };
 
@@ -43,6 +43,16 @@ void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_respon
  * omega 0: slope of the static displacement. */
 void dea_solid_response_at(const struct dea_solid_response *response, size_t node, double rad_per_s,
                            const struct dea_damping *damping, double real[3], double imaginary[3]);
+
+/* Answers of a solid whose layers have branches (history.h), solved at each frequency: as branches
+ * follow, K goes from its slow to its fast form. branches: [layers of the solid]; the ratio of the
+ * damping is not looked at. out: [count][node_count], real and imaginary part [m/V]. Otherwise as a
+ * response. */
+dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *solid,
+                                     const struct dea_branches *branches,
+                                     const struct dea_damping *damping, const double *rad_per_s,
+                                     size_t count, const size_t *nodes, size_t node_count,
+                                     double (*out)[2][3]);
 
 /* Modes that it has. */
 size_t dea_solid_response_modes(const struct dea_solid_response *response);
