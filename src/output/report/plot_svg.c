@@ -47,7 +47,7 @@ static void find_ranges(const struct dea_panel *panel, struct range *x, struct r
       double at_y = series->values[series->count + i];
       bool inside = !(series->values[i] > panel->x_max) && !(series->values[i] < panel->x_min);
       if (isfinite(at_y) && inside) {
-        widen(x, series->values[i], panel->logarithmic);
+        widen(x, series->values[i], panel->logarithmic || panel->logarithmic_x);
         widen(&y[series->right], at_y, panel->logarithmic);
       }
     }
@@ -59,14 +59,15 @@ static struct view make_view(const struct dea_panel *panel, double top, double h
   struct range x, y[2];
   find_ranges(panel, &x, y);
   double limits_x[2] = {panel->x_min, panel->x_max};
-  if (!isfinite(panel->x_min) && !panel->logarithmic) { // radii and voltages fill the width
+  bool logarithmic_x = panel->logarithmic || panel->logarithmic_x;
+  if (!isfinite(panel->x_min) && !logarithmic_x) { // radii and voltages fill the width
     limits_x[0] = x.high >= x.low && x.high > x.low ? x.low : NAN;
     limits_x[1] = isfinite(panel->x_max) ? panel->x_max : x.high > x.low ? x.high : NAN;
   }
   const double open[2] = {NAN, NAN}, floor_only[2] = {panel->y_min, NAN};
   bool right = panel->y2_label[0] != '\0';
   struct view v = {
-      .x = dea_axis_create(x.low, x.high, limits_x, panel->logarithmic, 9),
+      .x = dea_axis_create(x.low, x.high, limits_x, logarithmic_x, 9),
       .y = dea_axis_create(y[0].low, y[0].high, floor_only, panel->logarithmic, 7),
       .y2 = dea_axis_create(y[1].low, y[1].high, open, false, 7),
       .top = top,
@@ -136,7 +137,8 @@ static bool place(const struct view *v, const struct dea_series *series, size_t 
 {
   double x = series->values[i], y = series->values[column * series->count + i];
   const struct dea_axis *up = series->right ? &v->y2 : &v->y;
-  if (!isfinite(x) || !isfinite(y) || (up->logarithmic && !(x > 0 && y > 0))) {
+  if (!isfinite(x) || !isfinite(y) || (v->x.logarithmic && !(x > 0)) ||
+      (up->logarithmic && !(y > 0))) {
     return false;
   }
   at[0] = dea_axis_place(&v->x, x);
