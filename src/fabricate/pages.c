@@ -116,11 +116,10 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
 {
   char below[320];
   double x = 0.5 * size[0], y = 0.5 * size[1];
-  snprintf(below, sizeof below,
-           "%.80s; %s; lengths of the %s film, pre-stretch %.4g; finished part, "
-           "without kerf",
+  snprintf(below, sizeof below, "%.80s; %s; lengths of the %s film, pre-stretch %.4g; %s",
            dea_file_name(w->plan.design->file), part->seen,
-           part->state == DEA_STRETCHED ? "stretched" : "unstretched", w->plan.stretch);
+           part->state == DEA_STRETCHED ? "stretched" : "unstretched", w->plan.stretch,
+           part->paper ? "not to be cut" : "finished part, without kerf");
   dea_draft_head(paper, size[0], size[1], part->title, below);
   dea_draft_scale(paper, size[0],
                   "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");
@@ -136,6 +135,11 @@ static void draw_sheet_page(const struct dea_paper *paper, const struct dea_work
                             size_t index)
 {
   const struct dea_layout *layout = &w->layout[index];
+  char words[320];
+  snprintf(words, sizeof words,
+           "%.80s: %s; %d copies on their sheet, finished parts without kerf; 1:1",
+           dea_file_name(w->plan.design->file), w->part[index].title, layout->count);
+  dea_draft_fit(paper, 5, 1.6, 2.3, false, 0x6a6a6a, 1e3 * layout->width_m - 10, words);
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];
     dea_layout_place(layout, copy, at);

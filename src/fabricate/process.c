@@ -78,6 +78,7 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 struct sheet {
   const struct dea_workshop *w;
   struct dea_document *to;
+  int models; // whose sensitivities stand in the check list: without fibres only the first
 };
 
 /* A row: for what, which material, how much of one and of all. */
@@ -108,7 +109,7 @@ static void add_materials(struct sheet *s)
   dea_document_add(s->to, DEA_BLOCK_HEAD, "for");
   dea_document_cell(s->to, "material");
   dea_document_cell(s->to, "one");
-  dea_document_cell(s->to, "%d in all", s->w->plan.copies);
+  dea_document_cell(s->to, "all %d", s->w->plan.copies);
   dea_document_cell(s->to, "remarks");
   dea_document_widths(s->to, widths);
   snprintf(text, sizeof text, "%.4g \xc2\xb5m thick, before stretching",
@@ -249,7 +250,7 @@ static void add_check(struct sheet *s, const struct dea_sensitivity found[DEA_SE
   dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
   dea_document_cell(s->to, "%s", wanted);
   dea_document_cell(s->to, "%s", tolerance);
-  for (int q = 0; q < DEA_SENSITIVITIES; q++) {
+  for (int q = 0; q < s->models; q++) {
     add_effect(s, &found[q], deviation);
   }
 }
@@ -320,22 +321,20 @@ static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
   } else {
     dea_document_add(s->to, DEA_BLOCK_TEXT,
                      "Effect of each tolerance on the displacement at %.4g kV, half the difference "
-                     "from minus to plus, by two models:",
+                     "from minus to plus, by the quick models:",
                      1e-3 * voltage);
   }
-  for (int q = 0; q < DEA_SENSITIVITIES && !isnan(voltage); q++) {
-    if (!isnan(found[q].displacement_m)) {
-      dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: model %s, %.4g \xc2\xb5m%s",
-                       found[q].what, found[q].model, 1e6 * found[q].displacement_m,
-                       q == 0 ? " (film and electrodes without fibres)"
-                              : " (rigid, hinged fibres without the film between them: an upper "
-                                "bound)");
-    }
+  for (int q = 0; q < s->models && !isnan(voltage); q++) {
+    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: model %s, %.4g \xc2\xb5m%s",
+                     found[q].what, found[q].model, 1e6 * found[q].displacement_m,
+                     q == 0 ? " (film and electrodes without fibres)"
+                            : " (rigid, hinged fibres without the film between them: an upper "
+                              "bound)");
   }
   dea_document_add(s->to, DEA_BLOCK_HEAD, "what");
   dea_document_cell(s->to, "wanted");
   dea_document_cell(s->to, "tolerance");
-  for (int q = 0; q < DEA_SENSITIVITIES; q++) {
+  for (int q = 0; q < s->models; q++) {
     dea_document_cell(s->to, "%s (%s)", found[q].what, found[q].model);
   }
   dea_document_widths(s->to, widths);
@@ -350,7 +349,8 @@ static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              struct dea_document *document)
 {
-  struct sheet s = {workshop, document};
+  struct sheet s = {workshop, document,
+                    workshop->plan.device->fibre_count > 0 ? DEA_SENSITIVITIES : 1};
   const struct dea_design *design = workshop->plan.design;
   const char *title = design->title.text;
   dea_document_add(document, DEA_BLOCK_TITLE, "Process sheet: %s",
