@@ -52,6 +52,10 @@ static void test_summary(void **state)
   const double pi = acos(-1);
   assert_close(json_number_value(json_object_get(frame, "area_m2")),
                pi * 1e-6 * (625 - 225 - 3 * 0.75 * 0.75 - 1.5 * 1.5), 1e-10, 0);
+  json_t *one = json_object_get(root, "amounts_of_one");
+  assert_close(json_number_value(json_object_get(one, "film_area_m2")), pi * 1225e-6 / 2.25, 1e-10,
+               0);
+  assert_null(json_object_get(one, "ink_volume_m3")); // the design gives no thickness
   char path[700];
   json_array_foreach(json_object_get(root, "files"), i, row)
   {
@@ -65,8 +69,10 @@ static void test_summary(void **state)
 static void test_without_fibres(void **state)
 {
   (void)state;
-  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc"), 0);
+  assert_int_equal(command_run("fab @/examples/frdea-4.yaml -o disc"), 0);
   char path[700];
+  // the sheet of an older design's fibres goes
+  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc --force"), 0);
   snprintf(path, sizeof path, "%s/disc/fibres.dxf", command_folder);
   assert_int_not_equal(access(path, R_OK), 0);
 }
@@ -91,6 +97,11 @@ static void test_hostile_names(void **state)
                                    "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
                                    "electrodes: {diameter: 5 mm unstretched}\n");
   assert_int_equal(command_run("fab 'a<script>&.yaml' -o hostile"), 0);
+  // a name that is not UTF-8, in the files and in the summary
+  assert_int_equal(command_run("fab 'a<script>&.yaml' -o \"$(printf 'b\\377')\" --json"), 0);
+  json_t *root = json_loads(command_out, 0, NULL);
+  assert_string_equal(json_string_value(json_object_get(root, "folder")), "(not UTF-8)");
+  json_decref(root);
   static const char *const names[] = {"hostile/frame.svg", "hostile/process.html"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     char *text;

@@ -3,6 +3,8 @@
 
 #include "base/text.h"
 #include "fabricate/files.h"
+#include "fabricate/process.h"
+#include "output/json.h"
 
 #include <jansson.h>
 #include <string.h>
@@ -11,6 +13,21 @@ static dea_status add_name(void *array, const char *name)
 {
   json_array_append_new(array, json_string(name));
   return DEA_OK;
+}
+
+/* What one actuator needs; what the design does not say is left out. */
+static json_t *amounts_json(const struct dea_workshop *w)
+{
+  struct dea_amounts a;
+  json_t *json = json_object();
+  dea_amounts_find(w, &a);
+  dea_json_put(json, "film_area_m2", a.film_area_m2);
+  dea_json_put(json, "ink_area_m2", a.ink_area_m2);
+  dea_json_put(json, "ink_volume_m3", a.ink_volume_m3);
+  dea_json_put(json, "transfer_glue_area_m2", a.transfer_glue_area_m2);
+  dea_json_put(json, "bond_area_m2", a.bond_area_m2);
+  dea_json_put(json, "bond_volume_m3", a.bond_volume_m3);
+  return json;
 }
 
 /* Sizes of the finished parts, and what was written where. */
@@ -28,9 +45,14 @@ static void print_json(const struct dea_workshop *w, const struct cli_design_arg
     json_array_append_new(parts, row);
   }
   dea_workshop_files(w, options, add_name, files);
-  json_t *json =
-      json_pack("{s:s, s:s, s:i, s:f, s:o, s:o}", "design", arguments->design, "folder", directory,
-                "copies", w->plan.copies, "kerf_m", w->plan.kerf_m, "parts", parts, "files", files);
+  json_t *json = json_object();
+  dea_json_put_text(json, "design", arguments->design);
+  dea_json_put_text(json, "folder", directory);
+  json_object_set_new(json, "copies", json_integer(w->plan.copies));
+  dea_json_put(json, "kerf_m", w->plan.kerf_m);
+  json_object_set_new(json, "parts", parts);
+  json_object_set_new(json, "files", files);
+  json_object_set_new(json, "amounts_of_one", amounts_json(w));
   json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
   putchar('\n');
   json_decref(json);

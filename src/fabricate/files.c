@@ -1,7 +1,9 @@
+#define _POSIX_C_SOURCE 200809L // unlink
 #include "fabricate/files.h"
 
 #include "fabricate/dxf.h"
 #include "fabricate/pages.h"
+#include "fabricate/parts.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"
 #include "fabricate/svg.h"
@@ -9,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { NAME_SIZE = 64 };
 
@@ -85,12 +88,32 @@ static dea_status refuse_existing(void *user, const char *name)
                            place->directory, name);
 }
 
+/* Removes the sheets of a part that an older design had and this one has not: they would be taken
+ * for its own. */
+static dea_status forget_part(struct dea_context *ctx, const char *directory, const char *part)
+{
+  for (size_t f = 0; f < FORMATS; f++) {
+    char name[NAME_SIZE];
+    snprintf(name, sizeof name, "%s.%s", part, formats[f].ending);
+    char *path = dea_path_join(ctx, directory, name);
+    if (path == NULL) {
+      return DEA_E_MEMORY;
+    }
+    unlink(path); // one that is not there is fine
+    dea_free(ctx, path);
+  }
+  return DEA_OK;
+}
+
 dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_workshop *workshop,
                                 const char *directory, const struct dea_workshop_options *options)
 {
   struct place place = {ctx, directory};
   if (!options->force) {
     DEA_TRY(ctx, dea_workshop_files(workshop, options, refuse_existing, &place));
+  }
+  if (options->force && !options->drawing_only && workshop->plan.device->fibre_count == 0) {
+    DEA_TRY(ctx, forget_part(ctx, directory, dea_part_fibres.name));
   }
   return dea_folder_make(ctx, directory);
 }

@@ -159,7 +159,8 @@ void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *wo
   }
   for (size_t i = 0; i < workshop->count; i++) {
     const struct dea_layout *layout = &workshop->layout[i];
-    if (layout->count > 1) {
+    bool readable = fmax(layout->width_m, layout->height_m) <= 5; // 14400 pt, what readers take
+    if (layout->count > 1 && readable) {
       paper->type->page(paper->canvas, 1e3 * layout->width_m, 1e3 * layout->height_m);
       draw_sheet_page(paper, workshop, i);
     }

@@ -148,9 +148,9 @@ static dea_status find(struct dea_context *ctx, struct dea_design *scratch,
   for (int quarter = 4; quarter > 0 && isnan(*voltage_V) && highest > 0; quarter--) {
     double voltage = highest * quarter / 4;
     bool all = true;
-    for (size_t q = 0; q < asked; q++) {
+    for (size_t q = asked; q-- > 0 && all;) { // the quicker model first
       DEA_TRY(ctx, ask(ctx, device, &questions[q], voltage, &out[q].displacement_m));
-      all = all && !isnan(out[q].displacement_m);
+      all = !isnan(out[q].displacement_m);
     }
     *voltage_V = all ? voltage : NAN;
   }
