@@ -89,7 +89,7 @@ static const char style[] =
     "92em}"
     "th,td{text-align:left;vertical-align:top;padding:.35em .6em;border-bottom:1px solid #d5d8dd}"
     "th{border-bottom:1px solid #202020}.note{color:#6a6a6a;font-size:.88em}"
-    "ol{padding-left:2.4em}li{margin:.5em 0}svg{max-width:100%;height:auto}"
+    "ol{padding-left:2.4em}li{margin:.5em 0}svg{width:100%;height:auto}"
     "@media print{body{margin:0;max-width:none}h2{break-after:avoid}tr,li{break-inside:avoid}}";
 
 static void add_row(struct dea_text *out, const struct dea_block *block, const char *tag)

@@ -88,13 +88,19 @@ static void add_amount(struct sheet *s, const char *item, const char *material, 
   int copies = s->w->plan.copies;
   dea_document_add(s->to, DEA_BLOCK_ROW, "%s", item);
   dea_document_cell(s->to, "%s", material);
-  dea_document_cell(s->to, "%.4g cm\xc2\xb2", 1e4 * area_m2);
-  dea_document_cell(s->to, "%.4g cm\xc2\xb2", 1e4 * area_m2 * copies);
+  dea_document_cell(s->to,
+                    "%.4g\xc2\xa0"
+                    "cm\xc2\xb2",
+                    1e4 * area_m2);
+  dea_document_cell(s->to,
+                    "%.4g\xc2\xa0"
+                    "cm\xc2\xb2",
+                    1e4 * area_m2 * copies);
   if (isnan(volume_m3)) {
     dea_document_cell(s->to, "%s", note);
   } else {
-    dea_document_cell(s->to, "%.4g mm\xc2\xb3 each, %.4g mm\xc2\xb3 in all. %s", 1e9 * volume_m3,
-                      1e9 * volume_m3 * copies, note);
+    dea_document_cell(s->to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s",
+                      1e9 * volume_m3, 1e9 * volume_m3 * copies, note);
   }
 }
 
