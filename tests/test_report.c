@@ -285,6 +285,22 @@ static void test_runs_beside_each_other(void **state)
   assert_int_equal(command_run("report"), 2);
 }
 
+static void test_measurement(void **state)
+{
+  (void)state;
+  command_write("measured.csv", "voltage (V), z centre (um), z centre std (um)\n"
+                                "1000, 12.5, 2\n4000, 250, 15\n");
+  command_write("wrong.csv", "voltage, z centre (um)\n1, 2\n");
+  assert_int_equal(command_run("report a.run --measurement measured.csv -o m.html"), 0);
+  read_page("m.html");
+  assert_well_formed();
+  assert_contains(page, "Computed and measured");
+  assert_contains(page, "\"t\":\"measured\",\"c\":6,\"r\":0,\"p\":1,\"v\":[[1,4],[12.5,250]]");
+  assert_int_equal(command_run("report a.run --measurement wrong.csv -o w.html"), 5);
+  assert_contains(command_err, "wrong.csv:1:");
+  assert_int_equal(command_run("report a.run --finger 3kV -o w.html"), 2);
+}
+
 /* A run whose design cannot be read any more still has a page, which says why there is no drawing.
  */
 static void write_made_up_run(void)
@@ -367,6 +383,7 @@ int main(void)
       cmocka_unit_test(test_axes),
       cmocka_unit_test(test_text_of_a_design_is_text),
       cmocka_unit_test(test_page_of_an_example),
+      cmocka_unit_test(test_measurement),
       cmocka_unit_test(test_runs_beside_each_other),
       cmocka_unit_test(test_design_that_is_gone),
       cmocka_unit_test(test_memory),

@@ -283,6 +283,26 @@ static void test_explorer_follows_its_sliders(void **state)
   assert_quiet();
 }
 
+static void test_map_of_two_parameters(void **state)
+{
+  (void)state;
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip();
+  }
+  assert_holds("(async () => { document.querySelector('.explorer details').open = true; "
+               "await dea.explorers[0].map(); const map = document.querySelector('.map'); "
+               "const before = map.querySelector('.plot').innerHTML; "
+               "const [across, up] = map.querySelectorAll('select'); across.value = 2; "
+               "across.dispatchEvent(new Event('change')); "
+               "for (let i = 0; i < 300 && !map.querySelector('.readout').textContent"
+               ".startsWith('Colours'); i++) { await new Promise((d) => setTimeout(d, 20)); } "
+               "return map.querySelectorAll('rect').length > 1000 && "
+               "map.querySelector('.plot').innerHTML !== before && "
+               "map.textContent.includes('breakdown'); })()");
+  assert_quiet();
+}
+
 // The membrane ------------------------------------------------------------------------------------
 
 enum { STEPS = 3 };
@@ -365,6 +385,7 @@ int main(void)
       cmocka_unit_test(test_map_and_touch),
       cmocka_unit_test(test_explorer_computes_what_the_command_computes),
       cmocka_unit_test(test_explorer_follows_its_sliders),
+      cmocka_unit_test(test_map_of_two_parameters),
       cmocka_unit_test(test_membrane_is_the_surface),
       cmocka_unit_test(test_slider_moves_the_membrane),
   };

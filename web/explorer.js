@@ -2,6 +2,7 @@
 (() => {
   const stored = document.getElementById('core');
   if (stored === null) {
+    dea.ready = Promise.all(dea.waits);
     return;
   }
 
@@ -190,7 +191,9 @@
       }
     };
     const sliders = {};
+    const axes = [];
     const add = (key, label, low, high, factor, unit) => {
+      axes.push({ key, label: unit === '' ? label : `${label} (${unit})`, low, high, factor });
       const step = (high - low) / 400;
       sliders[key] = dea.slider(label, factor * low, factor * high, 'any', factor * chosen[key], () => `${dea.number(factor * chosen[key], 4)} ${unit}`, (value) => {
         const near = Math.abs(value / factor - initial[key]) < step ? initial[key] : value / factor; // the run's value attracts
@@ -229,6 +232,19 @@
         add('frame_radius_m', 'Frame radius', 0.4 * base.frame_radius_m, 2 * base.frame_radius_m, 1e3, 'mm'),
         material.node, dea.element('div', { class: 'buttons' }, reset)),
       problem, dea.element('div', { class: 'plots' }, ...plots, table));
+    const more = dea.element('details', {}, dea.element('summary', {}, 'Operating map of any two of these'));
+    const map = dea.element('div', { id: `explorer-${number}-map`, class: 'map' });
+    const solve = (values) => {
+      const kept = { ...chosen };
+      Object.assign(chosen, values);
+      const point = make(0) === null ? core.solve(chosen.voltage_V) : null;
+      Object.assign(chosen, kept);
+      return point;
+    };
+    more.append(map);
+    host.append(more);
+    const drawMap = dea.map(map, { axes, solve, now: () => chosen, lift: base.fibres > 0 });
+    more.addEventListener('toggle', () => more.open && drawMap());
     draw();
     dea.onVoltage(host, (kV) => {
       chosen.voltage_V = 1e3 * kV;
@@ -237,6 +253,7 @@
     });
     dea.explorers = [...(dea.explorers ?? []), {
       // A point of a model for other values than the run's, in SI: for tests and the console.
+      map: drawMap,
       solve(model, values) {
         const kept = { ...chosen };
         Object.assign(chosen, initial, values);
@@ -253,7 +270,8 @@
     }];
   };
 
-  dea.ready = start().then((core) => {
+  dea.waits.push(start().then((core) => {
     document.querySelectorAll('section:has(.device)').forEach((section, i) => dress(section, i + 1, core));
-  });
+  }));
+  dea.ready = Promise.all(dea.waits);
 })();

@@ -349,13 +349,20 @@
         dea.element('div', { class: 'controls' }, voltageSlider.node, times.node, quantity.node, dea.element('div', { class: 'buttons' }, reset, top)),
         facts, profile),
     );
-    paint = painter(canvas, film);
-    if (paint === null) {
-      canvas.replaceWith(dea.element('p', { class: 'note' }, 'This browser has no WebGL: the film in space is not shown.'));
-    }
     choose();
     draw();
-    new ResizeObserver(draw).observe(canvas);
+    // WebGL may take its time to start: the page is there before it
+    dea.waits.push(new Promise((done) => {
+      setTimeout(() => {
+        paint = painter(canvas, film);
+        if (paint === null) {
+          canvas.replaceWith(dea.element('p', { class: 'note' }, 'This browser has no WebGL: the film in space is not shown.'));
+        }
+        draw();
+        new ResizeObserver(draw).observe(canvas);
+        done();
+      });
+    }));
     dea.onVoltage(section, (kV) => {
       for (let s = 0; s < last; s++) {
         const [a, b] = [film.voltages[s] / 1e3, film.voltages[s + 1] / 1e3];

@@ -1,6 +1,7 @@
 'use strict';
 // What the parts of the page share. Everything here adds to a page that is complete without it.
 const dea = {
+  waits: [], // what is still to come
   voltage_kV: null,
   listeners: [],
   // One voltage for curves, membrane and explorer; source: who says so, and is not told again.

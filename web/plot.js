@@ -9,7 +9,7 @@ dea.axis = (low, high, most) => {
   const step = power * ([1, 2, 5, 10].find((n) => n * power >= 0.999 * least) ?? 10);
   return { low: step * Math.floor(low / step + 1e-9), high: step * Math.ceil(high / step - 1e-9), step };
 };
-// spec: { label, xl, yl, series: [{ title, c, dashed, points: [[x, y], ...] }], cursor, yRange, xRange, height }
+// spec: { cells, spot, exact, label, xl, yl, series: [{ title, c, dashed, points: [[x, y], ...] }], cursor, yRange, xRange, height }
 dea.plot = (host, spec) => {
   const [W, H, L, R, T, B] = [640, spec.height ?? 330, 66, 18, 12, 46];
   const all = spec.series.flatMap((s) => s.points).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
@@ -17,7 +17,7 @@ dea.plot = (host, spec) => {
   const seen = all.filter((p) => p[0] >= lowX && p[0] <= highX);
   const [lowY, highY] = spec.yRange ?? [Math.min(...seen.map((p) => p[1])), Math.max(...seen.map((p) => p[1]))];
   const x = { ...dea.axis(lowX, highX, 9), ...(highX > lowX ? { low: lowX, high: highX } : {}) };
-  const y = dea.axis(lowY, highY, 7);
+  const y = { ...dea.axis(lowY, highY, 7), ...(spec.exact ? { low: lowY, high: highY } : {}) };
   const px = (v) => L + ((v - x.low) / (x.high - x.low)) * (W - L - R);
   const py = (v) => T + H - ((v - y.low) / (y.high - y.low)) * H;
   const svg = dea.svg('svg', { viewBox: `0 0 ${W} ${H + T + B}`, class: 'chart', role: 'img', 'aria-label': spec.label });
@@ -33,7 +33,7 @@ dea.plot = (host, spec) => {
     grid += `M${px(v)} ${T + H}V${T}`;
     tics.append(text([px(v), T + H + 18], 'middle', tic(v, x.step)));
   }
-  for (let v = y.low; v <= y.high + 1e-9 * y.step; v += y.step) {
+  for (let v = y.step * Math.ceil(y.low / y.step - 1e-9); v <= y.high + 1e-9 * y.step; v += y.step) {
     grid += `M${L} ${py(v)}H${W - R}`;
     tics.append(text([L - 8, py(v) + 4], 'end', tic(v, y.step)));
   }
@@ -43,6 +43,9 @@ dea.plot = (host, spec) => {
   const lines = dea.svg('g', { 'clip-path': `url(#${id})` });
   const lineGroup = dea.svg('g', { class: 'grid' });
   lineGroup.append(dea.svg('path', { d: grid }));
+  for (const c of spec.cells ?? []) {
+    lines.append(dea.svg('rect', { x: px(c.x0), y: py(c.y1), width: px(c.x1) - px(c.x0), height: py(c.y0) - py(c.y1), 'shape-rendering': 'crispEdges', fill: c.fill, opacity: c.opacity }));
+  }
   for (const s of spec.series) {
     let d = '';
     let pen = false;
@@ -53,7 +56,15 @@ dea.plot = (host, spec) => {
       }
       pen = there;
     }
-    lines.append(dea.svg('path', { class: `line c${s.c}${s.dashed ? ' dashed' : ''}`, d }));
+    lines.append(dea.svg('path', { class: `line c${s.c}${s.dashed ? ' dashed' : ''}${s.thin ? ' thin' : ''}`, d }));
+  }
+  for (const s of spec.series.filter((one) => one.thin)) { // a thin line says its level on itself
+    const on = s.points.filter(([vx]) => Number.isFinite(vx));
+    const [vx, vy] = on[Math.floor(on.length / 2)];
+    lines.append(text([px(vx), py(vy) + 4], 'middle', s.title, { class: 'level' }));
+  }
+  if (spec.spot !== undefined) {
+    lines.append(dea.svg('circle', { class: 'spot', cx: px(spec.spot[0]), cy: py(spec.spot[1]), r: 6 }));
   }
   if (spec.cursor !== undefined) {
     const cursor = dea.svg('g', { class: 'cursor' });
@@ -70,7 +81,7 @@ dea.plot = (host, spec) => {
   );
   svg.append(clip, lineGroup, tics, labels, lines, dea.svg('path', { class: 'frame', d: `M${L} ${T}V${T + H}H${W - R}` }));
   const key = dea.element('ul', { class: 'key' });
-  for (const s of spec.series.filter((one) => one.title)) {
+  for (const s of spec.series.filter((one) => one.title && !one.thin)) {
     const sample = dea.svg('svg', { class: 'sample', viewBox: '0 0 28 14', 'aria-hidden': 'true' });
     sample.append(dea.svg('path', { class: `line c${s.c}${s.dashed ? ' dashed' : ''}`, d: 'M1 7H27' }));
     key.append(dea.element('li', {}, sample, s.title));

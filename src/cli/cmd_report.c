@@ -11,9 +11,11 @@
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  static const struct option options[] = {
-      {"output", required_argument, NULL, 'o'}, {"finger", required_argument, NULL, 'f'}, {0}};
-  const char *output = NULL;
+  static const struct option options[] = {{"output", required_argument, NULL, 'o'},
+                                          {"finger", required_argument, NULL, 'f'},
+                                          {"measurement", required_argument, NULL, 'm'},
+                                          {0}};
+  const char *output = NULL, *measurement = NULL;
   double finger = 500; // N/m: an assumption, which the page states
   int letter;
   opterr = 0;
@@ -24,6 +26,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
       if (!dea_units_read(cli->ctx, optarg, stiffness, &finger, why)) {
         return cli_usage_error(cli, &cmd_report, "--finger: %s", why);
       }
+    } else if (letter == 'm') {
+      measurement = optarg;
     } else if (letter == 'o') {
       output = optarg;
     } else {
@@ -39,7 +43,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   char *path = output != NULL              ? dea_copy_text(cli->ctx, output, SIZE_MAX)
                : dea_path_is_folder(first) ? dea_path_join(cli->ctx, first, "report.html")
                                            : dea_copy_text(cli->ctx, "report.html", SIZE_MAX);
-  const struct dea_report_options chosen = {.command = cli->command_line, .finger_N_per_m = finger};
+  const struct dea_report_options chosen = {
+      .command = cli->command_line, .finger_N_per_m = finger, .measurement = measurement};
   dea_status status = path == NULL ? DEA_E_MEMORY
                                    : dea_report_write(cli->ctx, (const char *const *)argv + optind,
                                                       count, &chosen, path);
@@ -54,7 +59,7 @@ const struct dea_command cmd_report = {
     .name = "report",
     .summary = "Write runs as one HTML page that needs no network",
     .usage =
-        "dea report RUN... [-o FILE]\n"
+        "dea report RUN... [--measurement FILE] [--finger STIFFNESS] [-o FILE]\n"
         "\n"
         "One file with everything: drawing, curves, limits, convergence, materials with their\n"
         "sources, provenance. Several runs are set beside each other.\n"

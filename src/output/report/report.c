@@ -171,6 +171,9 @@ dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], s
   }
   void *before = dea_c_locale_enter();
   dea_status status = DEA_OK;
+  if (options->measurement != NULL) { // before the runs: its findings are errors
+    status = dea_measurement_read(ctx, options->measurement, &report.measurement);
+  }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = dea_report_run_open(ctx, runs[i], (int)i + 1, &opened[i]);
   }
@@ -182,6 +185,7 @@ dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], s
     status = dea_file_write(ctx, path, report.text.data, report.text.length);
   }
   dea_text_free(&report.text);
+  dea_measurement_destroy(ctx, report.measurement);
   for (size_t i = 0; i < count; i++) {
     dea_report_run_close(ctx, &opened[i]);
   }

@@ -3,6 +3,7 @@
 #ifndef DEA_OUTPUT_REPORT_SECTION_H
 #define DEA_OUTPUT_REPORT_SECTION_H
 
+#include "output/csv.h"
 #include "output/report/html.h"
 #include "output/report/report.h"
 #include "output/store.h"
@@ -25,6 +26,7 @@ struct dea_report {
   const struct dea_report_options *options;
   struct dea_report_run *runs; // [count]
   size_t count;
+  struct dea_measurement *measurement; // NULL: none
   struct dea_text text;
   int level;   // of the headings of a run's sections
   int figures; // so far

@@ -116,6 +116,31 @@ static const struct compared {
 };
 enum { COMPARED = sizeof compared / sizeof compared[0] };
 
+/* Measured points with their standard uncertainty. */
+static dea_status add_measured(struct dea_report *report, const struct compared *what,
+                               struct dea_panel *panel)
+{
+  const struct dea_measurement *m = report->measurement;
+  int column = dea_point_column_find(what->key);
+  if (m == NULL || !dea_points_have(m->curve.points, m->curve.count, column)) {
+    return DEA_OK;
+  }
+  struct dea_series *series;
+  size_t n = m->curve.count;
+  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, n, &series));
+  series->style = DEA_ERROR_BARS;
+  series->colour = DEA_BLACK;
+  series->marker = 5;
+  snprintf(series->title, sizeof series->title, "measured");
+  for (size_t i = 0; i < n; i++) {
+    series->values[i] = 1e-3 * m->curve.points[i].voltage_V;
+    series->values[n + i] =
+        what->factor * (dea_point_get(&m->curve.points[i], column) + what->shift);
+    series->values[2 * n + i] = what->factor * dea_point_get(&m->std[i], column);
+  }
+  return DEA_OK;
+}
+
 static dea_status fill(struct dea_report *report, const struct compared *what,
                        struct dea_plot *plot)
 {
@@ -138,6 +163,7 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
     }
   }
   snprintf(panel->y_label, sizeof panel->y_label, "%s", what->label);
+  DEA_TRY(report->ctx, add_measured(report, what, panel));
   dea_figure_voltage_axis(panel);
   return DEA_OK;
 }
@@ -177,10 +203,13 @@ static void add_last_points(struct dea_report *report)
 
 dea_status dea_section_compare(struct dea_report *report)
 {
-  if (report->count < 2) {
+  if (report->count < 2 && report->measurement == NULL) {
     return DEA_OK;
   }
-  dea_section_begin(report, "compare", 0, "The runs beside each other");
+  dea_section_begin(report, "compare", 0,
+                    report->measurement == NULL ? "The runs beside each other"
+                    : report->count < 2         ? "Computed and measured"
+                                                : "The runs and a measurement beside each other");
   dea_text_add(&report->text, "<div class=\"plots\">");
   for (size_t i = 0; i < COMPARED; i++) {
     struct dea_plot *plot;
