@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // open, fstat
 #include "base/file.h"
 
+#include "base/text.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -93,4 +95,13 @@ dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, 
     *bytes = NULL;
   }
   return status;
+}
+
+char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name)
+{
+  const char *slash = strrchr(file, '/');
+  struct dea_text path = {.ctx = ctx};
+  dea_text_add(&path, "%.*s%s", slash != NULL && name[0] != '/' ? (int)(slash - file) + 1 : 0, file,
+               name);
+  return path.data;
 }

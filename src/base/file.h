@@ -10,4 +10,8 @@
 dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
                          size_t *length);
 
+/* Path of a file that is named in another one: it counts from that one's folder. Owned by the
+ * caller (dea_free); NULL on failure. */
+char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name);
+
 #endif

@@ -50,6 +50,10 @@ struct dea_field {
   /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
    * count_offset. */
   size_t list_min, list_max, element_size, count_offset;
+
+  /* Of a DEA_FIELD_SECTION: the tables of which one holds, for printing; ended by NULL, NULL: none.
+   */
+  const struct dea_record *const *kinds;
 };
 
 struct dea_record {

@@ -78,6 +78,13 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
     if (field->kind == DEA_FIELD_RECORD) {
       walk(field->record, dea_text_get(&inner), print, out);
     }
+    for (size_t k = 0; field->kinds != NULL && field->kinds[k] != NULL; k++) {
+      struct dea_text kind = {.ctx = out->ctx};
+      dea_text_add(&kind, "%s(%s)", dea_text_get(&inner), field->kinds[k]->name);
+      out->failed = out->failed || kind.failed;
+      walk(field->kinds[k], dea_text_get(&kind), print, out);
+      dea_text_free(&kind);
+    }
     dea_text_free(&inner);
   }
 }
@@ -171,13 +178,26 @@ static json_t *choice_json(const struct dea_field *field)
   return json_pack("{s:o}", "enum", values);
 }
 
+/* One of several tables, told apart by the key "kind". */
+static json_t *kinds_json(const struct dea_field *field)
+{
+  json_t *any = json_array();
+  for (size_t k = 0; field->kinds[k] != NULL; k++) {
+    json_t *record = record_json(field->kinds[k]);
+    json_t *properties = json_object_get(record, "properties");
+    json_object_set_new(properties, "kind", json_pack("{s:s}", "const", field->kinds[k]->name));
+    json_array_append_new(any, record);
+  }
+  return json_pack("{s:s, s:o}", "type", "object", "oneOf", any);
+}
+
 static json_t *value_json(const struct dea_field *field)
 {
   switch (field->kind) {
   case DEA_FIELD_RECORD:
     return record_json(field->record);
   case DEA_FIELD_SECTION:
-    return json_pack("{s:s}", "type", "object");
+    return field->kinds != NULL ? kinds_json(field) : json_pack("{s:s}", "type", "object");
   case DEA_FIELD_CHOICE:
     return choice_json(field);
   case DEA_FIELD_LABEL:

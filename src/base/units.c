@@ -75,6 +75,8 @@ static const struct {
     {"J", "an energy"},
     {"F", "a capacitance"},
     {"ohm", "a resistance"},
+    {"ohm m", "a resistivity"},
+    {"V/s", "a rate of voltage"},
 };
 
 static const char *dimension_name(const char *unit)
@@ -200,10 +202,15 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
   bool known = from != NULL && to != NULL && ut_are_convertible(from, to) != 0 &&
                !(number_due && strcmp(unit, example_unit(due)) != 0) &&
                !(strcmp(due->unit, "radian") == 0 && percent);
+  cv_converter *converter = known ? ut_get_converter(from, to) : NULL;
+  if (converter != NULL && cv_convert_double(converter, 2) < cv_convert_double(converter, 1)) {
+    cv_free(converter); // udunits takes 2 s for 0.5 Hz; who writes that means something else
+    converter = NULL;
+    known = false;
+  }
   if (!known) {
     explain_unit(system, text, unit, from, due, why);
   }
-  cv_converter *converter = known ? ut_get_converter(from, to) : NULL;
   if (converter != NULL) {
     *si = cv_convert_double(converter, value);
     cv_free(converter);

@@ -6,20 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Path of a file that is named in another one: it counts from that one's folder. */
-static char *path_beside(struct dea_context *ctx, const char *file, const char *name)
-{
-  const char *slash = strrchr(file, '/');
-  struct dea_text path = {.ctx = ctx};
-  dea_text_add(&path, "%.*s%s", slash != NULL && name[0] != '/' ? (int)(slash - file) + 1 : 0, file,
-               name);
-  return path.data;
-}
-
 static dea_status read_other_file(struct dea_context *ctx, const struct dea_design_source *source,
                                   struct dea_design_variant *variant)
 {
-  char *bytes = NULL, *path = path_beside(ctx, source->name, variant->file.text);
+  char *bytes = NULL, *path = dea_path_beside(ctx, source->name, variant->file.text);
   struct dea_design_source other = *source;
   if (path == NULL) {
     return DEA_E_MEMORY;

@@ -1,16 +1,16 @@
 /* Reader of measurements (see dea_measurement_read in csv.h). */
 #include "output/csv.h"
 
+#include "base/csv_line.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "output/file.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { FIELD_MAX = 200, FIELDS_MAX = 64, FILE_MAX = 100000000, FINDINGS_MAX = 20 };
+enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 64, FILE_MAX = 100000000, FINDINGS_MAX = 20 };
 
 enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES };
 
@@ -30,7 +30,7 @@ struct reader {
   size_t errors;
 };
 
-/* Names that people use beside the headers and keys of the list; folded (see fold). */
+/* Names that people use beside the headers and keys of the list; folded (see dea_csv_fold). */
 static const struct {
   const char *name, *key;
 } other_names[] = {
@@ -54,91 +54,17 @@ static bool one_more_error(struct reader *r)
   return ++r->errors <= FINDINGS_MAX;
 }
 
-/* Takes the field at *cursor (trimmed, quotes off) and moves to the next; false at the line's end.
- * column: where the field's text starts, from 1. */
-static bool next_field(const char *line, const char **cursor, char separator, char *out,
-                       size_t *column)
-{
-  const char *c = *cursor;
-  if (c == NULL) {
-    return false;
-  }
-  while ((*c == ' ' || *c == '\t') && *c != separator) {
-    c++;
-  }
-  *column = (size_t)(c - line) + 1;
-  bool quoted = *c == '"';
-  c += quoted;
-  size_t n = 0;
-  for (; *c != '\0' && (quoted || *c != separator); c++) {
-    if (quoted && *c == '"') {
-      if (c[1] != '"') {
-        quoted = false;
-        continue;
-      }
-      c++;
-    }
-    if (n < FIELD_MAX - 1) {
-      out[n++] = *c;
-    }
-  }
-  while (n > 0 && isspace((unsigned char)out[n - 1])) {
-    n--;
-  }
-  out[n] = '\0';
-  *cursor = *c == '\0' ? NULL : c + 1;
-  return true;
-}
-
-/* Lower case, '_' and '-' as blanks, no blanks at the ends or twice. */
-static void fold(const char *text, char *out)
-{
-  size_t n = 0;
-  for (; *text != '\0' && n < FIELD_MAX - 1; text++) {
-    unsigned char c = (unsigned char)*text;
-    c = c == '_' || c == '-' || isspace(c) ? ' ' : (unsigned char)tolower(c);
-    if (c != ' ' || (n > 0 && out[n - 1] != ' ')) {
-      out[n++] = (char)c;
-    }
-  }
-  while (n > 0 && out[n - 1] == ' ') {
-    n--;
-  }
-  out[n] = '\0';
-}
-
-/* Parts "z centre std (um)" into "z centre", "um", true. */
-static void split_title(const char *title, char *name, char *unit, bool *is_std)
-{
-  char bare[FIELD_MAX];
-  size_t open = strcspn(title, "([");
-  size_t close = open + strcspn(title + open, ")]");
-  unit[0] = '\0';
-  if (title[open] != '\0' && title[close] != '\0') {
-    snprintf(unit, FIELD_MAX, "%.*s", (int)(close - open - 1), title + open + 1);
-    snprintf(bare, sizeof bare, "%.*s %s", (int)open, title, title + close + 1);
-  } else {
-    snprintf(bare, sizeof bare, "%s", title);
-  }
-  fold(bare, name);
-  size_t n = strlen(name);
-  *is_std = n > 4 && strcmp(name + n - 4, " std") == 0;
-  if (*is_std) {
-    name[n - 4] = '\0';
-  }
-}
-
 /* Column of a folded name, or -1; by_key: it is the key, whose name carries the SI unit. */
 static int find_column(const char *name, bool *by_key)
 {
   char folded[FIELD_MAX];
   *by_key = false;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    fold(dea_point_columns[c].header, folded);
+    dea_csv_fold(dea_point_columns[c].header, folded);
     if (strcmp(folded, name) == 0) {
       return c;
     }
-    fold(dea_point_columns[c].key, folded);
+    dea_csv_fold(dea_point_columns[c].key, folded);
     if (strcmp(folded, name) == 0) {
       *by_key = true;
       return c;
@@ -158,8 +84,8 @@ static void unknown_title(struct reader *r, const char *title, const char *name,
   const char *candidates[2 * DEA_LOAD_POINT_COLUMNS + OTHER_NAMES];
   int count = 0;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++, count += 2) {
-    fold(dea_point_columns[c].header, store[count]);
-    fold(dea_point_columns[c].key, store[count + 1]);
+    dea_csv_fold(dea_point_columns[c].header, store[count]);
+    dea_csv_fold(dea_point_columns[c].key, store[count + 1]);
     candidates[count] = store[count];
     candidates[count + 1] = store[count + 1];
   }
@@ -218,8 +144,13 @@ static void read_title(struct reader *r, const char *title, size_t column,
                        struct field_meaning *field)
 {
   char name[FIELD_MAX], unit[FIELD_MAX];
-  bool is_std, by_key;
-  split_title(title, name, unit, &is_std);
+  bool by_key;
+  dea_csv_split_title(title, name, unit);
+  size_t length = strlen(name);
+  bool is_std = length > 4 && strcmp(name + length - 4, " std") == 0;
+  if (is_std) {
+    name[length - 4] = '\0';
+  }
   *field = (struct field_meaning){.role = is_std ? ROLE_STD : ROLE_VALUE, .factor = 1.0};
   if (strcmp(name, "stable") == 0 || strcmp(name, "unstable modes") == 0) {
     field->role = name[0] == 's' ? ROLE_STABLE : ROLE_MODES;
@@ -240,19 +171,14 @@ static void read_title(struct reader *r, const char *title, size_t column,
   }
 }
 
-static void choose_separator(struct reader *r, const char *line)
-{
-  r->separator = strchr(line, ';') != NULL ? ';' : strchr(line, '\t') != NULL ? '\t' : ',';
-}
-
 static void read_header(struct reader *r, const char *line)
 {
   const char *cursor = line;
   char title[FIELD_MAX];
   size_t column;
   bool has_voltage = false;
-  choose_separator(r, line);
-  while (next_field(line, &cursor, r->separator, title, &column)) {
+  r->separator = dea_csv_separator(line);
+  while (dea_csv_field(line, &cursor, r->separator, title, &column)) {
     if (r->field_count == FIELDS_MAX) {
       if (one_more_error(r)) {
         dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "more than %d columns", FIELDS_MAX);
@@ -267,22 +193,6 @@ static void read_header(struct reader *r, const char *line)
   if (!has_voltage && one_more_error(r)) {
     dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "no column of voltages such as 'V (kV)'");
   }
-}
-
-/* Number of a whole field; NAN for an empty one. */
-static bool read_number(const struct reader *r, char *text, double *value)
-{
-  *value = NAN;
-  if (text[0] == '\0') {
-    return true;
-  }
-  char *comma = strchr(text, ',');
-  if (comma != NULL && r->separator != ',' && strchr(text, '.') == NULL) {
-    *comma = '.';
-  }
-  const char *end;
-  *value = dea_text_to_double(text, &end);
-  return end != text && *end == '\0' && !isinf(*value);
 }
 
 static void set_field(const struct field_meaning *field, double value, struct dea_load_point *point,
@@ -313,7 +223,7 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
   size_t column = 1, i = 0, before = r->errors;
   bool more = false;
   *point = *std = dea_load_point_empty();
-  for (; next_field(line, &cursor, r->separator, text, &column); i++) {
+  for (; dea_csv_field(line, &cursor, r->separator, text, &column); i++) {
     double value;
     if (i == r->field_count) {
       more = true;
@@ -321,7 +231,7 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
     }
     char shown[FIELD_MAX];
     memcpy(shown, text, sizeof shown);
-    if (!read_number(r, text, &value)) {
+    if (!dea_csv_number(r->separator, text, &value)) {
       if (one_more_error(r)) {
         dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "'%s' is not a number", shown);
       }
@@ -360,19 +270,7 @@ static dea_status read_lines(struct reader *r, char *text, struct dea_measuremen
 {
   size_t std_room = 0;
   bool has_header = false;
-  char *next = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; // byte order mark
-  while (next != NULL && *next != '\0') {
-    char *line = next;
-    next = strchr(line, '\n');
-    if (next != NULL) {
-      *next++ = '\0';
-    }
-    line[strcspn(line, "\r")] = '\0';
-    r->line++;
-    size_t blank = strspn(line, " \t,;\"");
-    if (line[blank] == '\0' || line[strspn(line, " \t")] == '#') {
-      continue;
-    }
+  for (char *line; (line = dea_csv_line(&text, &r->line)) != NULL;) {
     if (!has_header) {
       has_header = true;
       read_header(r, line);

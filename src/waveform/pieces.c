@@ -1,0 +1,185 @@
+/* Waveforms of straight pieces, and what is asked of every waveform. Knot k of cycle n of a block
+ * is at start + (n + phase)/f + offset: one formula everywhere, so that a corner found is the very
+ * time at which the value bends. */
+#include "waveform/wave_make.h"
+
+#include <math.h>
+
+/* A knot: block, cycle, number within the cycle. */
+struct spot {
+  const struct dea_wave_block *block;
+  size_t cycle, knot;
+};
+
+static double time_at(const struct dea_waveform *w, const struct dea_wave_block *block,
+                      size_t cycle, size_t knot)
+{
+  const struct dea_wave_knot *k = &w->knots[block->first + knot];
+  return block->start_s + ((double)cycle + k->phase) / block->frequency_Hz + k->offset_s;
+}
+
+/* Whether what is at `at` counts at `time`: from it on, or (before) strictly before it. */
+static bool reached(double at, double time, bool before)
+{
+  return before ? at < time : at <= time;
+}
+
+/* The last knot at or before a time (before: strictly before it), at least the first one. */
+static struct spot find_spot(const struct dea_waveform *w, double time, bool before)
+{
+  size_t low = 0, high = w->block_count;
+  while (high - low > 1) {
+    size_t middle = low + (high - low) / 2;
+    *(reached(time_at(w, &w->blocks[middle], 0, 0), time, before) ? &low : &high) = middle;
+  }
+  struct spot spot = {.block = &w->blocks[low]};
+  const struct dea_wave_block *b = spot.block;
+  double cycles = floor((time - b->start_s) * b->frequency_Hz);
+  spot.cycle = cycles <= 0 ? 0 : cycles >= (double)(b->cycles - 1) ? b->cycles - 1 : (size_t)cycles;
+  while (spot.cycle > 0 && !reached(time_at(w, b, spot.cycle, 0), time, before)) {
+    spot.cycle--; // the product was rounded up
+  }
+  while (spot.cycle + 1 < b->cycles && reached(time_at(w, b, spot.cycle + 1, 0), time, before)) {
+    spot.cycle++;
+  }
+  low = 0;
+  high = b->count;
+  while (high - low > 1) {
+    size_t middle = low + (high - low) / 2;
+    *(reached(time_at(w, b, spot.cycle, middle), time, before) ? &low : &high) = middle;
+  }
+  spot.knot = low;
+  return spot;
+}
+
+static double piece_value(const struct dea_waveform *w, double time, bool before)
+{
+  struct spot spot = find_spot(w, time, before);
+  const struct dea_wave_knot *knot = &w->knots[spot.block->first + spot.knot];
+  if (spot.knot + 1 == spot.block->count) {
+    return knot->value_V;
+  }
+  double from = time_at(w, spot.block, spot.cycle, spot.knot);
+  double to = time_at(w, spot.block, spot.cycle, spot.knot + 1);
+  double share = to > from ? (time - from) / (to - from) : 1;
+  return share >= 1   ? knot[1].value_V
+         : share <= 0 ? knot->value_V
+                      : knot->value_V + share * (knot[1].value_V - knot->value_V);
+}
+
+static double next_knot(const struct dea_waveform *w, double time)
+{
+  struct spot spot = find_spot(w, time, false);
+  const struct dea_wave_block *b = spot.block, *last = w->blocks + w->block_count;
+  for (size_t k = spot.knot + 1; k < b->count; k++) {
+    double at = time_at(w, b, spot.cycle, k);
+    if (at > time) {
+      return at;
+    }
+  }
+  for (size_t n = spot.cycle + 1; n < b->cycles; n++) {
+    double at = time_at(w, b, n, 0);
+    if (at > time) {
+      return at;
+    }
+  }
+  return b + 1 < last ? time_at(w, b + 1, 0, 0) : INFINITY;
+}
+
+static double value_of(const struct dea_waveform *w, double time, bool before)
+{
+  double at = fmin(fmax(time, 0), w->end_s);
+  return w->type->value != NULL ? w->type->value(w, at) : piece_value(w, at, before && at >= time);
+}
+
+double dea_waveform_value(const struct dea_waveform *waveform, double time_s)
+{
+  return value_of(waveform, time_s, false);
+}
+
+double dea_waveform_before(const struct dea_waveform *waveform, double time_s)
+{
+  return value_of(waveform, time_s, true);
+}
+
+double dea_waveform_corner(const struct dea_waveform *waveform, double time_s)
+{
+  double next = waveform->block_count > 0 ? next_knot(waveform, time_s) : INFINITY;
+  return waveform->end_s > time_s ? fmin(next, waveform->end_s) : INFINITY;
+}
+
+bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
+                        struct dea_wave_cycle *out)
+{
+  if (waveform->type->cycle != NULL) {
+    return waveform->type->cycle(waveform, number, out);
+  }
+  for (size_t i = 0; i < waveform->block_count; i++) {
+    const struct dea_wave_block *b = &waveform->blocks[i];
+    if (number < b->cycles) {
+      out->start_s = b->start_s + (double)number / b->frequency_Hz;
+      out->end_s = b->start_s + (double)(number + 1) / b->frequency_Hz;
+      out->level_V = 0;
+      for (size_t k = 0; k < b->count; k++) {
+        double value = waveform->knots[b->first + k].value_V;
+        out->level_V = fabs(value) > fabs(out->level_V) ? value : out->level_V;
+      }
+      return true;
+    }
+    number -= b->cycles;
+  }
+  return false;
+}
+
+// Making -----------------------------------------------------------------------------------------
+
+dea_status dea_wave_room(struct dea_context *ctx, struct dea_waveform *waveform, size_t knots,
+                         size_t blocks)
+{
+  waveform->ctx = ctx;
+  waveform->knots = dea_alloc(ctx, knots, sizeof *waveform->knots);
+  waveform->blocks = dea_alloc(ctx, blocks, sizeof *waveform->blocks);
+  return waveform->knots != NULL && waveform->blocks != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+void dea_wave_add(struct dea_waveform *waveform, double phase, double offset_s, double value_V)
+{
+  waveform->knots[waveform->knot_count++] = (struct dea_wave_knot){phase, offset_s, value_V};
+  waveform->blocks[waveform->block_count - 1].count++;
+}
+
+void dea_wave_open(struct dea_waveform *waveform, double start_s, double frequency_Hz,
+                   size_t cycles)
+{
+  waveform->blocks[waveform->block_count++] =
+      (struct dea_wave_block){start_s, frequency_Hz, cycles, waveform->knot_count, 0};
+}
+
+void dea_wave_add_pulses(struct dea_waveform *waveform, double start_s,
+                         const struct dea_wave_pulses *pulses)
+{
+  dea_wave_open(waveform, start_s, pulses->frequency_Hz, pulses->cycles);
+  dea_wave_add(waveform, 0, 0, pulses->low_V);
+  dea_wave_add(waveform, 0, pulses->rise_s, pulses->high_V);
+  dea_wave_add(waveform, pulses->duty, 0, pulses->high_V);
+  dea_wave_add(waveform, pulses->duty, pulses->rise_s, pulses->low_V);
+}
+
+dea_status dea_wave_check_rise(const struct dea_reader *reader, const struct dea_quantity *rise_s,
+                               double frequency_Hz, double duty)
+{
+  double room = fmin(duty, 1 - duty) / frequency_Hz;
+  if (!(rise_s->si > room)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(reader->ctx, DEA_ERROR, rise_s->place,
+                         "rise_time: %g s is longer than the %g s that the shorter part of a cycle "
+                         "lasts",
+                         rise_s->si, room);
+}
+
+double dea_wave_sine_of(double cycles)
+{
+  static const double two_pi = 6.28318530717958647692;
+  return sin(two_pi * (cycles - floor(cycles))); // exact where the cycles are whole
+}

@@ -1,0 +1,84 @@
+/* Waveforms: a voltage for every time from 0 on, with the times at which it bends or jumps.
+ *
+ * A waveform knows nothing of what it drives: a study plays it to a model, a laboratory to an
+ * amplifier. A kind is one file wave_<kind>.c and one line in wave_list.h. Times are found from
+ * whole numbers of cycles, never by adding up, so that nothing drifts over thousands of cycles. */
+#ifndef DEA_WAVEFORM_WAVEFORM_H
+#define DEA_WAVEFORM_WAVEFORM_H
+
+#include "base/schema.h"
+
+struct dea_waveform;
+
+/* One cycle of a waveform, from 0: at what time, and at what voltage it is driven. */
+struct dea_wave_cycle {
+  double start_s, end_s;
+  double level_V; // voltage farthest from 0 within it
+};
+
+/* A corner of a waveform of straight pieces: at (cycle + phase)/frequency + offset_s after the
+ * start of its block. Two at one time are a jump. */
+struct dea_wave_knot {
+  double phase, offset_s, value_V;
+};
+/* The same knots cycle after cycle; between the last one and what follows the value stays. */
+struct dea_wave_block {
+  double start_s, frequency_Hz;
+  size_t cycles, first, count; // knots [first, first + count) of the waveform
+};
+
+/* A kind of waveform. value and cycle are NULL for one that is made of straight pieces. */
+struct dea_wave_type {
+  const char *name;                // "square"
+  const struct dea_record *record; // its keys, "kind" among them
+  size_t raw_size;                 // of what they are read into
+  /* Makes the waveform of what was read (zeroed but for `type`); beside: the file from whose folder
+   * paths count. What is wrong becomes findings. */
+  dea_status (*make)(const struct dea_reader *reader, const void *raw, const char *beside,
+                     struct dea_waveform *out);
+  double (*value)(const struct dea_waveform *waveform, double time_s);
+  bool (*cycle)(const struct dea_waveform *waveform, size_t number, struct dea_wave_cycle *out);
+};
+
+enum { DEA_WAVE_NUMBERS_MAX = 8 };
+
+struct dea_waveform {
+  const struct dea_wave_type *type;
+  struct dea_context *ctx; // that it was made with; for dea_waveform_destroy
+  double end_s;            // from here on the last value stays
+  double longest_step_s;   // that still follows a curved one; INFINITY between straight corners
+  struct dea_wave_knot *knots;
+  struct dea_wave_block *blocks;
+  size_t knot_count, block_count;
+  double numbers[DEA_WAVE_NUMBERS_MAX]; // of a curved kind
+};
+
+/* Reads the section `node` with the table of its kind. Errors are findings, *out is then NULL and
+ * the status DEA_OK, as in dea_schema_read. out: owned by the caller. */
+dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_node *node,
+                             const char *path, const char *beside, struct dea_waveform **out);
+/* NULL is fine. */
+void dea_waveform_destroy(struct dea_waveform *waveform);
+
+/* Voltage [V] from time_s >= 0 on (where it jumps: after the jump), and just before time_s > 0. */
+double dea_waveform_value(const struct dea_waveform *waveform, double time_s);
+double dea_waveform_before(const struct dea_waveform *waveform, double time_s);
+/* The next time after time_s at which the waveform bends, jumps or ends; INFINITY after its end. */
+double dea_waveform_corner(const struct dea_waveform *waveform, double time_s);
+/* Cycle of that number, counted over the whole waveform; false when it has no more of them. */
+bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
+                        struct dea_wave_cycle *out);
+
+/* What a supply makes of a waveform when its output, 0 V before the start, can change by
+ * slew_V_per_s > 0 at most: straight pieces up to until_s, with the corners at which the supply
+ * falls behind and catches up. Of a curved waveform it sees eighty chords a cycle. out: owned by
+ * the caller; NULL where the waveform is never too fast and plays as it is. */
+dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform *waveform,
+                              double slew_V_per_s, double until_s, struct dea_waveform **out);
+
+/* All kinds in the order of the list, and their tables for printing, ended by NULL; static storage.
+ */
+const struct dea_wave_type *const *dea_wave_all(size_t *count);
+extern const struct dea_record *const dea_wave_records[];
+
+#endif
