@@ -58,7 +58,7 @@ static void test_one_error_each(void **state)
       {"dea: 1\nfilm: {material: film, thickness: 100 um, thicknes: 1 um}\n" REST,
        {2, 43, "unknown key 'thicknes'; did you mean 'thickness'?"}},
       {"dea: 1\nfilm: {material: film, thickness: 100 um, colour: red}\n" REST,
-       {2, 43, "known here are: material, law, permittivity, breakdown, thickness"}},
+       {2, 43, "known here are: material, law, permittivity, breakdown, viscosity, thickness"}},
       {"dea: 1\nfilm: {material: film}\n" REST, {2, 1, "section 'film' lacks 'thickness'"}},
       {"dea: 1\nfilm: {material: film, thickness: }\n" REST, {2, 35, "thickness has no value"}},
       {"dea: 1\nfilm: {material: film, thickness: [1 um]}\n" REST,

@@ -9,6 +9,7 @@
 #include "base/value.h"
 #include "design/fabrication.h"
 #include "material/catalogue.h"
+#include "waveform/waveform.h"
 
 enum {
   DEA_DESIGN_VERSION = 1,
@@ -50,6 +51,7 @@ struct dea_design {
   struct {                                         // film
     struct dea_label material;                     // catalogue or inline name
     struct dea_label law, permittivity, breakdown; // ids of sets, "" = the first
+    struct dea_label viscosity;                    // the same, "none": without
     struct dea_quantity thickness_m;               // unstretched
   } film;
   struct dea_quantity pre_stretch; // equibiaxial, >= 1
@@ -83,6 +85,13 @@ struct dea_design {
   struct dea_choice gravity;          // enum dea_gravity
   struct dea_fabrication fabrication; // what the workshop needs
 
+  struct {                          // drive: what the electrodes are connected to
+    const struct dea_node *section; // of the waveform; lent by the document; NULL: none
+    struct dea_waveform *waveform;  // owned; NULL: none
+    struct dea_quantity series_resistance_ohm;
+    struct dea_quantity current_limit_A, slew_limit_V_per_s; // absent: none
+  } drive;
+
   struct dea_material_data *materials; // [material_count] inline ones of this file, owned
   size_t material_count;
 
@@ -107,6 +116,14 @@ struct dea_design {
       size_t refinement_count, voltage_count;
       struct dea_quantity tolerance; // relative
     } convergence;
+    struct {                              // study transient
+      struct dea_quantity until_s;        // absent: the waveform's end
+      struct dea_quantity tolerance;      // error of a step over the largest motion so far
+      struct dea_quantity longest_step_s; // absent: a twentieth of a cycle
+      struct dea_quantity interval_s;     // of points that are kept; absent: every step
+      struct dea_choice inertia;          // 0: no, 1: yes
+      struct dea_quantity rho_inf;        // spectral radius of generalised alpha
+    } transient;
     struct {                                                // study of vibrations
       bool asked;                                           // the section is there
       struct dea_quantity count;                            // modes

@@ -136,6 +136,19 @@ static dea_status take_convergence(struct dea_context *ctx, struct dea_design *d
   return DEA_OK;
 }
 
+static dea_status take_drive(const struct dea_reader *reader, struct dea_design *design)
+{
+  struct dea_context *ctx = reader->ctx;
+  if (design->drive.section != NULL) {
+    DEA_TRY(ctx, dea_waveform_read(reader, design->drive.section, "drive.waveform", design->file,
+                                   &design->drive.waveform));
+  } else if (has_section(design, "transient")) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, design->compute.transient.until_s.place,
+                                 "transient: without drive.waveform nothing happens in time"));
+  }
+  return DEA_OK;
+}
+
 /* Frequencies rise. */
 static dea_status take_vibration(struct dea_context *ctx, struct dea_design *design)
 {
@@ -260,6 +273,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
     DEA_TRY(ctx, take_voltages(ctx, raw));
     DEA_TRY(ctx, take_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
+    DEA_TRY(ctx, take_drive(&reader, design));
     DEA_TRY(ctx, take_convergence(ctx, design));
     DEA_TRY(ctx, take_vibration(ctx, design));
     take_figures(raw);
@@ -279,6 +293,7 @@ static void clear_design(struct dea_context *ctx, struct dea_design *design)
   for (size_t i = 0; i < design->compute.compare_count; i++) {
     dea_design_destroy(ctx, design->compute.compare[i].design);
   }
+  dea_waveform_destroy(design->drive.waveform);
   dea_free(ctx, design->compute.voltages_V);
   dea_free(ctx, design->materials);
   dea_listing_free(ctx, &design->values);

@@ -63,6 +63,34 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_design *d
   return DEA_OK;
 }
 
+/* What a user should know of the film's data when it is driven. */
+static dea_status check_film_in_time(struct dea_context *ctx, const struct dea_design *design,
+                                     const struct dea_material *film)
+{
+  bool chosen = design->film.viscosity.origin != DEA_ABSENT;
+  struct dea_place place = chosen ? design->film.viscosity.place : design->film.material.place;
+  if (design->drive.waveform == NULL) {
+    return DEA_OK;
+  }
+  if (film->branch_count == 0 && !chosen) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, place,
+                                 "the viscosity of '%s' is unknown: it follows without delay",
+                                 film->name));
+  }
+  if (film->viscosity_assumed) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, place,
+                                 "the viscosity of '%s' (%s) is a plausible assumption, nobody "
+                                 "measured it: times and creep show what may be, not what is",
+                                 film->name, film->viscosity_id));
+  }
+  if (film->resistivity_ohm_m == 0) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_NOTE, design->film.material.place,
+                            "the resistivity of '%s' is unknown: no charge leaks", film->name));
+  }
+  return DEA_OK;
+}
+
 static dea_status build_film(struct dea_context *ctx, const struct dea_design *design,
                              struct dea_device *device)
 {
@@ -73,9 +101,12 @@ static dea_status build_film(struct dea_context *ctx, const struct dea_design *d
       .law_place = design->film.law.place,
       .permittivity_place = design->film.permittivity.place,
       .breakdown_place = design->film.breakdown.place,
+      .viscosity = design->film.viscosity.text,
+      .viscosity_place = design->film.viscosity.place,
   };
   DEA_TRY(ctx, resolve(ctx, design, &design->film.material, &choice, &device->film));
-  return check_film(ctx, design, &device->film);
+  DEA_TRY(ctx, check_film(ctx, design, &device->film));
+  return check_film_in_time(ctx, design, &device->film);
 }
 
 static dea_status build_electrode(struct dea_context *ctx, const struct dea_design *design,

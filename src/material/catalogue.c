@@ -253,6 +253,29 @@ static void take_law(const struct dea_law_set *set, struct dea_material *out)
   }
 }
 
+/* Branches as moduli; a ratio is of the law's shear modulus at rest. */
+static dea_status take_viscosity(struct dea_context *ctx, const struct dea_viscosity_set *set,
+                                 struct dea_material *out)
+{
+  snprintf(out->viscosity_id, sizeof out->viscosity_id, "%.63s", set->id.text);
+  out->viscosity_assumed = set->assumed.value == 1;
+  out->branch_count = set->branch_count;
+  for (size_t i = 0; i < set->branch_count; i++) {
+    const struct dea_branch_data *branch = &set->branches[i];
+    bool relative = branch->ratio.origin != DEA_ABSENT;
+    if (relative && out->law == NULL) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, branch->ratio.place,
+                                   "ratio: '%s' has no law whose modulus it could be a share of",
+                                   out->name));
+      return dea_fail(ctx, DEA_E_DESIGN, "a branch of '%s' has no modulus", out->name);
+    }
+    out->branches[i].time_s = branch->time_s.si;
+    out->branches[i].modulus_Pa =
+        relative ? branch->ratio.si * out->law->shear_modulus(out->param) : branch->modulus_Pa.si;
+  }
+  return DEA_OK;
+}
+
 dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
                                const struct dea_material_choice *choice, struct dea_material *out)
 {
@@ -266,7 +289,11 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
   int breakdown =
       find_set(ctx, "breakdown field", data, choice->breakdown, choice->breakdown_place,
                &data->breakdown[0].id, data->breakdown_count, sizeof data->breakdown[0]);
-  if (law < 0 || permittivity < 0 || breakdown < 0) {
+  bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity, "none") != 0;
+  int viscosity =
+      find_set(ctx, "viscosity", data, viscous ? choice->viscosity : NULL, choice->viscosity_place,
+               &data->viscosity[0].id, data->viscosity_count, sizeof data->viscosity[0]);
+  if (law < 0 || permittivity < 0 || breakdown < 0 || viscosity < 0) {
     return dea_context_status(ctx);
   }
   if (data->law_count > 0) {
@@ -281,6 +308,12 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
     bool known = !isnan(set->exponent.si);
     out->breakdown =
         (struct dea_breakdown){true, set->at_rest_V_per_m.si, known ? set->exponent.si : 0, known};
+  }
+  if (viscous && data->viscosity_count > 0) {
+    DEA_TRY(ctx, take_viscosity(ctx, &data->viscosity[viscosity], out));
+  }
+  if (data->has_resistivity) {
+    out->resistivity_ohm_m = data->resistivity.value_ohm_m.si;
   }
   if (data->has_density) {
     out->density_kg_per_m3 = data->density.value_kg_per_m3.si;

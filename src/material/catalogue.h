@@ -47,6 +47,19 @@ struct dea_breakdown_set {
   struct dea_data_notes notes;
 };
 
+/* One branch of a viscosity: shear modulus as such or as a share of the law's at rest. */
+struct dea_branch_data {
+  struct dea_quantity modulus_Pa, ratio, time_s;
+};
+
+struct dea_viscosity_set {
+  struct dea_label id;
+  struct dea_choice assumed; // 1: plausible numbers, not measured ones
+  struct dea_branch_data branches[DEA_BRANCHES_MAX];
+  size_t branch_count;
+  struct dea_data_notes notes;
+};
+
 enum dea_material_kind { DEA_ELASTOMER, DEA_PLASTIC, DEA_ELECTRODE_MATERIAL };
 
 struct dea_material_data {
@@ -63,6 +76,13 @@ struct dea_material_data {
     struct dea_quantity young_modulus_Pa, poisson_ratio;
     struct dea_data_notes notes;
   } elastic;
+  bool has_resistivity;
+  struct {
+    struct dea_quantity value_ohm_m;
+    struct dea_data_notes notes;
+  } resistivity;
+  struct dea_viscosity_set viscosity[DEA_MATERIAL_SETS_MAX];
+  size_t viscosity_count;
   struct dea_law_set laws[DEA_MATERIAL_SETS_MAX];
   struct dea_permittivity_set permittivity[DEA_MATERIAL_SETS_MAX];
   struct dea_breakdown_set breakdown[DEA_MATERIAL_SETS_MAX];
@@ -96,10 +116,11 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct 
 /* NULL is fine. */
 void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
 
-/* Which sets of a material are wanted; "" or NULL for the first. place: of what named it. */
+/* Which sets of a material are wanted; "" or NULL for the first, and "none" for no viscosity.
+ * place: of what named it. */
 struct dea_material_choice {
-  const char *law, *permittivity, *breakdown;
-  struct dea_place law_place, permittivity_place, breakdown_place;
+  const char *law, *permittivity, *breakdown, *viscosity;
+  struct dea_place law_place, permittivity_place, breakdown_place, viscosity_place;
 };
 
 /* The material as the models use it. A set that does not exist gives DEA_E_DESIGN after a finding

@@ -129,6 +129,80 @@ static const struct dea_field density_fields[] = {
     NOTE_FIELDS(struct dea_material_data, density.notes),
 };
 
+static const struct dea_field resistivity_fields[] = {
+    {.key = "value",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_material_data, resistivity.value_ohm_m),
+     .unit = "ohm m",
+     .above_min = true,
+     .max = 1e30,
+     .required = true,
+     .doc = "volume resistivity",
+     .example = "1e12 ohm m"},
+    NOTE_FIELDS(struct dea_material_data, resistivity.notes),
+};
+
+static const struct dea_field branch_fields[] = {
+    {.key = "modulus",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_branch_data, modulus_Pa),
+     .unit = "Pa",
+     .above_min = true,
+     .max = 1e12,
+     .required = true,
+     .group = 1,
+     .option = 1,
+     .doc = "shear modulus of the branch",
+     .example = "26.06 kPa"},
+    {.key = "ratio",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_branch_data, ratio),
+     .unit = "1",
+     .above_min = true,
+     .max = 1e6,
+     .group = 1,
+     .option = 2,
+     .doc = "shear modulus of the branch over that of the law at rest",
+     .example = "0.05"},
+    {.key = "time",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_branch_data, time_s),
+     .unit = "s",
+     .above_min = true,
+     .max = 1e12,
+     .required = true,
+     .doc = "relaxation time of the branch",
+     .example = "0.6074 s"},
+};
+
+static const struct dea_record branch_record = {"branch", "spring and dashpot in series",
+                                                branch_fields, COUNT(branch_fields)};
+
+static const char *const no_yes[] = {"no", "yes", NULL};
+
+static const struct dea_field viscosity_fields[] = {
+    ID_FIELD(struct dea_viscosity_set, "set"),
+    {.key = "branches",
+     .kind = DEA_FIELD_RECORD,
+     .offset = offsetof(struct dea_viscosity_set, branches),
+     .record = &branch_record,
+     .required = true,
+     .list_min = 1,
+     .list_max = DEA_BRANCHES_MAX,
+     .element_size = sizeof(struct dea_branch_data),
+     .count_offset = offsetof(struct dea_viscosity_set, branch_count),
+     .doc = "Maxwell branches beside the law, which is the slow limit",
+     .example = "[{ratio: 0.05, time: 1 s}]"},
+    {.key = "assumed",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = offsetof(struct dea_viscosity_set, assumed),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc = "whether the numbers are plausible rather than measured; runs then say so",
+     .example = "yes"},
+    NOTE_FIELDS(struct dea_viscosity_set, notes),
+};
+
 static const struct dea_field elastic_fields[] = {
     {.key = "young_modulus",
      .kind = DEA_FIELD_NUMBER,
@@ -160,6 +234,11 @@ static const struct dea_record permittivity_record = {
 static const struct dea_record breakdown_record = {
     "breakdown field", "E_b = at_rest s^exponent, s the mean in-plane stretch", breakdown_fields,
     COUNT(breakdown_fields)};
+static const struct dea_record viscosity_record = {"viscosity",
+                                                   "generalised Maxwell model at finite strain",
+                                                   viscosity_fields, COUNT(viscosity_fields)};
+static const struct dea_record resistivity_record = {"resistivity", "volume resistivity",
+                                                     resistivity_fields, COUNT(resistivity_fields)};
 static const struct dea_record density_record = {"density", "mass density", density_fields,
                                                  COUNT(density_fields)};
 static const struct dea_record elastic_record = {"linear elasticity", "linear elastic constants",
@@ -222,6 +301,14 @@ static const struct dea_field material_fields[] = {
                    "relative permittivity; the first is the default"),
     SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record, "unknown",
                    "breakdown field; the first is the default; left out when unknown"),
+    SET_LIST_FIELD("viscosity", viscosity, viscosity_count, viscosity_record, "none",
+                   "viscosity; the first is the default; left out when unknown"),
+    {.key = "resistivity",
+     .kind = DEA_FIELD_RECORD,
+     .record = &resistivity_record,
+     .present_offset = offsetof(struct dea_material_data, has_resistivity),
+     .absent_text = "unknown",
+     .doc = "electrical resistivity, for leakage"},
 };
 
 const struct dea_record dea_material_file_record = {"material file", "data file of a material",
@@ -332,6 +419,11 @@ static dea_status check_sets(const struct dea_reader *reader, const struct dea_m
     DEA_TRY(ctx, check_range(reader, &data->permittivity[i].range));
     for (size_t j = 0; j < i; j++) {
       DEA_TRY(ctx, check_id(reader, &data->permittivity[i].id, &data->permittivity[j].id));
+    }
+  }
+  for (size_t i = 0; i < data->viscosity_count; i++) {
+    for (size_t j = 0; j < i; j++) {
+      DEA_TRY(ctx, check_id(reader, &data->viscosity[i].id, &data->viscosity[j].id));
     }
   }
   for (size_t i = 0; i < data->breakdown_count; i++) {

@@ -6,7 +6,7 @@
 
 #include "material/law.h"
 
-enum { DEA_NAME_SIZE = 64 };
+enum { DEA_NAME_SIZE = 64, DEA_BRANCHES_MAX = 8 };
 
 /* Vacuum permittivity [F/m], CODATA 2018. */
 #define DEA_EPSILON_0 8.8541878128e-12
@@ -26,6 +26,12 @@ struct dea_breakdown {
   bool exponent_known;
 };
 
+/* A spring in series with a dashpot beside the law (docs/theory/time.md, section 1). */
+struct dea_branch {
+  double modulus_Pa; // shear modulus G_i of the spring
+  double time_s;     // relaxation time tau_i
+};
+
 struct dea_material {
   char name[DEA_NAME_SIZE];        // catalogue name or the design's own
   char law_id[DEA_NAME_SIZE];      // which parameter set ("yeoh-178"); "" for a single one
@@ -34,7 +40,12 @@ struct dea_material {
   double fibre_angle_rad;          // of an anisotropic law: angle of a0 to the radial direction
   struct dea_permittivity permittivity; // at_rest = 0 when unknown
   struct dea_breakdown breakdown;
-  double density_kg_per_m3; // 0 when unknown
+  double density_kg_per_m3;         // 0 when unknown
+  char viscosity_id[DEA_NAME_SIZE]; // "" without branches
+  struct dea_branch branches[DEA_BRANCHES_MAX];
+  size_t branch_count;      // 0: not viscous, or not known to be
+  bool viscosity_assumed;   // plausible numbers, not measured ones
+  double resistivity_ohm_m; // 0 when unknown: no leakage
   double young_modulus_Pa;  // linear elastic materials; 0 when not given
   double poisson_ratio;
   double stretch_min,
