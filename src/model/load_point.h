@@ -10,6 +10,8 @@
 // X(member = JSON key, SI unit, display unit, factor SI -> display, CSV header, meaning)
 #define DEA_LOAD_POINT_LIST(X)                                                                     \
   X(voltage_V, "V", "kV", 1e-3, "V", "voltage between the electrodes")                             \
+  X(time_s, "s", "s", 1.0, "time", "time since the start of the waveform")                         \
+  X(source_voltage_V, "V", "kV", 1e-3, "source V", "voltage asked of the supply")                  \
   X(electrode_stretch, "1", "1", 1.0, "electrode stretch",                                         \
     "electrode edge radius over its pre-stretched value (lambda_a)")                               \
   X(passive_stretch, "1", "1", 1.0, "passive stretch",                                             \
@@ -35,6 +37,14 @@
     "voltage of the next limit point of this branch minus voltage")                                \
   X(energy_J, "J", "uJ", 1e6, "energy", "potential energy at this voltage, 0 at rest")             \
   X(capacitance_F, "F", "pF", 1e12, "capacitance", "charge over voltage")                          \
+  X(charge_C, "C", "nC", 1e9, "charge", "charge on an electrode")                                  \
+  X(current_A, "A", "uA", 1e6, "current", "current of the supply")                                 \
+  X(stored_energy_J, "J", "uJ", 1e6, "stored energy",                                              \
+    "energy in the film, its field and its viscous branches, 0 at rest")                           \
+  X(kinetic_energy_J, "J", "uJ", 1e6, "kinetic energy", "kinetic energy")                          \
+  X(dissipated_J, "J", "uJ", 1e6, "dissipated",                                                    \
+    "energy lost in viscous branches, resistance and leakage since the start")                     \
+  X(supply_work_J, "J", "uJ", 1e6, "supply work", "work of the supply since the start")            \
   X(mode, "1", "1", 1.0, "mode", "number of the mode, from the lowest on")                         \
   X(frequency_Hz, "Hz", "Hz", 1.0, "frequency",                                                    \
     "of the mode, in vacuo (negative: unstable, growing at this rate over 2 pi), or of the "       \

@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "device/device.h"
+#include "model/circuit.h"
 #include "model/field_mesh.h"
 #include "model/load_point.h"
 #include "model/state.h"
@@ -77,6 +78,13 @@ struct dea_model_size {
   size_t elements, nodes, unknowns;
 };
 
+/* How a history in time is computed. */
+struct dea_time_options {
+  struct dea_circuit circuit;
+  bool inertia;   // false: each moment is an equilibrium of the film with its branches
+  double rho_inf; // spectral radius of generalised alpha at high frequencies, 0 to 1
+};
+
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
@@ -123,6 +131,30 @@ struct dea_model_type {
   dea_status (*save)(struct dea_context *ctx, struct dea_model *model, struct dea_state *out);
   dea_status (*load)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_state *state);
+  /* A history in time (docs/theory/time.md), all three NULL when the model has no time.
+   *
+   * begin: time 0, the film at rest and relaxed (A_i = C^-1) as the last solve left it (a model
+   * that was never solved: flat), with the charge of that voltage. The model keeps a copy of
+   * options. A second call begins anew. */
+  dea_status (*begin)(struct dea_context *ctx, struct dea_model *model,
+                      const struct dea_time_options *options, struct dea_load_point *out);
+  /* One step from the last accepted state to a trial state, which replaces a trial that was not
+   * accepted: so a step is rejected by asking for another one, and after a failure too the accepted
+   * state is as it was. A step of length 0 is a jump of the supply's voltage: the film follows at
+   * once as far as circuit and inertia let it, its branches do not; work of the supply is then what
+   * the film takes up. Steps end at all corners of the waveform; within one the supply's voltage is
+   * linear in time. out: the point at the end, time_s since begin, with charge, current, energies
+   * and works. error: estimated error of this step, as the largest of those of displacement,
+   * voltage and dissipated energy, over the largest displacement, voltage and work since begin. 1
+   * and more: by that factor the step is longer than what happens in it. DEA_E_NO_EQUILIBRIUM: none
+   * near the last state at the end of the step (pull-in without inertia); a shorter step comes
+   * closer to the time at which it is lost. DEA_E_NOT_CONVERGED: try a shorter one. */
+  dea_status (*advance)(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_step *step, struct dea_load_point *out,
+                        double *error);
+  /* The trial of the last advance, which succeeded, becomes the accepted state; solve, profile,
+   * fields and save speak of it. Cannot fail. */
+  void (*accept)(struct dea_model *model);
   /* Size of a model whose mesh the device's solid_refinement sets; NULL when it has none. */
   void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };

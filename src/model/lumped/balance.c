@@ -31,13 +31,21 @@ dea_status dea_lumped_balance_eval(const struct dea_lumped *lumped, double elect
   if (status != DEA_OK) {
     return status;
   }
+  double W[2], s[2], k[2]; // of the branches
+  dea_equal_stress(&lumped->active_known, l_A, &W[0], &s[0], &k[0]);
+  dea_equal_stress(&lumped->passive_known, l_P, &W[1], &s[1], &k[1]);
   out->passive_stretch = l_p;
+  out->active.s1 += s[0];
+  out->active.s2 += s[0];
+  out->passive.s1 += s[1];
+  out->passive.s2 += s[1];
   out->imbalance_Pa = mean_stress(&out->active) - mean_stress(&out->passive); // paper eq 16
-  out->slope_Pa =
-      lumped->pre_stretch * (mean_slope(&out->active) + R / (1 - R) * mean_slope(&out->passive));
+  out->slope_Pa = lumped->pre_stretch * (mean_slope(&out->active) + k[0] +
+                                         R / (1 - R) * (mean_slope(&out->passive) + k[1]));
+  out->branch_energy_Pa = W[0] + (1 - R) / R * W[1];
   struct dea_plane unit; // the electric stress goes with the square of the field
   dea_plane_electric(lumped->film.material, 1, l_A, l_A, &unit);
   out->slope_field_Pa_m_per_V = 2 * nominal_field_V_per_m * mean_stress(&unit);
-  out->energy_Pa = out->active.W + (1 - R) / R * out->passive.W;
+  out->energy_Pa = out->active.W + (1 - R) / R * out->passive.W + out->branch_energy_Pa;
   return DEA_OK;
 }

@@ -10,12 +10,16 @@
 #ifndef DEA_MODEL_LUMPED_LUMPED_H
 #define DEA_MODEL_LUMPED_LUMPED_H
 
+#include "material/branch.h"
 #include "model/film.h"
 
 struct dea_lumped {
   struct dea_film film;
   double pre_stretch, coverage;
   double electrode_radius_m; // in the stretched film
+  // Viscous branches of active and passive film in a step in time (B of material/branch.h); zeros:
+  // none, or relaxed.
+  struct dea_equal_tensor active_known, passive_known;
 };
 
 /* Imbalance of eq 16 and what belongs to it, at l_a and a nominal field. */
@@ -24,8 +28,9 @@ struct dea_lumped_balance {
   double slope_Pa;     // d imbalance / d l_a; > 0: stable
   double slope_field_Pa_m_per_V; // d imbalance / d E~
   double energy_Pa; // W(l_A, E~) + (1 - R)/R W(l_P), per unstretched volume of the electrode disc
-  double passive_stretch; // l_p
-  struct dea_plane active, passive;
+  double branch_energy_Pa;          // B : C/2, which is part of it
+  double passive_stretch;           // l_p
+  struct dea_plane active, passive; // stresses with branches; W and k without
 };
 
 /* DEA_E_DOMAIN outside 0 < l_a < 1/R or the law's domain. */

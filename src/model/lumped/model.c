@@ -1,4 +1,5 @@
 /* Model "lumped" behind the common interface. */
+#include "model/lumped/history.h"
 #include "model/lumped/lumped.h"
 #include "model/make.h"
 #include "model/path.h"
@@ -14,6 +15,7 @@ struct dea_model {
   double modulus_Pa, rest_energy_Pa;
   double max_stretch; // total; where a search for a snapped state gives up
   struct dea_path *path;
+  struct dea_lumped_history history;
 };
 
 static double disc_volume_m3(const struct dea_model *model)
@@ -46,33 +48,35 @@ static double smallest_tension(const struct dea_film *film, const struct dea_pla
   return fmin(t1, t2);
 }
 
-static dea_status add_lift(const struct dea_model *model, double field, struct dea_load_point *out)
+static dea_status add_lift(const struct dea_model *model, const struct dea_lumped *lumped,
+                           double field, struct dea_load_point *out)
 {
   double z = dea_lift_height(&model->lift, out->electrode_stretch), where;
   out->fibre_tip_z_m = out->centre_z_m = z;
   if (z > 0) {
-    return dea_lift_force_max(&model->lumped, &model->lift, field, z, &out->force_N, &where);
+    return dea_lift_force_max(lumped, &model->lift, field, z, &out->force_N, &where);
   }
   out->force_N = isnan(z) ? NAN : 0;
   return DEA_OK;
 }
 
-static dea_status point(void *self, const double *u, double voltage_V, struct dea_load_point *out)
+/* lumped: the model's, or with the branches of a moment. */
+static dea_status fill_point(const struct dea_model *model, const struct dea_lumped *lumped,
+                             double l_a, double voltage_V, struct dea_load_point *out)
 {
-  const struct dea_model *model = self;
-  const struct dea_film *film = &model->lumped.film;
-  double field = voltage_V / film->thickness_m, l_pre = model->lumped.pre_stretch;
+  const struct dea_film *film = &lumped->film;
+  double field = voltage_V / film->thickness_m, l_pre = lumped->pre_stretch;
   struct dea_lumped_balance balance;
-  dea_status status = dea_lumped_balance_eval(&model->lumped, u[0], field, &balance);
+  dea_status status = dea_lumped_balance_eval(lumped, l_a, field, &balance);
   if (status != DEA_OK) {
     return status;
   }
-  double l_A = u[0] * l_pre, l_P = balance.passive_stretch * l_pre;
+  double l_A = l_a * l_pre, l_P = balance.passive_stretch * l_pre;
   *out = dea_load_point_empty();
   out->voltage_V = voltage_V;
-  out->electrode_stretch = u[0];
+  out->electrode_stretch = l_a;
   out->passive_stretch = balance.passive_stretch;
-  out->electrode_edge_u_m = (u[0] - 1) * model->device->electrode_radius_m; // paper eq 18
+  out->electrode_edge_u_m = (l_a - 1) * model->device->electrode_radius_m; // paper eq 18
   out->nominal_field_V_per_m = field;
   out->true_field_V_per_m = field * l_A * l_A; // paper eq 4
   out->breakdown_margin = dea_film_breakdown_margin(film, field, l_A, l_A);
@@ -80,7 +84,13 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
                                   smallest_tension(film, &balance.passive, l_P));
   out->energy_J = (balance.energy_Pa - model->rest_energy_Pa) * disc_volume_m3(model);
   out->capacitance_F = dea_film_capacitance(film, disc_volume_m3(model), l_A, l_A);
-  return model->device->fibre_count > 0 ? add_lift(model, field, out) : DEA_OK;
+  return model->device->fibre_count > 0 ? add_lift(model, lumped, field, out) : DEA_OK;
+}
+
+static dea_status point(void *self, const double *u, double voltage_V, struct dea_load_point *out)
+{
+  const struct dea_model *model = self;
+  return fill_point(model, &model->lumped, u[0], voltage_V, out);
 }
 
 static void destroy(struct dea_context *ctx, struct dea_model *model)
@@ -153,6 +163,73 @@ static dea_status path(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* The point of a moment: that of its stretch and voltage, and what only time has. */
+static dea_status moment_point(const struct dea_model *model,
+                               const struct dea_lumped_moment *moment, struct dea_load_point *out)
+{
+  const struct dea_circuit_state *circuit = &moment->circuit;
+  double rate = moment->rate_per_s;
+  const struct dea_lumped frozen = dea_lumped_frozen(&model->history, moment);
+  dea_status status =
+      fill_point(model, &frozen, moment->electrode_stretch, circuit->voltage_V, out);
+  out->time_s = moment->time_s;
+  out->source_voltage_V = circuit->source_voltage_V;
+  out->charge_C = circuit->charge_C;
+  out->current_A = circuit->current_A;
+  // that of the branches as it is, not as the step had it
+  out->stored_energy_J = moment->stored_energy_J - model->rest_energy_Pa * disc_volume_m3(model);
+  out->energy_J = out->stored_energy_J - circuit->charge_C * circuit->voltage_V;
+  if (model->history.options.inertia) {
+    out->kinetic_energy_J = 0.5 * model->history.mass_kg_m2 * rate * rate;
+  }
+  out->dissipated_J = moment->branch_loss_J + circuit->resistance_loss_J + circuit->leakage_loss_J;
+  out->supply_work_J = circuit->supply_work_J;
+  return status;
+}
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *options, struct dea_load_point *out)
+{
+  struct dea_load_point last;
+  struct dea_lumped_history *history = &model->history;
+  DEA_TRY(ctx, dea_path_point(ctx, model->path, &last));
+  *history = (struct dea_lumped_history){
+      .lumped = model->lumped,
+      .options = *options,
+      .volume_m3 = disc_volume_m3(model),
+      .mass_kg_m2 = dea_lumped_mass(model->device),
+  };
+  if (options->inertia && !(model->device->film.density_kg_per_m3 > 0)) {
+    return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the density of '%s', which is unknown",
+                    model->device->film.name);
+  }
+  dea_status status = dea_lumped_begin(history, last.electrode_stretch, last.voltage_V);
+  status = status == DEA_OK ? moment_point(model, &history->now, out) : status;
+  return status == DEA_OK ? status
+                          : dea_fail(ctx, status, "the last state lies beyond the film's law");
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  struct dea_lumped_history *history = &model->history;
+  dea_status status = dea_lumped_advance(history, step, error);
+  status = status == DEA_OK ? moment_point(model, &history->trial, out) : status;
+  if (status == DEA_OK) {
+    return DEA_OK;
+  }
+  double end_s = history->now.time_s + step->length_s;
+  return status == DEA_E_NO_EQUILIBRIUM
+             ? dea_fail(ctx, status, "no equilibrium near the last one at %.6g s", end_s)
+             : dea_fail(ctx, status, "no solution at %.6g s", end_s);
+}
+
+static void accept(struct dea_model *model)
+{
+  dea_lumped_accept(&model->history);
+}
+
 const struct dea_model_type dea_model_lumped = {
     .name = "lumped",
     .long_name = "lumped (paper eqs 15-20)",
@@ -160,4 +237,7 @@ const struct dea_model_type dea_model_lumped = {
     .destroy = destroy,
     .solve = solve,
     .path = path,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
 };

@@ -1,0 +1,311 @@
+/* Steps in time of the lumped model: one unknown, l_a, and the voltage that the circuit then has.
+ *
+ *   M a + 2 l_pre vol [s(l_A, E~, B) - s(l_P, B)] = 0
+ *
+ * (paper eq 16 with branches and inertia). Each step is made once whole and once in two halves; the
+ * halves count, a third of the difference is the estimate of their error. */
+#include "model/lumped/history.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+// Below these errors are not relative: a stretch, and in the film's own measure (H0 sqrt(mu/eps),
+// mu vol) a voltage and an energy. What starts from nothing has errors as large as itself.
+static const double smallest_motion = 1e-6, smallest_voltage = 1e-4, smallest_energy = 1e-6;
+
+double dea_lumped_mass(const struct dea_device *device)
+{
+  double a = device->electrode_radius_m, L = device->frame_radius_m, d = L - a;
+  double film = device->film.density_kg_per_m3 * device->film_thickness_m;
+  double electrodes = device->electrode.density_kg_per_m3 * 2 * device->electrode_thickness_m /
+                      (device->pre_stretch * device->pre_stretch);
+  double disc = (film + electrodes) * pi * a * a * a * a / 2;
+  double annulus = film * 2 * pi * a * a * d * (L / 3 - d / 4);
+  return disc + annulus;
+}
+
+/* Everything at l_a. */
+struct sight {
+  double imbalance_Pa, slope_Pa; // total, along the circuit's V(l_a)
+  double voltage_V;
+  struct dea_circuit_film film;
+  double energy_Pa; // as in struct dea_lumped_balance, without the branches
+};
+
+static dea_status look(const struct dea_lumped *lumped, const struct dea_lumped_history *history,
+                       const struct dea_circuit_state *circuit, const struct dea_time_step *step,
+                       double l, struct sight *out)
+{
+  const struct dea_film *film = &lumped->film;
+  double l_pre = lumped->pre_stretch, H0 = film->thickness_m, l_A = l * l_pre;
+  struct dea_plane unit; // at 1 V/m: -(1/2) eps l_A^4
+  double scale = -2 * history->volume_m3 / (H0 * H0), dV, resistivity;
+  dea_plane_electric(film->material, 1, l_A, l_A, &unit);
+  out->film = (struct dea_circuit_film){.capacitance_F = scale * unit.W,
+                                        .capacitance_slope = scale * l_pre * (unit.s1 + unit.s2)};
+  resistivity = film->material->resistivity_ohm_m;
+  if (resistivity > 0) { // R_l = rho d^2/vol, d = H0/l_A^2
+    out->film.conductance_S = history->volume_m3 * pow(l_A, 4) / (resistivity * H0 * H0);
+    out->film.conductance_slope = 4 * out->film.conductance_S / l;
+  }
+  out->voltage_V = dea_circuit_voltage(&history->options.circuit, circuit, step, &out->film, &dV);
+  struct dea_lumped_balance balance;
+  dea_status status = dea_lumped_balance_eval(lumped, l, out->voltage_V / H0, &balance);
+  if (status != DEA_OK) {
+    return status;
+  }
+  out->imbalance_Pa = balance.imbalance_Pa;
+  out->slope_Pa = balance.slope_Pa + balance.slope_field_Pa_m_per_V * dV / H0;
+  out->energy_Pa = balance.energy_Pa - balance.branch_energy_Pa;
+  return DEA_OK;
+}
+
+/* Residual of a step: r = inertia (l - l*) + weight s(l) + known. */
+struct equation {
+  const struct dea_lumped_history *history;
+  const struct dea_circuit_state *circuit;
+  const struct dea_time_step *step;
+  const struct dea_lumped *lumped; // with the branches of the step
+  double inertia_Pa, start, weight, known_Pa;
+};
+
+static dea_status residual(const struct equation *e, double l, struct sight *sight, double *r,
+                           double *slope)
+{
+  dea_status status = look(e->lumped, e->history, e->circuit, e->step, l, sight);
+  *r = e->inertia_Pa * (l - e->start) + e->weight * sight->imbalance_Pa + e->known_Pa;
+  *slope = e->inertia_Pa + e->weight * sight->slope_Pa;
+  return status;
+}
+
+/* The stable root that one comes to from l downhill. Newton, kept between where the residual still
+ * has the sign of the start and where it has not, or is no longer stable. */
+static dea_status find_root(const struct equation *e, double *l, struct sight *sight)
+{
+  enum { TRIALS = 200 };
+  static const double longest = 0.03, close = 1e-14;
+  double r, slope, x = *l, near = *l, far = NAN;
+  bool wall = false; // far is where stability ends, not beyond a root
+  if (residual(e, x, sight, &r, &slope) != DEA_OK) {
+    return DEA_E_DOMAIN;
+  }
+  double side = copysign(1, r);
+  for (int i = 0; i < TRIALS; i++) {
+    if (r == 0 || (slope > 0 && fabs(r) <= close * slope * x)) {
+      *l = x;
+      return DEA_OK;
+    }
+    double next = x - r / slope;
+    double within = isnan(far) ? near - side * longest : far;
+    bool good = slope > 0 && (near - next) * side > 0 && (next - within) * side >= 0;
+    next = good ? next : isnan(far) ? within : 0.5 * (near + far);
+    if (!isnan(far) && fabs(far - near) <= 4e-16 * fabs(near)) {
+      *l = x;
+      return wall || !(slope > 0) ? DEA_E_NO_EQUILIBRIUM : DEA_OK;
+    }
+    x = next;
+    dea_status status = residual(e, x, sight, &r, &slope);
+    if (status != DEA_OK || (side * r > 0 && !(slope > 0))) {
+      far = x;
+      wall = true;
+      slope = -1; // the next trial is half way
+    } else if (side * r > 0) {
+      near = x;
+    } else {
+      far = x;
+      wall = false;
+    }
+  }
+  return DEA_E_NOT_CONVERGED;
+}
+
+static double passive_stretch(const struct dea_lumped *lumped, double l) // paper eq 17, total
+{
+  return (1 - lumped->coverage * l) / (1 - lumped->coverage) * lumped->pre_stretch;
+}
+
+/* What follows once the stretch is known: branches, charge, energies. */
+static void finish(const struct dea_lumped_history *history, const struct dea_lumped_moment *from,
+                   const struct dea_time_step *step, const struct sight *sight,
+                   struct dea_lumped_moment *to)
+{
+  const struct dea_lumped *lumped = &history->lumped;
+  const struct dea_material *material = lumped->film.material;
+  double R = lumped->coverage, l_pre = lumped->pre_stretch, h = step->length_s;
+  double passive = (1 - R) / R; // volume of the passive film over that of the active
+  double l_A[2], l_P[2], W[2], D[2];
+  const struct dea_lumped_moment *ends[2] = {from, to};
+  for (int i = 0; i < 2; i++) {
+    l_A[i] = ends[i]->electrode_stretch * l_pre;
+    l_P[i] = passive_stretch(lumped, ends[i]->electrode_stretch);
+  }
+  dea_equal_update(material, from->active, h, l_A[0], l_A[1], to->active);
+  dea_equal_update(material, from->passive, h, l_P[0], l_P[1], to->passive);
+  W[0] = dea_equal_energy(material, to->active, l_A[1]);
+  W[1] = dea_equal_energy(material, to->passive, l_P[1]);
+  D[0] = dea_equal_loss(material, from->active, h, l_A[0], l_A[1]);
+  D[1] = dea_equal_loss(material, from->passive, h, l_P[0], l_P[1]);
+  dea_circuit_advance(&history->options.circuit, &from->circuit, step, &sight->film, &to->circuit);
+  to->time_s = from->time_s + h;
+  to->branch_loss_J = from->branch_loss_J + history->volume_m3 * (D[0] + passive * D[1]);
+  // The electric part of the energy is -Q V/2; what the field holds is +Q V/2.
+  to->stored_energy_J = history->volume_m3 * (sight->energy_Pa + W[0] + passive * W[1]) +
+                        to->circuit.charge_C * to->circuit.voltage_V;
+  if (h == 0 && dea_circuit_is_ideal(&history->options.circuit)) {
+    to->circuit.supply_work_J += to->stored_energy_J - from->stored_energy_J;
+  }
+  to->imbalance_Pa = sight->imbalance_Pa; // that of A: it differs from B by a pressure
+}
+
+/* The lumped model in a step from a moment. */
+static struct dea_lumped with_branches(const struct dea_lumped_history *history,
+                                       const struct dea_lumped_moment *from, double length_s)
+{
+  struct dea_lumped lumped = history->lumped;
+  const struct dea_material *material = lumped.film.material;
+  double l = from->electrode_stretch;
+  lumped.active_known = dea_equal_known(material, from->active, length_s, l * lumped.pre_stretch);
+  lumped.passive_known =
+      dea_equal_known(material, from->passive, length_s, passive_stretch(&lumped, l));
+  return lumped;
+}
+
+struct dea_lumped dea_lumped_frozen(const struct dea_lumped_history *history,
+                                    const struct dea_lumped_moment *moment)
+{
+  return with_branches(history, moment, 0);
+}
+
+/* One step, whole. Generalised alpha (Chung and Hulbert 1993) where there is inertia. */
+static dea_status step_once(const struct dea_lumped_history *history,
+                            const struct dea_lumped_moment *from, const struct dea_time_step *step,
+                            struct dea_lumped_moment *to)
+{
+  const struct dea_lumped lumped = with_branches(history, from, step->length_s);
+  double h = step->length_s, l = from->electrode_stretch;
+  double rho = history->options.rho_inf;
+  double a_m = (2 * rho - 1) / (rho + 1), a_f = rho / (rho + 1);
+  double gamma = 0.5 - a_m + a_f, beta = 0.25 * (1 - a_m + a_f) * (1 - a_m + a_f);
+  bool inertia = history->options.inertia;
+  double mass_Pa_s2 = history->mass_kg_m2 / (2 * lumped.pre_stretch * history->volume_m3);
+  struct equation e = {history, &from->circuit, step, &lumped, 0, 0, 1, 0};
+  if (inertia && h > 0) {
+    double acceleration = from->acceleration_per_s2;
+    e.start = l + h * from->rate_per_s + h * h * (0.5 - beta) * acceleration;
+    e.inertia_Pa = (1 - a_m) * mass_Pa_s2 / (beta * h * h);
+    e.weight = 1 - a_f;
+    e.known_Pa = a_m * mass_Pa_s2 * acceleration + a_f * from->imbalance_Pa;
+  }
+  struct sight sight;
+  dea_status status;
+  *to = *from;
+  if (inertia && !(h > 0)) { // the film stays, its charge may jump
+    status = look(&lumped, history, &from->circuit, step, l, &sight);
+  } else {
+    status = find_root(&e, &l, &sight);
+  }
+  if (status != DEA_OK) {
+    return status;
+  }
+  to->electrode_stretch = l;
+  finish(history, from, step, &sight, to);
+  if (inertia && h > 0) {
+    // from the forces: (l - l*)/(beta h^2) would be the same, but for the rounding of l
+    to->acceleration_per_s2 =
+        -(e.weight * to->imbalance_Pa + e.known_Pa) / ((1 - a_m) * mass_Pa_s2);
+    to->rate_per_s = from->rate_per_s + h * ((1 - gamma) * from->acceleration_per_s2 +
+                                             gamma * to->acceleration_per_s2);
+  } else if (inertia) {
+    to->acceleration_per_s2 = -to->imbalance_Pa / mass_Pa_s2;
+  }
+  return DEA_OK;
+}
+
+static double loss(const struct dea_lumped_moment *moment)
+{
+  return moment->branch_loss_J + moment->circuit.leakage_loss_J;
+}
+
+dea_status dea_lumped_begin(struct dea_lumped_history *history, double electrode_stretch,
+                            double voltage_V)
+{
+  const struct dea_time_step none = {0, voltage_V};
+  const struct dea_circuit ideal = {0, INFINITY}, given = history->options.circuit;
+  struct dea_lumped_moment rest = {.electrode_stretch = electrode_stretch};
+  struct dea_lumped lumped = history->lumped;
+  struct sight sight;
+  for (size_t i = 0; i < lumped.film.material->branch_count; i++) {
+    rest.active[i] = dea_equal_inverse(electrode_stretch * lumped.pre_stretch);
+    rest.passive[i] = dea_equal_inverse(passive_stretch(&lumped, electrode_stretch));
+  }
+  lumped = with_branches(history, &rest, 0);
+  history->options.circuit = ideal; // however it was charged: that was long ago
+  dea_status status = look(&lumped, history, &rest.circuit, &none, electrode_stretch, &sight);
+  if (status == DEA_OK) {
+    history->now = rest;
+    finish(history, &rest, &none, &sight, &history->now);
+    history->now.circuit.supply_work_J = 0;
+  }
+  history->options.circuit = given;
+  history->largest_motion = smallest_motion;
+  history->largest_voltage_V = smallest_voltage * dea_film_voltage_scale(&history->lumped.film);
+  history->largest_work_J =
+      smallest_energy * dea_film_modulus(&history->lumped.film) * history->volume_m3;
+  return status;
+}
+
+/* A sum along the step, from that of the whole and that of the halves: Simpson's rule out of two
+ * trapezoidal ones. */
+static void sharpen(const double *whole, double *halves)
+{
+  *halves += (*halves - *whole) / 3;
+}
+
+dea_status dea_lumped_advance(struct dea_lumped_history *history, const struct dea_time_step *step,
+                              double *error)
+{
+  const struct dea_lumped_moment *now = &history->now;
+  struct dea_lumped_moment whole, half, *end = &history->trial;
+  double h = step->length_s;
+  *error = 0;
+  if (!(h > 0)) {
+    return step_once(history, now, step, end);
+  }
+  double longest = dea_circuit_longest_step(&history->options.circuit, &now->circuit, step,
+                                            history->largest_voltage_V);
+  if (h > longest) { // whatever the answer, it is not to be relied on
+    *error = h / longest;
+    return step_once(history, now, step, end);
+  }
+  double V_s = now->circuit.source_voltage_V;
+  const struct dea_time_step first = {0.5 * h, V_s + 0.5 * (step->source_voltage_V - V_s)};
+  const struct dea_time_step second = {0.5 * h, step->source_voltage_V};
+  dea_status status = step_once(history, now, step, &whole);
+  status = status == DEA_OK ? step_once(history, now, &first, &half) : status;
+  status = status == DEA_OK ? step_once(history, &half, &second, end) : status;
+  if (status != DEA_OK) {
+    return status;
+  }
+  end->time_s = now->time_s + h;
+  double motion = fmax(history->largest_motion, fabs(end->electrode_stretch - 1));
+  double voltage = fmax(history->largest_voltage_V, fabs(end->circuit.voltage_V));
+  double work = fmax(history->largest_work_J, fabs(end->circuit.supply_work_J));
+  *error = fabs(whole.electrode_stretch - end->electrode_stretch) / motion;
+  *error = fmax(*error, fabs(whole.circuit.voltage_V - end->circuit.voltage_V) / voltage);
+  *error = fmax(*error, fabs(loss(&whole) - loss(end)) / work);
+  *error = fmax(*error, fabs(whole.circuit.supply_work_J - end->circuit.supply_work_J) / work) / 3;
+  sharpen(&whole.branch_loss_J, &end->branch_loss_J);
+  sharpen(&whole.circuit.supply_work_J, &end->circuit.supply_work_J);
+  sharpen(&whole.circuit.resistance_loss_J, &end->circuit.resistance_loss_J);
+  sharpen(&whole.circuit.leakage_loss_J, &end->circuit.leakage_loss_J);
+  return DEA_OK;
+}
+
+void dea_lumped_accept(struct dea_lumped_history *history)
+{
+  const struct dea_lumped_moment *now = &history->now;
+  history->now = history->trial;
+  history->largest_motion = fmax(history->largest_motion, fabs(now->electrode_stretch - 1));
+  history->largest_voltage_V = fmax(history->largest_voltage_V, fabs(now->circuit.voltage_V));
+  history->largest_work_J = fmax(history->largest_work_J, fabs(now->circuit.supply_work_J));
+}
