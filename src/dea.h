@@ -36,12 +36,14 @@ extern "C" {
 #include "fabricate/part.h"
 #include "fabricate/plan.h"
 #include "fabricate/workshop.h"
+#include "material/branch.h"
 #include "material/catalogue.h"
 #include "material/law.h"
 #include "material/material.h"
 #include "material/plane.h"
 #include "material/point.h"
 #include "material/scalar.h"
+#include "model/circuit.h"
 #include "model/field_mesh.h"
 #include "model/film.h"
 #include "model/load_point.h"
@@ -55,9 +57,11 @@ extern "C" {
 #include "output/store.h"
 #include "output/summary.h"
 #include "result/columns.h"
+#include "result/history.h"
 #include "result/provenance.h"
 #include "result/result.h"
 #include "study/study.h"
+#include "waveform/waveform.h"
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,273 @@
+/* Study "transient": a waveform is played to the model (docs/theory/time.md). Steps as long as the
+ * tolerance allows, none across a corner of the waveform; a jump is a step of no length. */
+#include "study/study.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { POINTS_MAX = 40000 }; // of a curve; beyond, every second point goes
+
+struct player {
+  const struct dea_model_type *type;
+  struct dea_model *model;
+  const struct dea_waveform *waveform;
+  struct dea_curve *curve;
+  double until_s, tolerance, longest_s, interval_s;
+  double time_s, source_V;
+  double next_s;                 // length of the next step
+  double last_V;                 // on the film
+  struct dea_load_point pending; // the last one, if it is not kept yet
+  bool has_pending;
+  double largest[4]; // voltage, motion, current, z so far
+  char what[DEA_NAME_SIZE + 16];
+};
+
+/* Every second point, and from now on half as many. */
+static void thin(struct player *p)
+{
+  struct dea_curve *curve = p->curve;
+  for (size_t i = 1; 2 * i < curve->count; i++) {
+    curve->points[i] = curve->points[2 * i];
+  }
+  curve->count = (curve->count + 1) / 2;
+  p->interval_s = fmax(2 * p->interval_s, 2 * p->time_s / POINTS_MAX);
+}
+
+static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point)
+{
+  p->has_pending = false;
+  DEA_TRY(ctx, dea_curve_add_point(ctx, p->curve, point));
+  if (p->curve->count >= POINTS_MAX) {
+    thin(p);
+  }
+  return DEA_OK;
+}
+
+/* How far b is from the line from a to c at its time, over a scale that grows with what is seen. */
+static double off_line(double share, double a, double b, double c, double *largest)
+{
+  *largest = fmax(*largest, fabs(c));
+  return *largest > 0 ? fabs(a + share * (c - a) - b) / *largest : 0;
+}
+
+/* Whether a figure without the pending point would show another line from the last one that is kept
+ * to this one. */
+static bool would_be_missed(struct player *p, const struct dea_load_point *point)
+{
+  static const double visible = 0.01;
+  const struct dea_load_point *a = &p->curve->points[p->curve->count - 1], *b = &p->pending;
+  double span_s = point->time_s - a->time_s;
+  double share = span_s > 0 ? (b->time_s - a->time_s) / span_s : 0;
+  double off[4] = {
+      off_line(share, a->voltage_V, b->voltage_V, point->voltage_V, &p->largest[0]),
+      off_line(share, a->electrode_stretch - 1, b->electrode_stretch - 1,
+               point->electrode_stretch - 1, &p->largest[1]),
+      off_line(share, a->current_A, b->current_A, point->current_A, &p->largest[2]),
+      off_line(share, a->centre_z_m, b->centre_z_m, point->centre_z_m, &p->largest[3]), // or NAN
+  };
+  return p->has_pending && fmax(fmax(off[0], off[1]), fmax(off[2], off[3])) > visible;
+}
+
+/* Takes a point to the curve if it is needed there; corner: in any case. */
+static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_load_point *point,
+                       bool corner)
+{
+  struct dea_curve *curve = p->curve;
+  point->time_s = p->time_s; // without the rounding of many small steps
+  p->last_V = point->voltage_V;
+  if (curve->count == 0) {
+    return add(ctx, p, point);
+  }
+  if (p->interval_s == 0 && would_be_missed(p, point)) {
+    DEA_TRY(ctx, add(ctx, p, &p->pending));
+  }
+  double waited_s = p->time_s - curve->points[curve->count - 1].time_s;
+  if (corner || waited_s >= (p->interval_s > 0 ? p->interval_s : p->longest_s) * (1 - 1e-9)) {
+    return add(ctx, p, point);
+  }
+  p->pending = *point;
+  p->has_pending = true;
+  return DEA_OK;
+}
+
+/* The last point stays however it ended. */
+static dea_status flush(struct dea_context *ctx, struct player *p)
+{
+  return p->has_pending ? add(ctx, p, &p->pending) : DEA_OK;
+}
+
+/* Why there is no going on, with the event where it ended. */
+static dea_status stop(struct dea_context *ctx, struct player *p, dea_status status)
+{
+  char reason[512];
+  snprintf(reason, sizeof reason, "%s", dea_context_message(ctx));
+  if (status != DEA_E_NO_EQUILIBRIUM) {
+    return dea_fail(ctx, status, "at %.6g s, %.4g kV: %s", p->time_s, 1e-3 * p->last_V, reason);
+  }
+  const struct dea_curve *curve = p->curve;
+  DEA_TRY(ctx, flush(ctx, p));
+  if (curve->count > 0) {
+    const struct dea_event event = {DEA_EVENT_PULL_IN, curve->points[curve->count - 1]};
+    DEA_TRY(ctx, dea_curve_add_event(ctx, p->curve, &event));
+  }
+  return dea_fail(ctx, status,
+                  "pull-in at %.6g s, %.4g kV on the film: no equilibrium follows the last one; "
+                  "compute.transient.inertia: yes lets it move on",
+                  p->time_s, 1e-3 * p->last_V);
+}
+
+/* The supply's voltage jumps here. */
+static dea_status jump(struct dea_context *ctx, struct player *p, double source_V)
+{
+  const struct dea_time_step step = {0, source_V};
+  struct dea_load_point point;
+  double error;
+  dea_status status = p->type->advance(ctx, p->model, &step, &point, &error);
+  if (status != DEA_OK) {
+    return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
+  }
+  p->type->accept(p->model);
+  p->source_V = source_V;
+  return keep(ctx, p, &point, true);
+}
+
+/* One step that the tolerance allows, at most to `end`. */
+static dea_status one_step(struct dea_context *ctx, struct player *p, double end)
+{
+  // Circuits may be that fast; where an equilibrium is lost need not be known as closely.
+  double longest = fmin(p->longest_s, p->until_s), smallest = 1e-13 * longest;
+  for (;;) {
+    double left = end - p->time_s, h = fmin(p->next_s, p->longest_s);
+    bool last = h >= left * (1 - 1e-9);
+    h = last ? left : fmin(h, fmax(0.5 * left, smallest)); // no last one that is much shorter
+    double source_V = last ? dea_waveform_before(p->waveform, end)
+                           : dea_waveform_value(p->waveform, p->time_s + h);
+    const struct dea_time_step step = {h, source_V};
+    struct dea_load_point point;
+    double error;
+    dea_status status = p->type->advance(ctx, p->model, &step, &point, &error);
+    if (status == DEA_OK && error <= p->tolerance) {
+      p->type->accept(p->model);
+      p->time_s = last ? end : p->time_s + h;
+      p->source_V = source_V;
+      double factor = 0.9 * cbrt(p->tolerance / fmax(error, 1e-30));
+      p->next_s = fmax(p->next_s, h) * fmin(fmax(factor, 0.3), 3);
+      return keep(ctx, p, &point, last);
+    }
+    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+      return status;
+    }
+    double factor = status != DEA_OK ? 0.25
+                    : error >= 1     ? 0.95 / error
+                                     : fmax(0.9 * cbrt(p->tolerance / error), 0.1);
+    p->next_s = h * fmin(factor, 0.7);
+    if (p->next_s < (status != DEA_OK ? 1e-6 * longest : smallest)) {
+      status = status != DEA_OK ? status
+                                : dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                                           "the error of a step stays above the tolerance");
+      return stop(ctx, p, status);
+    }
+  }
+}
+
+static dea_status play(struct dea_context *ctx, struct player *p)
+{
+  while (p->time_s < p->until_s) {
+    double source_V = dea_waveform_value(p->waveform, p->time_s);
+    if (source_V != p->source_V) {
+      DEA_TRY(ctx, jump(ctx, p, source_V));
+    }
+    double end = fmin(dea_waveform_corner(p->waveform, p->time_s), p->until_s);
+    p->next_s = fmin(p->longest_s, 0.1 * (end - p->time_s));
+    while (p->time_s < end) {
+      if (dea_interrupted(ctx)) {
+        DEA_TRY(ctx, flush(ctx, p));
+        return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at %.6g s; %zu points are kept",
+                        p->time_s, p->curve->count);
+      }
+      DEA_TRY(ctx, one_step(ctx, p, end));
+    }
+    dea_progress(ctx, p->what, (size_t)(1000 * p->time_s / p->until_s), 1000);
+  }
+  return DEA_OK;
+}
+
+/* Waveform of the supply, end and steps. limited: owned by the caller, may be NULL. */
+static dea_status prepare(struct dea_context *ctx, const struct dea_design *design,
+                          struct player *p, struct dea_waveform **limited)
+{
+  const struct dea_waveform *waveform = design->drive.waveform;
+  const struct dea_quantity *slew = &design->drive.slew_limit_V_per_s;
+  const struct dea_quantity *longest = &design->compute.transient.longest_step_s;
+  const struct dea_quantity *until = &design->compute.transient.until_s;
+  struct dea_wave_cycle cycle;
+  p->waveform = waveform;
+  p->until_s = until->origin != DEA_ABSENT ? until->si : waveform->end_s;
+  if (slew->origin != DEA_ABSENT) {
+    DEA_TRY(ctx, dea_waveform_limit(ctx, waveform, slew->si, p->until_s, limited));
+    p->waveform = *limited != NULL ? *limited : waveform;
+  }
+  double usual_s = fmin(waveform->longest_step_s, 0.02 * p->until_s);
+  if (dea_waveform_cycle(waveform, 0, &cycle)) {
+    usual_s = fmin(usual_s, 0.05 * (cycle.end_s - cycle.start_s));
+  }
+  p->longest_s = longest->origin != DEA_ABSENT ? longest->si : usual_s;
+  p->tolerance = design->compute.transient.tolerance.si;
+  const struct dea_quantity *interval = &design->compute.transient.interval_s;
+  p->interval_s = interval->origin != DEA_ABSENT ? interval->si : 0;
+  return DEA_OK;
+}
+
+/* From the film at rest at 0 V. */
+static dea_status begin(struct dea_context *ctx, const struct dea_design *design, struct player *p)
+{
+  const struct dea_quantity *limit = &design->drive.current_limit_A;
+  const struct dea_time_options options = {
+      .circuit = {.series_resistance_ohm = design->drive.series_resistance_ohm.si,
+                  .current_limit_A = limit->origin != DEA_ABSENT ? limit->si : INFINITY},
+      .inertia = design->compute.transient.inertia.value == 1,
+      .rho_inf = design->compute.transient.rho_inf.si,
+  };
+  struct dea_load_point point;
+  DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
+  DEA_TRY(ctx, p->type->begin(ctx, p->model, &options, &point));
+  return keep(ctx, p, &point, true);
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  (void)model; // none: this starts from rest
+  struct player p = {.type = type};
+  struct dea_waveform *limited = NULL;
+  if (type->advance == NULL) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+                           "model %s knows no time: drive.waveform is without effect there",
+                           type->name);
+  }
+  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "transient", &p.curve));
+  snprintf(p.what, sizeof p.what, "%s transient", type->name);
+  dea_status status = type->create(ctx, result->device, &p.model);
+  status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
+  status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
+  status = status == DEA_OK ? play(ctx, &p) : status;
+  if (p.model != NULL) {
+    type->destroy(ctx, p.model);
+  }
+  dea_waveform_destroy(limited);
+  DEA_TRY(ctx, dea_curve_end(ctx, p.curve, status));
+  return DEA_OK;
+}
+
+static bool asked(const struct dea_design *design)
+{
+  return design->drive.waveform != NULL;
+}
+
+const struct dea_study dea_study_transient = {
+    .name = "transient",
+    .asked = asked,
+    .needs = "drive.waveform",
+    .own_models = true,
+    .run = run,
+};

@@ -1,0 +1,212 @@
+/* Study "transient" of designs, and what is read from its curve. */
+#include "design_text.h"
+#include "failing_allocator.h"
+#include "result/columns.h"
+#include "result/history.h"
+#include "study/study.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <signal.h>
+
+#define VISCOUS "    viscosity: [{id: m, branches: [{ratio: 0.3, time: 0.2 s}], source: test}]\n"
+
+/* A film of neo-Hookean rubber that creeps, no fibres; drive and more are appended. */
+#define DESIGN                                                                                     \
+  "dea: 1\n"                                                                                       \
+  "film: {material: rubber, thickness: 100 um}\n"                                                  \
+  "pre_stretch: 1.2\n"                                                                             \
+  "frame: {inner_diameter: 30 mm}\n"                                                               \
+  "electrodes: {radius: 4 mm stretched}\n"                                                         \
+  "materials:\n"                                                                                   \
+  "  - name: rubber\n"                                                                             \
+  "    kind: elastomer\n"                                                                          \
+  "    density: {value: 1000 kg/m^3, source: test}\n"                                              \
+  "    laws: [{id: a, law: neo-hookean, parameters: {mu: 100 kPa}, source: test}]\n"               \
+  "    permittivity: [{id: a, at_rest: 3, source: test}]\n" VISCOUS
+
+struct run {
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  const struct dea_curve *curve;
+  dea_status status;
+};
+
+static struct run run_text(struct dea_context *context, const char *text)
+{
+  static const char *const names[] = {"transient"};
+  struct run run = {NULL, NULL, NULL, NULL, DEA_OK};
+  run.status = read_and_build(context, text, NULL, 0, &run.design, &run.device);
+  run.status = run.status == DEA_OK
+                   ? dea_result_create(context, run.design, run.device, &run.result)
+                   : run.status;
+  if (run.status == DEA_OK) {
+    run.status = dea_study_run_named(context, dea_model_find("lumped"), names, 1, run.result);
+    run.curve = dea_result_find(run.result, "lumped", "transient");
+  }
+  return run;
+}
+
+static void end(struct dea_context *context, struct run *run)
+{
+  dea_result_destroy(context, run->result);
+  dea_device_destroy(context, run->device);
+  dea_design_destroy(context, run->design);
+}
+
+#define PULSES "drive: {waveform: {kind: square, high: 3 kV, frequency: 2 Hz, cycles: 4}}\n"
+
+static void test_pulses(void **state)
+{
+  (void)state;
+  struct run run = run_text(ctx, DESIGN PULSES);
+  assert_int_equal(run.status, DEA_OK);
+  const struct dea_load_point *p = run.curve->points;
+  size_t jumps = 0;
+  assert_true(run.curve->complete && p[run.curve->count - 1].time_s == 2);
+  for (size_t i = 1; i < run.curve->count; i++) {
+    assert_true(p[i].time_s >= p[i - 1].time_s);
+    assert_true(p[i].voltage_V == 0 || p[i].voltage_V == 3000);
+    if (p[i].voltage_V != p[i - 1].voltage_V) { // exactly at its time, and at once
+      assert_true(p[i].time_s == p[i - 1].time_s && p[i].time_s == 0.25 * (double)jumps);
+      jumps++;
+    } else { // between jumps it creeps on
+      assert_true((p[i].voltage_V > 0) == (p[i].electrode_stretch > p[i - 1].electrode_stretch));
+    }
+  }
+  assert_int_equal(jumps, 8);
+  struct dea_energy_balance energy;
+  assert_true(dea_history_balance(run.curve, &energy));
+  assert_true(energy.error < 1e-3 && energy.dissipated_J > 0);
+  struct dea_cycle *cycles;
+  size_t count;
+  int column = dea_history_column(run.curve);
+  assert_string_equal(dea_point_columns[column].key, "electrode_edge_u_m");
+  assert_int_equal(
+      dea_history_cycles(ctx, run.curve, run.design->drive.waveform, column, &cycles, &count),
+      DEA_OK);
+  assert_int_equal(count, 4);
+  assert_int_equal(dea_history_level_end(cycles, count, 0), 3);
+  for (size_t i = 0; i < 4; i++) {
+    assert_true(cycles[i].level_V == 3000 && cycles[i].start_s == 0.5 * (double)i);
+    assert_true(cycles[i].rise_time_s >= 0 && cycles[i].rise_time_s < 0.25);
+    assert_true(i == 0 || cycles[i].farthest > cycles[i - 1].farthest);
+  }
+  dea_free(ctx, cycles);
+  end(ctx, &run);
+}
+
+/* A looser and a tighter tolerance agree as they promise. */
+static void test_tolerance(void **state)
+{
+  (void)state;
+  static const char *const more[2] = {"compute: {transient: {tolerance: 0.001}}\n",
+                                      "compute: {transient: {tolerance: 0.0000001}}\n"};
+  double edge_m[2];
+  for (int k = 0; k < 2; k++) {
+    char text[4000];
+    snprintf(text, sizeof text, "%s%s", DESIGN PULSES, more[k]);
+    struct run run = run_text(ctx, text);
+    assert_int_equal(run.status, DEA_OK);
+    edge_m[k] = run.curve->points[run.curve->count - 1].electrode_edge_u_m;
+    end(ctx, &run);
+  }
+  assert_true(edge_m[0] != edge_m[1]);
+  assert_close(edge_m[0], edge_m[1], 1e-2, 0);
+}
+
+static void test_interval_end_and_supply(void **state)
+{
+  (void)state;
+  struct run run = run_text(
+      ctx, DESIGN "drive: {waveform: {kind: step, to: 2 kV, duration: 1 s}, slew_limit: 1 kV/s,\n"
+                  "        series_resistance: 100 Mohm, current_limit: 20 nA}\n"
+                  "compute: {transient: {until: 4 s, interval: 0.5 s, longest_step: 10 ms}}\n");
+  assert_int_equal(run.status, DEA_OK);
+  const struct dea_load_point *p = run.curve->points;
+  assert_in_range(run.curve->count, 9, 12); // every half second and the corner at 2 s
+  for (size_t i = 0; i < run.curve->count; i++) {
+    assert_close(p[i].source_voltage_V, fmin(1000 * p[i].time_s, 2000), 0, 1e-6);
+    assert_true(fabs(p[i].current_A) <= 20e-9 * (1 + 1e-12));
+    assert_true(p[i].voltage_V <= p[i].source_voltage_V + 1e-9);
+  }
+  assert_close(p[run.curve->count - 1].time_s, 4, 0, 0);
+  assert_close(p[run.curve->count - 1].voltage_V, 2000, 1e-3, 0);
+  end(ctx, &run);
+}
+
+/* More voltage than the film stands in the long run: what came before stays, and it is said when it
+ * ended; with inertia it goes on. */
+static void test_pull_in(void **state)
+{
+  (void)state;
+#define HOLD "drive: {waveform: {kind: constant, voltage: 2.65 kV, duration: 20 s}}\n"
+  struct run run = run_text(ctx, DESIGN HOLD "compute: {coverage: 0.01}\n");
+  assert_int_equal(run.status, DEA_E_NO_EQUILIBRIUM);
+  assert_false(run.curve->complete);
+  assert_true(run.curve->count > 10 && run.curve->event_count == 1);
+  assert_non_null(strstr(run.curve->stopped, "pull-in at "));
+  assert_true(run.curve->events[0].kind == DEA_EVENT_PULL_IN);
+  assert_true(run.curve->events[0].point.time_s > 0 && run.curve->events[0].point.time_s < 20);
+  end(ctx, &run);
+}
+
+static void test_interrupt(void **state)
+{
+  (void)state;
+  volatile sig_atomic_t flag = 1;
+  dea_context_set_interrupt(ctx, &flag);
+  struct run run = run_text(ctx, DESIGN PULSES);
+  dea_context_set_interrupt(ctx, NULL);
+  assert_int_equal(run.status, DEA_E_INTERRUPTED);
+  assert_true(run.curve->count >= 1 && !run.curve->complete);
+  end(ctx, &run);
+}
+
+/* Without a waveform the study cannot be asked for; a model without time says so. */
+static void test_not_for_all(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"transient"};
+  struct run run = run_text(ctx, DESIGN);
+  assert_int_equal(run.status, DEA_E_DESIGN);
+  assert_non_null(strstr(dea_context_message(ctx), "needs drive.waveform"));
+  end(ctx, &run);
+  run = run_text(ctx, DESIGN PULSES);
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_study_run_named(ctx, dea_model_find("axisymmetric"), names, 1, run.result),
+                   DEA_OK);
+  assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
+  end(ctx, &run);
+}
+
+static dea_status run_short(struct dea_context *context)
+{
+  struct run run =
+      run_text(context, DESIGN
+               "drive: {waveform: {kind: step, to: 2 kV, duration: 1 s}, slew_limit: 1 MV/s}\n"
+               "compute: {transient: {interval: 0.5 s}}\n");
+  end(context, &run);
+  return run.status;
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  assert_true(failing_ends(run_short, DEA_OK) > 10);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pulses),
+      cmocka_unit_test(test_tolerance),
+      cmocka_unit_test(test_interval_end_and_supply),
+      cmocka_unit_test(test_pull_in),
+      cmocka_unit_test(test_interrupt),
+      cmocka_unit_test(test_not_for_all),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
