@@ -67,6 +67,35 @@ static void test_figure_2_json(void **state)
   json_decref(root);
 }
 
+/* Two pulses at two voltages: cycles, creep and balance of energy are in the summary, points in the
+ * table, curves in the figures. */
+static void test_in_time(void **state)
+{
+  (void)state;
+  json_t *root = summary("run @/examples/protocol.yaml --study transient --json -o in-time --force "
+                         "--set drive.waveform.cycles=2 --set drive.waveform.from='7 kV' "
+                         "--set report.figures='[svg]'");
+  const json_t *time = json_object_get(root, "transient");
+  const json_t *cycles = json_object_get(time, "cycles"), *creep = json_object_get(time, "creep");
+  assert_close(number(time, "end_s"), 8, 0, 1e-12);
+  assert_string_equal(json_string_value(json_object_get(time, "quantity")), "centre_z_m");
+  assert_int_equal(json_array_size(cycles), 4);
+  assert_int_equal(json_array_size(creep), 2);
+  for (size_t i = 0; i < 4; i++) {
+    const json_t *cycle = json_array_get(cycles, i);
+    assert_close(number(cycle, "level_V"), i < 2 ? 7000 : 8000, 0, 0);
+    assert_close(number(cycle, "amplitude"), i < 2 ? 4.4e-3 : 5e-3, 0.12, 0);
+  }
+  assert_true(number(json_array_get(creep, 0), "creep") > 0);
+  assert_true(fabs(number(json_object_get(time, "energy"), "not_accounted")) < 1e-3);
+  json_decref(root);
+  assert_int_equal(command_run("plot in-time --figure history --format svg -o in-time-figures"), 0);
+  command_read("in-time-figures/history.svg", command_out);
+  assert_contains(command_out, "</svg>");
+  command_read("in-time/lumped_transient.csv", command_out);
+  assert_contains(command_out, "time (s),source V (kV)");
+}
+
 static void test_set_overrides_the_design(void **state)
 {
   (void)state;
@@ -267,6 +296,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_plain_disc_json),
       cmocka_unit_test(test_figure_2_json),
+      cmocka_unit_test(test_in_time),
       cmocka_unit_test(test_set_overrides_the_design),
       cmocka_unit_test(test_run_folder),
       cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),

@@ -306,6 +306,7 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
       print_model(run->result, types[i]->name);
       DEA_TRY(ctx, cli_print_convergence(ctx, run->result, types[i]->name));
       cli_print_designs(run->result, types[i]->name);
+      DEA_TRY(ctx, cli_print_transient(ctx, run->result, types[i]->name));
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
@@ -400,8 +401,8 @@ const struct dea_command cmd_run = {
         "More designs are set beside the first in its figures and tables (study compare-design).\n"
         "\n"
         "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
-        "      --study NAME      only this study: path, sweep, force, modal, frequency,\n"
-        "                        convergence, compare-design; can be repeated\n"
+        "      --study NAME      only this study: path, sweep, force, transient, modal,\n"
+        "                        frequency, convergence, compare-design; can be repeated\n"
         "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
         "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
         "  -f, --force           replace the results in an existing run folder\n"

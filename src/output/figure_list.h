@@ -12,6 +12,9 @@
   X(surface)                                                                                       \
   X(section)                                                                                       \
   X(animation)                                                                                     \
+  X(history)                                                                                       \
+  X(history_force)                                                                                 \
+  X(history_current)                                                                               \
   X(modes)                                                                                         \
   X(mode_shapes)                                                                                   \
   X(bode)                                                                                          \

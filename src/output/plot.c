@@ -181,6 +181,9 @@ static void add_style(struct dea_text *gp, const struct dea_series *series)
   case DEA_LINE:
     dea_text_add(gp, "with lines lw 1.5 lc rgb \"%s\"", colour);
     break;
+  case DEA_THIN:
+    dea_text_add(gp, "with lines lw 0.5 lc rgb \"%s\"", colour);
+    break;
   case DEA_LINE_MARKED:
     dea_text_add(gp, "with linespoints lw 1.2 pt %d ps 0.6 pi %zu lc rgb \"%s\"", marker, interval,
                  colour);

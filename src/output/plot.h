@@ -26,6 +26,7 @@ enum dea_colour {
 
 enum dea_series_style {
   DEA_LINE,
+  DEA_THIN,        // many cycles in time
   DEA_LINE_MARKED, // line with about ten markers
   DEA_DASHED,      // unstable branches, second directions
   DEA_DOTTED,      // limits

@@ -136,6 +136,7 @@ dea_status dea_summary_put_studies(struct dea_context *ctx, const struct dea_res
 {
   DEA_TRY(ctx, put_convergence(ctx, result, model, object));
   put_designs(result, model, object);
+  DEA_TRY(ctx, dea_summary_put_transient(ctx, result, model, object));
   put_curve(result, model, "modal", object);
   put_curve(result, model, "frequency", object);
   return DEA_OK;
