@@ -20,11 +20,12 @@ endif()
 if(DEA_WASM_WORKS)
   set(core_sources ${PROJECT_SOURCE_DIR}/web/explorer.c ${PROJECT_SOURCE_DIR}/web/dense.c)
   foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane model/film model/make
-      model/load_point model/path model/lumped/balance model/lumped/lift model/lumped/model)
+      model/load_point model/path model/circuit material/branch model/lumped/balance model/lumped/history model/lumped/lift
+      model/lumped/model)
     list(APPEND core_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()
   file(GLOB core_found CONFIGURE_DEPENDS material/law_*.c model/axisymmetric/*.c)
-  file(GLOB core_headers CONFIGURE_DEPENDS base/*.h material/*.h design/*.h device/*.h model/*.h model/lumped/*.h
+  file(GLOB core_headers CONFIGURE_DEPENDS base/*.h material/*.h design/*.h device/*.h model/*.h model/lumped/*.h waveform/*.h
     model/axisymmetric/*.h)
   list(APPEND core_sources ${core_found})
   set(DEA_CORE ${CMAKE_CURRENT_BINARY_DIR}/explorer.wasm)
