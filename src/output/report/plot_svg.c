@@ -172,6 +172,9 @@ static void add_band(struct dea_text *out, const struct view *v, const struct de
   for (size_t k = 0; k < 2; k++) {
     for (size_t j = 0; j < series->count; j++) {
       if (place(v, series, k == 0 ? j : series->count - 1 - j, 1 + k, at)) {
+        if (k == 1 && at[1] < v->top + 0.1 * (v->bottom - v->top)) {
+          at[1] = v->top; // what reaches beyond the data goes to the edge of the panel
+        }
         dea_text_add(out, "%s%.1f %.1f", first ? "M" : "L", at[0], at[1]);
         first = false;
       }
