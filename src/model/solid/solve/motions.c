@@ -131,17 +131,91 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
   return status;
 }
 
-/* Amplitude and phase of z of nodes, in the mean of two. */
-static void amplitude_of(const struct dea_solid_response *response, size_t node, size_t twin,
-                         double rad_per_s, const struct dea_damping *damping, double *amplitude,
-                         double *phase)
+/* ---- answers ---- */
+
+/* Branches of a layer of that material. */
+static void set_branches(const struct dea_material *material, struct dea_motions *motions,
+                         int layer)
 {
-  double real[2][3], imaginary[2][3];
-  dea_solid_response_at(response, node, rad_per_s, damping, real[0], imaginary[0]);
-  dea_solid_response_at(response, twin, rad_per_s, damping, real[1], imaginary[1]);
-  double re = 0.5 * (real[0][2] + real[1][2]), im = 0.5 * (imaginary[0][2] + imaginary[1][2]);
-  *amplitude = hypot(re, im);
-  *phase = atan2(im, re);
+  struct dea_branches *out = &motions->branches[layer];
+  out->count = material->branch_count;
+  for (size_t i = 0; i < out->count; i++) {
+    out->branch[i].modulus_Pa = material->branches[i].modulus_Pa;
+    out->branch[i].time_s = material->branches[i].time_s;
+  }
+  motions->viscous = motions->viscous || out->count > 0;
+}
+
+void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *d)
+{
+  set_branches(&d->film, motions, DEA_LAYER_FILM);
+  if (d->electrode_thickness_m > 0) {
+    set_branches(&d->electrode, motions, DEA_LAYER_ELECTRODE);
+  }
+}
+
+enum { CENTRE, TWIN, TIP, PROBES };
+
+/* z of the probes by the frequency, real and imaginary part in the third component. */
+typedef double answer[2][3];
+
+static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m,
+                            const struct dea_damping *damping, const double *rad_per_s,
+                            size_t count, const size_t nodes[PROBES], answer *out)
+{
+  struct dea_solid_response *response;
+  double highest = 0;
+  for (size_t i = 0; i < count; i++) {
+    highest = fmax(highest, rad_per_s[i]);
+  }
+  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
+  for (size_t i = 0; i < count * PROBES; i++) {
+    dea_solid_response_at(response, nodes[i % PROBES], rad_per_s[i / PROBES], damping, out[i][0],
+                          out[i][1]);
+  }
+  dea_solid_response_destroy(ctx, response);
+  return DEA_OK;
+}
+
+/* At one frequency there are no modes: the ratio becomes shares of mass and stiffness that make it
+ * at the first resonance and at three times that, 0.87 of it between them and more beyond. */
+static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions *m,
+                               struct dea_damping *damping)
+{
+  static const double spread = 3;
+  double square;
+  if (damping->ratio == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, 1, &square, NULL));
+  if (!(square > 0)) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                    "the equilibrium that the voltage ripples about is unstable");
+  }
+  double first = sqrt(square), sum = (1 + spread) * first;
+  damping->mass_per_s += 2 * damping->ratio * spread * square / sum;
+  damping->stiffness_s += 2 * damping->ratio / sum;
+  return DEA_OK;
+}
+
+static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *m,
+                             const struct dea_damping *damping, const double *rad_per_s,
+                             size_t count, const size_t nodes[PROBES], answer *out)
+{
+  struct dea_damping spread = *damping;
+  DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
+  DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
+                                         nodes, PROBES, out));
+  return DEA_OK;
+}
+
+static void amplitude_of(answer first, answer second, double ripple_V, double *amplitude_m,
+                         double *phase_rad)
+{
+  double re = 0.5 * (first[0][2] + second[0][2]);
+  double im = 0.5 * (first[1][2] + second[1][2]);
+  *amplitude_m = ripple_V * hypot(re, im);
+  *phase_rad = atan2(im, re);
 }
 
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,
@@ -149,29 +223,30 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
                                const double *frequency_Hz, size_t count,
                                struct dea_load_point *points)
 {
-  struct dea_solid_response *response;
   const struct dea_damping damping = {ripple->damping_ratio, ripple->damping_mass_per_s,
                                       ripple->damping_stiffness_s};
-  double highest = 0;
-  for (size_t i = 0; i < count; i++) {
-    highest = fmax(highest, frequency_Hz[i]);
+  const size_t nodes[PROBES] = {m->centre, m->centre_twin, m->tip};
+  double *rad_per_s = dea_alloc(ctx, count, sizeof *rad_per_s);
+  answer *out = dea_alloc(ctx, count * PROBES, sizeof *out);
+  dea_status status = dea_solid_any(rad_per_s == NULL || out == NULL) ? DEA_E_MEMORY : DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    rad_per_s[i] = 2 * pi * frequency_Hz[i];
   }
-  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, 2 * pi * highest, &response));
-  for (size_t i = 0; i < count; i++) {
+  if (status == DEA_OK) {
+    status = (m->viscous ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, nodes, out);
+  }
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    answer *z = out + i * PROBES;
     struct dea_load_point *p = &points[i];
-    double w = 2 * pi * frequency_Hz[i];
     *p = *at;
     p->frequency_Hz = frequency_Hz[i];
     p->ripple_V = ripple->amplitude_V;
-    amplitude_of(response, m->centre, m->centre_twin, w, &damping, &p->centre_amplitude_m,
-                 &p->centre_phase_rad);
-    p->centre_amplitude_m *= ripple->amplitude_V;
+    amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
     if (m->has_tip) {
-      amplitude_of(response, m->tip, m->tip, w, &damping, &p->fibre_tip_amplitude_m,
-                   &p->fibre_tip_phase_rad);
-      p->fibre_tip_amplitude_m *= ripple->amplitude_V;
+      amplitude_of(z[TIP], z[TIP], p->ripple_V, &p->fibre_tip_amplitude_m, &p->fibre_tip_phase_rad);
     }
   }
-  dea_solid_response_destroy(ctx, response);
-  return DEA_OK;
+  dea_free(ctx, rad_per_s);
+  dea_free(ctx, out);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

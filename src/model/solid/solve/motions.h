@@ -3,7 +3,8 @@
 #define DEA_MODEL_SOLID_SOLVE_MOTIONS_H
 
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/actuator.h"
+#include "model/solid/solve/history.h"
 
 /* A solid with the nodes that are reported. */
 struct dea_motions {
@@ -12,7 +13,12 @@ struct dea_motions {
   size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
   size_t tip;
   bool has_tip;
+  bool viscous; // a layer has branches
+  struct dea_branches branches[DEA_LAYER_COUNT];
 };
+
+/* Sets the branches of film and electrodes. */
+void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device);
 
 /* As `modes` and `respond` of struct dea_model_type; sheet: of the film. */
 dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int sheet,
