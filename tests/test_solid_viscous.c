@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-static const struct dea_maxwell branch = {2.5e5, 0.3};
+static const struct dea_branch branch = {2.5e5, 0.3};
 
 /* A shear and stretch of given size without change of volume, but for `volume`. */
 static double deform(double size, double volume, double F[9])

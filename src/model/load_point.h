@@ -44,6 +44,9 @@
   X(kinetic_energy_J, "J", "uJ", 1e6, "kinetic energy", "kinetic energy")                          \
   X(dissipated_J, "J", "uJ", 1e6, "dissipated",                                                    \
     "energy lost in viscous branches, resistance and leakage since the start")                     \
+  X(damped_J, "J", "uJ", 1e6, "damped by steps",                                                   \
+    "energy of motion that was not resolved: damped by the steps with inertia, lost in leaps "     \
+    "without")                                                                                     \
   X(supply_work_J, "J", "uJ", 1e6, "supply work", "work of the supply since the start")            \
   X(mode, "1", "1", 1.0, "mode", "number of the mode, from the lowest on")                         \
   X(frequency_Hz, "Hz", "Hz", 1.0, "frequency",                                                    \

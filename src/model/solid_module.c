@@ -112,6 +112,26 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *options, struct dea_load_point *out)
+{
+  DEA_TRY(ctx, model->type->begin(ctx, model->inner, options, out));
+  return DEA_OK;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  DEA_TRY(ctx, model->type->advance(ctx, model->inner, step, out, error));
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *model)
+{
+  model->type->accept(model->inner);
+}
+
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
   model->type->size(model->inner, out);
@@ -130,5 +150,8 @@ const struct dea_model_type dea_model_3d = {
     .fields = fields,
     .save = save,
     .load = load,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
     .size = size,
 };

@@ -7,12 +7,6 @@
 /* Components of a symmetric tensor as a matrix. */
 static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
 
-static struct dea_maxwell_weights weights_of(double step_s, double time_s)
-{
-  double x = step_s / time_s, decay = exp(-x), mean = -expm1(-x) / x;
-  return (struct dea_maxwell_weights){decay, mean - decay, 1 - mean};
-}
-
 void dea_viscous_add(const struct dea_layer *layer, int q, const double F[9], const double cof[9],
                      double J, bool tangent, struct dea_point *point)
 {
@@ -150,7 +144,7 @@ double dea_branch_energy(double modulus_Pa, const double A[6], const double C[6]
   return 0.5 * modulus_Pa * (contract(A, C) - 3 - log(invert(A, none)) - log(invert(C, none)));
 }
 
-void dea_branch_step_set(const struct dea_maxwell *branch, double step_s,
+void dea_branch_step_set(const struct dea_branch *branch, double step_s,
                          struct dea_branch_step *out)
 {
   enum { POINTS = 4, PANELS = 4 };
@@ -159,7 +153,7 @@ void dea_branch_step_set(const struct dea_maxwell *branch, double step_s,
   if (!(step_s > 0)) {
     return;
   }
-  out->end = weights_of(step_s, branch->time_s);
+  out->end = dea_branch_weights(step_s, branch->time_s);
   // what a branch carries at the begin is gone after a few of its times
   double unit = branch->time_s / step_s;
   const double ends[PANELS + 1] = {0, fmin(1, unit), fmin(1, 3 * unit), fmin(1, 8 * unit), 1};
@@ -170,12 +164,12 @@ void dea_branch_step_set(const struct dea_maxwell *branch, double step_s,
       double share = ends[p] + 0.5 * (1 + x[i]) * width;
       out->place[out->count].share = share;
       out->place[out->count].seconds = 0.5 * w[i] * width * step_s;
-      out->place[out->count].weights = weights_of(share * step_s, branch->time_s);
+      out->place[out->count].weights = dea_branch_weights(share * step_s, branch->time_s);
     }
   }
 }
 
-void dea_branch_update(const struct dea_maxwell_weights *w, const double A[6], const double from[6],
+void dea_branch_update(const struct dea_branch_weights *w, const double A[6], const double from[6],
                        const double to[6], double A_next[6])
 {
   for (int a = 0; a < 6; a++) {
@@ -204,12 +198,12 @@ static double imbalance(const double A[6], const double inverse[6])
   return sum;
 }
 
-double dea_branch_dissipation(const struct dea_maxwell *branch, const struct dea_branch_step *step,
+double dea_branch_dissipation(const struct dea_branch *branch, const struct dea_branch_step *step,
                               const double A[6], const double from[6], const double to[6])
 {
   double sum = 0;
   for (size_t i = 0; i < step->count; i++) {
-    const struct dea_maxwell_weights w = step->place[i].weights;
+    const struct dea_branch_weights w = step->place[i].weights;
     double now[6], inverse[6], share = step->place[i].share;
     for (int a = 0; a < 6; a++) {
       inverse[a] = from[a] + share * (to[a] - from[a]);

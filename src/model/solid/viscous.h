@@ -14,16 +14,8 @@
 #ifndef DEA_MODEL_SOLID_VISCOUS_H
 #define DEA_MODEL_SOLID_VISCOUS_H
 
+#include "material/branch.h"
 #include "model/solid/membrane.h"
-
-struct dea_maxwell {
-  double modulus_Pa, time_s;
-};
-
-/* A_n+1 = e A_n + w0 C_n^-1 + w1 C_n+1^-1: exact for C^-1 linear in time, sum 1. */
-struct dea_maxwell_weights {
-  double e, w0, w1;
-};
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
  * Nothing to do for a layer without one. */
@@ -49,25 +41,25 @@ double dea_branch_energy(double modulus_Pa, const double A[6], const double C[6]
  * summed up, with what each counts. */
 enum { DEA_BRANCH_PLACES_MAX = 16 };
 struct dea_branch_step {
-  struct dea_maxwell_weights end;
+  struct dea_branch_weights end;
   size_t count;
   struct {
     double share, seconds;
-    struct dea_maxwell_weights weights;
+    struct dea_branch_weights weights;
   } place[DEA_BRANCH_PLACES_MAX];
 };
 
 /* step_s: 0 for a step that takes no time. */
-void dea_branch_step_set(const struct dea_maxwell *branch, double step_s,
+void dea_branch_step_set(const struct dea_branch *branch, double step_s,
                          struct dea_branch_step *out);
 
 /* A at the end of the step; A_next may be A. */
-void dea_branch_update(const struct dea_maxwell_weights *weights, const double A[6],
+void dea_branch_update(const struct dea_branch_weights *weights, const double A[6],
                        const double from[6], const double to[6], double A_next[6]);
 
 /* What a branch dissipates per volume in a step over which C^-1 goes linearly from one to the other
  * [J/m^3]: the integral of G/(2 tau) tr(X + X^-1 - 2), X = A C, with A at the begin. */
-double dea_branch_dissipation(const struct dea_maxwell *branch, const struct dea_branch_step *step,
+double dea_branch_dissipation(const struct dea_branch *branch, const struct dea_branch_step *step,
                               const double A[6], const double from[6], const double to[6]);
 
 #endif

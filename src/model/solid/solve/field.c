@@ -134,7 +134,8 @@ dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double
   for (int n = 0; n < s->shape.nodes; n++) {
     potential[n] = psi[nodes[n]];
   }
-  return dea_hex_coupled_evaluate(&s->shape, &s->layers[s->layer[e]], X, u, potential, multiplier,
+  const struct dea_layer layer = dea_solid_layer_at(s, e);
+  return dea_hex_coupled_evaluate(&s->shape, &layer, X, u, potential, multiplier,
                                   s->field->scale_V_per_m, level, s->element);
 }
 

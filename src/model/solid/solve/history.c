@@ -178,7 +178,7 @@ static void begin_element(struct dea_solid_history *h, size_t from, size_t count
 
 void dea_solid_history_begin(struct dea_solid_history *h, const struct dea_solid *s, double step_s)
 {
-  struct dea_branch_step steps[DEA_MAXWELL_MAX];
+  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   for (size_t l = 0; l < h->layer_count; l++) {
     const struct dea_branches *branches = &h->branches[l];
     find_steps(branches, step_s, steps);
@@ -200,7 +200,7 @@ static void add_energies(const struct dea_solid_history *h, size_t at,
                          const double C[6], double volume, struct dea_solid_branch_energies *sum)
 {
   for (size_t i = 0; i < branches->count; i++) {
-    const struct dea_maxwell *branch = &branches->branch[i];
+    const struct dea_branch *branch = &branches->branch[i];
     double A[6];
     dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at], A);
     sum->stored += volume * dea_branch_energy(branch->modulus_Pa, A, C);
@@ -213,7 +213,7 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
                                    const struct dea_solid *s, double step_s,
                                    struct dea_solid_branch_energies *out)
 {
-  struct dea_branch_step steps[DEA_MAXWELL_MAX];
+  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   dea_status status = DEA_OK;
   int layer = -1; // that the steps are of
   h->step_s = step_s;
@@ -241,7 +241,7 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
 
 void dea_solid_history_accept(struct dea_solid_history *h, const struct dea_solid *s)
 {
-  struct dea_branch_step steps[DEA_MAXWELL_MAX];
+  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
     size_t from = h->first[e], to = from < h->point_count ? from + points_of(s, e) : from;

@@ -7,24 +7,22 @@
 #include "model/solid/solve/solid.h"
 #include "model/solid/viscous.h"
 
-enum { DEA_MAXWELL_MAX = 8 };
-
 /* Branches of a layer; none: elastic. */
 struct dea_branches {
   size_t count;
-  struct dea_maxwell branch[DEA_MAXWELL_MAX];
+  struct dea_branch branch[DEA_BRANCHES_MAX];
 };
 
 struct dea_solid_history {
   size_t layer_count, point_count;
-  struct dea_branches *branches;   // [layer_count]
-  size_t *first;                   // [elements] its first point; point_count: elastic
-  double *b_Pa;                    // [layer_count] of the step
-  double *B;                       // [point_count][6] of the step
-  double (*inverse)[6];            // [point_count] C^-1 at the accepted state
-  double (*inverse_next)[6];       // at the end of the step that is tried
-  double step_s;                   // its length
-  double (*A)[DEA_MAXWELL_MAX][6]; // [point_count] there
+  struct dea_branches *branches;    // [layer_count]
+  size_t *first;                    // [elements] its first point; point_count: elastic
+  double *b_Pa;                     // [layer_count] of the step
+  double *B;                        // [point_count][6] of the step
+  double (*inverse)[6];             // [point_count] C^-1 at the accepted state
+  double (*inverse_next)[6];        // at the end of the step that is tried
+  double step_s;                    // its length
+  double (*A)[DEA_BRANCHES_MAX][6]; // [point_count] there
 };
 
 /* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned

@@ -3,6 +3,7 @@
 #include "model/make.h"
 #include "model/solid/actuator.h"
 #include "model/solid/line_profile.h"
+#include "model/solid/solve/driven.h"
 #include "model/solid/solve/fields.h"
 #include "model/solid/solve/mass.h"
 #include "model/solid/solve/motions.h"
@@ -12,6 +13,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
@@ -26,8 +28,10 @@ struct dea_model {
       between_twin; // on the other side of the film's middle plane, or the same ones
   double voltage_V, rest_energy_J;
   struct dea_solid_report report;
-  double *profile;         // what the last one lends from
-  struct dea_press *press; // NULL: no probe
+  double *profile;           // what the last one lends from
+  struct dea_press *press;   // NULL: no probe
+  struct dea_driven *driven; // NULL: no history in time
+  double stored_J;           // of the film when that began
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -137,6 +141,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
 static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
+    dea_driven_destroy(ctx, model->driven);
     dea_solid_destroy(ctx, model->solid);
     dea_press_destroy(ctx, model->press);
     dea_grid_destroy(ctx, model->grid);
@@ -251,9 +256,90 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
+/* ---- in time ---- */
+
+/* Equilibria are looked for from where the history has come to. */
+static void end_history(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model->driven != NULL) {
+    dea_driven_destroy(ctx, model->driven);
+    model->driven = NULL;
+    model->voltage_V = dea_solid_voltage(model->solid);
+  }
+}
+
+/* Branches of a material that a layer is made of. */
+static void set_branches(const struct dea_material *material, struct dea_branches *out)
+{
+  out->count = material->branch_count;
+  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
+}
+
+static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
+                              struct dea_load_point *out)
+{
+  model->voltage_V = dea_solid_voltage(model->solid);
+  DEA_TRY(ctx, report(ctx, model, out));
+  dea_driven_point(model->driven, out);
+  out->stored_energy_J += model->stored_J;
+  out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
+  return DEA_OK;
+}
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *time, struct dea_load_point *out)
+{
+  const struct dea_device *d = model->device;
+  const struct dea_material *film = &d->film;
+  struct dea_branches branches[DEA_LAYER_COUNT] = {{.count = 0}};
+  set_branches(film, &branches[DEA_LAYER_FILM]);
+  set_branches(d->electrode_thickness_m > 0 ? &d->electrode : film, &branches[DEA_LAYER_ELECTRODE]);
+  const struct dea_driven_options options = {
+      .time = *time,
+      .branches = branches,
+      .copies = dea_actuator_copies(&model->actuator),
+      .leakage_per_s = film->resistivity_ohm_m > 0 ? 1 / (film->resistivity_ohm_m * DEA_EPSILON_0 *
+                                                          film->permittivity.at_rest)
+                                                   : 0,
+      .length_m = d->film_thickness_m,
+  };
+  end_history(ctx, model);
+  if (time->inertia) {
+    DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
+  DEA_TRY(ctx, dea_driven_create(ctx, model->solid, &options, model->voltage_V, &model->driven));
+  DEA_TRY(ctx, report_time(ctx, model, out));
+  return DEA_OK;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  if (model->driven == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
+  }
+  if (dea_solid_any(dea_interrupted(ctx))) {
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
+  }
+  DEA_TRY(ctx, dea_driven_advance(ctx, model->driven, step, &model->report, error));
+  DEA_TRY(ctx, report_time(ctx, model, out));
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *model)
+{
+  dea_driven_accept(model->driven);
+}
+
+/* ---- equilibria ---- */
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
+  end_history(ctx, model);
   double step = field_step_V_per_m * model->device->film_thickness_unstretched_m;
   double from = model->voltage_V, way = voltage_V - from;
   int steps = (int)ceil(fabs(way) / step - 1e-9);
@@ -279,6 +365,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
 static dea_status press(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
+  end_history(ctx, model);
   if (model->press == NULL) {
     DEA_TRY(ctx, dea_press_create(ctx, &model->actuator, model->grid, model->solid, probe,
                                   &model->press));
@@ -416,5 +503,8 @@ const struct dea_model_type dea_solid_module = {
     .fields = fields,
     .save = save,
     .load = load,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
     .size = size,
 };

@@ -110,6 +110,11 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   dea_free(ctx, s);
 }
 
+double dea_solid_voltage(const struct dea_solid *solid)
+{
+  return solid->voltage_V;
+}
+
 double *dea_solid_displacement(struct dea_solid *solid)
 {
   return solid->u;

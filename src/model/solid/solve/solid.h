@@ -76,6 +76,9 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
 dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                            struct dea_solid_report *report);
 
+/* Voltage of the last equilibrium. */
+double dea_solid_voltage(const struct dea_solid *solid);
+
 /* Displacements [node_count][3], lent; they may be written to set a start. What the options hold
  * stays where it is. */
 double *dea_solid_displacement(struct dea_solid *solid);

@@ -1,4 +1,4 @@
-#include "model/solid/solve/time.h"
+#include "model/solid/solve/time_state.h"
 
 #include "model/solid/solve/branch.h"
 #include "model/solid/solve/inertia.h"
@@ -8,56 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Generalised-alpha (Chung, Hulbert 1993) by the spectral radius. */
-struct alpha {
-  double m, f, beta, gamma;
-};
-
-struct dea_solid_time {
-  struct dea_solid *solid;
-  struct dea_solid_history *history;
-  struct dea_solid_inertia inertia;
-  bool inertial, stay; // stay: of the solid before
-  struct alpha alpha;
-  size_t count;                     // 3 node_count
-  double *v, *a, *F;                // at the accepted state; F: all forces but those of inertia
-  double *v_next, *a_next, *F_next; // of the step that is tried
-  double *u_before;                 // [count] of the state before the accepted one
-  double *work;                     // [count]
-  double step_s, step_before_s;     // of the step that is tried; of the accepted one, 0: a corner
-  double *keep, *controls;          // the accepted state, as of a path
-  size_t keep_count, control_count; // numbers in them
-  double stiffened;                 // kappa is so many times that of the layers
-  struct dea_solid_energies sums, sums_next;
-  double first_J, charge_C, charge_next_C; // stored energy at the start; on an electrode
-};
-
-static struct alpha alpha_of(double radius)
+static struct dea_alpha alpha_of(double radius)
 {
   double m = (2 * radius - 1) / (radius + 1), f = radius / (radius + 1);
-  return (struct alpha){m, f, 0.25 * (1 - m + f) * (1 - m + f), 0.5 - m + f};
-}
-
-/* ---- energies ---- */
-
-/* Elastic and electric energy and that of loads, and charge, without what steps add. */
-static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t, double *stored,
-                              double *charge)
-{
-  struct dea_solid *s = t->solid;
-  double potential, capacitance;
-  s->history = NULL;
-  dea_status status = dea_solid_energy(s, s->u, s->voltage_V, &potential);
-  if (status == DEA_OK) {
-    status = dea_solid_capacitance(ctx, s, &capacitance);
-  }
-  s->history = t->history;
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
-  }
-  *charge = isnan(capacitance) ? 0 : capacitance * s->voltage_V; // NAN: no electrodes
-  *stored = potential + *charge * s->voltage_V;
-  return DEA_OK;
+  return (struct dea_alpha){m, f, 0.25 * (1 - m + f) * (1 - m + f), 0.5 - m + f};
 }
 
 /* Forces of everything but inertia at the solid's displacements, supports included. */
@@ -84,6 +38,7 @@ static dea_status allocate(struct dea_context *ctx, struct dea_solid_time *t)
                              &t->a_next,
                              &t->work,
                              &t->u_before,
+                             &t->first,
                              &t->inertia.around,
                              &t->inertia.constant,
                              &t->inertia.away,
@@ -110,8 +65,9 @@ static dea_status prepare(struct dea_context *ctx, struct dea_solid_time *t,
   if (t->inertial) {
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, s->u, t->work)); // from here on it cannot fail
   }
+  memcpy(t->first, s->u, t->count * sizeof *t->first);
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
-  DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->charge_C));
+  DEA_TRY(ctx, dea_time_find_stored(ctx, t, &t->first_J, &t->capacitance_F));
   return DEA_OK;
 }
 
@@ -144,17 +100,32 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   return DEA_OK;
 }
 
+/* Back to the accepted state. */
+static void go_back(struct dea_solid_time *t)
+{
+  struct dea_solid *s = t->solid;
+  t->open = false;
+  s->inertia = NULL;
+  dea_solid_state_set(s, t->keep);
+  dea_solid_controls_set(s, t->controls);
+  s->factor_fits = false;
+}
+
 void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
 {
   if (t == NULL) {
     return;
+  }
+  if (t->open) {
+    go_back(t);
   }
   t->solid->history = NULL;
   t->solid->inertia = NULL;
   t->solid->stay = t->stay;
   dea_solid_change_kappa(t->solid, 1 / t->stiffened);
   dea_solid_history_destroy(ctx, t->history);
-  double *const memory[] = {t->v,
+  double *const memory[] = {t->first,
+                            t->v,
                             t->F_next,
                             t->a,
                             t->F,
@@ -186,6 +157,9 @@ static dea_status keep(struct dea_context *ctx, struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   const struct dea_solid_path *path = &s->path;
+  if (t->open) {
+    go_back(t);
+  }
   DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_solid_path_prepare(ctx, s)));
   if (t->keep_count != path->state_count || t->control_count != path->control_count) {
     double *state = dea_resize(ctx, t->keep, path->state_count, sizeof *state);
@@ -200,6 +174,7 @@ static dea_status keep(struct dea_context *ctx, struct dea_solid_time *t)
   }
   dea_solid_state_get(s, t->keep);
   dea_solid_controls_get(s, t->controls);
+  t->open = true;
   return DEA_OK;
 }
 
@@ -226,7 +201,7 @@ static void follow_stiffness(struct dea_solid_time *t)
 /* u* and d of generalised-alpha. */
 static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t, double h)
 {
-  const struct alpha *alpha = &t->alpha;
+  const struct dea_alpha *alpha = &t->alpha;
   struct dea_solid_inertia *inertia = &t->inertia;
   const double *u = t->solid->u;
   double share = alpha->f / (1 - alpha->f), mass = alpha->m / (1 - alpha->f);
@@ -237,16 +212,6 @@ static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t,
     inertia->constant[i] = mass * t->work[i] + share * t->F[i];
   }
   return DEA_OK;
-}
-
-/* Back to the accepted state. */
-static void go_back(struct dea_solid_time *t)
-{
-  struct dea_solid *s = t->solid;
-  s->inertia = NULL;
-  dea_solid_state_set(s, t->keep);
-  dea_solid_controls_set(s, t->controls);
-  s->factor_fits = false;
 }
 
 /* The minimum of the potential that has been set up; the solid as it was when there is none. */
@@ -265,20 +230,31 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid_time *t, do
   return DEA_OK;
 }
 
-/* Estimate of the error of the step that was tried: of the third order in its size with inertia
- * (Zienkiewicz, Xie 1991); without, that of taking the way as straight over the step, from the
- * difference to the answer of the step before, drawn on. */
-static double step_error(const struct dea_solid_time *t)
+/* Acceleration and pressures that go with the forces at once: those of a small implicit step, which
+ * is then taken back but for them. */
+static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_time *t,
+                                    double step_s, struct dea_solid_report *report)
 {
-  const double *u = t->solid->u, *from = t->keep;
-  double h = t->step_s, before = t->step_before_s, most = 0;
+  struct dea_solid *s = t->solid;
+  struct dea_solid_inertia *inertia = &t->inertia;
+  double h = 0.1 * step_s;
+  memcpy(inertia->around, s->u, t->count * sizeof *s->u);
+  inertia->factor = 1 / (h * h);
   for (size_t i = 0; i < t->count; i++) {
-    double way = before > 0 ? h / before * (from[i] - t->u_before[i]) : 0;
-    double off = t->inertial ? h * h * (t->a_next[i] - t->a[i]) / 12
-                             : 0.25 * h / (h + before) * (u[i] - from[i] - way);
-    most = fmax(most, fabs(off));
+    inertia->around[i] += h * t->v[i];
+    inertia->constant[i] = 0;
   }
-  return most;
+  s->factor_fits = false;
+  DEA_TRY(ctx, minimise(ctx, t, s->voltage_V, report));
+  for (size_t i = 0; i < t->count; i++) {
+    t->a[i] = (s->u[i] - inertia->around[i]) / (h * h);
+  }
+  memcpy(s->u, t->keep, s->dofs * sizeof *s->u);
+  s->factor_fits = false;
+  DEA_TRY(ctx, dea_solid_settle(ctx, s, s->voltage_V, s->u));
+  DEA_TRY(ctx, find_forces(ctx, t, t->F));
+  dea_solid_state_get(s, t->keep); // with its pressures
+  return DEA_OK;
 }
 
 dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
@@ -290,9 +266,13 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
   if (t->history != NULL) {
     dea_solid_history_begin(t->history, s, h);
   }
+  if (t->start) {
+    DEA_TRY(ctx, find_acceleration(ctx, t, h, report));
+  }
   if (t->inertial) {
     DEA_TRY(ctx, set_inertia(ctx, t, h));
   }
+  t->start_next = false;
   s->factor_fits = s->factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
   t->step_s = h;
   DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
@@ -302,49 +282,18 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
 dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
                                 struct dea_solid_report *report)
 {
+  if (t->inertial && !(t->step_s > 0)) {
+    return dea_solid_time_jump(ctx, t, voltage_V, report);
+  }
   DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
   return DEA_OK;
 }
 
 void dea_solid_time_reject(struct dea_solid_time *time)
 {
-  go_back(time);
-}
-
-static double half_square(const double *v, const double *momentum, size_t count)
-{
-  double sum = 0;
-  for (size_t i = 0; i < count; i++) {
-    sum += 0.5 * v[i] * momentum[i];
+  if (time->open) {
+    go_back(time);
   }
-  return sum;
-}
-
-/* Energies at the end of the step. */
-static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *t)
-{
-  struct dea_solid *s = t->solid;
-  struct dea_solid_branch_energies branches = {0};
-  struct dea_solid_energies *sums = &t->sums_next;
-  double stored = 0, work = 0, voltage_V = t->controls[0]; // at the begin
-  *sums = t->sums;
-  if (t->history != NULL) {
-    DEA_TRY(ctx, dea_solid_history_close(ctx, t->history, s, t->step_s, &branches));
-  }
-  DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->charge_next_C));
-  sums->supply += 0.5 * (voltage_V + s->voltage_V) * (t->charge_next_C - t->charge_C);
-  sums->stored = stored - t->first_J;
-  sums->branches = branches.stored;
-  sums->dissipated += branches.dissipated;
-  if (t->inertial) {
-    for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
-      work -= 0.5 * (t->F[i] + t->F_next[i]) * (s->u[i] - t->keep[i]);
-    }
-    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->v_next, t->work));
-    sums->kinetic = half_square(t->v_next, t->work, t->count);
-    sums->damped += t->step_s > 0 ? work - (sums->kinetic - t->sums.kinetic) : 0;
-  }
-  return DEA_OK;
 }
 
 /* What goes with the state that has been found, so that taking it cannot fail. */
@@ -352,7 +301,7 @@ static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
 {
   dea_status status = find_forces(ctx, t, t->F_next);
   if (status == DEA_OK) {
-    status = find_energies(ctx, t);
+    status = dea_time_find_energies(ctx, t);
   }
   if (status != DEA_OK) {
     go_back(t);
@@ -363,15 +312,15 @@ static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
 
 dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *t, double *error_m)
 {
-  const struct alpha *alpha = &t->alpha;
+  const struct dea_alpha *alpha = &t->alpha;
   double h = t->step_s;
-  for (size_t i = 0; i < t->count && t->inertial; i++) {
+  for (size_t i = 0; i < t->count && t->inertial && h > 0; i++) {
     t->a_next[i] = (t->solid->u[i] - t->inertia.around[i]) / (alpha->beta * h * h);
     t->v_next[i] = t->v[i] + h * ((1 - alpha->gamma) * t->a[i] + alpha->gamma * t->a_next[i]);
   }
   DEA_TRY(ctx, close_step(ctx, t));
   if (error_m != NULL) {
-    *error_m = step_error(t);
+    *error_m = h > 0 ? dea_time_step_error(t) : 0;
   }
   return DEA_OK;
 }
@@ -394,56 +343,36 @@ void dea_solid_time_accept(struct dea_solid_time *t)
   memcpy(t->u_before, t->keep, t->count * sizeof *t->u_before);
   t->step_before_s = t->step_s;
   t->sums = t->sums_next;
-  t->charge_C = t->charge_next_C;
+  t->start = t->start_next;
+  t->open = false;
+  t->capacitance_F = t->capacitance_next_F;
 }
 
 /* ---- jumps ---- */
 
-/* Acceleration and pressures that go with the forces at once: those of a small implicit step, which
- * is then taken back but for them. */
-static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_time *t,
-                                    double voltage_V, double step_s,
-                                    struct dea_solid_report *report)
+/* With inertia the film stays where it is and is accelerated from then on. */
+dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                               struct dea_solid_report *report)
 {
   struct dea_solid *s = t->solid;
-  struct dea_solid_inertia *inertia = &t->inertia;
-  double h = 0.1 * step_s;
-  memcpy(inertia->around, s->u, t->count * sizeof *s->u);
-  inertia->factor = 1 / (h * h);
-  for (size_t i = 0; i < t->count; i++) {
-    inertia->around[i] += h * t->v[i];
-    inertia->constant[i] = 0;
-  }
-  s->factor_fits = false;
-  DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
-  for (size_t i = 0; i < t->count; i++) {
-    t->a_next[i] = (s->u[i] - inertia->around[i]) / (h * h);
-  }
-  memcpy(s->u, t->keep, s->dofs * sizeof *s->u);
-  s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_settle(ctx, s, s->voltage_V, s->u));
-  return DEA_OK;
-}
-
-dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
-                               double step_s, struct dea_solid_report *report)
-{
   DEA_TRY(ctx, keep(ctx, t));
-  if (t->history != NULL) {
-    dea_solid_history_begin(t->history, t->solid, 0);
-  }
   t->step_s = 0;
-  memcpy(t->v_next, t->v, t->count * sizeof *t->v);
+  t->start_next = t->inertial;
+  if (t->history != NULL) {
+    dea_solid_history_begin(t->history, s, 0);
+  }
   if (t->inertial) {
-    DEA_TRY(ctx, find_acceleration(ctx, t, voltage_V, step_s, report));
+    memcpy(t->v_next, t->v, t->count * sizeof *t->v);
+    memcpy(t->a_next, t->a, t->count * sizeof *t->a);
+    s->voltage_V = voltage_V;
+    DEA_TRY(ctx, dea_solid_settle(ctx, s, voltage_V, s->u));
   } else {
     DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
   }
-  DEA_TRY(ctx, close_step(ctx, t));
   return DEA_OK;
 }
 
-struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time)
+struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time, bool tried)
 {
-  return time->sums_next;
+  return tried ? time->sums_next : time->sums;
 }

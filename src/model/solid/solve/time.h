@@ -48,20 +48,26 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
 /* The step that was tried once more, to another voltage, from where it is. */
 dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *time,
                                 double voltage_V, struct dea_solid_report *report);
-/* Finds all that goes with the step that was tried. *error_m: estimate of what the step's size
- * costs, the largest displacement's; NULL: not wanted. */
+/* Tries a change of the voltage, or from rest to velocities that were written, in no time. Without
+ * inertia the film answers as fast as its branches let it, with it by its acceleration. */
+dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *time,
+                               double voltage_V, struct dea_solid_report *report);
+/* Finds all that goes with the step or jump that was tried. *error_m: estimate of what the step's
+ * size costs, the largest displacement's; NULL: not wanted. */
 dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *time,
                                 double *error_m);
-/* The voltage changes at once, or the start is another one than rest: what goes on in no time.
- * Without inertia the film answers as fast as its branches let it, with it by its acceleration.
- * step_s: of the step that follows, roughly. It is closed already. */
-dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *time,
-                               double voltage_V, double step_s, struct dea_solid_report *report);
 /* Takes the step or jump that was tried and closed; or goes back to the accepted state. */
 void dea_solid_time_accept(struct dea_solid_time *time);
 void dea_solid_time_reject(struct dea_solid_time *time);
 
-/* At the step that was closed last. */
-struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time);
+/* Of the step that was closed last, or at the accepted state. */
+struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time, bool tried);
+
+/* Work of a source, the integral of V dQ, on a film whose voltage and capacitance go from [0] to
+ * [1]. */
+double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2]);
+
+/* Largest component of a displacement from where the solid was at the start [m]. */
+double dea_solid_time_motion(const struct dea_solid_time *time);
 
 #endif

@@ -1,0 +1,171 @@
+/* Model 3d in time: circuit, steps that are dropped, balance of energy, where it comes to rest. */
+// ctest: solid
+#include "devices.h"
+#include "model/model.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+static const struct dea_model_type *type;
+
+/* The paper's film without fibres on a coarse mesh, with a branch of half the law's modulus. */
+static struct dea_device viscous_disc(void)
+{
+  struct dea_device d = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
+  d.film.density_kg_per_m3 = 1080;
+  d.film.branches[0] = (struct dea_branch){180e3, 0.1};
+  d.film.branch_count = 1;
+  d.solid_refinement = 0.5;
+  return d;
+}
+
+static struct dea_model *model_create(const struct dea_device *device)
+{
+  struct dea_model *model;
+  type = dea_model_find("3d");
+  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  return model;
+}
+
+static struct dea_load_point begin(struct dea_model *model, double resistance_ohm, bool inertia)
+{
+  const struct dea_time_options options = {
+      .circuit = {resistance_ohm, INFINITY}, .inertia = inertia, .rho_inf = 0.8};
+  struct dea_load_point point;
+  assert_int_equal(type->begin(ctx, model, &options, &point), DEA_OK);
+  return point;
+}
+
+/* A trial, which is taken if so wanted. */
+static struct dea_load_point go(struct dea_model *model, double step_s, double voltage_V, bool take)
+{
+  const struct dea_time_step step = {step_s, voltage_V};
+  struct dea_load_point point;
+  double error;
+  assert_int_equal(type->advance(ctx, model, &step, &point, &error), DEA_OK);
+  if (take) {
+    type->accept(model);
+  }
+  return point;
+}
+
+static double balance(const struct dea_load_point *p)
+{
+  return (p->stored_energy_J + p->dissipated_J + p->kinetic_energy_J + p->damped_J) /
+             p->supply_work_J -
+         1;
+}
+
+/* A ramp to 4 kV and a long hold: the film creeps to where model 3d has its equilibrium. Steps that
+ * were tried and dropped leave no trace. */
+static void test_creep_to_the_equilibrium(void **state)
+{
+  (void)state;
+  const struct dea_device device = viscous_disc();
+  struct dea_load_point ends[2], rest;
+  for (int dropped = 0; dropped < 2; dropped++) {
+    struct dea_model *model = model_create(&device);
+    begin(model, 0, false);
+    for (int i = 1; i <= 16; i++) {
+      if (dropped) {
+        go(model, 0.01, 125.0 * i, false);
+        go(model, 0.5, 6e3, false);
+      }
+      ends[dropped] = go(model, 0.005, 250.0 * i, true);
+    }
+    assert_close(balance(&ends[dropped]), 0, 0, 1e-3);
+    assert_true(ends[dropped].dissipated_J > 4e-3 * ends[dropped].stored_energy_J);
+    if (dropped) {
+      double soon = ends[1].electrode_edge_u_m;
+      for (int i = 0; i < 12; i++) {
+        rest = go(model, 0.1, 4e3, true);
+      }
+      assert_close(rest.time_s, 16 * 0.005 + 12 * 0.1, 1e-12, 0);
+      assert_true(rest.electrode_edge_u_m > 1.1 * soon);
+      struct dea_load_point still;
+      assert_int_equal(type->solve(ctx, model, 4e3, &still), DEA_OK);
+      assert_close(rest.electrode_edge_u_m, still.electrode_edge_u_m, 1e-3, 0);
+      assert_close(rest.charge_C, rest.capacitance_F * 4e3, 1e-12, 0);
+    }
+    type->destroy(ctx, model);
+  }
+  assert_close(ends[1].electrode_edge_u_m, ends[0].electrode_edge_u_m, 1e-7, 0);
+  assert_close(ends[1].supply_work_J, ends[0].supply_work_J, 1e-7, 0);
+  assert_close(ends[1].dissipated_J, ends[0].dissipated_J, 1e-7, 0);
+}
+
+/* At a small voltage the capacitance stays, and a resistor charges it as every first-year student
+ * knows. */
+static void test_resistor(void **state)
+{
+  (void)state;
+  const struct dea_device device = viscous_disc();
+  struct dea_model *model = model_create(&device);
+  const double V = 50, R = 1e9;
+  struct dea_load_point p = begin(model, R, false);
+  double tau = R * p.capacitance_F;
+  p = go(model, 0, V, true); // the supply jumps, the film does not
+  assert_close(p.voltage_V, 0, 0, 1e-6);
+  for (int i = 1; i <= 4; i++) {
+    p = go(model, 0.5 * tau, V, true);
+    assert_close(p.voltage_V, V * (1 - exp(-0.5 * i)), 1e-4, 0);
+    assert_close(p.current_A, (V - p.voltage_V) / R, 1e-9, 0);
+  }
+  assert_close(balance(&p), 0, 0, 2e-3);
+  type->destroy(ctx, model);
+}
+
+/* With mass the film overshoots after a jump, and the account of its energy closes. */
+static void test_inertia(void **state)
+{
+  (void)state;
+  struct dea_device device = viscous_disc();
+  device.film.branch_count = 0;
+  struct dea_model *model = model_create(&device);
+  struct dea_load_point p = begin(model, 0, true), still;
+  double most = 0;
+  p = go(model, 0, 1e3, true);
+  assert_close(p.electrode_edge_u_m, 0, 0, 1e-12);
+  for (int i = 0; i < 40; i++) {
+    p = go(model, 1e-5, 1e3, true);
+    most = fmax(most, p.electrode_edge_u_m);
+    assert_true(p.kinetic_energy_J > 0);
+  }
+  assert_close(balance(&p), 0, 0, 5e-3);
+  assert_int_equal(type->solve(ctx, model, 1e3, &still), DEA_OK);
+  assert_true(most > 1.3 * still.electrode_edge_u_m);
+  type->destroy(ctx, model);
+}
+
+/* A tip that is pressed in first is relieved by the voltage, and stays where it is. */
+static void test_tip(void **state)
+{
+  (void)state;
+  const struct dea_device device = viscous_disc();
+  const struct dea_probe tip = {
+      .shape = DEA_PROBE_SPHERE, .radius_m = 2e-3, .from_fibre_side = true};
+  struct dea_model *model = model_create(&device);
+  struct dea_load_point first, p;
+  assert_int_equal(type->press(ctx, model, &tip, 0.5e-3, &first), DEA_OK);
+  p = begin(model, 0, false);
+  assert_close(p.force_N, first.force_N, 1e-6, 0);
+  for (int i = 1; i <= 4; i++) {
+    p = go(model, 0.01, 1e3 * i, true);
+  }
+  assert_true(p.force_N < 0.95 * first.force_N);
+  assert_close(p.tip_depth_m, 0.5e-3, 1e-12, 0);
+  assert_close((p.stored_energy_J - first.energy_J + p.dissipated_J + p.damped_J) / p.supply_work_J,
+               1, 5e-3, 0);
+  type->destroy(ctx, model);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_creep_to_the_equilibrium),
+      cmocka_unit_test(test_resistor),
+      cmocka_unit_test(test_inertia),
+      cmocka_unit_test(test_tip),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
