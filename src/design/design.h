@@ -121,6 +121,7 @@ struct dea_design {
       struct dea_quantity tolerance;      // error of a step over the largest motion so far
       struct dea_quantity longest_step_s; // absent: a twentieth of a cycle
       struct dea_quantity interval_s;     // of points that are kept; absent: every step
+      struct dea_choice press;            // 0: no, 1: the tip of `force` first
       struct dea_choice inertia;          // 0: no, 1: yes
       struct dea_quantity rho_inf;        // spectral radius of generalised alpha
     } transient;

@@ -83,6 +83,15 @@ static const struct dea_field transient_fields[] = {
      .absent_text = "as a figure needs them",
      .doc = "time between points that are kept; those at corners of the waveform always are",
      .example = "10 ms"},
+    {.key = "press",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(compute.transient.press),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc =
+         "whether the tip of compute.force is pressed in first, to its first depth or preload, and "
+         "held there",
+     .example = "yes"},
     {.key = "inertia",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(compute.transient.inertia),

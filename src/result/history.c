@@ -105,21 +105,22 @@ size_t dea_history_level_end(const struct dea_cycle *cycles, size_t count, size_
 bool dea_history_balance(const struct dea_curve *curve, struct dea_energy_balance *out)
 {
   *out = (struct dea_energy_balance){0};
-  double worst = 0;
+  double worst = 0, first_J = curve->count > 0 ? curve->points[0].stored_energy_J : 0;
   for (size_t i = 0; i < curve->count; i++) {
     const struct dea_load_point *p = &curve->points[i];
     double kinetic = isnan(p->kinetic_energy_J) ? 0 : p->kinetic_energy_J;
+    double damped = isnan(p->damped_J) ? 0 : p->damped_J;
     if (isnan(p->supply_work_J) || isnan(p->stored_energy_J) || isnan(p->dissipated_J)) {
       return false;
     }
     out->supply_work_J = p->supply_work_J;
-    out->stored_J = p->stored_energy_J;
+    out->stored_J = p->stored_energy_J - first_J;
     out->kinetic_J = kinetic;
-    out->dissipated_J = p->dissipated_J;
-    double largest = fmax(fmax(fabs(p->supply_work_J), fabs(p->stored_energy_J)),
-                          fmax(kinetic, p->dissipated_J));
+    out->dissipated_J = p->dissipated_J + damped;
+    double largest =
+        fmax(fmax(fabs(p->supply_work_J), fabs(out->stored_J)), fmax(kinetic, out->dissipated_J));
     out->largest_J = fmax(out->largest_J, largest);
-    worst = fmax(worst, fabs(p->supply_work_J - p->stored_energy_J - kinetic - p->dissipated_J));
+    worst = fmax(worst, fabs(p->supply_work_J - out->stored_J - kinetic - out->dissipated_J));
   }
   out->error = out->largest_J > 0 ? worst / out->largest_J : 0;
   return curve->count > 0;

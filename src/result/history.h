@@ -16,7 +16,7 @@ struct dea_cycle {
 
 /* Work of the supply against what it became, at the worst point of a curve in time. */
 struct dea_energy_balance {
-  double supply_work_J, stored_J, kinetic_J, dissipated_J; // at the last point
+  double supply_work_J, stored_J, kinetic_J, dissipated_J; // from the first to the last point
   double largest_J; // energy that the error is relative to: largest of any of the four
   double error;     // |work - stored - kinetic - dissipated| over it, at the worst point
 };

@@ -2,6 +2,7 @@
  * is held there while the voltage goes through the sweep. Depth after depth that gives force
  * against voltage at fixed depths and force against depth at fixed voltages: the actuator's load
  * lines. */
+#include "study/force.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -33,17 +34,32 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
                   1e3 * preload_N);
 }
 
-/* One depth, or the preload where it is above 0: press at 0 V, then all voltages. */
+dea_status dea_force_press(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_design *design, size_t stop)
+{
+  size_t depths = design->compute.force.depth_count;
+  const struct dea_probe tip = {.shape = (enum dea_probe_shape)design->compute.force.tip.value,
+                                .radius_m = design->compute.force.radius_m.si,
+                                .edge_radius_m = design->compute.force.edge_radius_m.si,
+                                .from_fibre_side = design->compute.force.side.value == 0};
+  struct dea_load_point point;
+  if (stop < depths) {
+    DEA_TRY(ctx, type->press(ctx, model, &tip, design->compute.force.depths_m[stop].si, &point));
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, find_preload(ctx, type, model, &tip,
+                            design->compute.force.preloads_N[stop - depths].si, tip.radius_m));
+  return DEA_OK;
+}
+
+/* One stop: press at 0 V, then all voltages. */
 static dea_status load_line(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_result *result, const struct dea_probe *tip,
-                            double depth_m, double preload_N, struct dea_curve *curve)
+                            const struct dea_result *result, size_t stop, struct dea_curve *curve)
 {
   const struct dea_design *design = result->design;
   struct dea_model *model;
-  struct dea_load_point point;
   DEA_TRY(ctx, type->create(ctx, result->device, &model));
-  dea_status status = preload_N > 0 ? find_preload(ctx, type, model, tip, preload_N, tip->radius_m)
-                                    : type->press(ctx, model, tip, depth_m, &point);
+  dea_status status = dea_force_press(ctx, type, model, design, stop);
   if (status == DEA_OK) {
     status = dea_study_take_points(ctx, type, model, design->compute.voltages_V,
                                    design->compute.voltage_count, curve);
@@ -57,24 +73,17 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 {
   (void)model; // none: each depth starts from rest
   const struct dea_design *design = result->design;
-  size_t depths = design->compute.force.depth_count;
-  size_t stops = depths + design->compute.force.preload_count;
+  size_t stops = design->compute.force.depth_count + design->compute.force.preload_count;
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
   if (type->press == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "force", &curve));
-  const struct dea_probe tip = {.shape = (enum dea_probe_shape)design->compute.force.tip.value,
-                                .radius_m = design->compute.force.radius_m.si,
-                                .edge_radius_m = design->compute.force.edge_radius_m.si,
-                                .from_fibre_side = design->compute.force.side.value == 0};
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = DEA_OK;
   for (size_t i = 0; i < stops && status == DEA_OK; i++) {
-    double depth_m = i < depths ? design->compute.force.depths_m[i].si : 0;
-    double preload_N = i < depths ? 0 : design->compute.force.preloads_N[i - depths].si;
-    status = load_line(ctx, type, result, &tip, depth_m, preload_N, curve);
+    status = load_line(ctx, type, result, i, curve);
     if (status == DEA_OK) {
       dea_progress(ctx, what, i + 1, stops);
     }

@@ -1,5 +1,6 @@
 /* Study "transient": a waveform is played to the model (docs/theory/time.md). Steps as long as the
  * tolerance allows, none across a corner of the waveform; a jump is a step of no length. */
+#include "study/force.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -218,6 +219,25 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
   return DEA_OK;
 }
 
+/* Presses the tip in, where that is asked for. */
+static dea_status press(struct dea_context *ctx, const struct dea_design *design, struct player *p)
+{
+  if (design->compute.transient.press.value == 0) {
+    return DEA_OK;
+  }
+  if (p->type->press == NULL) {
+    return dea_finding_add(
+        ctx, DEA_NOTE, (struct dea_place){0},
+        "model %s knows no tips: compute.transient.press is without effect there", p->type->name);
+  }
+  if (design->compute.force.depth_count + design->compute.force.preload_count == 0) {
+    return dea_fail(ctx, DEA_E_DESIGN,
+                    "compute.transient.press needs compute.force.depth or compute.force.preload");
+  }
+  DEA_TRY(ctx, dea_force_press(ctx, p->type, p->model, design, 0));
+  return DEA_OK;
+}
+
 /* From the film at rest at 0 V. */
 static dea_status begin(struct dea_context *ctx, const struct dea_design *design, struct player *p)
 {
@@ -230,6 +250,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   };
   struct dea_load_point point;
   DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
+  DEA_TRY(ctx, press(ctx, design, p));
   DEA_TRY(ctx, p->type->begin(ctx, p->model, &options, &point));
   return keep(ctx, p, &point, true);
 }

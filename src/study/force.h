@@ -1,0 +1,12 @@
+/* The tip of compute.force, for studies that press it in before something else happens. */
+#ifndef DEA_STUDY_FORCE_H
+#define DEA_STUDY_FORCE_H
+
+#include "model/model.h"
+
+/* Presses it to the stop of that number, first depths, then preloads, at the model's last voltage.
+ * DEA_E_NOT_CONVERGED when no depth gives a preload. */
+dea_status dea_force_press(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_design *design, size_t stop);
+
+#endif
