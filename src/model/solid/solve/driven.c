@@ -1,10 +1,11 @@
 #include "model/solid/solve/driven.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { VOLTAGES_MAX = 12 };
 static const double voltage_close = 1e-8;   // of the largest voltage
-static const double smallest_motion = 1e-2; // of the length: errors are not relative to less
+static const double smallest_motion = 1e-2; // of the thickness: errors are not relative to less
 
 /* What a step gives that the accounts do not hold, and whether another one was tried before it from
  * the same state. */
@@ -16,7 +17,9 @@ struct leap {
 struct dea_driven {
   struct dea_solid *solid;
   struct dea_solid_time *time;
-  struct dea_driven_options options;
+  struct dea_time_options options;
+  double copies;        // of the grid in the device
+  double leakage_per_s; // conductance over capacitance: 1/(resistivity permittivity)
   double time_s, time_next_s;
   struct leap leap;
   double lost_J, lost_next_J; // in leaps from one equilibrium to another
@@ -35,17 +38,37 @@ static dea_status find_film(struct dea_context *ctx, const struct dea_driven *d,
 {
   double capacitance_F = 0;
   DEA_TRY(ctx, dea_solid_capacitance(ctx, d->solid, &capacitance_F));
-  *out = (struct dea_circuit_film){.capacitance_F = d->options.copies * capacitance_F};
-  out->conductance_S = d->options.leakage_per_s * out->capacitance_F;
+  *out = (struct dea_circuit_film){.capacitance_F = d->copies * capacitance_F};
+  out->conductance_S = d->leakage_per_s * out->capacitance_F;
   return DEA_OK;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_driven *d, double voltage_V)
+/* Branches of a material that a layer is made of. */
+static void set_branches(const struct dea_material *material, struct dea_branches *out)
 {
-  const struct dea_solid_time_options options = {.branches = d->options.branches,
-                                                 .inertia = d->options.time.inertia,
-                                                 .spectral_radius = d->options.time.rho_inf};
+  out->count = material->branch_count;
+  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
+}
+
+static dea_status prepare(struct dea_context *ctx, struct dea_driven *d,
+                          const struct dea_actuator *actuator)
+{
+  const struct dea_device *device = actuator->device;
+  const struct dea_material *material = &device->film;
+  double eps = DEA_EPSILON_0 * material->permittivity.at_rest, rho = material->resistivity_ohm_m;
+  double voltage_V = dea_solid_voltage(d->solid);
+  struct dea_branches branches[DEA_LAYER_COUNT] = {{.count = 0}};
+  const struct dea_solid_time_options options = {
+      .branches = branches, .inertia = d->options.inertia, .spectral_radius = d->options.rho_inf};
   struct dea_circuit_film film = {.capacitance_F = 0};
+  if (d->options.inertia) {
+    DEA_TRY(ctx, dea_actuator_check_mass(ctx, actuator));
+  }
+  set_branches(material, &branches[DEA_LAYER_FILM]);
+  set_branches(device->electrode_thickness_m > 0 ? &device->electrode : material,
+               &branches[DEA_LAYER_ELECTRODE]);
+  d->copies = dea_actuator_copies(actuator);
+  d->leakage_per_s = rho > 0 ? 1 / (rho * eps) : 0;
   DEA_TRY(ctx, dea_solid_time_create(ctx, d->solid, &options, &d->time));
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
@@ -55,14 +78,14 @@ static dea_status prepare(struct dea_context *ctx, struct dea_driven *d, double 
                                           .capacitance_F = film.capacitance_F,
                                           .conductance_S = film.conductance_S};
   d->circuit_next = d->circuit;
-  d->largest_m = smallest_motion * d->options.length_m;
+  d->largest_m = smallest_motion * device->film_thickness_m;
   d->largest_V = fabs(voltage_V);
   return DEA_OK;
 }
 
 dea_status dea_driven_create(struct dea_context *ctx, struct dea_solid *solid,
-                             const struct dea_driven_options *options, double voltage_V,
-                             struct dea_driven **out)
+                             const struct dea_actuator *actuator,
+                             const struct dea_time_options *time, struct dea_driven **out)
 {
   struct dea_driven *d = dea_alloc(ctx, 1, sizeof *d);
   *out = NULL;
@@ -71,8 +94,8 @@ dea_status dea_driven_create(struct dea_context *ctx, struct dea_solid *solid,
     return DEA_E_MEMORY;
   }
   d->solid = solid;
-  d->options = *options;
-  dea_status status = prepare(ctx, d, voltage_V);
+  d->options = *time;
+  dea_status status = prepare(ctx, d, actuator);
   if (status != DEA_OK) {
     dea_driven_destroy(ctx, d);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -95,7 +118,7 @@ static dea_status find_step(struct dea_context *ctx, struct dea_driven *d,
                             const struct dea_time_step *step, struct dea_circuit_film *film,
                             struct dea_solid_report *report)
 {
-  const struct dea_circuit *circuit = &d->options.time.circuit;
+  const struct dea_circuit *circuit = &d->options.circuit;
   double slope, before = 0, off_before = 0;
   *film = (struct dea_circuit_film){.capacitance_F = d->circuit.capacitance_F,
                                     .conductance_S = d->circuit.conductance_S};
@@ -125,7 +148,7 @@ static dea_status find_step(struct dea_context *ctx, struct dea_driven *d,
 static double voltage_error(const struct dea_driven *d, double h)
 {
   double before = d->step_before_s, from = d->circuit.voltage_V;
-  if (!(d->options.time.circuit.series_resistance_ohm > 0) || !(before > 0)) {
+  if (!(d->options.circuit.series_resistance_ohm > 0) || !(before > 0)) {
     return 0;
   }
   double drawn = h / before * (from - d->voltage_before_V);
@@ -151,7 +174,7 @@ static double unaccounted(const struct dea_driven *d, const struct dea_solid_ene
   const struct dea_circuit_state *a = &d->circuit, *b = &d->circuit_next;
   double film = to->stored + to->branches + to->kinetic + to->dissipated + to->damped -
                 (from->stored + from->branches + from->kinetic + from->dissipated + from->damped);
-  return b->supply_work_J - a->supply_work_J - d->options.copies * film -
+  return b->supply_work_J - a->supply_work_J - d->copies * film -
          (b->resistance_loss_J - a->resistance_loss_J) - (b->leakage_loss_J - a->leakage_loss_J);
 }
 
@@ -160,7 +183,7 @@ static double unaccounted(const struct dea_driven *d, const struct dea_solid_ene
 static bool has_leapt(const struct dea_driven *d, double lost_J,
                       const struct dea_solid_report *report)
 {
-  return !d->options.time.inertia &&
+  return !d->options.inertia &&
          (report->snapped || (d->leap.tried && d->step_s < 0.35 * d->leap.step_s &&
                               lost_J > 0.5 * d->leap.lost_J && d->leap.lost_J > 0));
 }
@@ -198,7 +221,7 @@ dea_status dea_driven_advance(struct dea_context *ctx, struct dea_driven *d,
   DEA_TRY(ctx, find_step(ctx, d, step, &film, report));
   DEA_TRY(ctx, dea_solid_time_close(ctx, d->time, &error_m));
   struct dea_solid_energies to = dea_solid_time_energies(d->time, true);
-  dea_circuit_advance(&d->options.time.circuit, &d->circuit, step, &film, &d->circuit_next);
+  dea_circuit_advance(&d->options.circuit, &d->circuit, step, &film, &d->circuit_next);
   d->step_s = step->length_s;
   if (d->step_s > 0) {
     refine_work(d);
@@ -208,9 +231,9 @@ dea_status dea_driven_advance(struct dea_context *ctx, struct dea_driven *d,
     *error = find_error(d, error_m, unaccounted(d, &from, &to), report);
     return DEA_OK;
   }
-  if (dea_circuit_is_ideal(&d->options.time.circuit)) {
+  if (dea_circuit_is_ideal(&d->options.circuit)) {
     d->circuit_next.supply_work_J +=
-        d->options.copies * (to.stored + to.branches - from.stored - from.branches);
+        d->copies * (to.stored + to.branches - from.stored - from.branches);
   }
   d->lost_next_J = d->lost_J;
   *error = 0;
@@ -235,7 +258,7 @@ void dea_driven_point(const struct dea_driven *d, struct dea_load_point *point)
 {
   const struct dea_circuit_state *circuit = &d->circuit_next;
   const struct dea_solid_energies e = dea_solid_time_energies(d->time, true);
-  double copies = d->options.copies;
+  double copies = d->copies;
   point->time_s = d->time_next_s;
   point->source_voltage_V = circuit->source_voltage_V;
   point->voltage_V = circuit->voltage_V;

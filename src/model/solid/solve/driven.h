@@ -5,23 +5,17 @@
 #define DEA_MODEL_SOLID_SOLVE_DRIVEN_H
 
 #include "model/model.h"
+#include "model/solid/actuator.h"
 #include "model/solid/solve/time.h"
 
 struct dea_driven;
 
-struct dea_driven_options {
-  struct dea_time_options time;
-  const struct dea_branches *branches; // [layers of the solid], copied
-  double copies;                       // of the grid in the device
-  double leakage_per_s;                // conductance over capacitance: 1/(resistivity permittivity)
-  double length_m;                     // displacements far below it need not be resolved
-};
-
-/* From the solid's last equilibrium, at rest there for long and charged to that voltage. solid:
- * lent, in time until *out is destroyed. */
+/* From the solid's last equilibrium, at rest there for long and charged to its voltage. actuator:
+ * what the solid is of; both lent, and the solid in time until *out is destroyed. With inertia also
+ * statuses of dea_actuator_check_mass. */
 dea_status dea_driven_create(struct dea_context *ctx, struct dea_solid *solid,
-                             const struct dea_driven_options *options, double voltage_V,
-                             struct dea_driven **out);
+                             const struct dea_actuator *actuator,
+                             const struct dea_time_options *time, struct dea_driven **out);
 void dea_driven_destroy(struct dea_context *ctx, struct dea_driven *driven);
 
 /* advance and accept of struct dea_model_type. */

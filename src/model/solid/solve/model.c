@@ -13,7 +13,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
@@ -268,13 +267,6 @@ static void end_history(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
-/* Branches of a material that a layer is made of. */
-static void set_branches(const struct dea_material *material, struct dea_branches *out)
-{
-  out->count = material->branch_count;
-  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
-}
-
 static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
                               struct dea_load_point *out)
 {
@@ -289,27 +281,10 @@ static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
-  const struct dea_device *d = model->device;
-  const struct dea_material *film = &d->film;
-  struct dea_branches branches[DEA_LAYER_COUNT] = {{.count = 0}};
-  set_branches(film, &branches[DEA_LAYER_FILM]);
-  set_branches(d->electrode_thickness_m > 0 ? &d->electrode : film, &branches[DEA_LAYER_ELECTRODE]);
-  const struct dea_driven_options options = {
-      .time = *time,
-      .branches = branches,
-      .copies = dea_actuator_copies(&model->actuator),
-      .leakage_per_s = film->resistivity_ohm_m > 0 ? 1 / (film->resistivity_ohm_m * DEA_EPSILON_0 *
-                                                          film->permittivity.at_rest)
-                                                   : 0,
-      .length_m = d->film_thickness_m,
-  };
   end_history(ctx, model);
-  if (time->inertia) {
-    DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
-  }
   DEA_TRY(ctx, report(ctx, model, out));
   model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
-  DEA_TRY(ctx, dea_driven_create(ctx, model->solid, &options, model->voltage_V, &model->driven));
+  DEA_TRY(ctx, dea_driven_create(ctx, model->solid, &model->actuator, time, &model->driven));
   DEA_TRY(ctx, report_time(ctx, model, out));
   return DEA_OK;
 }
