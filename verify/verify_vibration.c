@@ -311,6 +311,7 @@ static void whole_disc(void)
 static void ripple(void)
 {
   static const double Hz[] = {0.01, 5, 10, 100, 250}, step_V = 10;
+  static const struct variant elastic = {{{"film.viscosity", "none"}}};
   const struct dea_ripple one = {.amplitude_V = 1, .damping_ratio = 0.02};
   puts("## Ripple of the voltage\n\nz of the centre per volt of a ripple about a bias, damping "
        "0.02 of the "
@@ -321,7 +322,7 @@ static void ripple(void)
        "slope (nm/V) | at 0.01 Hz | off by | 5 Hz | 10 Hz | 100 Hz | 250 Hz |\n"
        "|---|---|---|---|---|---|---|---|---|");
   for (int k = 1; k < (small ? 2 : KINDS); k++) {
-    struct opened open = open_model("3d", &kind[k], NULL);
+    struct opened open = open_model("3d", &kind[k], &elastic);
     for (double V = small ? 4e3 : 2e3; V < (small ? 5e3 : 7e3); V += 2e3) {
       struct dea_load_point at, side[2], p[5];
       verify_ok(ctx, open.type->solve(ctx, open.model, V - step_V, &side[0]));
