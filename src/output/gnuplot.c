@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { SAID_MAX = 4096 };
+enum { SAID_MAX = 4096, DRAWERS_MAX = 4, SCRIPT_MAX = 80 };
 
 static bool actions_make(posix_spawn_file_actions_t *actions, const char *directory, int pipe_end)
 {
@@ -67,14 +67,20 @@ static const char *last_line(char *said)
   return line + strspn(line, " ");
 }
 
-static dea_status run(struct dea_context *ctx, char *const argv[], const char *directory)
+/* A gnuplot that draws some of the figures. */
+struct drawer {
+  pid_t child;
+  int said; // end of the pipe that it complains into
+};
+
+static dea_status launch(struct dea_context *ctx, char *const argv[], const char *directory,
+                         struct drawer *out)
 {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
     return dea_fail(ctx, DEA_E_IO, "cannot make a pipe: %s", strerror(errno));
   }
-  pid_t child = 0;
-  int reason = start(argv, directory, ends[1], &child);
+  int reason = start(argv, directory, ends[1], &out->child);
   close(ends[1]);
   if (reason != 0) {
     close(ends[0]);
@@ -86,11 +92,19 @@ static dea_status run(struct dea_context *ctx, char *const argv[], const char *d
     }
     return dea_fail(ctx, DEA_E_TOOL, "gnuplot cannot be started: %s", strerror(reason));
   }
+  out->said = ends[0];
+  return DEA_OK;
+}
+
+/* Waits for its end. */
+static dea_status finish(struct dea_context *ctx, const struct drawer *drawer,
+                         const char *directory)
+{
   char said[SAID_MAX];
-  listen(ends[0], said);
-  close(ends[0]);
+  listen(drawer->said, said);
+  close(drawer->said);
   int state = 0;
-  while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
+  while (waitpid(drawer->child, &state, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(state) && WEXITSTATUS(state) == 0) {
     return DEA_OK;
@@ -99,6 +113,15 @@ static dea_status run(struct dea_context *ctx, char *const argv[], const char *d
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while drawing");
   }
   return dea_fail(ctx, DEA_E_TOOL, "gnuplot failed in %s: %s", directory, last_line(said));
+}
+
+/* How many draw at a time: starting one costs as much as a small figure. */
+static size_t drawer_count(size_t figures)
+{
+  long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  size_t most = cores < 1 ? 1 : cores > DRAWERS_MAX ? DRAWERS_MAX : (size_t)cores;
+  size_t wanted = (figures + 1) / 2;
+  return wanted < most ? wanted : most;
 }
 
 /* Moves all files of a folder into the one above it, or removes them, and removes the folder. */
@@ -131,29 +154,50 @@ static dea_status empty_folder(struct dea_context *ctx, const char *from, const 
   return status;
 }
 
+/* Starts a gnuplot for the figures first, first + stride, ... */
+static dea_status launch_some(struct dea_context *ctx, const char *directory, char *folder,
+                              const char *const names[], size_t count, size_t first, size_t stride,
+                              struct drawer *out)
+{
+  char **argv = dea_alloc(ctx, count + 5, sizeof *argv);
+  char *scripts = dea_alloc(ctx, count, SCRIPT_MAX);
+  dea_status status = DEA_E_MEMORY;
+  if (argv != NULL && scripts != NULL) {
+    char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
+    size_t n = 4;
+    argv[0] = program;
+    argv[1] = defaults; // without the user's start-up files
+    argv[2] = execute;
+    argv[3] = folder;
+    for (size_t i = first; i < count; i += stride) {
+      snprintf(scripts + SCRIPT_MAX * i, SCRIPT_MAX, "%s.gp", names[i]);
+      argv[n++] = scripts + SCRIPT_MAX * i;
+    }
+    status = launch(ctx, argv, directory, out);
+  }
+  dea_free(ctx, scripts);
+  dea_free(ctx, argv);
+  return status;
+}
+
 static dea_status draw(struct dea_context *ctx, const char *directory, const char *drawing,
                        const char *const names[], size_t count)
 {
   const char *slash = strrchr(drawing, '/');
   struct dea_text folder = {.ctx = ctx};
+  struct drawer drawers[DRAWERS_MAX];
+  size_t wanted = drawer_count(count), running = 0;
   dea_text_add(&folder, "dea_folder = \"%s/\"", slash != NULL ? slash + 1 : drawing);
-  char **argv = dea_alloc(ctx, count + 5, sizeof *argv);
-  char *scripts = dea_alloc(ctx, count, 80);
-  dea_status status = DEA_E_MEMORY;
-  if (!folder.failed && argv != NULL && scripts != NULL) {
-    char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
-    argv[0] = program;
-    argv[1] = defaults; // without the user's start-up files
-    argv[2] = execute;
-    argv[3] = folder.data;
-    for (size_t i = 0; i < count; i++) {
-      snprintf(scripts + 80 * i, 80, "%s.gp", names[i]);
-      argv[4 + i] = scripts + 80 * i;
-    }
-    status = run(ctx, argv, directory);
+  dea_status status = folder.failed ? DEA_E_MEMORY : DEA_OK;
+  while (status == DEA_OK && running < wanted) {
+    status =
+        launch_some(ctx, directory, folder.data, names, count, running, wanted, &drawers[running]);
+    running += status == DEA_OK;
   }
-  dea_free(ctx, scripts);
-  dea_free(ctx, argv);
+  for (size_t i = 0; i < running; i++) { // all of them, also after a failure
+    dea_status one = finish(ctx, &drawers[i], directory);
+    status = status == DEA_OK ? one : status;
+  }
   dea_text_free(&folder);
   return status;
 }
