@@ -7,6 +7,7 @@
 #include "output/report/axis.h"
 #include "output/report/html.h"
 #include "output/report/report.h"
+#include "output/run_folder.h"
 #include "output/store.h"
 
 #include <ctype.h>
@@ -312,6 +313,39 @@ static void write_made_up_run(void)
   dea_result_destroy(ctx, result);
 }
 
+/* What study frequency found is said at 10 Hz, straight between its points; without it that it was
+ * not asked. */
+static void test_touch_at_its_frequency(void **state)
+{
+  (void)state;
+  static const double hertz[3] = {1, 5, 15}, amplitude_m[3] = {2e-9, 1.9e-9, 1.7e-9};
+  struct dea_run *run;
+  struct dea_curve *curve;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --set "
+                               "'compute.voltage={values: [0 kV, 4 kV]}' -o t.run"),
+                   0);
+  assert_int_equal(command_run("report t.run"), 0);
+  read_page("t.run/report.html");
+  assert_contains(page, "says nothing of 5 to 10 Hz");
+  assert_int_equal(dea_run_read(ctx, in_folder("t.run"), &run), DEA_OK);
+  assert_int_equal(dea_result_add_curve(ctx, run->result, "lumped", "frequency", &curve), DEA_OK);
+  for (int i = 0; i < 3; i++) {
+    struct dea_load_point point = dea_load_point_empty();
+    point.voltage_V = 3e3;
+    point.frequency_Hz = hertz[i];
+    point.ripple_V = 1;
+    point.centre_amplitude_m = amplitude_m[i];
+    assert_int_equal(dea_curve_add_point(ctx, curve, &point), DEA_OK);
+  }
+  curve->complete = true;
+  assert_int_equal(dea_run_folder_write(ctx, run->result, in_folder("u.run"), NULL), DEA_OK);
+  dea_run_destroy(ctx, run);
+  assert_int_equal(command_run("report u.run"), 0);
+  read_page("u.run/report.html");
+  assert_contains(page, "about 3 kV the centre follows at 10 Hz by 0.9 times its motion at 1 Hz");
+  assert_well_formed();
+}
+
 static void test_design_that_is_gone(void **state)
 {
   (void)state;
@@ -385,6 +419,7 @@ int main(void)
       cmocka_unit_test(test_page_of_an_example),
       cmocka_unit_test(test_measurement),
       cmocka_unit_test(test_runs_beside_each_other),
+      cmocka_unit_test(test_touch_at_its_frequency),
       cmocka_unit_test(test_design_that_is_gone),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_memory_of_all_sections),

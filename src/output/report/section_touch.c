@@ -1,7 +1,7 @@
 /* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2),
  * and the load line of model lumped against a fingertip.
  *
- * Nothing here knows frequency: the models are quasi-static. */
+ * Reaches are quasi-static; study "frequency" says what is left of a motion at 5 to 10 Hz. */
 #include "model/lumped/lumped.h"
 #include "output/report/plot_svg.h"
 #include "output/report/section.h"
@@ -249,6 +249,72 @@ static dea_status add_load_line(struct dea_report *report, const struct dea_repo
   return status;
 }
 
+// Frequency ---------------------------------------------------------------------------------------
+
+static const double touch_Hz = 10; // the faster end of what the thresholds speak of
+
+/* Points [first, end) of one bias, rising in frequency: amplitude of the centre at touch_Hz over
+ * that at the lowest frequency, straight between the points; NAN outside them. */
+static double left_at_touch(const struct dea_load_point *points, size_t first, size_t end)
+{
+  for (size_t i = first; i + 1 < end; i++) {
+    const struct dea_load_point *a = &points[i], *b = &points[i + 1];
+    if (a->frequency_Hz <= touch_Hz && touch_Hz <= b->frequency_Hz) {
+      double share = (touch_Hz - a->frequency_Hz) / (b->frequency_Hz - a->frequency_Hz);
+      return (a->centre_amplitude_m + share * (b->centre_amplitude_m - a->centre_amplitude_m)) /
+             points[first].centre_amplitude_m;
+    }
+  }
+  return NAN;
+}
+
+/* A sentence for each bias of study frequency whose points reach touch_Hz; returns their number. */
+static size_t add_frequency(struct dea_text *out, const struct dea_result *result,
+                            const char *model)
+{
+  const struct dea_curve *curve = dea_result_find(result, model, "frequency");
+  size_t said = 0;
+  for (size_t first = 0, end = 0; curve != NULL && first < curve->count; first = end) {
+    const struct dea_load_point *points = curve->points;
+    end = first + 1;
+    while (end < curve->count && points[end].voltage_V == points[first].voltage_V &&
+           points[end].frequency_Hz > points[end - 1].frequency_Hz) {
+      end++;
+    }
+    double left = left_at_touch(points, first, end);
+    if (isfinite(left)) {
+      dea_text_add(out, "%s about ", said++ > 0 ? ";" : " Of a small ripple of the voltage");
+      dea_html_number(out, 1e-3 * points[first].voltage_V, 3);
+      dea_text_add(out, " kV the centre follows at 10 Hz by ");
+      dea_html_number(out, left, 4);
+      dea_text_add(out, " times its motion at ");
+      dea_html_number(out, points[first].frequency_Hz, 2);
+      dea_text_add(out, " Hz");
+    }
+  }
+  if (said > 0) {
+    dea_text_add(out, " (study frequency of model ");
+    dea_html_text(out, model);
+    dea_text_add(out, ").");
+  }
+  return said;
+}
+
+static void add_introduction(struct dea_text *out, const struct dea_result *result,
+                             const char *const models[], size_t count)
+{
+  size_t said = 0;
+  dea_text_add(out, "<p>Displacement of the centre and force, against thresholds of touch. "
+                    "<strong>Quasi-static</strong>:");
+  for (size_t m = 0; m < count; m++) {
+    said += add_frequency(out, result, models[m]);
+  }
+  dea_text_add(out, "%s</p>",
+               said > 0 ? ""
+                        : " the run says nothing of 5 to 10 Hz, where viscosity takes some of both "
+                          "(study frequency does).");
+}
+
 dea_status dea_section_touch(struct dea_report *report, const struct dea_report_run *run)
 {
   const struct dea_result *result = run->run->result;
@@ -270,10 +336,7 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
     return DEA_OK;
   }
   dea_section_begin(report, "touch", run->number, "Touch: can a finger feel it?");
-  dea_text_add(&report->text,
-               "<p>Displacement of the centre and force, against thresholds of touch. "
-               "<strong>Quasi-static</strong>: the run says nothing of 5 to 10 Hz, where viscosity "
-               "takes some of both.</p>");
+  add_introduction(&report->text, result, models, count);
   dea_table_begin(report, "Thresholds of touch and what this actuator reaches",
                   "<th scope=\"col\">Threshold</th><th scope=\"col\" class=\"n\">Needed</th>"
                   "<th scope=\"col\">Model</th><th scope=\"col\" class=\"n\">Reached</th>"
