@@ -376,7 +376,7 @@ static void test_marks_meet_in_all_sheets(void **state)
                 {"template", "MARK", true, false},
                 {"fibres", "CUT_INNER", true, false}};
   for (int fibres = 1; fibres < 10; fibres++) {
-    char count[8];
+    char count[12];
     snprintf(count, sizeof count, "%d", fibres);
     const struct dea_override sets[] = {{"fibres.count", count},
                                         {"fibres.width", "1 mm"},

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-static const double rest[6] = {1, 1, 1, 0, 0, 0};
+enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
 
 /* C, C^-1 and reference volume at the points of an element. */
 struct strains {
@@ -78,9 +78,9 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_solid_hist
     status = find_strains(s, e, &strains);
     for (int q = 0; q < strains.count && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
-      memcpy(h->inverse[at], strains.inverse[q], sizeof rest);
+      memcpy(h->inverse[at], strains.inverse[q], TENSOR_BYTES);
       for (size_t i = 0; i < h->branches[s->layer[e]].count; i++) {
-        memcpy(h->A[at][i], strains.inverse[q], sizeof rest);
+        memcpy(h->A[at][i], strains.inverse[q], TENSOR_BYTES);
       }
     }
   }
@@ -99,9 +99,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
   }
   memcpy(h->branches, branches, s->layer_count * sizeof *branches);
   size_t points = count_points(s, h);
-  h->B = dea_alloc(ctx, points + 1, sizeof rest);
-  h->inverse = dea_alloc(ctx, points + 1, sizeof rest);
-  h->inverse_next = dea_alloc(ctx, points + 1, sizeof rest);
+  h->B = dea_alloc(ctx, points + 1, TENSOR_BYTES);
+  h->inverse = dea_alloc(ctx, points + 1, TENSOR_BYTES);
+  h->inverse_next = dea_alloc(ctx, points + 1, TENSOR_BYTES);
   h->A = dea_alloc(ctx, points + 1, sizeof *h->A);
   if (h->B == NULL || h->inverse == NULL || h->inverse_next == NULL || h->A == NULL) {
     return DEA_E_MEMORY;
@@ -166,7 +166,7 @@ static void begin_element(struct dea_solid_history *h, size_t from, size_t count
 {
   for (size_t at = from; at < from + count; at++) {
     double *B = h->B + 6 * at;
-    memset(B, 0, sizeof rest);
+    memset(B, 0, TENSOR_BYTES);
     for (size_t i = 0; i < branches->count; i++) {
       double G = branches->branch[i].modulus_Pa;
       for (size_t a = 0; a < 6; a++) {
@@ -231,7 +231,7 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
     status = find_strains(s, e, &strains);
     for (int q = 0; q < strains.count && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
-      memcpy(h->inverse_next[at], strains.inverse[q], sizeof rest);
+      memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
       add_energies(h, at, branches, steps, strains.C[q], strains.volume[q], out);
     }
   }
@@ -251,7 +251,7 @@ void dea_solid_history_accept(struct dea_solid_history *h, const struct dea_soli
         dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at],
                           h->A[at][i]);
       }
-      memcpy(h->inverse[at], h->inverse_next[at], sizeof rest);
+      memcpy(h->inverse[at], h->inverse_next[at], TENSOR_BYTES);
     }
   }
 }
