@@ -110,7 +110,7 @@ static void test_domains_agree(void **state)
       assert_true(first.tip < -1e-6 && first.centre < -1e-6 && first.between > 5e-5);
       continue;
     }
-    assert_true(answer.nodes > 1.7 * (double)first.nodes);
+    assert_true((double)answer.nodes > 1.7 * (double)first.nodes);
     assert_close(answer.tip, first.tip, 1e-7, 0);
     assert_close(answer.centre, first.centre, 1e-7, 0);
     assert_close(answer.between, first.between, 1e-7, 0);

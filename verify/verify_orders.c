@@ -233,7 +233,7 @@ static void patch(const struct exact *exact)
   for (int order = 1; order <= 3; order++) {
     double error[NORMS], largest = 0;
     solve(exact, patch_of(order), error);
-    for (int norm = 0; norm < NORMS; norm++) {
+    for (enum norm norm = 0; norm < NORMS; norm++) {
       largest = has(exact, norm) ? fmax(largest, error[norm]) : largest;
     }
     verify_absolute(exact->name, largest, 0, 1e-7);
@@ -251,7 +251,7 @@ static void orders(const struct exact *exact, int order, const size_t *counts, s
   for (size_t m = 0; m < mesh_count; m++) {
     solve(exact, cube(order, counts[m]), error[m]);
   }
-  for (int norm = 0; norm < NORMS; norm++) {
+  for (enum norm norm = 0; norm < NORMS; norm++) {
     if (!has(exact, norm)) {
       continue;
     }

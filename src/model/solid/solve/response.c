@@ -174,8 +174,8 @@ size_t dea_solid_response_modes(const struct dea_solid_response *r)
 static void add_rest(const struct dea_solid_response *r, size_t node, double w,
                      const struct dea_damping *damping, double complex q[3])
 {
-  double complex c = CMPLX(1, w * damping->stiffness_s);
-  double complex step = CMPLX(w * w, -w * damping->mass_per_s) / c, power = 1 / c;
+  double complex c = 1 + _Complex_I * (w * damping->stiffness_s);
+  double complex step = (w * w - _Complex_I * (w * damping->mass_per_s)) / c, power = 1 / c;
   for (size_t k = 0; k < TERMS; k++, power *= step) {
     for (size_t i = 0; i < 3; i++) {
       q[i] += power * r->rest[k * r->dofs + 3 * node + i];
@@ -192,7 +192,7 @@ void dea_solid_response_at(const struct dea_solid_response *r, size_t node, doub
   for (size_t k = 0; k < r->count; k++) {
     double loss = 2 * damping->ratio * sqrt(r->square[k]) + damping->mass_per_s +
                   damping->stiffness_s * r->square[k];
-    double complex amplitude = r->push[k] / CMPLX(r->square[k] - w * w, w * loss);
+    double complex amplitude = r->push[k] / (r->square[k] - w * w + _Complex_I * (w * loss));
     for (size_t i = 0; i < 3; i++) {
       q[i] += amplitude * r->shape[k * r->dofs + 3 * node + i];
     }

@@ -68,7 +68,7 @@ static double complex share_at(const struct dea_branches *b, double w)
   double complex sum = 0;
   double whole = 0;
   for (size_t i = 0; i < b->count; i++) {
-    double complex x = CMPLX(0, w * b->branch[i].time_s);
+    double complex x = _Complex_I * (w * b->branch[i].time_s);
     sum += b->branch[i].modulus_Pa * x / (1 + x);
     whole += b->branch[i].modulus_Pa;
   }
@@ -79,8 +79,8 @@ static double complex share_at(const struct dea_branches *b, double w)
 static void set_factors(const struct system *y, double w, const struct dea_damping *damping,
                         double complex *factor)
 {
-  factor[0] = CMPLX(1, w * damping->stiffness_s);
-  factor[1] = CMPLX(-w * w, w * damping->mass_per_s);
+  factor[0] = 1 + _Complex_I * (w * damping->stiffness_s);
+  factor[1] = -w * w + _Complex_I * (w * damping->mass_per_s);
   for (size_t p = PARTS; p < y->part_count; p++) {
     factor[p] = share_at(&y->branches[y->layer[p]], w);
   }
