@@ -211,6 +211,13 @@ static void test_wrong_range(void **state)
       dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), &wrong, 1, &bad),
       DEA_E_DESIGN);
   dea_finding_clear(ctx);
+  static const struct dea_override idle = {"compute.frequency", "{points: 10}"};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), &idle, 1, &bad),
+      DEA_OK);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1); // without a bias
+  dea_design_destroy(ctx, bad);
+  dea_finding_clear(ctx);
 }
 
 int main(void)

@@ -146,6 +146,11 @@ static dea_status take_drive(const struct dea_reader *reader, struct dea_design 
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, design->compute.transient.until_s.place,
                                  "transient: without drive.waveform nothing happens in time"));
   }
+  if (design->compute.transient.press.value == 1 &&
+      design->compute.force.depth_count + design->compute.force.preload_count == 0) {
+    return dea_finding_add(ctx, DEA_ERROR, design->compute.transient.press.place,
+                           "press: how far? compute.force.depth or compute.force.preload says it");
+  }
   return DEA_OK;
 }
 
@@ -154,6 +159,10 @@ static dea_status take_vibration(struct dea_context *ctx, struct dea_design *des
 {
   const struct dea_quantity *to = &design->compute.frequency.to_Hz;
   design->compute.modal.asked = has_section(design, "modal");
+  if (has_section(design, "frequency") && design->compute.frequency.bias_count == 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, to->place,
+                                 "frequency: without `bias` there is no such study"));
+  }
   if (to->si <= design->compute.frequency.from_Hz.si) {
     return dea_finding_add(ctx, DEA_ERROR, to->place, "to: %g Hz is not above `from`, %g Hz",
                            to->si, design->compute.frequency.from_Hz.si);
