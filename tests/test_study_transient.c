@@ -97,6 +97,73 @@ static void test_pulses(void **state)
   end(ctx, &run);
 }
 
+/* Voltage after voltage at a frequency whose cycles end at times that numbers round: what jumps at
+ * the end of a cycle is none of it. */
+static void test_stairs(void **state)
+{
+  (void)state;
+  struct run run = run_text(
+      ctx, DESIGN "drive: {waveform: {kind: staircase, values: [0.2 kV, 0.4 kV, 0.6 kV, 0.8 kV,\n"
+                  "  1 kV, 1.2 kV, 1.4 kV, 1.6 kV], frequency: 3 Hz, cycles: 1}}\n");
+  assert_int_equal(run.status, DEA_OK);
+  struct dea_cycle *cycles;
+  size_t count;
+  assert_int_equal(dea_history_cycles(ctx, run.curve, run.design->drive.waveform,
+                                      dea_history_column(run.curve), &cycles, &count),
+                   DEA_OK);
+  assert_int_equal(count, 8);
+  for (size_t i = 1; i < count; i++) { // about as the square of the voltage
+    double rise = cycles[i].farthest / cycles[i - 1].farthest;
+    double level = cycles[i].level_V / cycles[i - 1].level_V;
+    assert_close(rise, level * level, 0.05, 0);
+  }
+  dea_free(ctx, cycles);
+  end(ctx, &run);
+}
+
+struct told {
+  size_t times, done;
+};
+
+static void listen(void *user, const char *what, size_t done, size_t total)
+{
+  struct told *told = user;
+  (void)what;
+  assert_true(total == 1000 && done > told->done && done <= total);
+  told->times++;
+  told->done = done;
+}
+
+/* A waveform without corners is told of on its way too. */
+static void test_progress(void **state)
+{
+  (void)state;
+  struct told told = {0};
+  dea_context_set_progress(ctx, listen, &told);
+  struct run run = run_text(
+      ctx, DESIGN "drive: {waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz, cycles: 1}}\n");
+  dea_context_set_progress(ctx, NULL, NULL);
+  assert_int_equal(run.status, DEA_OK);
+  assert_true(told.times > 10 && told.done == 1000);
+  end(ctx, &run);
+}
+
+/* Corners that are one but for rounding, here one of the waveform and the end, take no step. */
+static void test_close_corners(void **state)
+{
+  (void)state;
+  struct run run = run_text(
+      ctx, DESIGN "drive: {waveform: {kind: square, high: 1 kV, frequency: 10 Hz, cycles: 2}}\n"
+                  "compute: {transient: {until: 0.15000000000000005 s}}\n");
+  assert_int_equal(run.status, DEA_OK);
+  const struct dea_load_point *p = run.curve->points;
+  for (size_t i = 1; i < run.curve->count; i++) {
+    double step = p[i].time_s - p[i - 1].time_s;
+    assert_true(step == 0 || step > 1e-12);
+  }
+  end(ctx, &run);
+}
+
 /* A looser and a tighter tolerance agree as they promise. */
 static void test_tolerance(void **state)
 {
@@ -179,6 +246,10 @@ static void test_not_for_all(void **state)
                    DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
   end(ctx, &run);
+  run = run_text(ctx, DESIGN PULSES "compute: {transient: {press: yes}}\n"); // how far?
+  assert_int_equal(run.status, DEA_E_DESIGN);
+  end(ctx, &run);
+  dea_finding_clear(ctx);
 }
 
 static dea_status run_short(struct dea_context *context)
@@ -200,13 +271,11 @@ static void test_each_allocation(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pulses),
-      cmocka_unit_test(test_tolerance),
-      cmocka_unit_test(test_interval_end_and_supply),
-      cmocka_unit_test(test_pull_in),
-      cmocka_unit_test(test_interrupt),
-      cmocka_unit_test(test_not_for_all),
-      cmocka_unit_test(test_each_allocation),
+      cmocka_unit_test(test_pulses),      cmocka_unit_test(test_stairs),
+      cmocka_unit_test(test_progress),    cmocka_unit_test(test_close_corners),
+      cmocka_unit_test(test_tolerance),   cmocka_unit_test(test_interval_end_and_supply),
+      cmocka_unit_test(test_pull_in),     cmocka_unit_test(test_interrupt),
+      cmocka_unit_test(test_not_for_all), cmocka_unit_test(test_each_allocation),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -24,12 +24,20 @@ static void print_level(const struct dea_cycle *first, const struct dea_cycle *l
 static void print_cycles(const struct dea_cycle *cycles, size_t count, int column)
 {
   const struct dea_column *c = &dea_point_columns[column];
-  size_t shown = 0;
+  size_t shown = 0, left = 0;
   printf("%9s%8s%13s%13s%13s%13s\n%9s%8s%13s%13s%13s%13s\n", "V", "cycles", "first", "last",
          "creep", "rise 10-90", "kV", "", c->display_unit, c->display_unit, c->display_unit, "s");
-  for (size_t first = 0, last; first < count && shown < LEVELS_SHOWN; first = last + 1, shown++) {
+  for (size_t first = 0, last; first < count; first = last + 1) {
     last = dea_history_level_end(cycles, count, first);
-    print_level(&cycles[first], &cycles[last], last - first + 1, c->factor);
+    if (shown < LEVELS_SHOWN) {
+      print_level(&cycles[first], &cycles[last], last - first + 1, c->factor);
+      shown++;
+    } else {
+      left++;
+    }
+  }
+  if (left > 0) {
+    printf("and %zu more (summary.json)\n", left);
   }
 }
 

@@ -35,6 +35,12 @@ static double time_at(const struct dea_curve *curve, int column, size_t from, si
   return NAN;
 }
 
+/* Before a time, and not by rounding only. */
+static bool is_before(double time_s, double end_s)
+{
+  return time_s < end_s * (1 - 1e-12);
+}
+
 /* Features of the points [from, to), of which there is one at least. */
 static void measure(const struct dea_curve *curve, int column, size_t from, size_t to,
                     struct dea_cycle *out)
@@ -77,11 +83,11 @@ dea_status dea_history_cycles(struct dea_context *ctx, const struct dea_curve *c
   }
   for (; *count < total; ++*count) {
     dea_waveform_cycle(waveform, *count, &wave);
-    while (from + 1 < curve->count && curve->points[from].time_s < wave.start_s) {
+    while (from + 1 < curve->count && is_before(curve->points[from].time_s, wave.start_s)) {
       from++;
     }
     size_t to = from + 1; // without the jump at the end, which belongs to the next cycle
-    while (to < curve->count && curve->points[to].time_s < wave.end_s) {
+    while (to < curve->count && is_before(curve->points[to].time_s, wave.end_s)) {
       to++;
     }
     struct dea_cycle *cycle = &(*cycles)[*count];

@@ -20,17 +20,20 @@ struct player {
   struct dea_load_point pending; // the last one, if it is not kept yet
   bool has_pending;
   double largest[4]; // voltage, motion, current, z so far
+  size_t told;       // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
 };
 
-/* Every second point, and from now on half as many. */
+/* Every second point and the last one, and from now on half as many. */
 static void thin(struct player *p)
 {
   struct dea_curve *curve = p->curve;
-  for (size_t i = 1; 2 * i < curve->count; i++) {
+  size_t count = curve->count;
+  for (size_t i = 1; 2 * i < count; i++) {
     curve->points[i] = curve->points[2 * i];
   }
-  curve->count = (curve->count + 1) / 2;
+  curve->points[count / 2] = curve->points[count - 1];
+  curve->count = count / 2 + 1;
   p->interval_s = fmax(2 * p->interval_s, 2 * p->time_s / POINTS_MAX);
 }
 
@@ -91,7 +94,7 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
   return DEA_OK;
 }
 
-/* The last point stays however it ended. */
+/* The last point stays however it ends. */
 static dea_status flush(struct dea_context *ctx, struct player *p)
 {
   return p->has_pending ? add(ctx, p, &p->pending) : DEA_OK;
@@ -171,8 +174,19 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
   }
 }
 
+static void tell(struct dea_context *ctx, struct player *p)
+{
+  static const size_t whole = 1000;
+  size_t done = p->time_s < p->until_s ? (size_t)((double)whole * p->time_s / p->until_s) : whole;
+  if (done > p->told) {
+    dea_progress(ctx, p->what, done, whole);
+    p->told = done;
+  }
+}
+
 static dea_status play(struct dea_context *ctx, struct player *p)
 {
+  static const double rounding = 1e-14; // of the time: corners that are as close are one
   while (p->time_s < p->until_s) {
     double source_V = dea_waveform_value(p->waveform, p->time_s);
     if (source_V != p->source_V) {
@@ -180,6 +194,7 @@ static dea_status play(struct dea_context *ctx, struct player *p)
     }
     double end = fmin(dea_waveform_corner(p->waveform, p->time_s), p->until_s);
     p->next_s = fmin(p->longest_s, 0.1 * (end - p->time_s));
+    p->time_s = end - p->time_s <= rounding * end ? end : p->time_s;
     while (p->time_s < end) {
       if (dea_interrupted(ctx)) {
         DEA_TRY(ctx, flush(ctx, p));
@@ -187,9 +202,10 @@ static dea_status play(struct dea_context *ctx, struct player *p)
                         p->time_s, p->curve->count);
       }
       DEA_TRY(ctx, one_step(ctx, p, end));
+      tell(ctx, p);
     }
-    dea_progress(ctx, p->what, (size_t)(1000 * p->time_s / p->until_s), 1000);
   }
+  tell(ctx, p);
   return DEA_OK;
 }
 
@@ -230,10 +246,6 @@ static dea_status press(struct dea_context *ctx, const struct dea_design *design
         ctx, DEA_NOTE, (struct dea_place){0},
         "model %s knows no tips: compute.transient.press is without effect there", p->type->name);
   }
-  if (design->compute.force.depth_count + design->compute.force.preload_count == 0) {
-    return dea_fail(ctx, DEA_E_DESIGN,
-                    "compute.transient.press needs compute.force.depth or compute.force.preload");
-  }
   DEA_TRY(ctx, dea_force_press(ctx, p->type, p->model, design, 0));
   return DEA_OK;
 }
@@ -272,6 +284,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
   status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
   status = status == DEA_OK ? play(ctx, &p) : status;
+  dea_status flushed = flush(ctx, &p);
+  status = status == DEA_OK ? flushed : status;
   if (p.model != NULL) {
     type->destroy(ctx, p.model);
   }
