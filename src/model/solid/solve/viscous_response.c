@@ -48,6 +48,18 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   return DEA_OK;
 }
 
+/* Without branches: what they add makes a film that buckles only slow to do so. */
+static dea_status check_stable(struct dea_context *ctx, struct dea_solid *s)
+{
+  int negative;
+  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
+  return negative == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                        "the equilibrium that the voltage ripples about is unstable (%d modes)",
+                        negative);
+}
+
 static dea_status make_parts(struct dea_context *ctx, struct system *y, struct dea_branches *only)
 {
   DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
@@ -243,6 +255,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   double *memory = dea_alloc(ctx, 3 * s->dofs, sizeof *memory);
   struct dea_branches *only = dea_alloc(ctx, s->layer_count, sizeof *only);
   dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
+  status = status == DEA_OK ? check_stable(ctx, s) : status;
   status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, memory) : status;
   status = status == DEA_OK ? make_parts(ctx, y, only) : status;
   status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
