@@ -123,7 +123,7 @@ dea_status dea_study_stop_by_stop(
   char what[2 * DEA_NAME_SIZE];
   if (!able) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
-                           "model %s has no mass: no study '%s'", type->name, kind);
+                           "model %s knows no vibrations: no study '%s'", type->name, kind);
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
   snprintf(what, sizeof what, "%s %s", type->name, kind);
