@@ -1,7 +1,6 @@
 #include "model/solid/solve/driven.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { VOLTAGES_MAX = 12 };
 static const double voltage_close = 1e-8;   // of the largest voltage
@@ -43,30 +42,22 @@ static dea_status find_film(struct dea_context *ctx, const struct dea_driven *d,
   return DEA_OK;
 }
 
-/* Branches of a material that a layer is made of. */
-static void set_branches(const struct dea_material *material, struct dea_branches *out)
-{
-  out->count = material->branch_count;
-  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
-}
-
 static dea_status prepare(struct dea_context *ctx, struct dea_driven *d,
                           const struct dea_actuator *actuator)
 {
   const struct dea_device *device = actuator->device;
   const struct dea_material *material = &device->film;
-  double eps = DEA_EPSILON_0 * material->permittivity.at_rest, rho = material->resistivity_ohm_m;
+  double eps = actuator->layers[DEA_LAYER_FILM].permittivity_F_per_m; // as it is pre-stretched
+  double rho = material->resistivity_ohm_m;
   double voltage_V = dea_solid_voltage(d->solid);
-  struct dea_branches branches[DEA_LAYER_COUNT] = {{.count = 0}};
+  struct dea_branches branches[DEA_LAYER_COUNT];
   const struct dea_solid_time_options options = {
       .branches = branches, .inertia = d->options.inertia, .spectral_radius = d->options.rho_inf};
   struct dea_circuit_film film = {.capacitance_F = 0};
   if (d->options.inertia) {
     DEA_TRY(ctx, dea_actuator_check_mass(ctx, actuator));
   }
-  set_branches(material, &branches[DEA_LAYER_FILM]);
-  set_branches(device->electrode_thickness_m > 0 ? &device->electrode : material,
-               &branches[DEA_LAYER_ELECTRODE]);
+  dea_branches_of_device(device, branches);
   d->copies = dea_actuator_copies(actuator);
   d->leakage_per_s = rho > 0 ? 1 / (rho * eps) : 0;
   DEA_TRY(ctx, dea_solid_time_create(ctx, d->solid, &options, &d->time));

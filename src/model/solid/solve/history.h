@@ -13,6 +13,11 @@ struct dea_branches {
   struct dea_branch branch[DEA_BRANCHES_MAX];
 };
 
+struct dea_device;
+/* Those of the layers of an actuator: of its film, and of electrodes of a thickness. out:
+ * [DEA_LAYER_COUNT]. */
+void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out);
+
 struct dea_solid_history {
   size_t layer_count, point_count;
   struct dea_branches *branches;    // [layer_count]

@@ -62,7 +62,8 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
   size_t dofs = 3 * m->grid->node_count;
   double *u = dea_solid_displacement(m->solid), *keep = dea_alloc(ctx, dofs, sizeof *keep);
   double scale = little * largest(m->grid->X, dofs) / largest(v, dofs);
-  if (keep == NULL) {
+  if (dea_solid_any(keep == NULL)) {
+    dea_free(ctx, keep);
     return DEA_E_MEMORY;
   }
   memcpy(keep, u, dofs * sizeof *u);
@@ -133,24 +134,11 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
 
 /* ---- answers ---- */
 
-/* Branches of a layer of that material. */
-static void set_branches(const struct dea_material *material, struct dea_motions *motions,
-                         int layer)
+void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device)
 {
-  struct dea_branches *out = &motions->branches[layer];
-  out->count = material->branch_count;
-  for (size_t i = 0; i < out->count; i++) {
-    out->branch[i].modulus_Pa = material->branches[i].modulus_Pa;
-    out->branch[i].time_s = material->branches[i].time_s;
-  }
-  motions->viscous = motions->viscous || out->count > 0;
-}
-
-void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *d)
-{
-  set_branches(&d->film, motions, DEA_LAYER_FILM);
-  if (d->electrode_thickness_m > 0) {
-    set_branches(&d->electrode, motions, DEA_LAYER_ELECTRODE);
+  dea_branches_of_device(device, motions->branches);
+  for (int l = 0; l < DEA_LAYER_COUNT; l++) {
+    motions->viscous = motions->viscous || motions->branches[l].count > 0;
   }
 }
 

@@ -1,5 +1,8 @@
 #include "model/solid/actuator.h"
+#include "model/solid/solve/history.h"
 #include "model/solid/solve/solid.h"
+
+#include <string.h>
 
 dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
                                  const struct dea_grid *grid, struct dea_solid **out)
@@ -19,4 +22,19 @@ dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actua
   };
   DEA_TRY(ctx, dea_solid_create(ctx, grid, &options, out));
   return DEA_OK;
+}
+
+static void set_branches(const struct dea_material *material, struct dea_branches *out)
+{
+  out->count = material->branch_count;
+  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
+}
+
+void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out)
+{
+  memset(out, 0, DEA_LAYER_COUNT * sizeof *out);
+  set_branches(&device->film, &out[DEA_LAYER_FILM]);
+  if (device->electrode_thickness_m > 0) {
+    set_branches(&device->electrode, &out[DEA_LAYER_ELECTRODE]);
+  }
 }
