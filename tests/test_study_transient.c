@@ -94,6 +94,11 @@ static void test_pulses(void **state)
     assert_true(i == 0 || cycles[i].farthest > cycles[i - 1].farthest);
   }
   dea_free(ctx, cycles);
+  for (int moves = 0; moves < 2; moves++) { // the centre of a flat film does so by rounding only
+    run.curve->points[1].centre_z_m = moves ? 1e-5 : 1e-20;
+    assert_string_equal(dea_point_columns[dea_history_column(run.curve)].key,
+                        moves ? "centre_z_m" : "electrode_edge_u_m");
+  }
   end(ctx, &run);
 }
 

@@ -4,19 +4,23 @@
 
 #include <math.h>
 
+static double largest_of(const struct dea_curve *curve, int column)
+{
+  double largest = 0;
+  for (size_t i = 0; i < curve->count; i++) {
+    double value = fabs(dea_point_get(&curve->points[i], column));
+    largest = isfinite(value) ? fmax(largest, value) : largest;
+  }
+  return largest;
+}
+
 int dea_history_column(const struct dea_curve *curve)
 {
-  static const char *const keys[] = {"centre_z_m", "electrode_edge_u_m"};
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
-    int column = dea_point_column_find(keys[k]);
-    for (size_t i = 0; i < curve->count; i++) {
-      double value = dea_point_get(&curve->points[i], column);
-      if (isfinite(value) && value != 0) {
-        return column;
-      }
-    }
-  }
-  return -1;
+  static const double rounding = 1e-6; // a flat film's centre stays but for the solver's
+  int centre = dea_point_column_find("centre_z_m"),
+      edge = dea_point_column_find("electrode_edge_u_m");
+  double z_m = largest_of(curve, centre), u_m = largest_of(curve, edge);
+  return z_m > rounding * u_m ? centre : u_m > 0 ? edge : -1;
 }
 
 /* First time at which the column is at `level` on its way between points from and to; NAN: never.
