@@ -235,6 +235,8 @@ static void test_errors(void **state)
   check_error("kind: table\nfile: bad.csv\n", 1, 1, "'time' needs a unit in parentheses");
   write_text("bad.csv", "time (s),voltage (kV)\n0,0\n1,x\n");
   check_error("kind: table\nfile: bad.csv\n", 3, 3, "'x' is not a number");
+  write_text("bad.csv", "time (s),voltage (kV)\n0,0\n1,2000\n");
+  check_error("kind: table\nfile: bad.csv\n", 3, 3, "at most 1 MV");
   write_text("bad.csv", "time (s),voltage (kV)\n0,0\n2,1\n1,1\n");
   check_error("kind: table\nfile: bad.csv\n", 4, 1, "1 s comes too late");
   write_text("bad.csv", "time (s),voltage (kV)\n0,0\n2\n");

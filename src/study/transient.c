@@ -20,7 +20,8 @@ struct player {
   struct dea_load_point pending; // the last one, if it is not kept yet
   bool has_pending;
   double largest[4]; // voltage, motion, current, z so far
-  size_t told;       // thousandths of the time that progress was told of
+  bool inertia;
+  size_t told; // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
 };
 
@@ -115,9 +116,9 @@ static dea_status stop(struct dea_context *ctx, struct player *p, dea_status sta
     DEA_TRY(ctx, dea_curve_add_event(ctx, p->curve, &event));
   }
   return dea_fail(ctx, status,
-                  "pull-in at %.6g s, %.4g kV on the film: no equilibrium follows the last one; "
-                  "compute.transient.inertia: yes lets it move on",
-                  p->time_s, 1e-3 * p->last_V);
+                  "pull-in at %.6g s, %.4g kV on the film: no equilibrium follows the last one%s",
+                  p->time_s, 1e-3 * p->last_V,
+                  p->inertia ? "" : "; compute.transient.inertia: yes lets it move on");
 }
 
 /* The supply's voltage jumps here. */
@@ -257,7 +258,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   const struct dea_time_options options = {
       .circuit = {.series_resistance_ohm = design->drive.series_resistance_ohm.si,
                   .current_limit_A = limit->origin != DEA_ABSENT ? limit->si : INFINITY},
-      .inertia = design->compute.transient.inertia.value == 1,
+      .inertia = p->inertia,
       .rho_inf = design->compute.transient.rho_inf.si,
   };
   struct dea_load_point point;
@@ -271,7 +272,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: this starts from rest
-  struct player p = {.type = type};
+  struct player p = {.type = type, .inertia = result->design->compute.transient.inertia.value == 1};
   struct dea_waveform *limited = NULL;
   if (type->advance == NULL) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},

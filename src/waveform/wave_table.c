@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { FILE_MAX = 50000000, FINDINGS_MAX = 20, TIME = 0, VOLTAGE = 1 };
+static const double voltage_max_V = 1e6; // as of the other kinds
 
 struct raw {
   struct dea_label kind, file;
@@ -173,6 +174,11 @@ static dea_status read_row(struct table *t, const char *line)
     return at_column(t, at[isnan(value[0]) ? 0 : 1], &place)
                ? dea_finding_add(ctx, DEA_ERROR, place, "a row without a %s",
                                  isnan(value[0]) ? "time" : "voltage")
+               : DEA_OK;
+  }
+  if (t->errors == before && !(fabs(value[1]) <= voltage_max_V)) {
+    return at_column(t, at[1], &place)
+               ? dea_finding_add(ctx, DEA_ERROR, place, "a voltage is at most 1 MV")
                : DEA_OK;
   }
   return t->errors == before ? add_row(t, value, at[TIME]) : DEA_OK;
