@@ -25,8 +25,9 @@ static void place_leads(struct dea_plan *plan)
       fibres > 0 ? half + step * floor((opposite - half) / step + 0.5 - 1e-9) : opposite;
 }
 
-/* Three marks: two on the wider way from the top lead to the bottom one, one on the other way, so
- * that a sheet that is turned over or around does not fit. */
+/* Three marks: two on the wider way from the top lead to the bottom one, one on the other way. All
+ * three distances between them differ, so that a sheet that is turned over or around does not fit:
+ * two equal ones would let it be turned over. */
 static void place_marks(struct dea_plan *plan)
 {
   double from = plan->lead_angle_rad[DEA_PLAN_TOP];
@@ -36,7 +37,7 @@ static void place_marks(struct dea_plan *plan)
   double two = wider ? way : way - 2 * pi, one = wider ? way - 2 * pi : way;
   plan->mark_angle_rad[0] = from + two / 3;
   plan->mark_angle_rad[1] = from + 2 * two / 3;
-  plan->mark_angle_rad[2] = from + one / 2;
+  plan->mark_angle_rad[2] = from + 0.4 * one;
 }
 
 static void fill(struct dea_plan *plan)
