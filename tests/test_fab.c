@@ -423,6 +423,14 @@ static void test_copies_keep_apart(void **state)
     assert_int_equal(layout->count, workshop->part[i].paper ? 1 : 7);
     for (int p = 0; p < layout->count; p++) {
       dea_layout_place(layout, p, a);
+      dea_layout_place(&workshop->layout[part_index("film")], p, b);
+      if (strcmp(workshop->part[i].name, "stencil-bottom") == 0) { // it meets the film from below
+        assert_close(a[0], layout->width_m - b[0], 0, 1e-12);
+        assert_close(a[1], b[1], 0, 1e-12);
+      } else if (strcmp(workshop->part[i].name, "stencil-top") == 0) {
+        assert_close(a[0], b[0], 0, 1e-12);
+        assert_close(a[1], b[1], 0, 1e-12);
+      }
       assert_true(a[0] - half >= 5e-3 - 1e-9 && a[0] + half <= layout->width_m - 5e-3 + 1e-9);
       assert_true(a[1] - half >= 5e-3 - 1e-9 && a[1] + half <= layout->height_m - 5e-3 + 1e-9);
       for (int q = 0; q < p; q++) {

@@ -50,7 +50,8 @@ struct dea_part {
   const char *title; // "Pre-stretch frame"
   const char *seen;  // from where: "seen from the fibres"
   enum dea_film_state state;
-  bool paper; // printed at 1:1, one for all copies, not cut
+  bool paper;    // printed at 1:1, one for all copies, not cut
+  bool mirrored; // seen from the side away from the fibres
   struct dea_vertex *vertex;
   size_t vertex_count, vertex_room;
   struct dea_part_contour *contour;

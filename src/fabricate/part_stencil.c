@@ -79,5 +79,6 @@ const struct dea_part_type dea_part_stencil_bottom = {
     .title = "Stencil of the bottom electrode, printed first",
     .seen = "seen from its own side, away from the fibres",
     .state = DEA_UNSTRETCHED,
+    .mirrored = true,
     .build = build_bottom,
 };

@@ -8,7 +8,7 @@
 struct dea_part_type {
   const char *name, *title, *seen; // as in struct dea_part
   enum dea_film_state state;
-  bool paper;
+  bool paper, mirrored;
   bool of_fibres; // only for designs with fibres
   void (*build)(const struct dea_plan *plan, struct dea_part *part);
 };

@@ -174,9 +174,11 @@ static void add_printing(struct sheet *s)
                    "Cut the two stencils (stencil-bottom, stencil-top). The disc of an electrode "
                    "measures %s mm here and %s mm once stretched.",
                    a, b);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Lay the film onto a PET carrier and print the bottom electrode through "
-                   "stencil-bottom: disc, lead, pad and marks in one go.");
+  dea_document_add(
+      s->to, DEA_BLOCK_STEP,
+      "Lay the film onto a PET carrier, its lower side up, so that its marks lie as in "
+      "stencil-bottom, and print the bottom electrode: disc, lead, pad and marks in "
+      "one go.");
   dea_document_add(s->to, DEA_BLOCK_STEP,
                    "Cure at %.4g \xc2\xb0"
                    "C for %.4g h.",

@@ -31,7 +31,7 @@ static double half_size(const struct dea_workshop *w, enum dea_film_state state,
 static struct dea_layout paper_layout(double half, double margin)
 {
   double side = 2 * (half + margin);
-  return (struct dea_layout){side, side, {0.5 * side, 0.5 * side}, side, 1, 1};
+  return (struct dea_layout){side, side, {0.5 * side, 0.5 * side}, side, 1, 1, false};
 }
 
 static double whole(double number)
@@ -48,12 +48,14 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
   double across = f->sheet.width_m.si, up = f->sheet.height_m.si;
   double columns = fmax(0, whole((across - 2 * margin + gap) / pitch));
   double rows = fmax(0, whole((up - 2 * margin + gap) / pitch));
-  *out = (struct dea_layout){.width_m = across,
-                             .height_m = up,
-                             .first_m = {margin + half, up - margin - half},
-                             .pitch_m = pitch,
-                             .columns = (int)fmin(columns, DEA_DESIGN_COPIES_MAX),
-                             .count = w->plan.copies};
+  *out = (struct dea_layout){
+      .width_m = across,
+      .height_m = up,
+      .first_m = {part->mirrored ? across - margin - half : margin + half, up - margin - half},
+      .pitch_m = pitch,
+      .columns = (int)fmin(columns, DEA_DESIGN_COPIES_MAX),
+      .count = w->plan.copies,
+      .mirrored = part->mirrored};
   if (columns * rows >= w->plan.copies) {
     return DEA_OK;
   }
@@ -72,7 +74,8 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
 
 void dea_layout_place(const struct dea_layout *layout, int copy, double out_m[2])
 {
-  out_m[0] = layout->first_m[0] + copy % layout->columns * layout->pitch_m;
+  double aside = copy % layout->columns * layout->pitch_m;
+  out_m[0] = layout->first_m[0] + (layout->mirrored ? -aside : aside);
   out_m[1] = layout->first_m[1] - copy / layout->columns * layout->pitch_m;
 }
 
@@ -91,7 +94,8 @@ static dea_status build_parts(struct dea_context *ctx, struct dea_workshop *w)
                               .title = type->title,
                               .seen = type->seen,
                               .state = type->state,
-                              .paper = type->paper};
+                              .paper = type->paper,
+                              .mirrored = type->mirrored};
     type->build(&w->plan, part);
     if (part->failed) {
       return DEA_E_MEMORY;

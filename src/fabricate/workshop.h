@@ -9,12 +9,14 @@
 enum { DEA_WORKSHOP_PARTS_MAX = 8 };
 
 /* Copies of a part on its sheet: rows from the upper left corner. All parts of the unstretched film
- * have the same places, and all of the stretched one. */
+ * have the same places, and all of the stretched one; on a sheet that is seen from the other side
+ * they are mirrored as a whole, from the upper right corner. */
 struct dea_layout {
   double width_m, height_m; // of the sheet; origin at its lower left corner
   double first_m[2];        // centre of the first copy
-  double pitch_m;           // from one to the next, to the right and downwards
+  double pitch_m;           // from one to the next, sideways and downwards
   int columns, count;
+  bool mirrored; // rows go to the left
 };
 
 struct dea_workshop {
