@@ -103,6 +103,24 @@ void dea_draw_fibre(const struct dea_plan *plan, int number, enum dea_layer laye
   add_corner(plan, number, tip, -1, 0.5 * d->fibre_tip_width_m, place, part);
 }
 
+void dea_draw_anchor(const struct dea_plan *plan, int number, enum dea_layer layer,
+                     struct dea_part *part)
+{
+  const struct dea_device *d = plan->device;
+  struct dea_place place = plan->design->fabrication.holder.anchor_m.place;
+  const double centre[2] = {0, 0};
+  double inner = d->frame_radius_m - d->fibre_outer_gap_m, end = plan->fibre_end_m;
+  double half = 0.5 * d->fibre_width_m, axis = 2 * pi * number / d->fibre_count;
+  double a = edge_angle(half, end), b = edge_angle(half, inner);
+  if (end > inner) {
+    dea_part_begin(part, layer, true);
+    dea_part_arc(part, centre, end, axis - a, axis + a, place);
+    add_corner(plan, number, end, 1, half, place, part);
+    dea_part_arc(part, centre, inner, axis + b, axis - b, place);
+    add_corner(plan, number, inner, -1, half, place, part);
+  }
+}
+
 static void build(const struct dea_plan *plan, struct dea_part *part)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;

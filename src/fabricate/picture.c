@@ -71,6 +71,7 @@ static void draw_top(struct picture *p)
   paint(p, first, ELECTRODE, 1, 0);
   for (int k = 0; k < plan->device->fibre_count; k++) {
     first = parts->contour_count;
+    dea_draw_anchor(plan, k, DEA_LAYER_MARK, parts);
     dea_draw_fibre(plan, k, DEA_LAYER_MARK, parts);
     paint(p, first, FIBRE, 0.9, 0);
   }
