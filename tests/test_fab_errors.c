@@ -98,6 +98,28 @@ static void test_what_cannot_be_built(void **state)
   expect("width: 2 mm}", "width: 0.2 mm}", "a tab of 1 mm width is wider than a fibre", 14);
 }
 
+/* Fibres that widen outwards: the lead passes their tips, and goes under their outer ends. */
+static void test_lead_under_a_taper(void **state)
+{
+  (void)state;
+  static const char *const widths[] = {"8 mm", "10 mm"};
+  for (size_t i = 0; i < 2; i++) {
+    struct dea_context *ctx;
+    assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+    const struct dea_override sets[] = {{"fibres.width", widths[i]},
+                                        {"fibres.tip_width", "1 mm"},
+                                        {"fabrication.leads.angle", "20 degree"}};
+    assert_int_equal(build(ctx, DESIGN, sets, 3), DEA_OK);
+    size_t count, found = 0;
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    for (size_t k = 0; k < count; k++) {
+      found += strstr(findings[k].text, "runs under a fibre") != NULL;
+    }
+    assert_int_equal(found, i);
+    dea_context_destroy(ctx);
+  }
+}
+
 static void test_parts_that_overlap(void **state)
 {
   (void)state;
@@ -195,11 +217,9 @@ static void test_letters(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_cannot_be_built),
-      cmocka_unit_test(test_parts_that_overlap),
-      cmocka_unit_test(test_each_allocation),
-      cmocka_unit_test(test_hostile_values),
-      cmocka_unit_test(test_letters),
+      cmocka_unit_test(test_what_cannot_be_built), cmocka_unit_test(test_lead_under_a_taper),
+      cmocka_unit_test(test_parts_that_overlap),   cmocka_unit_test(test_each_allocation),
+      cmocka_unit_test(test_hostile_values),       cmocka_unit_test(test_letters),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -121,17 +121,24 @@ static dea_status check_leads(struct dea_context *ctx, const struct dea_plan *pl
   return DEA_OK;
 }
 
+/* Whether the strip around the top lead's axis meets that around a fibre's, of a width at a
+ * distance from the centre; angle between them. */
+static bool strips_meet(const struct dea_plan *plan, double angle, double distance, double width)
+{
+  return cos(angle) > 0 &&
+         distance * fabs(sin(angle)) < 0.5 * (plan->lead_width_m + width * cos(angle));
+}
+
 /* Top leads go under fibres where these are close; that can be built but not simulated. */
 static dea_status check_lead_under_fibres(struct dea_context *ctx, const struct dea_plan *plan)
 {
   const struct dea_device *d = plan->device;
   double tip = fmax(d->fibre_tip_radius_m, plan->electrode_m);
+  double outer = d->frame_radius_m - d->fibre_outer_gap_m;
   for (int k = 0; k < d->fibre_count; k++) {
     double angle = plan->lead_angle_rad[DEA_PLAN_TOP] - 2 * pi * k / d->fibre_count;
-    // the strip around the lead's axis, and that around the fibre's, at the fibre's tip
-    bool ahead = cos(angle) > 0;
-    double off = tip * fabs(sin(angle));
-    if (ahead && off < 0.5 * (plan->lead_width_m + d->fibre_tip_width_m * cos(angle))) {
+    if (strips_meet(plan, angle, tip, d->fibre_tip_width_m) || // either end of a taper
+        strips_meet(plan, angle, outer, d->fibre_width_m)) {
       return dea_finding_add(ctx, DEA_WARNING, plan->design->fabrication.leads.width.length.place,
                              "the lead of the top electrode, %.4g mm wide (stretched), runs under "
                              "a fibre; what that does to the bond and the motion is not simulated",
