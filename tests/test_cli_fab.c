@@ -111,6 +111,31 @@ static void test_hostile_names(void **state)
   }
 }
 
+/* Names of design files that are not UTF-8, or are cut inside of a letter, are no reason not to
+ * draw.
+ */
+static void test_names_in_drawings(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"lat\351in.yaml",
+                                      "x\303\251\303\251\303\251\303\251\303\251\303\251\303\251"
+                                      "\303\251\303\251\303\251\303\251\303\251\303"
+                                      "\251\303\251\303\251\303\251\303\251\303\251\303\251\303\251"
+                                      "\303\251\303\251\303\251\303\251\303\251\303\251"
+                                      "\303\251\303\251\303\251\303\251\303\251\303\251\303\251\303"
+                                      "\251\303\251\303\251\303\251\303\251\303\251"
+                                      "\303\251\303\251\303\251.yaml"};
+  for (size_t i = 0; i < 2; i++) {
+    command_write(names[i], "dea: 1\n"
+                            "film: {material: elastosil-2030, thickness: 100 um}\n"
+                            "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
+                            "electrodes: {diameter: 5 mm unstretched}\n");
+    char command[300];
+    snprintf(command, sizeof command, "fab '%s' -o names --force", names[i]);
+    assert_int_equal(command_run(command), 0);
+  }
+}
+
 static void test_drawing_only(void **state)
 {
   (void)state;
@@ -151,9 +176,13 @@ static void test_what_goes_wrong(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_files),           cmocka_unit_test(test_summary),
-      cmocka_unit_test(test_without_fibres),  cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_drawing_only),    cmocka_unit_test(test_hostile_names),
+      cmocka_unit_test(test_files),
+      cmocka_unit_test(test_summary),
+      cmocka_unit_test(test_without_fibres),
+      cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_names_in_drawings),
+      cmocka_unit_test(test_drawing_only),
+      cmocka_unit_test(test_hostile_names),
       cmocka_unit_test(test_what_goes_wrong),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

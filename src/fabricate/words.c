@@ -45,7 +45,8 @@ unsigned dea_letter_next(const char **text)
     good = (c[used] & 0xc0) == 0x80;
     code = code << 6 | (c[used] & 0x3fu);
   }
-  good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff) &&
+         code != 0xfffe && code != 0xffff; // which XML forbids
   *text += good ? used : 1;
   if (!good) {
     return 0xfffd;

@@ -1,12 +1,14 @@
 /* A canvas by cairo: the whole of the loadable module that fabricate/canvas.c opens. */
 #include "fabricate/canvas.h"
 
+#include "fabricate/words.h"
 #include "output/bytes.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <math.h>
+#include <string.h>
 
 static const double point_mm = 25.4 / 72;
 static const double dots_per_mm = 300 / 25.4;
@@ -26,6 +28,27 @@ static cairo_status_t take(void *user, const unsigned char *data, unsigned lengt
   return bytes->failed ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
+enum { WORDS_SIZE = 1024 };
+
+/* Words as cairo takes them: it stops at what is not UTF-8, such as a name of a file in another
+ * encoding or one that was cut inside of a letter. What is too long ends early. */
+static void make_good(const char *words, char out[WORDS_SIZE])
+{
+  size_t n = 0;
+  while (n + 4 < WORDS_SIZE) {
+    const char *start = words;
+    unsigned code = dea_letter_next(&words);
+    if (code == 0) {
+      break;
+    }
+    const char *letter = code == 0xfffd ? "\xef\xbf\xbd" : code == ' ' ? " " : start;
+    size_t length = letter == start ? (size_t)(words - start) : strlen(letter);
+    memcpy(out + n, letter, length);
+    n += length;
+  }
+  out[n] = '\0';
+}
+
 /* mm from the lower left corner, y upwards. */
 static void set_frame(struct dea_canvas *canvas, double height_mm)
 {
@@ -42,12 +65,14 @@ static cairo_surface_t *make_surface(struct dea_canvas *canvas, double width_mm,
                                      const char *title)
 {
   cairo_surface_t *surface;
+  char good[WORDS_SIZE];
+  make_good(title, good);
   switch (canvas->format) {
   case DEA_CANVAS_PDF:
     surface = cairo_pdf_surface_create_for_stream(take, &canvas->bytes, width_mm / point_mm,
                                                   height_mm / point_mm);
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
-      cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title);
+      cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, good);
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "libdea");
       // without the time of day the same design gives the same bytes
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
@@ -183,14 +208,18 @@ static void choose_font(struct dea_canvas *canvas, double size_mm, bool bold)
 static double text_width(struct dea_canvas *canvas, double size_mm, bool bold, const char *text)
 {
   cairo_text_extents_t extents;
+  char good[WORDS_SIZE];
+  make_good(text, good);
   choose_font(canvas, size_mm, bold);
-  cairo_text_extents(canvas->cr, text, &extents);
+  cairo_text_extents(canvas->cr, good, &extents);
   return extents.x_advance;
 }
 
 static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm, double angle,
                  enum dea_align align, bool bold, unsigned colour, const char *words)
 {
+  char good[WORDS_SIZE];
+  make_good(words, good);
   double width = align == DEA_ALIGN_LEFT ? 0 : text_width(canvas, size_mm, bold, words);
   cairo_save(canvas->cr);
   cairo_translate(canvas->cr, x_mm, y_mm);
@@ -199,7 +228,7 @@ static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double siz
   choose_font(canvas, size_mm, bold);
   set_colour(canvas, colour, 1);
   cairo_move_to(canvas->cr, align == DEA_ALIGN_RIGHT ? -width : -0.5 * width, 0);
-  cairo_show_text(canvas->cr, words);
+  cairo_show_text(canvas->cr, good);
   cairo_restore(canvas->cr);
   cairo_new_path(canvas->cr);
 }
