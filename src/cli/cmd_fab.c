@@ -110,15 +110,17 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 const struct dea_command cmd_fab = {
     .name = "fab",
     .summary = "Make the files for the workshop: masks, fibres, frame, process sheet",
-    .usage = "dea fab DESIGN [-o DIR] [--force] [--drawing] [--set KEY=VALUE]... [--json]\n\n"
-             "Writes for each part a DXF and an SVG file in mm, with the kerf taken into account,\n"
-             "drawings at 1:1 with dimensions, the process sheet, and a drawing of the actuator.\n"
-             "Kerf, sheet, leads, tabs and the like are in the section 'fabrication' of DESIGN.\n\n"
-             "  -o, --output DIR   folder for the files; DESIGN's name with .fab if not given\n"
-             "  -f, --force        replace files that are there\n"
-             "      --drawing      only the drawing of the actuator\n"
-             "      --set KEY=VALUE  take VALUE in place of the file's, for example\n"
-             "                     --set fabrication.kerf=0.15mm\n"
-             "      --json         areas, lengths and names of files as JSON\n",
+    .usage =
+        "dea fab DESIGN [-o DIR] [--force] [--drawing] [--set KEY=VALUE]... [--json]\n\n"
+        "Writes for each part a DXF and an SVG file in mm, with the kerf taken into account,\n"
+        "drawings at 1:1 with dimensions, the process sheet, and a drawing of the actuator.\n"
+        "Kerf, sheet, leads, tabs and the like are in the section 'fabrication' of DESIGN.\n\n"
+        "  -o, --output DIR   folder for the files; DESIGN's name with .fab if not given\n"
+        "  -f, --force        replace files that are there; sheets of fibres go when DESIGN has\n"
+        "                     none\n"
+        "      --drawing      only the drawing of the actuator\n"
+        "      --set KEY=VALUE  take VALUE in place of the file's, for example\n"
+        "                     --set fabrication.kerf=0.15mm\n"
+        "      --json         areas, lengths and names of files as JSON\n",
     .run = run,
 };

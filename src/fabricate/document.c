@@ -170,7 +170,8 @@ void dea_document_html(const struct dea_document *document, const char *drawing,
     open = wanted;
     add_block(out, block);
     if (i == 1) {
-      dea_text_add(out, "%s", drawing);
+      dea_text_add(out, "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
+                   drawing);
     }
   }
   if (open[0] != '\0') {
