@@ -38,12 +38,17 @@ typedef void (*writer)(struct dea_text *out, const char *text);
 
 static void label(struct dea_text *out, const char *text)
 {
-  dea_html_label(out, text, false);
+  dea_html_label(out, text, DEA_LABEL_SVG);
 }
 
 static void plain_label(struct dea_text *out, const char *text)
 {
-  dea_html_label(out, text, true);
+  dea_html_label(out, text, DEA_LABEL_PLAIN);
+}
+
+static void json_label(struct dea_text *out, const char *text)
+{
+  dea_html_label(out, text, DEA_LABEL_JSON);
 }
 
 static void base64(struct dea_text *out, const char *text)
@@ -100,6 +105,10 @@ static void test_labels(void **state)
   char escaped[64];
   dea_label_escape("two_words {x}", escaped, sizeof escaped);
   assert_writes(plain_label, escaped, "two_words {x}");
+  assert_writes(plain_label, "a & \"b\"", "a &amp; &quot;b&quot;");
+  // within a script element entities are letters, and a line's end would end the JSON
+  assert_writes(json_label, "a & \"b\"\n</script>_{x}",
+                "a \\u0026 \\u0022b\\u0022\\u000a\\u003c/script\\u003ex");
 }
 
 static void test_axes(void **state)

@@ -136,7 +136,7 @@ void dea_html_json_number(struct dea_text *out, double value, int digits)
 }
 
 /* One sign of a label, escaped; returns what follows. A backslash before it is dropped. */
-static const char *add_sign(struct dea_text *out, const char *c)
+static const char *add_sign(struct dea_text *out, const char *c, enum dea_label_form form)
 {
   while (*c == '\\') {
     c++;
@@ -144,24 +144,26 @@ static const char *add_sign(struct dea_text *out, const char *c)
   size_t length = *c == '\0' ? 0 : sequence_length((const unsigned char *)c);
   char sign[5] = {0};
   memcpy(sign, c, length);
-  dea_html_text(out, sign);
+  add_safe(out, sign, form == DEA_LABEL_JSON);
   return c + (length > 0 ? length : *c != '\0');
 }
 
 /* The inside of braces or one sign, raised or lowered. */
-static const char *add_shifted(struct dea_text *out, const char *c, bool up, bool plain)
+static const char *add_shifted(struct dea_text *out, const char *c, bool up,
+                               enum dea_label_form form)
 {
+  bool plain = form != DEA_LABEL_SVG;
   dea_text_add(out, "%s",
                plain ? (up ? "^" : "")
                : up  ? "<tspan class=\"small\" dy=\"-0.4em\">"
                      : "<tspan class=\"small\" dy=\"0.25em\">");
   if (*c == '{') {
     for (c++; *c != '\0' && *c != '}';) {
-      c = add_sign(out, c);
+      c = add_sign(out, c, form);
     }
     c += *c == '}';
   } else {
-    c = add_sign(out, c);
+    c = add_sign(out, c, form);
   }
   // the next sign goes back to the line; one of no width, as nothing may follow
   dea_text_add(out, "%s",
@@ -171,10 +173,10 @@ static const char *add_shifted(struct dea_text *out, const char *c, bool up, boo
   return c;
 }
 
-void dea_html_label(struct dea_text *out, const char *label, bool plain)
+void dea_html_label(struct dea_text *out, const char *label, enum dea_label_form form)
 {
   static const char italic[] = "{/:Italic ";
-  bool slanted = false;
+  bool slanted = false, plain = form != DEA_LABEL_SVG;
   for (const char *c = label; *c != '\0';) {
     if (strncmp(c, italic, sizeof italic - 1) == 0) {
       c += sizeof italic - 1;
@@ -187,9 +189,9 @@ void dea_html_label(struct dea_text *out, const char *label, bool plain)
     } else if (*c == '{') {
       c++;
     } else if (*c == '_' || *c == '^') {
-      c = add_shifted(out, c + 1, *c == '^', plain);
+      c = add_shifted(out, c + 1, *c == '^', form);
     } else {
-      c = add_sign(out, c);
+      c = add_sign(out, c, form);
     }
   }
   dea_text_add(out, "%s", slanted && !plain ? "</tspan>" : "");

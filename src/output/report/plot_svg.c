@@ -118,14 +118,14 @@ static void add_axes(struct dea_text *out, const struct dea_panel *panel, const 
   if (last) {
     dea_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">",
                  0.5 * (v->left + v->right), v->bottom + 38);
-    dea_html_label(out, panel->x_label, false);
+    dea_html_label(out, panel->x_label, DEA_LABEL_SVG);
     dea_text_add(out, "</text>");
   }
   for (int k = 0; k < (right ? 2 : 1); k++) {
     dea_text_add(out,
                  "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\">",
                  k == 0 ? 16.0 : WIDTH - 8.0, 0.5 * (v->top + v->bottom));
-    dea_html_label(out, k == 0 ? panel->y_label : panel->y2_label, false);
+    dea_html_label(out, k == 0 ? panel->y_label : panel->y2_label, DEA_LABEL_SVG);
     dea_text_add(out, "</text>");
   }
   dea_text_add(out, "</g>");
@@ -259,7 +259,7 @@ static void add_marks(struct dea_text *out, const struct dea_panel *panel, const
       dea_text_add(out, "<path d=\"M%.1f %.1fH%.1f\"/><text x=\"%.1f\" y=\"%.1f\">", v->left, at,
                    v->right, v->left + 6, at - 4);
     }
-    dea_html_label(out, mark->text, false);
+    dea_html_label(out, mark->text, DEA_LABEL_SVG);
     dea_text_add(out, "</text>");
   }
   dea_text_add(out, "</g>");
@@ -291,7 +291,7 @@ static void add_key(struct dea_text *out, const struct dea_plot *plot)
         dea_text_add(out, "\"/>");
       }
       dea_text_add(out, "</svg>");
-      dea_html_label(out, series->title, true);
+      dea_html_label(out, series->title, DEA_LABEL_PLAIN);
       dea_text_add(out, "</li>");
     }
   }
@@ -327,11 +327,11 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
   add_json_axis(out, "y", &v->y);
   add_json_axis(out, "y2", &v->y2);
   dea_text_add(out, "\"xl\":\"");
-  dea_html_label(out, panel->x_label, true);
+  dea_html_label(out, panel->x_label, DEA_LABEL_JSON);
   dea_text_add(out, "\",\"yl\":[\"");
-  dea_html_label(out, panel->y_label, true);
+  dea_html_label(out, panel->y_label, DEA_LABEL_JSON);
   dea_text_add(out, "\",\"");
-  dea_html_label(out, panel->y2_label, true);
+  dea_html_label(out, panel->y2_label, DEA_LABEL_JSON);
   dea_text_add(out, "\"],\"series\":[");
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
@@ -339,7 +339,7 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
       continue;
     }
     dea_text_add(out, "%s{\"t\":\"", first ? "" : ",");
-    dea_html_label(out, series->title, true);
+    dea_html_label(out, series->title, DEA_LABEL_JSON);
     dea_text_add(out, "\",\"c\":%d,\"r\":%d,\"p\":%d,\"v\":[", (int)series->colour, series->right,
                  series->style == DEA_MARKERS || series->style == DEA_ERROR_BARS);
     add_numbers(out, series->values, series->count);
