@@ -41,12 +41,12 @@ static double value_at(const struct dea_mesh_field *field, int component, size_t
   return value;
 }
 
-/* Whether all steps have the field, at points. */
-static bool have(const struct steps *steps, const char *name)
+/* Whether all steps have the channel's component, at points. */
+static bool have(const struct steps *steps, const struct channel *channel)
 {
   for (size_t s = 0; s < steps->count; s++) {
-    const struct dea_mesh_field *field = dea_field_mesh_find(steps->at[s]->mesh, name);
-    if (field == NULL || field->of_cells) {
+    const struct dea_mesh_field *field = dea_field_mesh_find(steps->at[s]->mesh, channel->field);
+    if (field == NULL || field->of_cells || channel->component >= field->components) {
       return false;
     }
   }
@@ -104,6 +104,12 @@ static void add_channel(struct dea_text *out, const struct steps *steps,
   dea_text_add(out, "]}");
 }
 
+/* Whether a field marks a cell; a file may have one of that name that is none of cells. */
+static bool marks(const struct dea_mesh_field *field, size_t cell)
+{
+  return field != NULL && field->of_cells && field->values[cell * (size_t)field->components] > 0.5;
+}
+
 /* Places and elements: those of the first step, which all share. */
 static void add_mesh(struct dea_text *out, const struct dea_field_mesh *mesh, uint16_t *words)
 {
@@ -133,8 +139,7 @@ static void add_mesh(struct dea_text *out, const struct dea_field_mesh *mesh, ui
     }
     dea_text_add(out, "],\"flags\":[");
     for (size_t i = 0; i < block->count; i++, cell++) {
-      int flags = (between != NULL && between->values[cell] > 0.5) +
-                  2 * (under != NULL && under->values[cell] > 0.5);
+      int flags = marks(between, cell) + 2 * marks(under, cell);
       dea_text_add(out, "%s%d", i > 0 ? "," : "", flags);
     }
     dea_text_add(out, "]}");
@@ -172,7 +177,7 @@ dea_status dea_section_membrane(struct dea_report *report, const struct dea_repo
 {
   struct steps steps = choose_steps(run->run->result);
   struct dea_text *out = &report->text;
-  if (steps.count == 0 || !have(&steps, "displacement_m") || !(steps.at[0]->mesh->cell_count > 0)) {
+  if (steps.count == 0 || !have(&steps, &channels[2]) || !(steps.at[0]->mesh->cell_count > 0)) {
     return DEA_OK;
   }
   uint16_t *words = dea_alloc(report->ctx, steps.at[0]->mesh->point_count, sizeof *words);
@@ -191,7 +196,7 @@ dea_status dea_section_membrane(struct dea_report *report, const struct dea_repo
   }
   dea_text_add(out, "],\"channels\":[");
   for (size_t c = 0; c < CHANNELS; c++) {
-    if (have(&steps, channels[c].field)) {
+    if (have(&steps, &channels[c])) {
       dea_text_add(out, "%s", c > 0 ? "," : "");
       add_channel(out, &steps, &channels[c], words);
     }
