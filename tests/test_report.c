@@ -309,6 +309,21 @@ static void test_measurement(void **state)
   assert_int_equal(command_run("report a.run --measurement wrong.csv -o w.html"), 5);
   assert_contains(command_err, "wrong.csv:1:");
   assert_int_equal(command_run("report a.run --finger 3kV -o w.html"), 2);
+  assert_int_equal(command_run("report a.run --finger '-1 N/mm' -o w.html"), 2);
+  assert_contains(command_err, "not negative");
+}
+
+static void test_only_pages_are_replaced(void **state)
+{
+  (void)state;
+  command_write("mine.txt", "mine");
+  assert_int_equal(command_run("report a.run -o mine.txt"), 5);
+  assert_contains(command_err, "mine.txt is there already and is not a page");
+  static char text[COMMAND_TEXT_MAX];
+  command_read("mine.txt", text);
+  assert_string_equal(text, "mine");
+  assert_int_equal(command_run("report a.run -o again.html"), 0);
+  assert_int_equal(command_run("report a.run -o again.html"), 0);
 }
 
 /* A run whose design cannot be read any more still has a page, which says why there is no drawing.
@@ -427,6 +442,7 @@ int main(void)
       cmocka_unit_test(test_text_of_a_design_is_text),
       cmocka_unit_test(test_page_of_an_example),
       cmocka_unit_test(test_measurement),
+      cmocka_unit_test(test_only_pages_are_replaced),
       cmocka_unit_test(test_runs_beside_each_other),
       cmocka_unit_test(test_touch_at_its_frequency),
       cmocka_unit_test(test_design_that_is_gone),

@@ -8,6 +8,28 @@
 
 #include <getopt.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* A page may be written again; anything else of that name is not ours to replace. */
+static dea_status check_place(struct dea_context *ctx, const char *path)
+{
+  static const char wanted[] = "<!DOCTYPE html>";
+  char start[sizeof wanted] = {0};
+  struct stat status;
+  bool is_file = stat(path, &status) == 0 && S_ISREG(status.st_mode);
+  FILE *file = is_file ? fopen(path, "rb") : NULL;
+  if (file == NULL) {
+    return DEA_OK; // nothing there, or writing will say what is wrong
+  }
+  size_t length = fread(start, 1, sizeof start - 1, file);
+  fclose(file);
+  return length == 0 || strcmp(start, wanted) == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO,
+                        "%s is there already and is not a page; choose another name with -o", path);
+}
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
@@ -25,6 +47,10 @@ static int run(struct dea_cli *cli, int argc, char **argv)
       const struct dea_measure stiffness = {"N/m", "0.5 N/mm"};
       if (!dea_units_read(cli->ctx, optarg, stiffness, &finger, why)) {
         return cli_usage_error(cli, &cmd_report, "--finger: %s", why);
+      }
+      if (finger < 0) {
+        return cli_usage_error(cli, &cmd_report, "--finger: a stiffness is not negative: '%s'",
+                               optarg);
       }
     } else if (letter == 'm') {
       measurement = optarg;
@@ -45,9 +71,10 @@ static int run(struct dea_cli *cli, int argc, char **argv)
                                            : dea_copy_text(cli->ctx, "report.html", SIZE_MAX);
   const struct dea_report_options chosen = {
       .command = cli->command_line, .finger_N_per_m = finger, .measurement = measurement};
-  dea_status status = path == NULL ? DEA_E_MEMORY
-                                   : dea_report_write(cli->ctx, (const char *const *)argv + optind,
-                                                      count, &chosen, path);
+  dea_status status = path == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
+  if (status == DEA_OK) {
+    status = dea_report_write(cli->ctx, (const char *const *)argv + optind, count, &chosen, path);
+  }
   if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "the report is %s\n", path);
   }
@@ -64,8 +91,11 @@ const struct dea_command cmd_report = {
         "One file with everything: drawing, curves, limits, convergence, materials with their\n"
         "sources, provenance. Several runs are set beside each other.\n"
         "\n"
-        "  RUN                folder of a run\n"
-        "  -o, --output FILE  the page; report.html in the first run's folder if not given\n"
-        "  --finger STIFFNESS stiffness of a fingertip that is pushed, '0.5 N/mm' if not given\n",
+        "  RUN                folder of a run, or its results.h5\n"
+        "  -o, --output FILE  the page; report.html in the first run's folder if not given.\n"
+        "                     Replaces an older page, but no other file\n"
+        "  --measurement FILE measured points as CSV, as for dea compare, beside the runs\n"
+        "  --finger STIFFNESS stiffness of a fingertip that is pushed, '0.5 N/mm' if not given;\n"
+        "                     '0 N/mm' for none\n",
     .run = run,
 };
