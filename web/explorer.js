@@ -198,7 +198,6 @@
       sliders[key] = dea.slider(label, factor * low, factor * high, 'any', factor * chosen[key], () => `${dea.number(factor * chosen[key], 4)} ${unit}`, (value) => {
         const near = Math.abs(value / factor - initial[key]) < step ? initial[key] : value / factor; // the run's value attracts
         chosen[key] = near === initial[key] ? near : Number(near.toPrecision(4));
-        sliders[key].node.querySelector('output').textContent = `${dea.number(factor * chosen[key], 4)} ${unit}`;
         later();
         if (key === 'voltage_V') {
           dea.setVoltage(chosen.voltage_V / 1e3, host);

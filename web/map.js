@@ -75,7 +75,7 @@ dea.map = (host, { axes, solve, now, lift }) => {
     });
     const none = grid.length - good.length;
     words.textContent = `Colours and black lines: ${quantity}, model lumped; faint where the film breaks down or is slack. ` +
-      `${none > 0 ? 'White: no stable equilibrium, or lengths that do not fit. ' : ''}` +
+      `${none > 0 ? 'Empty: no stable equilibrium, or lengths that do not fit. ' : ''}` +
       `The ring is the design of the sliders${[x.key, y.key].includes('voltage_V') ? '' : `, all at ${dea.number(chosen.voltage_V / 1e3, 3)} kV`}.`;
   };
 

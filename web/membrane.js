@@ -288,7 +288,6 @@
     };
     const voltageSlider = dea.slider('Voltage', 0, last, 0.01, last, () => `${dea.number(voltage() / 1e3, 3)} kV`, (at) => {
       state.at = Math.abs(at - Math.round(at)) < 0.06 ? Math.round(at) : at; // computed points attract
-      voltageSlider.node.querySelector('output').textContent = `${dea.number(voltage() / 1e3, 3)} kV`;
       draw();
       dea.setVoltage(voltage() / 1e3, section);
     });

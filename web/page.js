@@ -39,16 +39,21 @@ const dea = {
   },
   // A labelled slider with its value beside it; show: value -> text.
   slider(label, low, high, step, value, show, change) {
-    const output = this.element('output', {}, show(value));
+    const output = this.element('output');
     const input = this.element('input', { type: 'range', min: low, max: high, step, value });
-    input.addEventListener('input', () => {
+    const tell = () => {
       output.textContent = show(input.valueAsNumber);
+      input.setAttribute('aria-valuetext', output.textContent); // the slider's own number may be of no unit
+    };
+    tell();
+    input.addEventListener('input', () => {
       change(input.valueAsNumber);
+      tell();
     });
     const node = this.element('label', { class: 'slider' }, this.element('span', {}, label), output, input);
     return {
       node, input,
-      set(to) { input.value = to; output.textContent = show(input.valueAsNumber); },
+      set(to) { input.value = to; tell(); },
     };
   },
   choice(label, options, change) {
