@@ -271,6 +271,10 @@
 
   dea.waits.push(start().then((core) => {
     document.querySelectorAll('section:has(.device)').forEach((section, i) => dress(section, i + 1, core));
+  }).catch((error) => {
+    document.querySelectorAll('section:has(.device) .still').forEach((still) => {
+      still.textContent = `The explorer does not work in this browser: ${error.message}`;
+    });
   }));
   dea.ready = Promise.all(dea.waits);
 })();

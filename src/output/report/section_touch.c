@@ -28,8 +28,9 @@ enum { THRESHOLDS = sizeof thresholds / sizeof thresholds[0] };
 struct reach {
   const char *model;
   double displacement_m, displacement_V, force_N, force_V;
-  const char *how; // the force was found
-  bool bound;      // both are upper bounds
+  const char *how;                        // the force was found
+  bool bound;                             // both are upper bounds
+  bool displacement_broken, force_broken; // beyond the film's breakdown field
 };
 
 /* Largest displacement of the centre, where the finger lies, over stable points. */
@@ -41,6 +42,7 @@ static void find_displacement(const struct dea_curve *sweep, struct reach *out)
         !(fabs(p->centre_z_m - sweep->points[0].centre_z_m) <= out->displacement_m)) {
       out->displacement_m = fabs(p->centre_z_m - sweep->points[0].centre_z_m);
       out->displacement_V = p->voltage_V;
+      out->displacement_broken = p->breakdown_margin < 0;
     }
   }
 }
@@ -58,6 +60,7 @@ static void find_force(const struct dea_result *result, struct reach *out)
           !(change <= out->force_N)) {
         out->force_N = change;
         out->force_V = b->voltage_V;
+        out->force_broken = b->breakdown_margin < 0;
         out->how = "change of the force on a tip that is held";
       }
     }
@@ -67,6 +70,7 @@ static void find_force(const struct dea_result *result, struct reach *out)
         isfinite(sweep->points[i].force_N)) {
       out->force_N = sweep->points[i].force_N;
       out->force_V = sweep->points[i].voltage_V;
+      out->force_broken = sweep->points[i].breakdown_margin < 0;
       out->how = "largest of the load line";
     }
   }
@@ -88,13 +92,14 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
   dea_html_number(out, 1e-3 * (t->force ? r->force_V : r->displacement_V), 4);
   dea_text_add(out, " kV</td><td class=\"n\">");
   dea_html_number(out, has / t->least, 3);
-  bool enough = has >= t->least;
-  dea_text_add(out, "</td><td class=\"%s\">%s%s</td><td>%s%s%s</td></tr>",
-               enough && !r->bound ? "good"
-               : enough            ? ""
-                                   : "bad",
+  bool enough = has >= t->least, broken = t->force ? r->force_broken : r->displacement_broken;
+  dea_text_add(out, "</td><td class=\"%s\">%s%s%s</td><td>%s%s%s</td></tr>",
+               !enough              ? "bad"
+               : r->bound || broken ? ""
+                                    : "good",
                enough ? "above" : "below", enough && r->bound ? ", but an upper bound" : "",
-               t->source, t->force ? "; " : "", t->force ? r->how : "");
+               enough && broken ? ", but beyond the breakdown field" : "", t->source,
+               t->force ? "; " : "", t->force ? r->how : "");
 }
 
 // Load line ---------------------------------------------------------------------------------------
@@ -305,13 +310,13 @@ static void add_introduction(struct dea_text *out, const struct dea_result *resu
 {
   size_t said = 0;
   dea_text_add(out, "<p>Displacement of the centre and force, against thresholds of touch. "
-                    "<strong>Quasi-static</strong>:");
+                    "<strong>Quasi-static</strong>.");
   for (size_t m = 0; m < count; m++) {
     said += add_frequency(out, result, models[m]);
   }
   dea_text_add(out, "%s</p>",
                said > 0 ? ""
-                        : " the run says nothing of 5 to 10 Hz, where viscosity takes some of both "
+                        : " The run says nothing of 5 to 10 Hz, where viscosity takes some of both "
                           "(study frequency does).");
 }
 
@@ -324,8 +329,13 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
   bool any = false;
   for (size_t m = 0; m < count; m++) {
     const struct dea_curve *sweep = dea_result_find(result, models[m], "sweep");
-    reaches[m] =
-        (struct reach){models[m], NAN, NAN, NAN, NAN, "", strcmp(models[m], "lumped") == 0};
+    reaches[m] = (struct reach){.model = models[m],
+                                .displacement_m = NAN,
+                                .displacement_V = NAN,
+                                .force_N = NAN,
+                                .force_V = NAN,
+                                .how = "",
+                                .bound = strcmp(models[m], "lumped") == 0};
     if (sweep != NULL) {
       find_displacement(sweep, &reaches[m]);
     }
