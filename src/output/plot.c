@@ -291,21 +291,33 @@ struct layout {
       top_mm[DEA_PLOT_PANELS_MAX];
 };
 
+/* Digits before the point of a number of that size, and behind it of tics over such a span. */
+static int digits_before(double size)
+{
+  return size >= 1.0 ? (int)floor(log10(1.2 * size)) + 1 : 1; // the last tic lies above
+}
+
+static int digits_behind(double span)
+{
+  double power = span > 0.0 ? floor(log10(1.2 * span)) : 0.0;
+  return power >= 0.0 ? 0 : (int)(1.0 - power); // 0.05 in steps of 0.005
+}
+
 /* Characters of the longest tic label of a panel's left axis, as "%h" writes round numbers. */
 static int tic_length(const struct dea_panel *panel)
 {
-  double largest = 0.0, smallest = 0.0;
+  double highest = panel->y_max, lowest = panel->y_min; // NAN where the values decide
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     for (size_t i = 0; i < series->count && !series->right; i++) {
       double y = series->values[series->count + i];
-      largest = isfinite(y) ? fmax(largest, fabs(y)) : largest;
-      smallest = isfinite(y) ? fmin(smallest, y) : smallest;
+      highest = isfinite(y) ? fmax(highest, y) : highest;
+      lowest = isfinite(y) ? fmin(lowest, y) : lowest;
     }
   }
-  double power = largest > 0.0 ? floor(log10(1.2 * largest)) : 0.0; // the last tic lies above
-  int digits = (int)(power >= 0.0 ? power + 1.0 : 3.0 - power);     // 0.05 in steps of 0.005
-  return digits + (smallest < 0.0);
+  double largest = fmax(fabs(highest), fabs(lowest));
+  int behind = digits_behind(highest - lowest);
+  return digits_before(largest) + (behind > 0 ? 1 + behind : 0) + (lowest < 0.0);
 }
 
 static struct layout lay_out(const struct dea_plot *plot, double width_m)
