@@ -5,7 +5,7 @@
 #include "model/solid/solve/branch.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <string.h>
 
@@ -227,11 +227,6 @@ static void test_modes_of_a_square_plate(void **state)
   destroy();
 }
 
-static int start(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -241,5 +236,5 @@ int main(void)
       cmocka_unit_test(test_both_sides_of_the_pitchfork),
       cmocka_unit_test(test_a_solve_leaves_what_is_unstable),
   };
-  return cmocka_run_group_tests(tests, start, context_tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

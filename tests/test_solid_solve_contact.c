@@ -3,20 +3,9 @@
 #include "model/solid/loads.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <string.h>
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 static const double pi = 3.14159265358979323846;
 
@@ -208,5 +197,5 @@ int main(void)
       cmocka_unit_test(test_hertz),
       cmocka_unit_test(test_flat_punch_on_film),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -5,24 +5,10 @@
 #include "solid_node.h"
 #include "testing.h"
 
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
+
 #include <stdlib.h>
 #include <string.h>
-
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_solid_stop();
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 static const double epsilon = 2.8 * DEA_EPSILON_0;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
@@ -417,5 +403,5 @@ int main(void)
       cmocka_unit_test(test_a_field_needs_electrodes),
       cmocka_unit_test(test_each_allocation),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -3,7 +3,7 @@
 #include "model/solid/solve/solid.h"
 #include "testing.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <string.h>
 
@@ -150,11 +150,6 @@ static void test_voltage_beyond_any_equilibrium(void **state)
   clear();
 }
 
-static int start(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -163,5 +158,5 @@ int main(void)
       cmocka_unit_test(test_law_that_ends),
       cmocka_unit_test(test_voltage_beyond_any_equilibrium),
   };
-  return cmocka_run_group_tests(tests, start, context_tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -3,18 +3,7 @@
 #include "model/solid/loads.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
+#include "solid_fixture.h"
 
 static const struct block slab = {{1, 1, 2}, {1, 1, 4}, 2, 2};
 static const double mu = 1e5;
@@ -185,5 +174,5 @@ int main(void)
       cmocka_unit_test(test_hanging_block),
       cmocka_unit_test(test_pressure_all_around),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

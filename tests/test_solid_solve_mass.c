@@ -6,23 +6,12 @@
 #include "model/solid/solve/mass.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <stdlib.h>
 
 static const struct block slab = {{3, 2, 0.5}, {2, 3, 1}, 2, 2};
 static const double rho = 970;
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 static int end_held(const void *self, const double X[3])
 {
@@ -126,5 +115,5 @@ int main(void)
       cmocka_unit_test(test_inertia_of_rigid_motions),
       cmocka_unit_test(test_sag_of_a_disc),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -6,21 +6,7 @@
 #include "model/solid/solve/solid.h"
 #include "testing.h"
 
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_solid_stop();
-  dea_context_destroy(ctx);
-  return 0;
-}
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 static const double a_m = 3.75e-3, b_m = 15e-3;
 
@@ -253,5 +239,5 @@ int main(void)
       cmocka_unit_test(test_slack_film),          cmocka_unit_test(test_four_fibres_as_built),
       cmocka_unit_test(test_law_that_is_refused),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

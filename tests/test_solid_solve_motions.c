@@ -7,24 +7,13 @@
 #include "model/solid/solve/solid.h"
 #include "testing.h"
 
-#include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 #include <math.h>
 #include <string.h>
 
 extern const struct dea_model_type dea_solid_module;
 static const double pi = 3.14159265358979323846;
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 static struct dea_model *create(const struct dea_device *device)
 {
@@ -149,5 +138,5 @@ int main(void)
       cmocka_unit_test(test_answer_to_a_slow_ripple),
       cmocka_unit_test(test_answer_of_a_viscous_film),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -5,7 +5,7 @@
 #include "solid_node.h"
 #include "testing.h"
 
-#include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 #include <math.h>
 
@@ -118,19 +118,8 @@ static void test_domains_agree(void **state)
   }
 }
 
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_domains_agree)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

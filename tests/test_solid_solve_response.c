@@ -7,20 +7,9 @@
 #include "model/solid/solve/vibration.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <stdlib.h>
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 /* ---- a strip of film that pulls a heavy bar ---- */
 
@@ -335,5 +324,5 @@ int main(void)
       cmocka_unit_test(test_branches),
       cmocka_unit_test(test_bender_against_static_solves),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

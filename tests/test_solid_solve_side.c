@@ -8,7 +8,7 @@
 #include "model/solid/solve/branch.h"
 #include "testing.h"
 
-#include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 extern const struct dea_model_type dea_solid_module;
 
@@ -191,11 +191,6 @@ static void test_other_arm_ends_at_a_limit_point(void **state)
   destroy();
 }
 
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -204,5 +199,5 @@ int main(void)
       cmocka_unit_test(test_path_from_rest_goes_down),
       cmocka_unit_test(test_other_arm_ends_at_a_limit_point),
   };
-  return cmocka_run_group_tests(tests, set_up, context_tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

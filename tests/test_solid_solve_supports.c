@@ -2,21 +2,10 @@
 // ctest: solid
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 static const double mu = 1e5, length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
@@ -215,5 +204,5 @@ int main(void)
       cmocka_unit_test(test_way_that_ends),
       cmocka_unit_test(test_arguments),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

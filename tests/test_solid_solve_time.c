@@ -5,21 +5,7 @@
 #include "model/solid/solve/time.h"
 #include "solid_block.h"
 
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  (void)state;
-  return dea_context_create(NULL, &ctx) == DEA_OK && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  (void)state;
-  dea_solid_stop();
-  dea_context_destroy(ctx);
-  return 0;
-}
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 /* ---- a film between electrodes ---- */
 
@@ -336,5 +322,5 @@ int main(void)
       cmocka_unit_test(test_vibration_of_a_membrane),
       cmocka_unit_test(test_second_order),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -6,7 +6,7 @@
 #include "model/solid/solve/branch.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <string.h>
 
@@ -292,11 +292,6 @@ static void test_each_allocation(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -307,5 +302,5 @@ int main(void)
       cmocka_unit_test(test_what_cannot_be),
       cmocka_unit_test(test_each_allocation),
   };
-  return cmocka_run_group_tests(tests, set_up, context_tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

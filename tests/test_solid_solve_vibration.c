@@ -7,23 +7,12 @@
 #include "model/solid/solve/vibration.h"
 #include "solid_block.h"
 
-#include "context_fixture.h"
+#include "solid_fixture.h"
 
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 enum { MODES = 5, ALL = 16 };
-
-static int set_up(void **state)
-{
-  return context_set_up(state) == 0 && dea_solid_start(ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_solid_stop();
-  return context_tear_down(state);
-}
 
 /* ---- a stretched film in a rectangular frame ---- */
 
@@ -275,5 +264,5 @@ int main(void)
       cmocka_unit_test(test_modes_that_come_twice),
       cmocka_unit_test(test_what_is_refused),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }
