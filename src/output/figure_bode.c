@@ -29,19 +29,15 @@ static dea_status add_answer(struct dea_context *ctx, struct dea_plot *plot,
   double turns = 0, before = 0;
   for (int p = 0; p < 2; p++) {
     struct dea_series *series;
-    DEA_TRY(ctx, dea_panel_add(ctx, &plot->panels[p], count, &series));
-    double *values = series->values;
-    *series = *look;
-    series->values = values;
-    series->count = count;
+    DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], count, look, &series));
     series->title[0] = p == 0 ? series->title[0] : '\0';
     for (size_t i = 0; i < count; i++) {
       double phase = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
       double amplitude = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
       turns += i == 0 ? (phase < 0 ? 1 : 0) : round((before - phase) / (2 * pi)) - turns;
       before = phase + 2 * pi * turns;
-      values[i] = points[i].frequency_Hz;
-      values[count + i] = p == 0 ? 1e9 * amplitude : before * 180 / pi;
+      series->values[i] = points[i].frequency_Hz;
+      series->values[count + i] = p == 0 ? 1e9 * amplitude : before * 180 / pi;
     }
   }
   return DEA_OK;

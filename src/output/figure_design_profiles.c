@@ -13,14 +13,10 @@ static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
   const struct dea_profile_record *record = &one->variant->profile;
   struct dea_series *series;
   size_t n = record->count;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &series));
-  double *at = series->values;
-  *series = one->look;
-  series->count = n;
-  series->values = at;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, n, &one->look, &series));
   for (size_t i = 0; i < n; i++) {
-    at[i] = 1e3 * record->columns[i];
-    at[n + i] = 1e6 * values[i];
+    series->values[i] = 1e3 * record->columns[i];
+    series->values[n + i] = 1e6 * values[i];
   }
   return DEA_OK;
 }

@@ -17,14 +17,10 @@ static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
   if (!dea_points_have(curve->points, curve->count, column)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &series));
-  double *values = series->values;
-  *series = *look;
-  series->values = values;
-  series->count = curve->count;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
   for (size_t i = 0; i < curve->count; i++) {
-    values[i] = curve->points[i].time_s;
-    values[curve->count + i] = factor * dea_point_get(&curve->points[i], column);
+    series->values[i] = curve->points[i].time_s;
+    series->values[curve->count + i] = factor * dea_point_get(&curve->points[i], column);
   }
   return DEA_OK;
 }

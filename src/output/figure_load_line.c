@@ -13,19 +13,16 @@ enum { SHOWN_MAX = 6 };
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct dea_stops *stops, size_t k, size_t number)
 {
+  const struct dea_series look = dea_stops_look(number);
   struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, stops->count, &series));
-  double *values = series->values;
-  *series = dea_stops_look(number);
-  series->count = stops->count;
-  series->values = values;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
   snprintf(series->title, sizeof series->title, "%.4g kV",
            1e-3 * stops->curve->points[k].voltage_V);
   for (size_t i = 0; i < stops->count; i++) {
     size_t at = stops->first[stops->by_depth[i]] + k;
     if (at < stops->first[stops->by_depth[i] + 1]) {
-      values[i] = 1e3 * stops->curve->points[at].tip_depth_m;
-      values[stops->count + i] = 1e3 * stops->curve->points[at].force_N;
+      series->values[i] = 1e3 * stops->curve->points[at].tip_depth_m;
+      series->values[stops->count + i] = 1e3 * stops->curve->points[at].force_N;
     }
   }
   return DEA_OK;

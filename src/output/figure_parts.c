@@ -35,11 +35,7 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
                            const struct dea_series *look, bool stable)
 {
   struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &series));
-  double *values = series->values;
-  *series = *look;
-  series->count = curve->count;
-  series->values = values;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
   if (!stable) {
     series->style = DEA_DASHED;
     series->title[0] = '\0';
@@ -49,9 +45,9 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
     bool shown = stable ? p[i].stable
                         : !p[i].stable || (i > 0 && !p[i - 1].stable) ||
                               (i + 1 < curve->count && !p[i + 1].stable);
-    values[i] = 1e-3 * p[i].voltage_V;
+    series->values[i] = 1e-3 * p[i].voltage_V;
     if (shown) {
-      values[curve->count + i] = factor * (dea_point_get(&p[i], column) + shift);
+      series->values[curve->count + i] = factor * (dea_point_get(&p[i], column) + shift);
     }
   }
   return DEA_OK;

@@ -37,14 +37,10 @@ static dea_status add_entry(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *entry;
   const struct dea_series *first = &panel->series[0];
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
-  double *values = entry->values;
-  *entry = *look;
-  entry->count = 1;
-  entry->values = values;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, 1, look, &entry));
   snprintf(entry->title, sizeof entry->title, "%s", title);
-  values[0] = first->values[0];
-  values[1] = first->values[first->count];
+  entry->values[0] = first->values[0];
+  entry->values[1] = first->values[first->count];
   return DEA_OK;
 }
 

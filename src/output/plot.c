@@ -67,6 +67,17 @@ dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_
   return DEA_OK;
 }
 
+dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                            const struct dea_series *look, struct dea_series **out)
+{
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
+  double *values = (*out)->values;
+  **out = *look;
+  (*out)->count = count;
+  (*out)->values = values;
+  return DEA_OK;
+}
+
 void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text)
 {
   if (panel->mark_count < DEA_PANEL_MARKS_MAX && isfinite(at)) {

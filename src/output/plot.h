@@ -84,6 +84,9 @@ void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot);
  * caller fills title, style, values. DEA_E_UNSUPPORTED when the panel is full. */
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                          struct dea_series **out);
+/* The same with title, style, colour, marker and right of another series. */
+dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                            const struct dea_series *look, struct dea_series **out);
 /* Takes all series away. */
 void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
