@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { COLOURS = 6 };
-static const enum dea_colour colours[COLOURS] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
-                                                 DEA_PURPLE, DEA_ORANGE,     DEA_SKY};
+enum { COLOURS = 6 }; // the first of them
 static const double pi = 3.14159265358979323846;
 
 /* Points of a curve from one on that have its bias. */
@@ -53,7 +51,7 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
     bool tip = isfinite(points[0].fibre_tip_amplitude_m);
     for (int k = 0; k < (tip ? 2 : 1); k++) {
       struct dea_series look = {.style = k == 0 ? DEA_LINE : DEA_DASHED,
-                                .colour = colours[bias % COLOURS]};
+                                .colour = (enum dea_colour)(bias % COLOURS)};
       snprintf(look.title, sizeof look.title, "%.4g kV, %s", 1e-3 * points[0].voltage_V,
                k == 0 ? "centre" : "fibre tip");
       DEA_TRY(ctx, add_answer(ctx, plot, points, count, k == 1, &look));

@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { COLOURS = 6, MARKERS = 5 };
-static const enum dea_colour colours[COLOURS] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
-                                                 DEA_PURPLE, DEA_ORANGE,     DEA_SKY};
+enum { COLOURS = 6, MARKERS = 5 }; // the first of them
 
 /* The k-th mode of a curve; nothing where it has no such one. */
 static dea_status add_mode(struct dea_context *ctx, struct dea_panel *panel,
@@ -23,7 +21,7 @@ static dea_status add_mode(struct dea_context *ctx, struct dea_panel *panel,
   }
   DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
   series->style = DEA_LINE_MARKED;
-  series->colour = colours[(k - 1) % COLOURS];
+  series->colour = (enum dea_colour)((k - 1) % COLOURS);
   series->marker = (k - 1) % MARKERS;
   snprintf(series->title, sizeof series->title, "%d", k);
   for (size_t i = 0, n = 0; i < curve->count; i++) {
