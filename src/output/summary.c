@@ -58,16 +58,14 @@ static json_t *limits_json(const struct dea_curve *path)
   static const enum dea_event_kind kinds[] = {DEA_EVENT_PULL_IN, DEA_EVENT_SNAP_BACK,
                                               DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN};
   json_t *object = json_object();
-  for (size_t k = 0; path != NULL && k < sizeof kinds / sizeof kinds[0]; k++) {
-    for (size_t i = 0; i < path->event_count; i++) {
-      if (path->events[i].kind == kinds[k]) {
-        char key[64];
-        snprintf(key, sizeof key, "%s_voltage_V", dea_event_name(kinds[k]));
-        dea_json_put(object, key, path->events[i].point.voltage_V);
-        snprintf(key, sizeof key, "%s_stretch", dea_event_name(kinds[k]));
-        dea_json_put(object, key, path->events[i].point.electrode_stretch);
-        break;
-      }
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    const struct dea_event *event = dea_curve_first_event(path, kinds[k]);
+    if (event != NULL) {
+      char key[64];
+      snprintf(key, sizeof key, "%s_voltage_V", dea_event_name(kinds[k]));
+      dea_json_put(object, key, event->point.voltage_V);
+      snprintf(key, sizeof key, "%s_stretch", dea_event_name(kinds[k]));
+      dea_json_put(object, key, event->point.electrode_stretch);
     }
   }
   return object;

@@ -119,6 +119,17 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
   return DEA_OK;
 }
 
+const struct dea_event *dea_curve_first_event(const struct dea_curve *curve,
+                                              enum dea_event_kind kind)
+{
+  for (size_t i = 0; curve != NULL && i < curve->event_count; i++) {
+    if (curve->events[i].kind == kind) {
+      return &curve->events[i];
+    }
+  }
+  return NULL;
+}
+
 dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status)
 {
   curve->complete = status == DEA_OK;

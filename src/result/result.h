@@ -102,6 +102,9 @@ dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_load_point *point);
 dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_event *event);
+/* First event of that kind along a curve, NULL when there is none or no curve; lent. */
+const struct dea_event *dea_curve_first_event(const struct dea_curve *curve,
+                                              enum dea_event_kind kind);
 /* Copies the profile. */
 dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *result,
                                   const char *model, double voltage_V,

@@ -7,19 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The first event of that kind on the model's path; NULL when there is none. */
-static const struct dea_event *first_event(const struct dea_result *result, const char *model,
-                                           enum dea_event_kind kind)
-{
-  const struct dea_curve *path = dea_result_find(result, model, "path");
-  for (size_t i = 0; path != NULL && i < path->event_count; i++) {
-    if (path->events[i].kind == kind) {
-      return &path->events[i];
-    }
-  }
-  return NULL;
-}
-
 static void add_card(struct dea_text *out, const char *what, double value, const char *unit,
                      int digits)
 {
@@ -37,9 +24,10 @@ static void add_cards(struct dea_report *report, const struct dea_result *result
 {
   struct dea_text *out = &report->text;
   const struct dea_load_point *p = &sweep->points[sweep->count - 1];
-  const struct dea_event *slack = first_event(result, sweep->model, DEA_EVENT_SLACK);
-  const struct dea_event *pull_in = first_event(result, sweep->model, DEA_EVENT_PULL_IN);
-  const struct dea_event *breakdown = first_event(result, sweep->model, DEA_EVENT_BREAKDOWN);
+  const struct dea_curve *path = dea_result_find(result, sweep->model, "path");
+  const struct dea_event *slack = dea_curve_first_event(path, DEA_EVENT_SLACK);
+  const struct dea_event *pull_in = dea_curve_first_event(path, DEA_EVENT_PULL_IN);
+  const struct dea_event *breakdown = dea_curve_first_event(path, DEA_EVENT_BREAKDOWN);
   char heading[2 * DEA_NAME_SIZE];
   snprintf(heading, sizeof heading, "Model %s at %.4g kV%s", sweep->model, 1e-3 * p->voltage_V,
            p->stable ? "" : ", unstable");
@@ -182,7 +170,7 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
       any = true;
     }
     for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
-      const struct dea_event *event = first_event(result, path->model, limits[k].kind);
+      const struct dea_event *event = dea_curve_first_event(path, limits[k].kind);
       if (event != NULL || limits[k].kind != DEA_EVENT_SNAP_BACK) {
         add_limit(out, path->model, limits[k].what, event, last_V);
       }
