@@ -41,7 +41,7 @@ dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
   return text != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
-json_t *dea_point_json(const struct dea_load_point *point)
+static json_t *point_json(const struct dea_load_point *point)
 {
   json_t *object = json_object();
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
@@ -50,6 +50,15 @@ json_t *dea_point_json(const struct dea_load_point *point)
   json_object_set_new(object, "stable", json_boolean(point->stable));
   json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
   return object;
+}
+
+json_t *dea_points_json(const struct dea_curve *curve)
+{
+  json_t *list = json_array();
+  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
+    json_array_append_new(list, point_json(&curve->points[i]));
+  }
+  return list;
 }
 
 /* First event of each kind along the path. */
@@ -91,11 +100,7 @@ static dea_status put_model(struct dea_context *ctx, json_t *object,
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
-  json_t *points = json_array();
-  for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
-    json_array_append_new(points, dea_point_json(&sweep->points[i]));
-  }
-  json_object_set_new(object, "points", points);
+  json_object_set_new(object, "points", dea_points_json(sweep));
   const struct dea_curve *stopped = first_stopped(result, model);
   json_object_set_new(object, "complete", json_boolean(stopped == NULL));
   dea_json_put_text(object, "stopped", stopped != NULL ? stopped->stopped : "");

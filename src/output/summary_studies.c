@@ -18,12 +18,8 @@ static json_t *variant_json(const struct dea_variant *variant, bool points)
   dea_json_put(object, "wall_s", variant->wall_s);
   json_object_set_new(object, "complete", json_boolean(variant->curve.complete));
   dea_json_put_text(object, "stopped", variant->curve.stopped);
-  json_t *list = points ? json_array() : NULL;
-  for (size_t i = 0; points && i < variant->curve.count; i++) {
-    json_array_append_new(list, dea_point_json(&variant->curve.points[i]));
-  }
   if (points) {
-    json_object_set_new(object, "points", list);
+    json_object_set_new(object, "points", dea_points_json(&variant->curve));
   }
   return object;
 }
@@ -123,11 +119,7 @@ static void put_curve(const struct dea_result *result, const char *model, const 
 {
   const struct dea_curve *curve = dea_result_find(result, model, kind);
   if (curve != NULL) {
-    json_t *points = json_array();
-    for (size_t i = 0; i < curve->count; i++) {
-      json_array_append_new(points, dea_point_json(&curve->points[i]));
-    }
-    json_object_set_new(parent, kind, points);
+    json_object_set_new(parent, kind, dea_points_json(curve));
   }
 }
 

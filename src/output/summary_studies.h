@@ -5,10 +5,10 @@
 #include "output/json.h"
 #include "result/result.h"
 
-/* A load point as an object. NULL when memory is short. */
-json_t *dea_point_json(const struct dea_load_point *point);
+/* All points of a curve (NULL: none) as objects in a list. NULL when memory is short. */
+json_t *dea_points_json(const struct dea_curve *curve);
 
-/* Adds `transient` of a model, the same way. */
+/* Adds `transient` of a model to its object where the result has that study. */
 dea_status dea_summary_put_transient(struct dea_context *ctx, const struct dea_result *result,
                                      const char *model, json_t *object);
 /* Adds `convergence` and `designs` of a model to its object where the result has those studies. */
