@@ -108,6 +108,7 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
 struct load_line {
   struct dea_lumped lumped;
   struct dea_lift lift;
+  double free_m; // height at the highest voltage at which no force is left; NAN
 };
 
 static double force_at(const struct load_line *line, double voltage_V, double z)
@@ -154,10 +155,9 @@ static double meet(const struct load_line *line, double voltage_V, double high, 
   return low;
 }
 
-static void add_meeting(struct dea_text *out, const struct load_line *line, double last_V,
-                        double high, double k)
+static void add_meeting(struct dea_text *out, const struct load_line *line, double last_V, double k)
 {
-  double stiffest, z = meet(line, last_V, high, k, &stiffest);
+  double stiffest, z = meet(line, last_V, line->free_m, k, &stiffest);
   dea_text_add(out, "<p>A fingertip taken as a spring of ");
   dea_html_number(out, 1e-3 * k, 3);
   dea_text_add(out, " N/mm (an assumption: real ones stiffen as they are pressed) that touches the "
@@ -180,13 +180,14 @@ static void add_meeting(struct dea_text *out, const struct load_line *line, doub
 }
 
 static dea_status fill_lines(struct dea_report *report, const struct dea_report_run *run,
-                             const struct load_line *line, double last_V, struct dea_plot *plot,
+                             struct load_line *line, double last_V, struct dea_plot *plot,
                              double *highest)
 {
   struct dea_panel *panel = &plot->panels[0];
   for (int n = 1; n <= LINES; n++) {
     double voltage_V = last_V * n / LINES;
     double high = free_height(report->ctx, run->device, voltage_V);
+    line->free_m = high;
     if (!(high > 0)) {
       continue;
     }
@@ -247,7 +248,7 @@ static dea_status add_load_line(struct dea_report *report, const struct dea_repo
     status = add_finger(report, &plot->panels[0], k, highest);
     dea_text_add(&report->text, "<div class=\"plots\">");
     dea_plot_add_svg(&report->text, plot, ++report->figures);
-    add_meeting(&report->text, &line, last_V, free_height(report->ctx, device, last_V), k);
+    add_meeting(&report->text, &line, last_V, k);
     dea_text_add(&report->text, "</div>");
   }
   dea_plot_destroy(report->ctx, plot);
