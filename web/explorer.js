@@ -23,7 +23,7 @@
       return new TextDecoder().decode(all.subarray(at, end));
     };
     const [inputs, columns] = text(core.explorer_names()).split('\n').map((line) => line.trim().split(' '));
-    const params = (core.explorer_law(1) && inputs.indexOf('film_param'));
+    const params = inputs.indexOf('film_param');
     const events = ['pull-in', 'snap-back', 'loss of tension', 'breakdown'];
     const row = (at, offset) => {
       const values = new Float64Array(memory(), at + 8 * offset, columns.length);
@@ -38,7 +38,6 @@
       at.set(new TextEncoder().encode(name).subarray(0, 63));
     };
     return {
-      columns,
       // device: inputs by name, film and electrode: { law, param }; null or what went wrong
       make(axisymmetric, device, film, electrode) {
         const values = new Float64Array(memory(), core.explorer_inputs(), params + 16);
@@ -59,7 +58,7 @@
         return {
           points: Array.from({ length: count }, (_, i) => row(at, i * columns.length)),
           events: Array.from({ length: core.explorer_event_count() }, (_, i) => ({
-            kind: events[new Float64Array(memory(), from, 8 * (columns.length + 1))[i * (columns.length + 1)]],
+            kind: events[new Float64Array(memory(), from + 8 * i * (columns.length + 1), 1)[0]],
             point: row(from, i * (columns.length + 1) + 1),
           })),
         };
@@ -211,16 +210,13 @@
       later();
     });
     const reset = dea.element('button', { type: 'button' }, 'Back to the run’s design');
-    const update = () => {
-      for (const [key, slider] of Object.entries(sliders)) {
-        slider.set((key === 'voltage_V' ? 1e-3 : key === 'thickness_m' ? 1e6 : key === 'pre_stretch' ? 1 : 1e3) * chosen[key]);
+    reset.addEventListener('click', () => {
+      Object.assign(chosen, initial);
+      for (const { key, factor } of axes) {
+        sliders[key].set(factor * chosen[key]);
       }
       material.select.value = chosen.material;
       later();
-    };
-    reset.addEventListener('click', () => {
-      Object.assign(chosen, initial);
-      update();
     });
     host.append(
       dea.element('div', { class: 'controls' },
@@ -233,10 +229,11 @@
       problem, dea.element('div', { class: 'plots' }, ...plots, table));
     const more = dea.element('details', {}, dea.element('summary', {}, 'Operating map of any two of these'));
     const map = dea.element('div', { id: `explorer-${number}-map`, class: 'map' });
-    const solve = (values) => {
+    // A point of a model for other values than those of the sliders; null: there is none.
+    const solve = (values, model = 0) => {
       const kept = { ...chosen };
       Object.assign(chosen, values);
-      const point = make(0) === null ? core.solve(chosen.voltage_V) : null;
+      const point = make(model) === null ? core.solve(chosen.voltage_V) : null;
       Object.assign(chosen, kept);
       return point;
     };
@@ -251,21 +248,9 @@
       later();
     });
     dea.explorers = [...(dea.explorers ?? []), {
-      // A point of a model for other values than the run's, in SI: for tests and the console.
       map: drawMap,
-      solve(model, values) {
-        const kept = { ...chosen };
-        Object.assign(chosen, initial, values);
-        const wrong = make(model === 'axisymmetric' ? 1 : 0);
-        const point = wrong === null ? core.solve(chosen.voltage_V) : null;
-        Object.assign(chosen, kept);
-        return point;
-      },
-      set(values) {
-        Object.assign(chosen, values);
-        update();
-      },
-      host,
+      // A point of a model for other values than the run's, in SI: for tests and the console.
+      solve: (model, values) => solve({ ...initial, ...values }, model === 'axisymmetric' ? 1 : 0),
     }];
   };
 

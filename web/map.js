@@ -2,12 +2,11 @@
 // axes: [{ key, label, low, high, factor }]; solve: values -> point of model lumped or null; now: () -> chosen values.
 dea.map = (host, { axes, solve, now, lift }) => {
   const [NX, NY] = [40, 30];
-  const scale = ['#1d2454', '#284a80', '#2a6f8e', '#2a918c', '#46b27f', '#84cb66', '#c3dc54', '#f1e45c', '#fdf3a7'];
   const colour = (share) => {
     const at = 8 * Math.min(1, Math.max(0, share));
     const i = Math.min(7, Math.floor(at));
-    const part = (hex, k) => parseInt(hex.slice(1 + 2 * k, 3 + 2 * k), 16);
-    return `rgb(${[0, 1, 2].map((k) => Math.round(part(scale[i], k) + (at - i) * (part(scale[i + 1], k) - part(scale[i], k)))).join(',')})`;
+    const [from, to] = [dea.rgb(dea.rising[i]), dea.rgb(dea.rising[i + 1])];
+    return `rgb(${from.map((v, k) => Math.round(v + (at - i) * (to[k] - v))).join(',')})`;
   };
   const value = (p) => (lift ? 1e6 * p.fibre_tip_z_m : 100 * (p.electrode_stretch - 1));
   const quantity = lift ? 'z of the fibre tip (µm)' : 'electrode strain (%)';

@@ -31,9 +31,8 @@
     }`;
   const palettes = { // even steps in lightness, told apart by the colour-blind too
     signed: ['#1b3f8b', '#3f74c0', '#86add9', '#c9dcee', '#f4f2ee', '#f4d3bd', '#e59b78', '#c75b45', '#8c1d2c'],
-    rising: ['#1d2454', '#284a80', '#2a6f8e', '#2a918c', '#46b27f', '#84cb66', '#c3dc54', '#f1e45c', '#fdf3a7'],
+    rising: dea.rising,
   };
-  const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
 
   const words = (text) => {
     const raw = atob(text);
@@ -196,7 +195,7 @@
       gl.uniform1f(where('times'), state.times);
       gl.uniform1f(where('radius'), film.radius);
       gl.uniform2f(where('range'), ...state.range);
-      gl.uniform3fv(where('palette'), palettes[state.palette].flatMap(rgb));
+      gl.uniform3fv(where('palette'), palettes[state.palette].flatMap((hex) => dea.rgb(hex).map((v) => v / 255)));
       for (const copy of all) {
         gl.uniformMatrix2fv(where('copy'), false, copy);
         gl.uniform1f(where('lift'), 0);
@@ -373,7 +372,7 @@
         }
       }
     });
-    dea.films = [...(dea.films ?? []), { film, state, draw, canvas }];
+    dea.films = [...(dea.films ?? []), { film, state, canvas }];
   };
   document.querySelectorAll('section:has(.surface)').forEach((section, i) => dress(section, i + 1));
 })();

@@ -2,11 +2,12 @@
 // What the parts of the page share. Everything here adds to a page that is complete without it.
 const dea = {
   waits: [], // what is still to come
-  voltage_kV: null,
   listeners: [],
+  // Colours from low to high, and the parts of one from 0 to 255.
+  rising: ['#1d2454', '#284a80', '#2a6f8e', '#2a918c', '#46b27f', '#84cb66', '#c3dc54', '#f1e45c', '#fdf3a7'],
+  rgb: (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)),
   // One voltage for curves, membrane and explorer; source: who says so, and is not told again.
   setVoltage(value, source) {
-    this.voltage_kV = value;
     for (const [listener, tell] of this.listeners) {
       if (listener !== source) {
         tell(value);
@@ -52,7 +53,7 @@ const dea = {
     });
     const node = this.element('label', { class: 'slider' }, this.element('span', {}, label), output, input);
     return {
-      node, input,
+      node,
       set(to) { input.value = to; tell(); },
     };
   },
