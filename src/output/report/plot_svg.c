@@ -328,11 +328,7 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
   add_json_axis(out, "y2", &v->y2);
   dea_text_add(out, "\"xl\":\"");
   dea_html_label(out, panel->x_label, DEA_LABEL_JSON);
-  dea_text_add(out, "\",\"yl\":[\"");
-  dea_html_label(out, panel->y_label, DEA_LABEL_JSON);
-  dea_text_add(out, "\",\"");
-  dea_html_label(out, panel->y2_label, DEA_LABEL_JSON);
-  dea_text_add(out, "\"],\"series\":[");
+  dea_text_add(out, "\",\"series\":[");
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     if (series->style == DEA_BAND || series->title[0] == '\0' || !shows(series)) {
