@@ -7,12 +7,8 @@
   for (const section of sections) {
     const heading = section.querySelector('h2, h3');
     const number = section.closest('article')?.id.replace('run-', '');
-    const item = document.createElement('li');
-    const link = document.createElement('a');
-    link.href = '#' + section.id;
-    link.textContent = (many && number ? number + ' ' : '') + heading.textContent;
-    item.append(link);
-    list.append(item);
+    const link = dea.element('a', { href: '#' + section.id }, (many && number ? number + ' ' : '') + heading.textContent);
+    list.append(dea.element('li', {}, link));
     links.set(section, link);
   }
   const seen = new IntersectionObserver((entries) => {

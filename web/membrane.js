@@ -213,13 +213,12 @@
   const legend = (host, channel, state) => {
     const svg = dea.svg('svg', { viewBox: '0 0 300 34', class: 'legend', role: 'img', 'aria-label': `${channel.label}, ${channel.unit}` });
     const colours = palettes[state.palette];
-    const gradient = dea.svg('linearGradient', { id: `${host.id}-colours` });
-    colours.forEach((colour, i) => gradient.append(dea.svg('stop', { offset: i / 8, 'stop-color': colour })));
+    const gradient = dea.svg('linearGradient', { id: `${host.id}-colours` },
+      ...colours.map((colour, i) => dea.svg('stop', { offset: i / 8, 'stop-color': colour })));
     svg.append(gradient, dea.svg('rect', { x: 10, y: 2, width: 280, height: 11, rx: 2, fill: `url(#${host.id}-colours)` }));
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
-      const text = dea.svg('text', { x: 10 + 280 * share, y: 28, 'text-anchor': share === 0 ? 'start' : share === 1 ? 'end' : 'middle' });
-      text.textContent = dea.number(channel.factor * (state.range[0] + share * (state.range[1] - state.range[0])), 3);
-      svg.append(text);
+      svg.append(dea.svg('text', { x: 10 + 280 * share, y: 28, 'text-anchor': share === 0 ? 'start' : share === 1 ? 'end' : 'middle' },
+        dea.number(channel.factor * (state.range[0] + share * (state.range[1] - state.range[0])), 3)));
     }
     host.replaceChildren(svg);
   };

@@ -23,20 +23,18 @@ const dea = {
     }
     return String(Number(value.toPrecision(digits))).replace('-', '−');
   },
-  element(tag, attributes = {}, ...content) {
-    const node = document.createElement(tag);
+  fill(node, attributes, content) {
     for (const [name, value] of Object.entries(attributes)) {
       node.setAttribute(name, value);
     }
     node.append(...content);
     return node;
   },
-  svg(tag, attributes = {}) {
-    const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
-    for (const [name, value] of Object.entries(attributes)) {
-      node.setAttribute(name, value);
-    }
-    return node;
+  element(tag, attributes = {}, ...content) {
+    return this.fill(document.createElement(tag), attributes, content);
+  },
+  svg(tag, attributes = {}, ...content) {
+    return this.fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, content);
   },
   // A labelled slider with its value beside it; show: value -> text.
   slider(label, low, high, step, value, show, change) {

@@ -21,11 +21,7 @@ dea.plot = (host, spec) => {
   const px = (v) => L + ((v - x.low) / (x.high - x.low)) * (W - L - R);
   const py = (v) => T + H - ((v - y.low) / (y.high - y.low)) * H;
   const svg = dea.svg('svg', { viewBox: `0 0 ${W} ${H + T + B}`, class: 'chart', role: 'img', 'aria-label': spec.label });
-  const text = (at, anchor, content, extra = {}) => {
-    const node = dea.svg('text', { x: at[0], y: at[1], 'text-anchor': anchor, ...extra });
-    node.textContent = content;
-    return node;
-  };
+  const text = (at, anchor, content, extra = {}) => dea.svg('text', { x: at[0], y: at[1], 'text-anchor': anchor, ...extra }, content);
   let grid = '';
   const tics = dea.svg('g', { class: 'tics' });
   const tic = (v, step) => dea.number(Math.abs(v) < 1e-9 * step ? 0 : v, 6);
@@ -38,11 +34,9 @@ dea.plot = (host, spec) => {
     tics.append(text([L - 8, py(v) + 4], 'end', tic(v, y.step)));
   }
   const id = `clip-${host.id}`;
-  const clip = dea.svg('clipPath', { id });
-  clip.append(dea.svg('rect', { x: L, y: T, width: W - L - R, height: H }));
+  const clip = dea.svg('clipPath', { id }, dea.svg('rect', { x: L, y: T, width: W - L - R, height: H }));
   const lines = dea.svg('g', { 'clip-path': `url(#${id})` });
-  const lineGroup = dea.svg('g', { class: 'grid' });
-  lineGroup.append(dea.svg('path', { d: grid }));
+  const lineGroup = dea.svg('g', { class: 'grid' }, dea.svg('path', { d: grid }));
   for (const c of spec.cells ?? []) {
     lines.append(dea.svg('rect', { x: px(c.x0), y: py(c.y1), width: px(c.x1) - px(c.x0), height: py(c.y0) - py(c.y1), 'shape-rendering': 'crispEdges', fill: c.fill, opacity: c.opacity }));
   }
@@ -67,23 +61,21 @@ dea.plot = (host, spec) => {
     lines.append(dea.svg('circle', { class: 'spot', cx: px(spec.spot[0]), cy: py(spec.spot[1]), r: 6 }));
   }
   if (spec.cursor !== undefined) {
-    const cursor = dea.svg('g', { class: 'cursor' });
-    cursor.append(dea.svg('path', { d: `M${px(spec.cursor)} ${T + H}V${T}` }));
+    const cursor = dea.svg('g', { class: 'cursor' }, dea.svg('path', { d: `M${px(spec.cursor)} ${T + H}V${T}` }));
     for (const at of spec.at ?? []) {
       cursor.append(dea.svg('circle', { cx: px(spec.cursor), cy: py(at.y), r: 4.5, class: `c${at.c}` }));
     }
     lines.append(cursor);
   }
-  const labels = dea.svg('g', { class: 'labels' });
-  labels.append(
+  const labels = dea.svg('g', { class: 'labels' },
     text([(L + W - R) / 2, T + H + 38], 'middle', spec.xl),
     text([0, 0], 'middle', spec.yl, { transform: `translate(16 ${T + H / 2}) rotate(-90)` }),
   );
   svg.append(clip, lineGroup, tics, labels, lines, dea.svg('path', { class: 'frame', d: `M${L} ${T}V${T + H}H${W - R}` }));
   const key = dea.element('ul', { class: 'key' });
   for (const s of spec.series.filter((one) => one.title && !one.thin)) {
-    const sample = dea.svg('svg', { class: 'sample', viewBox: '0 0 28 14', 'aria-hidden': 'true' });
-    sample.append(dea.svg('path', { class: `line c${s.c}${s.dashed ? ' dashed' : ''}`, d: 'M1 7H27' }));
+    const sample = dea.svg('svg', { class: 'sample', viewBox: '0 0 28 14', 'aria-hidden': 'true' },
+      dea.svg('path', { class: `line c${s.c}${s.dashed ? ' dashed' : ''}`, d: 'M1 7H27' }));
     key.append(dea.element('li', {}, sample, s.title));
   }
   host.replaceChildren(svg, key);
