@@ -52,6 +52,41 @@ void dea_text_free(struct dea_text *text)
   text->length = text->room = 0;
 }
 
+size_t dea_letter_read(const char *text, unsigned *code)
+{
+  static const unsigned mask[4] = {0x7f, 0x1f, 0x0f, 0x07}, least[4] = {0, 0x80, 0x800, 0x10000};
+  const unsigned char *c = (const unsigned char *)text;
+  size_t more = c[0] >= 0xf0 ? 3 : c[0] >= 0xe0 ? 2 : c[0] >= 0xc0 ? 1 : 0;
+  bool good = c[0] < 0x80 || (c[0] >= 0xc0 && c[0] < 0xf8);
+  unsigned letter = c[0] & mask[more];
+  for (size_t i = 1; good && i <= more; i++) {
+    good = (c[i] & 0xc0) == 0x80;
+    letter = letter << 6 | (c[i] & 0x3fu);
+  }
+  good =
+      good && letter >= least[more] && letter <= 0x10ffff && (letter < 0xd800 || letter > 0xdfff);
+  *code = good ? letter : 0xfffd;
+  return good ? more + 1 : 0;
+}
+
+const char *dea_entity_name(unsigned code)
+{
+  switch (code) {
+  case '<':
+    return "&lt;";
+  case '>':
+    return "&gt;";
+  case '&':
+    return "&amp;";
+  case '"':
+    return "&quot;";
+  case '\'':
+    return "&#39;";
+  default:
+    return NULL;
+  }
+}
+
 enum { NAME_MAX_LENGTH = 63 };
 
 /* Damerau-Levenshtein distance in its restricted form; words longer than the limit never match. */

@@ -18,6 +18,13 @@ void dea_text_add(struct dea_text *text, const char *format, ...) DEA_PRINTF(2, 
 const char *dea_text_get(const struct dea_text *text);
 void dea_text_free(struct dea_text *text);
 
+/* First letter of UTF-8 text into *code, and the bytes that it takes: 0 (and code 0xfffd) where no
+ * letter is: a stray or missing byte, one written longer than need be, a surrogate, beyond
+ * 0x10ffff. Control characters are letters like others; the text's end is code 0 of one byte. */
+size_t dea_letter_read(const char *text, unsigned *code);
+/* How XML and HTML write a letter that means something to them ("&lt;"); NULL for others. */
+const char *dea_entity_name(unsigned code);
+
 /* Candidate nearest to `word` by edit distance (case folded), or NULL when none is near enough to
  * be what was meant (distance above a third of the word's length, at least 1). */
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);

@@ -31,23 +31,13 @@ double dea_sheet_words_height(const struct dea_layout *layout)
 
 unsigned dea_letter_next(const char **text)
 {
-  const unsigned char *c = (const unsigned char *)*text;
-  unsigned code = *c;
+  unsigned code;
+  size_t length = dea_letter_read(*text, &code);
   if (code == 0) {
     return 0;
   }
-  int more = code >= 0xf8 ? -1 : code >= 0xf0 ? 3 : code >= 0xe0 ? 2 : code >= 0xc0 ? 1 : 0;
-  static const unsigned mask[4] = {0x7f, 0x1f, 0x0f, 0x07}, least[4] = {0, 0x80, 0x800, 0x10000};
-  bool good = more >= 0 && (code < 0x80 || code >= 0xc0);
-  code &= good ? mask[more] : 0xff;
-  int used = 1;
-  for (; good && used <= more; used++) {
-    good = (c[used] & 0xc0) == 0x80;
-    code = code << 6 | (c[used] & 0x3fu);
-  }
-  good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff) &&
-         code != 0xfffe && code != 0xffff; // which XML forbids
-  *text += good ? used : 1;
+  bool good = length > 0 && code != 0xfffe && code != 0xffff; // which XML forbids
+  *text += good ? length : 1;
   if (!good) {
     return 0xfffd;
   }
@@ -56,34 +46,12 @@ unsigned dea_letter_next(const char **text)
 
 void dea_xml_add(struct dea_text *out, const char *text)
 {
-  for (;;) {
-    const char *start = text;
-    unsigned code = dea_letter_next(&text);
-    switch (code) {
-    case 0:
-      return;
-    case '<':
-      dea_text_add(out, "&lt;");
-      break;
-    case '>':
-      dea_text_add(out, "&gt;");
-      break;
-    case '&':
-      dea_text_add(out, "&amp;");
-      break;
-    case '"':
-      dea_text_add(out, "&quot;");
-      break;
-    case '\'':
-      dea_text_add(out, "&#39;");
-      break;
-    case ' ':
-      dea_text_add(out, " ");
-      break;
-    case 0xfffd:
-      dea_text_add(out, "\xef\xbf\xbd");
-      break;
-    default:
+  const char *start = text;
+  for (unsigned code; (code = dea_letter_next(&text)) != 0; start = text) {
+    const char *name = code == ' ' ? " " : code == 0xfffd ? "\xef\xbf\xbd" : dea_entity_name(code);
+    if (name != NULL) {
+      dea_text_add(out, "%s", name);
+    } else {
       dea_text_add(out, "%.*s", (int)(text - start), start);
     }
   }

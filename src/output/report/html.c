@@ -5,49 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Length of the UTF-8 sequence at c; 0 for what is none. */
-static size_t sequence_length(const unsigned char *c)
+/* Bytes of the first letter; 0 for what is none of text: not UTF-8, or a control sign. */
+static size_t sign_length(const char *c)
 {
-  static const struct {
-    unsigned char mask, lead, least, most; // of the first byte; range of the second one
-  } kinds[] = {
-      {0xFF, 0xE0, 0xA0, 0xBF}, {0xFF, 0xED, 0x80, 0x9F}, {0xF0, 0xE0, 0x80, 0xBF},
-      {0xFF, 0xF0, 0x90, 0xBF}, {0xFF, 0xF4, 0x80, 0x8F}, {0xFC, 0xF0, 0x80, 0xBF},
-  };
-  if (c[0] < 0x80) {
-    return c[0] >= ' ' || c[0] == '\t' || c[0] == '\n' ? c[0] != 0x7F : 0;
-  }
-  if (c[0] >= 0xC2 && c[0] <= 0xDF) { // C1 controls are none of text
-    bool control = c[0] == 0xC2 && c[1] < 0xA0;
-    return (c[1] & 0xC0) == 0x80 && !control ? 2 : 0;
-  }
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
-    if ((c[0] & kinds[k].mask) == kinds[k].lead) {
-      size_t length = c[0] >= 0xF0 ? 4 : 3;
-      bool good = c[1] >= kinds[k].least && c[1] <= kinds[k].most && (c[2] & 0xC0) == 0x80 &&
-                  (length == 3 || (c[3] & 0xC0) == 0x80);
-      return good ? length : 0;
-    }
-  }
-  return 0;
-}
-
-static const char *html_name(char c)
-{
-  switch (c) {
-  case '<':
-    return "&lt;";
-  case '>':
-    return "&gt;";
-  case '&':
-    return "&amp;";
-  case '"':
-    return "&quot;";
-  case '\'':
-    return "&#39;";
-  default:
-    return NULL;
-  }
+  unsigned code;
+  size_t length = dea_letter_read(c, &code);
+  bool control = (code < ' ' && code != '\t' && code != '\n') || (code >= 0x7F && code < 0xA0);
+  return control ? 0 : length;
 }
 
 /* What JSON within HTML has to write in another way; buffer[8] for the answer. */
@@ -66,8 +30,10 @@ static void add_safe(struct dea_text *out, const char *text, bool json)
   char buffer[8];
   const char *from = text, *c = text;
   while (c != NULL && *c != '\0') {
-    size_t length = sequence_length((const unsigned char *)c);
-    const char *name = length == 0 ? "\357\277\275" : json ? json_name(*c, buffer) : html_name(*c);
+    size_t length = sign_length(c);
+    const char *name = length == 0 ? "\357\277\275"
+                       : json      ? json_name(*c, buffer)
+                                   : dea_entity_name((unsigned char)*c);
     if (name != NULL) {
       dea_text_add(out, "%.*s%s", (int)(c - from), from, name);
       from = c + (length > 0 ? length : 1);
@@ -141,7 +107,7 @@ static const char *add_sign(struct dea_text *out, const char *c, enum dea_label_
   while (*c == '\\') {
     c++;
   }
-  size_t length = *c == '\0' ? 0 : sequence_length((const unsigned char *)c);
+  size_t length = *c == '\0' ? 0 : sign_length(c);
   char sign[5] = {0};
   memcpy(sign, c, length);
   add_safe(out, sign, form == DEA_LABEL_JSON);
