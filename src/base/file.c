@@ -97,11 +97,22 @@ dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, 
   return status;
 }
 
+const char *dea_path_name(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  return slash != NULL ? slash + 1 : path;
+}
+
+const char *dea_path_stem(const char *path, size_t *length)
+{
+  const char *name = dea_path_name(path), *dot = strrchr(name, '.');
+  *length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+  return name;
+}
+
 char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name)
 {
-  const char *slash = strrchr(file, '/');
   struct dea_text path = {.ctx = ctx};
-  dea_text_add(&path, "%.*s%s", slash != NULL && name[0] != '/' ? (int)(slash - file) + 1 : 0, file,
-               name);
+  dea_text_add(&path, "%.*s%s", name[0] != '/' ? (int)(dea_path_name(file) - file) : 0, file, name);
   return path.data;
 }

@@ -1,4 +1,4 @@
-/* Files read whole. */
+/* Files read whole, and their names. */
 #ifndef DEA_BASE_FILE_H
 #define DEA_BASE_FILE_H
 
@@ -10,6 +10,10 @@
 dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
                          size_t *length);
 
+/* Name of a file without its folder; lent. */
+const char *dea_path_name(const char *path);
+/* That name without its ending, which is `length` bytes of it. */
+const char *dea_path_stem(const char *path, size_t *length);
 /* Path of a file that is named in another one: it counts from that one's folder. Owned by the
  * caller (dea_free); NULL on failure. */
 char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name);

@@ -1,4 +1,5 @@
 #define _GNU_SOURCE // getopt_long, mkdir
+#include "base/file.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
@@ -63,8 +64,7 @@ static const struct cli_data_file *find_example(const struct cli_data_list *list
     length -= 5;
   }
   for (size_t i = 0; i < list->count; i++) {
-    const char *whole = list->files[i].name, *slash = strrchr(whole, '/');
-    const char *last = slash != NULL ? slash + 1 : whole;
+    const char *whole = list->files[i].name, *last = dea_path_name(whole);
     if ((cli_data_stem(whole) == length && strncmp(whole, name, length) == 0) ||
         (cli_data_stem(last) == length && strncmp(last, name, length) == 0)) {
       return &list->files[i];

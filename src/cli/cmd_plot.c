@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "base/file.h"
 #include "base/units.h"
 #include "cli/figure_options.h"
 #include "output/figure.h"
@@ -10,7 +11,6 @@
 
 #include <getopt.h>
 #include <math.h>
-#include <string.h>
 
 enum { NAMES_MAX = 32 };
 
@@ -72,10 +72,7 @@ static char *figure_folder(struct dea_context *ctx, const char *run)
   if (dea_path_is_folder(run)) {
     return dea_path_join(ctx, run, DEA_FIGURE_FOLDER);
   }
-  const char *slash = strrchr(run, '/');
-  struct dea_text text = {.ctx = ctx};
-  dea_text_add(&text, "%.*s" DEA_FIGURE_FOLDER, slash != NULL ? (int)(slash - run) + 1 : 0, run);
-  return text.data;
+  return dea_path_beside(ctx, run, DEA_FIGURE_FOLDER);
 }
 
 static void complete_format(struct request *request, const struct dea_run *run)

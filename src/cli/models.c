@@ -1,5 +1,6 @@
 #include "cli/models.h"
 
+#include "base/file.h"
 #include "device/device.h"
 
 #include <string.h>
@@ -64,13 +65,13 @@ void cli_designs_text(const char *const files[], size_t count, struct dea_text *
     here[0] = '\0';
   }
   for (size_t i = 0; i < count; i++) {
-    const char *slash = strrchr(files[i], '/'), *name = slash != NULL ? slash + 1 : files[i];
-    const char *dot = strrchr(name, '.');
+    size_t length;
+    const char *name = dea_path_stem(files[i], &length);
     struct dea_text path = {.ctx = out->ctx};
     dea_text_add(&path, "%s%s%s", files[i][0] == '/' ? "" : here, files[i][0] == '/' ? "" : "/",
                  files[i]);
     dea_text_add(out, "%s{name: ", i == 0 ? "[" : ", ");
-    add_quoted(out, name, dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name));
+    add_quoted(out, name, length);
     dea_text_add(out, ", file: ");
     add_quoted(out, dea_text_get(&path), strlen(dea_text_get(&path)));
     dea_text_add(out, "}%s", i + 1 == count ? "]" : "");

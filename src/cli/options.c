@@ -2,6 +2,8 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "base/file.h"
+
 #include <getopt.h>
 #include <string.h>
 
@@ -19,9 +21,8 @@ bool cli_parse_override(char *text, struct dea_override *overrides, size_t room,
 
 void cli_folder_name(const char *design, const char *ending, struct dea_text *out)
 {
-  const char *slash = strrchr(design, '/'), *name = slash != NULL ? slash + 1 : design;
-  const char *dot = strrchr(name, '.');
-  size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+  size_t length;
+  const char *name = dea_path_stem(design, &length);
   dea_text_add(out, "%.*s.%s", (int)length, name, ending);
 }
 

@@ -1,7 +1,7 @@
 #include "fabricate/pages.h"
 
+#include "base/file.h"
 #include "fabricate/draft.h"
-#include "fabricate/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -117,7 +117,7 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
   char below[320];
   double x = 0.5 * size[0], y = 0.5 * size[1];
   snprintf(below, sizeof below, "%.80s; %s; lengths of the %s film, pre-stretch %.4g; %s",
-           dea_file_name(w->plan.design->file), part->seen,
+           dea_path_name(w->plan.design->file), part->seen,
            part->state == DEA_STRETCHED ? "stretched" : "unstretched", w->plan.stretch,
            part->paper ? "not to be cut" : "finished part, without kerf");
   dea_draft_head(paper, size[0], size[1], part->title, below);
@@ -138,7 +138,7 @@ static void draw_sheet_page(const struct dea_paper *paper, const struct dea_work
   char words[320];
   snprintf(words, sizeof words,
            "%.80s: %s; %d copies on their sheet, finished parts without kerf; 1:1",
-           dea_file_name(w->plan.design->file), w->part[index].title, layout->count);
+           dea_path_name(w->plan.design->file), w->part[index].title, layout->count);
   dea_draft_fit(paper, 5, 1.6, 2.3, false, 0x6a6a6a, 1e3 * layout->width_m - 10, words);
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];

@@ -1,8 +1,8 @@
 #include "fabricate/picture.h"
 
+#include "base/file.h"
 #include "fabricate/draft.h"
 #include "fabricate/parts.h"
-#include "fabricate/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -262,9 +262,9 @@ static void write_words(struct picture *p)
   char below[256];
   snprintf(below, sizeof below,
            "%.80s; pre-stretch %.4g; film %.60s; lengths in the stretched film",
-           dea_file_name(plan->design->file), plan->stretch, plan->device->film.name);
+           dea_path_name(plan->design->file), plan->stretch, plan->device->film.name);
   dea_draft_head(p->paper, page_width, page_height,
-                 title[0] != '\0' ? title : dea_file_name(plan->design->file), below);
+                 title[0] != '\0' ? title : dea_path_name(plan->design->file), below);
   type->text(p->paper->canvas, 12, 60.5, 2.6, 0, DEA_ALIGN_LEFT, true, INK,
              plan->device->fibre_count > 0 ? "Section along the first fibre" : "Section");
   type->text(p->paper->canvas, 12, 56.8, 2.3, 0, DEA_ALIGN_LEFT, false, GREY,

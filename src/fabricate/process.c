@@ -1,9 +1,9 @@
 #include "fabricate/process.h"
 
+#include "base/file.h"
 #include "fabricate/draft.h"
 #include "fabricate/parts.h"
 #include "fabricate/sensitivity.h"
-#include "fabricate/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -362,13 +362,13 @@ dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop 
   const struct dea_design *design = workshop->plan.design;
   const char *title = design->title.text;
   dea_document_add(document, DEA_BLOCK_TITLE, "Process sheet: %s",
-                   title[0] != '\0' ? title : dea_file_name(design->file));
+                   title[0] != '\0' ? title : dea_path_name(design->file));
   dea_document_add(
       document, DEA_BLOCK_NOTE,
       "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the paper, "
       "with the numbers of the design. DXF and SVG files have the kerf of the cutter in "
       "them, parts.pdf shows the finished parts at 1:1.",
-      dea_file_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "");
+      dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "");
   add_materials(&s);
   dea_document_add(document, DEA_BLOCK_HEADING, "Steps");
   add_printing(&s);

@@ -1,20 +1,15 @@
 #include "fabricate/words.h"
 
-#include <math.h>
-#include <string.h>
+#include "base/file.h"
 
-const char *dea_file_name(const char *path)
-{
-  const char *slash = strrchr(path, '/');
-  return slash != NULL ? slash + 1 : path;
-}
+#include <math.h>
 
 void dea_sheet_words(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
 {
   const struct dea_part *part = &workshop->part[index];
   int copies = workshop->layout[index].count;
   dea_text_add(out, "%.80s: %s; %s; lengths of the %s film in mm; ",
-               dea_file_name(workshop->plan.design->file), part->title, part->seen,
+               dea_path_name(workshop->plan.design->file), part->title, part->seen,
                part->state == DEA_STRETCHED ? "stretched" : "unstretched");
   if (part->paper) {
     dea_text_add(out, "not to be cut");

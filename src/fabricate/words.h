@@ -9,8 +9,6 @@
 void dea_sheet_words(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
 /* Height of letters with which it fits beside the sheet [m]. */
 double dea_sheet_words_height(const struct dea_layout *layout);
-/* Name of a design file without its folder; lent. */
-const char *dea_file_name(const char *path);
 
 /* Next letter of UTF-8 text, 0 at its end: control characters become spaces, what is not UTF-8
  * becomes U+FFFD. */

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // posix_spawn_file_actions_addchdir_np, pipe2, environ
 #include "output/gnuplot.h"
 
+#include "base/file.h"
 #include "output/file.h"
 
 #include <dirent.h>
@@ -183,11 +184,10 @@ static dea_status launch_some(struct dea_context *ctx, const char *directory, ch
 static dea_status draw(struct dea_context *ctx, const char *directory, const char *drawing,
                        const char *const names[], size_t count)
 {
-  const char *slash = strrchr(drawing, '/');
   struct dea_text folder = {.ctx = ctx};
   struct drawer drawers[DRAWERS_MAX];
   size_t wanted = drawer_count(count), running = 0;
-  dea_text_add(&folder, "dea_folder = \"%s/\"", slash != NULL ? slash + 1 : drawing);
+  dea_text_add(&folder, "dea_folder = \"%s/\"", dea_path_name(drawing));
   dea_status status = folder.failed ? DEA_E_MEMORY : DEA_OK;
   while (status == DEA_OK && running < wanted) {
     status =

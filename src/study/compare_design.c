@@ -1,10 +1,10 @@
 /* Study "compare-design": the design, and others that it names, through the voltages of each. */
+#include "base/file.h"
 #include "device/device.h"
 #include "study/study.h"
 #include "study/variant.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static const char study_name[] = "compare-design";
 
@@ -18,10 +18,10 @@ static void name_base(const struct dea_design *design, char out[DEA_NAME_SIZE])
       return;
     }
   }
-  const char *slash = strrchr(design->file, '/');
-  const char *file = slash != NULL ? slash + 1 : design->file, *dot = strrchr(file, '.');
-  int length = dot != NULL && dot != file ? (int)(dot - file) : (int)strlen(file);
-  snprintf(out, DEA_NAME_SIZE, "%.*s", length < DEA_NAME_SIZE ? length : DEA_NAME_SIZE - 1, file);
+  size_t length;
+  const char *stem = dea_path_stem(design->file, &length);
+  snprintf(out, DEA_NAME_SIZE, "%.*s", length < DEA_NAME_SIZE ? (int)length : DEA_NAME_SIZE - 1,
+           stem);
 }
 
 /* The design itself: its sweep where that has been made, with the last profile. */
