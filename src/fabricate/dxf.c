@@ -72,13 +72,34 @@ static void point(struct file *file, int code, double x, double y)
   length(file, code + 10, y);
 }
 
+static void begin_section(struct file *file, const char *name)
+{
+  group(file, 0, "SECTION");
+  group(file, 2, name);
+}
+
+static void begin_object(struct file *file, const char *type, unsigned own, unsigned owner)
+{
+  group(file, 0, type);
+  handle(file, 5, own);
+  handle(file, 330, owner);
+}
+
+static void begin_entity(struct file *file, const char *type, unsigned own, unsigned owner,
+                         const char *layer, const char *subclass)
+{
+  begin_object(file, type, own, owner);
+  group(file, 100, "AcDbEntity");
+  group(file, 8, layer);
+  group(file, 100, subclass);
+}
+
 /* ---- what stands before the drawing ---- */
 
 static void write_header(struct file *file, const struct dea_layout *sheet, unsigned handles)
 {
   group(file, 999, "libdea " DEA_VERSION);
-  group(file, 0, "SECTION");
-  group(file, 2, "HEADER");
+  begin_section(file, "HEADER");
   group(file, 9, "$ACADVER");
   group(file, 1, "AC1015");
   group(file, 9, "$DWGCODEPAGE");
@@ -108,15 +129,19 @@ static void begin_table(struct file *file, const char *name, unsigned own, int e
   number(file, 70, entries);
 }
 
-static void begin_entry(struct file *file, const char *type, unsigned own, unsigned owner,
-                        const char *subclass, const char *name)
+static void begin_record(struct file *file, const char *type, unsigned own, unsigned owner,
+                         const char *subclass, const char *name)
 {
-  group(file, 0, type);
-  handle(file, 5, own);
-  handle(file, 330, owner);
+  begin_object(file, type, own, owner);
   group(file, 100, "AcDbSymbolTableRecord");
   group(file, 100, subclass);
   group(file, 2, name);
+}
+
+static void begin_entry(struct file *file, const char *type, unsigned own, unsigned owner,
+                        const char *subclass, const char *name)
+{
+  begin_record(file, type, own, owner, subclass, name);
   number(file, 70, 0);
 }
 
@@ -200,20 +225,15 @@ static void write_block_records(struct file *file)
 {
   begin_table(file, "BLOCK_RECORD", BLOCK_RECORDS, 2);
   for (int paper = 0; paper < 2; paper++) {
-    group(file, 0, "BLOCK_RECORD");
-    handle(file, 5, paper ? PAPER_RECORD : MODEL_RECORD);
-    handle(file, 330, BLOCK_RECORDS);
-    group(file, 100, "AcDbSymbolTableRecord");
-    group(file, 100, "AcDbBlockTableRecord");
-    group(file, 2, paper ? "*Paper_Space" : "*Model_Space");
+    begin_record(file, "BLOCK_RECORD", paper ? PAPER_RECORD : MODEL_RECORD, BLOCK_RECORDS,
+                 "AcDbBlockTableRecord", paper ? "*Paper_Space" : "*Model_Space");
   }
   end_table(file);
 }
 
 static void write_tables(struct file *file, const struct dea_layout *sheet)
 {
-  group(file, 0, "SECTION");
-  group(file, 2, "TABLES");
+  begin_section(file, "TABLES");
   write_viewport(file, sheet);
   write_line_types(file);
   write_layers(file);
@@ -232,47 +252,35 @@ static void write_tables(struct file *file, const struct dea_layout *sheet)
 
 static void write_blocks(struct file *file)
 {
-  group(file, 0, "SECTION");
-  group(file, 2, "BLOCKS");
+  begin_section(file, "BLOCKS");
   for (int paper = 0; paper < 2; paper++) {
     const char *name = paper ? "*Paper_Space" : "*Model_Space";
-    group(file, 0, "BLOCK");
-    handle(file, 5, paper ? PAPER_BEGIN : MODEL_BEGIN);
-    handle(file, 330, paper ? PAPER_RECORD : MODEL_RECORD);
-    group(file, 100, "AcDbEntity");
-    group(file, 8, "0");
-    group(file, 100, "AcDbBlockBegin");
+    unsigned record = paper ? PAPER_RECORD : MODEL_RECORD;
+    begin_entity(file, "BLOCK", paper ? PAPER_BEGIN : MODEL_BEGIN, record, "0", "AcDbBlockBegin");
     group(file, 2, name);
     number(file, 70, 0);
     dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 30\n0.0\n");
     group(file, 3, name);
     group(file, 1, "");
-    group(file, 0, "ENDBLK");
-    handle(file, 5, paper ? PAPER_END : MODEL_END);
-    handle(file, 330, paper ? PAPER_RECORD : MODEL_RECORD);
-    group(file, 100, "AcDbEntity");
-    group(file, 8, "0");
-    group(file, 100, "AcDbBlockEnd");
+    begin_entity(file, "ENDBLK", paper ? PAPER_END : MODEL_END, record, "0", "AcDbBlockEnd");
   }
   group(file, 0, "ENDSEC");
 }
 
+static void begin_dictionary(struct file *file, unsigned own, unsigned owner)
+{
+  begin_object(file, "DICTIONARY", own, owner);
+  group(file, 100, "AcDbDictionary");
+  number(file, 281, 1);
+}
+
 static void write_objects(struct file *file)
 {
-  group(file, 0, "SECTION");
-  group(file, 2, "OBJECTS");
-  group(file, 0, "DICTIONARY");
-  handle(file, 5, ROOT);
-  handle(file, 330, 0);
-  group(file, 100, "AcDbDictionary");
-  number(file, 281, 1);
+  begin_section(file, "OBJECTS");
+  begin_dictionary(file, ROOT, 0);
   group(file, 3, "ACAD_GROUP");
   handle(file, 350, GROUPS);
-  group(file, 0, "DICTIONARY");
-  handle(file, 5, GROUPS);
-  handle(file, 330, ROOT);
-  group(file, 100, "AcDbDictionary");
-  number(file, 281, 1);
+  begin_dictionary(file, GROUPS, ROOT);
   group(file, 0, "ENDSEC");
 }
 
@@ -288,28 +296,23 @@ static const char *layer_name(enum dea_layer layer)
   return names[layer];
 }
 
-static void begin_entity(struct file *file, const char *type, const char *subclass,
-                         enum dea_layer layer)
+static void begin_drawn(struct file *file, const char *type, const char *subclass,
+                        enum dea_layer layer)
 {
-  group(file, 0, type);
-  handle(file, 5, file->handle++);
-  handle(file, 330, MODEL_RECORD);
-  group(file, 100, "AcDbEntity");
-  group(file, 8, layer_name(layer));
-  group(file, 100, subclass);
+  begin_entity(file, type, file->handle++, MODEL_RECORD, layer_name(layer), subclass);
 }
 
 static void write_path(struct file *file, const struct dea_part_contour *contour,
                        const struct dea_vertex *v, size_t count, const double at[2])
 {
   if (contour->circle) {
-    begin_entity(file, "CIRCLE", "AcDbCircle", contour->layer);
+    begin_drawn(file, "CIRCLE", "AcDbCircle", contour->layer);
     point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
     length(file, 30, 0);
     length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
     return;
   }
-  begin_entity(file, "LWPOLYLINE", "AcDbPolyline", contour->layer);
+  begin_drawn(file, "LWPOLYLINE", "AcDbPolyline", contour->layer);
   number(file, 90, (int)count);
   number(file, 70, contour->closed);
   length(file, 43, 0);
@@ -336,7 +339,7 @@ static void add_escaped(struct dea_text *out, const char *text)
 static void write_words(struct file *file, enum dea_layer layer, double x, double y, double height,
                         bool centred, const char *text)
 {
-  begin_entity(file, "TEXT", "AcDbText", layer);
+  begin_drawn(file, "TEXT", "AcDbText", layer);
   point(file, 10, x, y);
   length(file, 30, 0);
   length(file, 40, height);
@@ -381,8 +384,7 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
                                         {.x_m = 0, .y_m = layout->height_m}};
   const double origin[2] = {0, 0};
   struct dea_text words = {.ctx = part->ctx};
-  group(file, 0, "SECTION");
-  group(file, 2, "ENTITIES");
+  begin_section(file, "ENTITIES");
   write_path(file, &edge, corners, 4, origin);
   dea_sheet_words(workshop, index, &words);
   double height = dea_sheet_words_height(layout);
