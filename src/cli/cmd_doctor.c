@@ -1,9 +1,9 @@
 #define _GNU_SOURCE // popen, access
-#include "base/module.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
+#include "fabricate/canvas.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/provenance.h"
@@ -148,7 +148,7 @@ static void check_engine(struct report *report)
 static void check_cairo(struct report *report)
 {
   char path[4096];
-  bool ok = dea_module_find("dea_cairo_module.so", path, sizeof path);
+  bool ok = dea_canvas_find(path, sizeof path);
   say(report, WISHED, ok, "drawings of dea fab", ok ? path : "not built",
       "install libcairo2-dev, and build again; without it dea fab writes DXF and SVG only");
 }
