@@ -9,8 +9,7 @@ static const double pi = 3.14159265358979323846;
 /* Parts that touch exactly do not overlap; the file's decimals leave a rounding error. */
 static const double touching = 1e-9;
 
-/* Length in the stretched film: an unstretched one grows with the film. */
-static double stretched(const struct dea_inplane_length *length, double pre_stretch)
+double dea_length_stretched_m(const struct dea_inplane_length *length, double pre_stretch)
 {
   return length->state == DEA_UNSTRETCHED ? length->length.si * pre_stretch : length->length.si;
 }
@@ -31,12 +30,14 @@ static double tip_radius(const struct dea_design *design, const struct dea_devic
 {
   const struct dea_quantity *given = tip_value(design);
   if (given == &design->fibres.length.length) {
-    return device->frame_radius_m - stretched(&design->fibres.length, device->pre_stretch);
+    return device->frame_radius_m -
+           dea_length_stretched_m(&design->fibres.length, device->pre_stretch);
   }
   if (given == &design->fibres.tip_radius.length) {
-    return stretched(&design->fibres.tip_radius, device->pre_stretch);
+    return dea_length_stretched_m(&design->fibres.tip_radius, device->pre_stretch);
   }
-  return device->electrode_radius_m - stretched(&design->fibres.overlap, device->pre_stretch);
+  return device->electrode_radius_m -
+         dea_length_stretched_m(&design->fibres.overlap, device->pre_stretch);
 }
 
 static void fill_fibres(const struct dea_design *design, struct dea_device *device)
@@ -53,9 +54,10 @@ static void fill_fibres(const struct dea_design *design, struct dea_device *devi
   device->bond_thickness_m = design->fibres.bond_thickness_m.si;
   device->bond_modulus_Pa = design->fibres.bond_modulus_Pa.si;
   device->outer_end = (enum dea_outer_end)design->fibres.outer_end.value;
-  device->fibre_outer_gap_m = device->outer_end == DEA_END_FREE
-                                  ? stretched(&design->fibres.outer_gap, device->pre_stretch)
-                                  : 0;
+  device->fibre_outer_gap_m =
+      device->outer_end == DEA_END_FREE
+          ? dea_length_stretched_m(&design->fibres.outer_gap, device->pre_stretch)
+          : 0;
 }
 
 void dea_geometry_fill(const struct dea_design *design, struct dea_device *device)
@@ -65,7 +67,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->pre_stretch = l_pre;
   device->film_thickness_m = design->film.thickness_m.si / (l_pre * l_pre); // paper eq 2
   device->frame_radius_m = design->frame.radius_m.si;
-  device->electrode_radius_m = stretched(&design->electrodes.radius, l_pre);
+  device->electrode_radius_m = dea_length_stretched_m(&design->electrodes.radius, l_pre);
   device->electrode_thickness_m = design->electrodes.thickness_m.si;
   double ratio = device->electrode_radius_m / device->frame_radius_m;
   device->coverage = design->compute.coverage.origin != DEA_ABSENT ? design->compute.coverage.si

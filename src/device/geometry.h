@@ -4,6 +4,8 @@
 
 #include "device/device.h"
 
+/* A length in the stretched film: an unstretched one grows with the film. */
+double dea_length_stretched_m(const struct dea_inplane_length *length, double pre_stretch);
 /* Fills every length and number of device from the design. */
 void dea_geometry_fill(const struct dea_design *design, struct dea_device *device);
 /* Adds a finding for each thing that does not fit, at the value at fault. Fails only for memory. */

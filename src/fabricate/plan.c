@@ -1,16 +1,13 @@
 #include "fabricate/plan.h"
 
+#include "device/geometry.h"
+
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
 /* Parts that touch exactly do not overlap; the file's decimals leave a rounding error. */
 static const double touching = 1e-9;
-
-static double stretched(const struct dea_inplane_length *length, double pre_stretch)
-{
-  return length->state == DEA_UNSTRETCHED ? length->length.si * pre_stretch : length->length.si;
-}
 
 /* Leads run halfway between two fibres, that of the bottom electrode as far from the other one as
  * that allows. One fibre alone has them at right angles. */
@@ -51,13 +48,13 @@ static void fill(struct dea_plan *plan)
   plan->electrode_m = d->electrode_radius_m;
   plan->frame_m = d->frame_radius_m;
   plan->ring_m = plan->frame_m + f->ring.width_m.si;
-  plan->blank_m = plan->ring_m + stretched(&f->blank.margin, l);
-  plan->lead_width_m = stretched(&f->leads.width, l);
-  plan->pad_m = 0.5 * stretched(&f->leads.pad_diameter, l);
+  plan->blank_m = plan->ring_m + dea_length_stretched_m(&f->blank.margin, l);
+  plan->lead_width_m = dea_length_stretched_m(&f->leads.width, l);
+  plan->pad_m = 0.5 * dea_length_stretched_m(&f->leads.pad_diameter, l);
   plan->pad_centre_m = 0.5 * (plan->frame_m + plan->ring_m);
   plan->contact_window_m = 0.5 * f->ring.contact_window_m.si;
-  plan->mark_m = 0.5 * stretched(&f->mark_diameter, l);
-  plan->grid_m = stretched(&f->grid_spacing, l);
+  plan->mark_m = 0.5 * dea_length_stretched_m(&f->mark_diameter, l);
+  plan->grid_m = dea_length_stretched_m(&f->grid_spacing, l);
   plan->cross_m = fmin(0.1 * plan->grid_m, 0.5e-3 * l);
   plan->holder_m = plan->frame_m;
   if (d->fibre_count > 0) {
