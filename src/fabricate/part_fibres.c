@@ -35,7 +35,7 @@ static void add_edge(const struct dea_plan *plan, int number, int side, struct d
 {
   const struct dea_device *d = plan->device;
   struct dea_place place = plan->design->fibres.width_m.place;
-  double outer = d->frame_radius_m - d->fibre_outer_gap_m;
+  double outer = plan->fibre_outer_m;
   bool anchored = plan->fibre_end_m > outer;
   if (side > 0) {
     add_corner(plan, number, d->fibre_tip_radius_m, 1, 0.5 * d->fibre_tip_width_m, place, part);
@@ -92,7 +92,7 @@ void dea_draw_fibre(const struct dea_plan *plan, int number, enum dea_layer laye
   const struct dea_device *d = plan->device;
   struct dea_place place = plan->design->fibres.width_m.place;
   const double centre[2] = {0, 0};
-  double outer = d->frame_radius_m - d->fibre_outer_gap_m, tip = d->fibre_tip_radius_m;
+  double outer = plan->fibre_outer_m, tip = d->fibre_tip_radius_m;
   double axis = 2 * pi * number / d->fibre_count;
   double a = edge_angle(0.5 * d->fibre_width_m, outer);
   double b = edge_angle(0.5 * d->fibre_tip_width_m, tip);
@@ -109,7 +109,7 @@ void dea_draw_anchor(const struct dea_plan *plan, int number, enum dea_layer lay
   const struct dea_device *d = plan->device;
   struct dea_place place = plan->design->fabrication.holder.anchor_m.place;
   const double centre[2] = {0, 0};
-  double inner = d->frame_radius_m - d->fibre_outer_gap_m, end = plan->fibre_end_m;
+  double inner = plan->fibre_outer_m, end = plan->fibre_end_m;
   double half = 0.5 * d->fibre_width_m, axis = 2 * pi * number / d->fibre_count;
   double a = edge_angle(half, end), b = edge_angle(half, inner);
   if (end > inner) {
@@ -126,7 +126,7 @@ static void build(const struct dea_plan *plan, struct dea_part *part)
   const struct dea_fabrication *f = &plan->design->fabrication;
   const struct dea_device *d = plan->device;
   double o = plan->ring_m, tip = d->fibre_tip_radius_m, end = plan->fibre_end_m;
-  double outer = d->frame_radius_m - d->fibre_outer_gap_m, half = 0.5 * d->fibre_width_m;
+  double outer = plan->fibre_outer_m, half = 0.5 * d->fibre_width_m;
   add_opening(plan, part);
   dea_draw_marks(plan, false, 1, DEA_LAYER_CUT_INNER, part);
   dea_part_circle(part, DEA_LAYER_CUT_OUTER, 0, 0, o, f->ring.width_m.place);

@@ -117,7 +117,7 @@ static void add_length(struct picture *p, struct dea_callout *c, const double fr
 static size_t add_fibre_lengths(struct picture *p, struct dea_callout *out)
 {
   const struct dea_device *d = p->w->plan.device;
-  double outer = d->frame_radius_m - d->fibre_outer_gap_m, tip = d->fibre_tip_radius_m;
+  double outer = p->w->plan.fibre_outer_m, tip = d->fibre_tip_radius_m;
   double half = 0.5 * d->fibre_width_m, tip_half = 0.5 * d->fibre_tip_width_m;
   size_t n = 0;
   double below = -(half + 3.5 / p->scale); // the line; its ends go down from the fibre to it
@@ -199,8 +199,7 @@ static void draw_section(struct picture *p, const struct heights *h)
   layer(p, -r, r, -top - h->electrode, -top, ELECTRODE);
   bool both = d->fibre_count % 2 == 0; // a fibre opposite of the first one
   for (int side = -1; side <= 1 && d->fibre_count > 0; side += 2) {
-    double tip = d->fibre_tip_radius_m, outer = R - d->fibre_outer_gap_m;
-    double end = d->outer_end == DEA_END_FREE ? outer : plan->fibre_end_m;
+    double tip = d->fibre_tip_radius_m, end = plan->fibre_end_m;
     double from = side > 0 ? tip : -end, to = side > 0 ? end : -tip;
     double base = top + (tip < r ? h->electrode : 0);
     if (side < 0 && !both) {

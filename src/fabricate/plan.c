@@ -59,8 +59,8 @@ static void fill(struct dea_plan *plan)
   plan->holder_m = plan->frame_m;
   if (d->fibre_count > 0) {
     bool held = d->outer_end != DEA_END_FREE;
-    plan->fibre_end_m =
-        held ? plan->frame_m + f->holder.anchor_m.si : plan->frame_m - d->fibre_outer_gap_m;
+    plan->fibre_outer_m = plan->frame_m - d->fibre_outer_gap_m;
+    plan->fibre_end_m = held ? plan->frame_m + f->holder.anchor_m.si : plan->fibre_outer_m;
     plan->holder_m = fmax(plan->fibre_end_m, plan->frame_m) + f->holder.tab_length_m.si;
     plan->tab_width_m = f->holder.tab_width_m.si;
   }
@@ -131,11 +131,10 @@ static dea_status check_lead_under_fibres(struct dea_context *ctx, const struct 
 {
   const struct dea_device *d = plan->device;
   double tip = fmax(d->fibre_tip_radius_m, plan->electrode_m);
-  double outer = d->frame_radius_m - d->fibre_outer_gap_m;
   for (int k = 0; k < d->fibre_count; k++) {
     double angle = plan->lead_angle_rad[DEA_PLAN_TOP] - 2 * pi * k / d->fibre_count;
     if (strips_meet(plan, angle, tip, d->fibre_tip_width_m) || // either end of a taper
-        strips_meet(plan, angle, outer, d->fibre_width_m)) {
+        strips_meet(plan, angle, plan->fibre_outer_m, d->fibre_width_m)) {
       return dea_finding_add(ctx, DEA_WARNING, plan->design->fabrication.leads.width.length.place,
                              "the lead of the top electrode, %.4g mm wide (stretched), runs under "
                              "a fibre; what that does to the bond and the motion is not simulated",

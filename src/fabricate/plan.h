@@ -24,8 +24,9 @@ struct dea_plan {
   double frame_m, ring_m; // inner and outer radius of the ring
   double blank_m;         // radius of the film as it is cut
 
-  double fibre_end_m; // distance of a fibre's outer end, with its anchor, from the centre
-  double holder_m;    // inner radius of the fibres' holder; its outer one is that of the ring
+  double fibre_outer_m; // distance of a fibre's outer end, as simulated, from the centre
+  double fibre_end_m;   // distance of a fibre's outer end, with its anchor, from the centre
+  double holder_m;      // inner radius of the fibres' holder; its outer one is that of the ring
   double tab_width_m;
 
   double mark_m, mark_centre_m; // radius; distance from the centre

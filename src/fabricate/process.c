@@ -64,7 +64,7 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
   out->ink_volume_m3 = thickness > 0 ? out->ink_area_m2 * thickness : NAN;
   out->bond_volume_m3 = NAN;
   if (d->fibre_count > 0) {
-    double outer = d->frame_radius_m - d->fibre_outer_gap_m, end = plan->fibre_end_m;
+    double outer = plan->fibre_outer_m, end = plan->fibre_end_m;
     double one = strip(d->fibre_tip_radius_m, d->fibre_tip_width_m, outer, d->fibre_width_m);
     one += end > outer ? strip(outer, d->fibre_width_m, end, d->fibre_width_m) : 0;
     out->bond_area_m2 = d->fibre_count * one;
@@ -218,7 +218,7 @@ static void add_stretching(struct sheet *s)
   if (d->fibre_count == 0) {
     return;
   }
-  mm(a, d->frame_radius_m - d->fibre_outer_gap_m - d->fibre_tip_radius_m);
+  mm(a, plan->fibre_outer_m - d->fibre_tip_radius_m);
   mm(b, d->fibre_width_m);
   mm(c, d->fibre_tip_radius_m);
   dea_document_add(s->to, DEA_BLOCK_STEP,
