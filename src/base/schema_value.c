@@ -154,6 +154,11 @@ static dea_status read_number(const struct dea_reader *reader, const struct dea_
 
 static const char *const film_states[] = {"stretched", "unstretched"};
 
+const char *dea_film_state_name(enum dea_film_state state)
+{
+  return film_states[state];
+}
+
 /* Splits "5 mm stretched" into "5 mm" and its last word. */
 static void split_qualifier(const char *text, char number[DEA_TITLE_SIZE], const char **word)
 {

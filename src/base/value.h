@@ -22,6 +22,8 @@ struct dea_quantity {
 
 /* Which film a length lies in. */
 enum dea_film_state { DEA_STRETCHED, DEA_UNSTRETCHED };
+/* "stretched" or "unstretched", as people read and write it. */
+const char *dea_film_state_name(enum dea_film_state state);
 
 /* A length in the plane of the film, always with the film state it was measured in. */
 struct dea_inplane_length {

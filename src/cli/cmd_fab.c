@@ -38,8 +38,8 @@ static void print_json(const struct dea_workshop *w, const struct cli_design_arg
   for (size_t i = 0; i < w->count; i++) {
     const struct dea_part *part = &w->part[i];
     json_t *row = json_pack("{s:s, s:s, s:i, s:f, s:f}", "name", part->name, "film",
-                            part->state == DEA_STRETCHED ? "stretched" : "unstretched", "copies",
-                            w->layout[i].count, "area_m2", dea_part_area_m2(part), "cut_length_m",
+                            dea_film_state_name(part->state), "copies", w->layout[i].count,
+                            "area_m2", dea_part_area_m2(part), "cut_length_m",
                             dea_part_length_m(part, DEA_LAYER_CUT_INNER) +
                                 dea_part_length_m(part, DEA_LAYER_CUT_OUTER));
     json_array_append_new(parts, row);

@@ -117,9 +117,8 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
   char below[320];
   double x = 0.5 * size[0], y = 0.5 * size[1];
   snprintf(below, sizeof below, "%.80s; %s; lengths of the %s film, pre-stretch %.4g; %s",
-           dea_path_name(w->plan.design->file), part->seen,
-           part->state == DEA_STRETCHED ? "stretched" : "unstretched", w->plan.stretch,
-           part->paper ? "not to be cut" : "finished part, without kerf");
+           dea_path_name(w->plan.design->file), part->seen, dea_film_state_name(part->state),
+           w->plan.stretch, part->paper ? "not to be cut" : "finished part, without kerf");
   dea_draft_head(paper, size[0], size[1], part->title, below);
   dea_draft_scale(paper, size[0],
                   "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");

@@ -271,7 +271,7 @@ static void add_length_check(struct sheet *s, const struct dea_sensitivity found
   char number[NUMBER], wanted[64], text[64];
   bool before = tolerance->state == DEA_UNSTRETCHED;
   mm(number, before ? stretched_m / s->w->plan.stretch : stretched_m);
-  snprintf(wanted, sizeof wanted, "%s mm %s", number, before ? "unstretched" : "stretched");
+  snprintf(wanted, sizeof wanted, "%s mm %s", number, dea_film_state_name(tolerance->state));
   mm(number, tolerance->length.si);
   snprintf(text, sizeof text, "\xc2\xb1%s mm", number);
   add_check(s, found, what, wanted, text, deviation);

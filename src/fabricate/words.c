@@ -10,7 +10,7 @@ void dea_sheet_words(const struct dea_workshop *workshop, size_t index, struct d
   int copies = workshop->layout[index].count;
   dea_text_add(out, "%.80s: %s; %s; lengths of the %s film in mm; ",
                dea_path_name(workshop->plan.design->file), part->title, part->seen,
-               part->state == DEA_STRETCHED ? "stretched" : "unstretched");
+               dea_film_state_name(part->state));
   if (part->paper) {
     dea_text_add(out, "not to be cut");
   } else {
