@@ -179,6 +179,8 @@ dea_status dea_design_read(struct dea_context *ctx, const char *file,
 dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
                                   size_t length, const struct dea_override *overrides,
                                   size_t override_count, struct dea_design **out);
+/* The highest of the voltages to be computed; 0 when none is above it. */
+double dea_design_highest_V(const struct dea_design *design);
 /* NULL is fine. */
 void dea_design_destroy(struct dea_context *ctx, struct dea_design *design);
 

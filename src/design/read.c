@@ -86,6 +86,15 @@ static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *
   return DEA_OK;
 }
 
+double dea_design_highest_V(const struct dea_design *design)
+{
+  double highest_V = 0;
+  for (size_t i = 0; i < design->compute.voltage_count; i++) {
+    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
+  }
+  return highest_V;
+}
+
 static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   DEA_TRY(ctx, read_voltages(ctx, raw));

@@ -126,20 +126,11 @@ static dea_status differentiate(struct dea_context *ctx, struct dea_design *scra
   return DEA_OK;
 }
 
-static double highest_voltage(const struct dea_design *design)
-{
-  double highest = 0;
-  for (size_t i = 0; i < design->compute.voltage_count; i++) {
-    highest = fmax(highest, design->compute.voltages_V[i]);
-  }
-  return highest;
-}
-
 static dea_status find(struct dea_context *ctx, struct dea_design *scratch,
                        const struct dea_design *design, const struct dea_device *device,
                        double *voltage_V, struct dea_sensitivity out[DEA_SENSITIVITIES])
 {
-  double highest = highest_voltage(design);
+  double highest = dea_design_highest_V(design);
   size_t asked = device->fibre_count > 0 ? DEA_SENSITIVITIES : 1;
   *voltage_V = NAN;
   for (size_t q = 0; q < DEA_SENSITIVITIES; q++) {

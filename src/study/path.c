@@ -47,16 +47,12 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
   const struct dea_design *design = result->design;
   struct dea_load_point point;
   struct dea_model *model;
-  double highest_V = 0;
   *out = design->compute.path_max_stretch.si;
   if (design->compute.path_max_stretch.origin != DEA_DEFAULT) {
     return DEA_OK;
   }
-  for (size_t i = 0; i < design->compute.voltage_count; i++) {
-    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
-  }
   DEA_TRY(ctx, type->create(ctx, result->device, &model));
-  dea_status status = type->solve(ctx, model, highest_V, &point);
+  dea_status status = type->solve(ctx, model, dea_design_highest_V(design), &point);
   type->destroy(ctx, model);
   if (status == DEA_OK) {
     *out = fmax(*out, design->pre_stretch.si * point.electrode_stretch);

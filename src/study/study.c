@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "study/study_list.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,13 +27,10 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
                        size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX])
 {
   enum { QUARTERS = 4 };
-  double highest_V = 0;
+  double highest_V = dea_design_highest_V(design);
   size_t count = 0;
   for (size_t i = 0; i < given_count; i++) {
     out[i] = given[i].si;
-  }
-  for (size_t i = 0; i < design->compute.voltage_count; i++) {
-    highest_V = fmax(highest_V, design->compute.voltages_V[i]);
   }
   for (int i = with_rest ? 0 : 1; i <= QUARTERS && given_count == 0; i++) {
     out[count++] = highest_V * i / QUARTERS;
