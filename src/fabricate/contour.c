@@ -66,12 +66,11 @@ double dea_contour_length_m(const struct dea_contour *contour)
   return length;
 }
 
-/* Whether a direction from the centre meets the arc. */
-static bool arc_has(const struct dea_piece *piece, double angle)
+bool dea_piece_faces(const struct dea_piece *arc, double angle)
 {
-  double along = piece->sweep > 0 ? angle - piece->start : piece->start - angle;
+  double along = arc->sweep > 0 ? angle - arc->start : arc->start - angle;
   along -= 2 * pi * floor(along / (2 * pi));
-  return along <= fabs(piece->sweep);
+  return along <= fabs(arc->sweep) || along >= 2 * pi - 1e-12;
 }
 
 static void grow(double box[4], double x, double y)
@@ -90,7 +89,7 @@ void dea_contour_grow_box(const struct dea_contour *contour, double box[4])
     grow(box, p.to[0], p.to[1]);
     for (int quarter = 0; p.arc && quarter < 4; quarter++) {
       static const int x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-      if (arc_has(&p, 0.5 * pi * quarter)) {
+      if (dea_piece_faces(&p, 0.5 * pi * quarter)) {
         grow(box, p.centre[0] + x[quarter] * p.radius_m, p.centre[1] + y[quarter] * p.radius_m);
       }
     }

@@ -33,6 +33,8 @@ size_t dea_contour_pieces(const struct dea_contour *contour);
 struct dea_piece dea_contour_piece(const struct dea_contour *contour, size_t i);
 /* Unit tangent of a piece at its start or end. */
 void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]);
+/* Whether an arc lies in this direction [rad] from its centre; its ends do, for all rounding. */
+bool dea_piece_faces(const struct dea_piece *arc, double angle);
 
 /* Enclosed area, > 0 for a counter-clockwise one; of a closed contour. */
 double dea_contour_area_m2(const struct dea_contour *contour);

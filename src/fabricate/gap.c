@@ -3,20 +3,10 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* The nearest points of two pieces. */
 struct near {
   double distance, p[2], q[2];
 };
-
-static bool on_arc(const struct dea_piece *arc, double x, double y)
-{
-  double along = atan2(y - arc->centre[1], x - arc->centre[0]) - arc->start;
-  along = arc->sweep > 0 ? along : -along;
-  along -= 2 * pi * floor(along / (2 * pi));
-  return along <= fabs(arc->sweep) || along >= 2 * pi - 1e-12;
-}
 
 static double clamp(double s, double low, double high)
 {
@@ -35,7 +25,7 @@ static void nearest_on(const struct dea_piece *piece, const double x[2], double 
   out[1] = end[1];
   if (piece->arc) {
     double cx = x[0] - piece->centre[0], cy = x[1] - piece->centre[1], r = hypot(cx, cy);
-    if (r > 0 && on_arc(piece, x[0], x[1])) {
+    if (r > 0 && dea_piece_faces(piece, atan2(cy, cx))) {
       out[0] = piece->centre[0] + piece->radius_m * cx / r;
       out[1] = piece->centre[1] + piece->radius_m * cy / r;
     }
