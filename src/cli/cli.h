@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "device/device.h"
 
+#include <jansson.h>
 #include <stdio.h>
 
 /* What all commands share. Results go to stdout, everything else to stderr. */
@@ -80,6 +81,8 @@ int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int
                      char **argv);
 /* Prints a command's usage to stdout. */
 void cli_print_usage(const struct dea_command *command);
+/* Prints JSON to stdout; takes it. */
+void cli_print_json(json_t *json);
 /* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */
 void cli_progress(void *cli, const char *what, size_t done, size_t total);
 /* True after SIGINT or SIGTERM. */

@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "device/device.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -163,9 +162,7 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
     }
     json_object_set_new(json, "derived", derived);
   }
-  json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-  putchar('\n');
-  json_decref(json);
+  cli_print_json(json);
 }
 
 static int run(struct dea_cli *cli, int argc, char **argv)

@@ -6,8 +6,6 @@
 #include "fabricate/process.h"
 #include "output/json.h"
 
-#include <jansson.h>
-#include <string.h>
 
 static dea_status add_name(void *array, const char *name)
 {
@@ -53,9 +51,7 @@ static void print_json(const struct dea_workshop *w, const struct cli_design_arg
   json_object_set_new(json, "parts", parts);
   json_object_set_new(json, "files", files);
   json_object_set_new(json, "amounts_of_one", amounts_json(w));
-  json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-  putchar('\n');
-  json_decref(json);
+  cli_print_json(json);
 }
 
 static dea_status write_files(struct dea_cli *cli, const struct cli_design_arguments *arguments,

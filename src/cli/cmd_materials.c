@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "material/catalogue.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
@@ -182,9 +181,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   json_t *array = json ? json_array() : NULL;
   dea_status status = name != NULL ? show(cli, name, true, array) : show_all(cli, array);
   if (json) {
-    json_dumpf(array, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-    putchar('\n');
-    json_decref(array);
+    cli_print_json(array);
   }
   fflush(stdout);
   return cli_report(cli, status);

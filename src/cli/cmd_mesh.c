@@ -3,7 +3,6 @@
 #include "model/solid/actuator.h"
 #include "output/msh.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,9 +39,7 @@ static void print_summary(const struct cli_design_arguments *arguments,
                              "nodes", (json_int_t)grid->node_count, "unknowns",
                              (json_int_t)unknowns, "smallest_jacobian", jacobian, "angle_deg",
                              degrees, "size_m", plate->size, "edge_size_m", plate->edge);
-    json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-    putchar('\n');
-    json_decref(json);
+    cli_print_json(json);
     return;
   }
   int face = (plate->order + 1) * (plate->order + 1); // nodes

@@ -100,6 +100,13 @@ int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, cons
   return dea_status_exit_code(DEA_E_USAGE);
 }
 
+void cli_print_json(json_t *json)
+{
+  json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+  putchar('\n');
+  json_decref(json);
+}
+
 void cli_print_usage(const struct dea_command *command)
 {
   printf("%s\n\nUsage: %s", command->summary, command->usage);
