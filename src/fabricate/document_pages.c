@@ -1,7 +1,6 @@
 /* A document on pages of A4: lines are filled word by word, rows of tables are kept together. */
 #include "fabricate/document.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -7,7 +7,6 @@
 #include "fabricate/words.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum handle {
   BLOCK_RECORDS = 1,

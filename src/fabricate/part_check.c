@@ -1,8 +1,6 @@
 /* Whether a part can be cut. */
 #include "fabricate/part.h"
 
-#include <math.h>
-
 static bool is_cut(enum dea_layer layer)
 {
   return layer == DEA_LAYER_CUT_INNER || layer == DEA_LAYER_CUT_OUTER;

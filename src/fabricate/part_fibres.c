@@ -6,27 +6,19 @@
 
 static const double pi = 3.14159265358979323846;
 
-void dea_fibre_corner(const struct dea_plan *plan, int number, double distance_m, int side,
-                      double half_width_m, double out[2])
-{
-  double angle = 2 * pi * number / plan->device->fibre_count, c = cos(angle), s = sin(angle);
-  double x = sqrt(distance_m * distance_m - half_width_m * half_width_m), y = side * half_width_m;
-  out[0] = c * x - s * y;
-  out[1] = s * x + c * y;
-}
-
 /* Angle from a fibre's axis to its edge, of half a width at a distance from the centre. */
 static double edge_angle(double half_width, double distance)
 {
   return asin(fmin(1, half_width / distance));
 }
 
+/* Point of a fibre's edge at a distance from the centre: side -1, 1; half its width there. */
 static void add_corner(const struct dea_plan *plan, int number, double distance, int side,
                        double half, struct dea_place place, struct dea_part *part)
 {
-  double at[2];
-  dea_fibre_corner(plan, number, distance, side, half, at);
-  dea_part_point(part, at[0], at[1], place);
+  double angle = 2 * pi * number / plan->device->fibre_count, c = cos(angle), s = sin(angle);
+  double x = sqrt(distance * distance - half * half), y = side * half;
+  dea_part_point(part, c * x - s * y, s * x + c * y, place);
 }
 
 /* One long edge, from its outer end inwards (side -1) or from the tip outwards (side 1): the places

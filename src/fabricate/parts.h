@@ -44,8 +44,5 @@ void dea_draw_fibre(const struct dea_plan *plan, int number, enum dea_layer laye
 /* What a fibre that the frame holds has on the ring: a closed contour; nothing of a free one. */
 void dea_draw_anchor(const struct dea_plan *plan, int number, enum dea_layer layer,
                      struct dea_part *part);
-/* Point of a fibre's edge at a distance from the centre: side -1, 1; half its width there. */
-void dea_fibre_corner(const struct dea_plan *plan, int number, double distance_m, int side,
-                      double half_width_m, double out[2]);
 
 #endif
