@@ -137,6 +137,11 @@ static dea_status elastic(const struct dea_layer *layer, const double F[9], cons
   return status;
 }
 
+double dea_layer_modulus(const struct dea_layer *layer)
+{
+  return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
+}
+
 dea_status dea_layer_relax(struct dea_layer *layer)
 {
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -33,6 +33,9 @@ struct dea_layer {
   double viscous_Pa;
 };
 
+/* Shear modulus of the ground state [Pa]. */
+double dea_layer_modulus(const struct dea_layer *layer);
+
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
  * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
 dea_status dea_layer_relax(struct dea_layer *layer);

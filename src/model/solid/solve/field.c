@@ -32,9 +32,8 @@ static void set_scale(const struct dea_solid *s, size_t layer_count, struct dea_
   for (size_t i = 0; i < layer_count && field->permittivity == 0; i++) {
     const struct dea_layer *l = &s->layers[i];
     if (l->permittivity_F_per_m > 0) {
-      double modulus = l->law != NULL ? l->law->shear_modulus(l->param) : l->lame_mu_Pa;
       field->permittivity = l->permittivity_F_per_m;
-      field->scale_V_per_m = sqrt(modulus / l->permittivity_F_per_m);
+      field->scale_V_per_m = sqrt(dea_layer_modulus(l) / l->permittivity_F_per_m);
     }
   }
 }

@@ -49,18 +49,13 @@ void dea_solid_masses(const struct dea_solid *s, double *mass)
   }
 }
 
-static double modulus_of(const struct dea_layer *layer)
-{
-  return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
-}
-
 void dea_solid_sizes(struct dea_solid *s)
 {
   double squares = 0, extent[3];
   s->modulus_Pa = INFINITY;
   for (size_t e = 0; e < s->grid->element_count; e++) {
     double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
-    double modulus = modulus_of(&s->layers[s->layer[e]]);
+    double modulus = dea_layer_modulus(&s->layers[s->layer[e]]);
     metric_of(s, e, laplace, lumped, &whole); // 0 for an inverted one: dea_solid_check speaks of it
     squares += modulus * modulus * whole * whole;
     s->modulus_Pa = fmin(s->modulus_Pa, modulus);

@@ -187,7 +187,7 @@ static void follow_stiffness(struct dea_solid_time *t)
   for (size_t l = 0; l < s->layer_count && t->history != NULL; l++) {
     const struct dea_layer *layer = &s->layers[l];
     if (layer->law != NULL) {
-      most = fmax(most, t->history->b_Pa[l] / layer->law->shear_modulus(layer->param));
+      most = fmax(most, t->history->b_Pa[l] / dea_layer_modulus(layer));
     }
   }
   double factor = exp2(round(log2(1 + most)));

@@ -74,10 +74,8 @@ static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;
   for (size_t l = 0; l < t->solid->layer_count && t->history != NULL; l++) {
-    const struct dea_layer *layer = &t->solid->layers[l];
     const struct dea_branches *branches = &t->history->branches[l];
-    double sum = 0,
-           all = layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
+    double sum = 0, all = dea_layer_modulus(&t->solid->layers[l]);
     for (size_t i = 0; i < branches->count; i++) {
       sum -= branches->branch[i].modulus_Pa * expm1(-t->step_s / branches->branch[i].time_s);
       all += branches->branch[i].modulus_Pa;
