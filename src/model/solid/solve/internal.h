@@ -245,6 +245,8 @@ dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s
 /* Factor of K with a kappa so large that its inertia is that of the incompressible solid, at s->u
  * (docs/theory/branches.md). */
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);
+/* A mode v [count] with its sign so that its largest component is positive. */
+void dea_solid_turn_up(size_t count, double *v);
 /* One unstable mode at the equilibrium [3 node_count]: the lowest unless more than DEA_MODES_MAX
  * are. */
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,

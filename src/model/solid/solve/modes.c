@@ -159,15 +159,24 @@ static size_t lock(struct lanczos *l, size_t count, size_t negative, size_t posi
   return found;
 }
 
+void dea_solid_turn_up(size_t count, double *v)
+{
+  double most = 0;
+  for (size_t i = 0; i < count; i++) {
+    most = fabs(v[i]) > (1 + 1e-6) * fabs(most) ? v[i] : most; // the first one of equals
+  }
+  for (size_t i = 0; i < count && most < 0; i++) {
+    v[i] = -v[i];
+  }
+}
+
 /* Unit size in M, largest component positive. */
 static void normalise(const struct lanczos *l, double *v)
 {
-  double size = sqrt(dot(l, v, v)), most = 0;
+  double size = sqrt(dot(l, v, v));
+  dea_solid_turn_up(l->dofs, v);
   for (size_t i = 0; i < l->dofs; i++) {
-    most = fabs(v[i]) > (1 + 1e-6) * fabs(most) ? v[i] : most; // the first one of equals
-  }
-  for (size_t i = 0; i < l->dofs; i++) {
-    v[i] /= most < 0 ? -size : size;
+    v[i] /= size;
   }
 }
 

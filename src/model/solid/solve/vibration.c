@@ -171,18 +171,6 @@ static dea_status find(struct dea_context *ctx, struct found *f, int count)
                   (int)f->count, count);
 }
 
-/* Largest component positive. */
-static void turn_up(size_t count, double *v)
-{
-  double most = 0;
-  for (size_t i = 0; i < count; i++) {
-    most = fabs(v[i]) > (1 + 1e-6) * fabs(most) ? v[i] : most;
-  }
-  for (size_t i = 0; i < count && most < 0; i++) {
-    v[i] = -v[i];
-  }
-}
-
 static dea_status hand_over(struct dea_context *ctx, const struct found *f, size_t count,
                             double *square, double *vector)
 {
@@ -193,7 +181,7 @@ static dea_status hand_over(struct dea_context *ctx, const struct found *f, size
     if (vector != NULL) {
       DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], s->trial));
       memcpy(vector + k * dofs, s->trial, dofs * sizeof *vector);
-      turn_up(dofs, vector + k * dofs);
+      dea_solid_turn_up(dofs, vector + k * dofs);
     }
   }
   return DEA_OK;
