@@ -6,6 +6,8 @@
  * halves count, a third of the difference is the estimate of their error. */
 #include "model/lumped/history.h"
 
+#include "model/alpha.h"
+
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
@@ -176,25 +178,23 @@ struct dea_lumped dea_lumped_frozen(const struct dea_lumped_history *history,
   return with_branches(history, moment, 0);
 }
 
-/* One step, whole. Generalised alpha (Chung and Hulbert 1993) where there is inertia. */
+/* One step, whole; generalised-alpha where there is inertia. */
 static dea_status step_once(const struct dea_lumped_history *history,
                             const struct dea_lumped_moment *from, const struct dea_time_step *step,
                             struct dea_lumped_moment *to)
 {
   const struct dea_lumped lumped = with_branches(history, from, step->length_s);
   double h = step->length_s, l = from->electrode_stretch;
-  double rho = history->options.rho_inf;
-  double a_m = (2 * rho - 1) / (rho + 1), a_f = rho / (rho + 1);
-  double gamma = 0.5 - a_m + a_f, beta = 0.25 * (1 - a_m + a_f) * (1 - a_m + a_f);
+  const struct dea_alpha alpha = dea_alpha_of(history->options.rho_inf);
   bool inertia = history->options.inertia;
   double mass_Pa_s2 = history->mass_kg_m2 / (2 * lumped.pre_stretch * history->volume_m3);
   struct equation e = {history, &from->circuit, step, &lumped, 0, 0, 1, 0};
   if (inertia && h > 0) {
     double acceleration = from->acceleration_per_s2;
-    e.start = l + h * from->rate_per_s + h * h * (0.5 - beta) * acceleration;
-    e.inertia_Pa = (1 - a_m) * mass_Pa_s2 / (beta * h * h);
-    e.weight = 1 - a_f;
-    e.known_Pa = a_m * mass_Pa_s2 * acceleration + a_f * from->imbalance_Pa;
+    e.start = l + h * from->rate_per_s + h * h * (0.5 - alpha.beta) * acceleration;
+    e.inertia_Pa = (1 - alpha.m) * mass_Pa_s2 / (alpha.beta * h * h);
+    e.weight = 1 - alpha.f;
+    e.known_Pa = alpha.m * mass_Pa_s2 * acceleration + alpha.f * from->imbalance_Pa;
   }
   struct sight sight;
   dea_status status;
@@ -212,9 +212,9 @@ static dea_status step_once(const struct dea_lumped_history *history,
   if (inertia && h > 0) {
     // from the forces: (l - l*)/(beta h^2) would be the same, but for the rounding of l
     to->acceleration_per_s2 =
-        -(e.weight * to->imbalance_Pa + e.known_Pa) / ((1 - a_m) * mass_Pa_s2);
-    to->rate_per_s = from->rate_per_s + h * ((1 - gamma) * from->acceleration_per_s2 +
-                                             gamma * to->acceleration_per_s2);
+        -(e.weight * to->imbalance_Pa + e.known_Pa) / ((1 - alpha.m) * mass_Pa_s2);
+    to->rate_per_s = from->rate_per_s + h * ((1 - alpha.gamma) * from->acceleration_per_s2 +
+                                             alpha.gamma * to->acceleration_per_s2);
   } else if (inertia) {
     to->acceleration_per_s2 = -to->imbalance_Pa / mass_Pa_s2;
   }

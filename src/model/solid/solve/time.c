@@ -8,12 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static struct dea_alpha alpha_of(double radius)
-{
-  double m = (2 * radius - 1) / (radius + 1), f = radius / (radius + 1);
-  return (struct dea_alpha){m, f, 0.25 * (1 - m + f) * (1 - m + f), 0.5 - m + f};
-}
-
 /* Forces of everything but inertia at the solid's displacements, supports included. */
 static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t, double *F)
 {
@@ -86,7 +80,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   }
   t->solid = solid;
   t->inertial = options->inertia;
-  t->alpha = alpha_of(options->spectral_radius);
+  t->alpha = dea_alpha_of(options->spectral_radius);
   t->count = 3 * solid->grid->node_count;
   t->stiffened = 1;
   t->stay = solid->stay;

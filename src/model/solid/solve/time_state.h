@@ -2,13 +2,9 @@
 #ifndef DEA_MODEL_SOLID_SOLVE_TIME_STATE_H
 #define DEA_MODEL_SOLID_SOLVE_TIME_STATE_H
 
+#include "model/alpha.h"
 #include "model/solid/solve/inertia.h"
 #include "model/solid/solve/time.h"
-
-/* Generalised-alpha (Chung, Hulbert 1993) by the spectral radius. */
-struct dea_alpha {
-  double m, f, beta, gamma;
-};
 
 struct dea_solid_time {
   struct dea_solid *solid;
