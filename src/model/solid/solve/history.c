@@ -92,9 +92,10 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
 {
   h->layer_count = s->layer_count;
   h->branches = dea_alloc(ctx, s->layer_count, sizeof *h->branches);
+  h->steps = dea_alloc(ctx, s->layer_count, sizeof *h->steps);
   h->b_Pa = dea_alloc(ctx, s->layer_count, sizeof *h->b_Pa);
   h->first = dea_alloc(ctx, s->grid->element_count, sizeof *h->first);
-  if (h->branches == NULL || h->b_Pa == NULL || h->first == NULL) {
+  if (h->branches == NULL || h->steps == NULL || h->b_Pa == NULL || h->first == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(h->branches, branches, s->layer_count * sizeof *branches);
@@ -129,6 +130,7 @@ void dea_solid_history_destroy(struct dea_context *ctx, struct dea_solid_history
 {
   if (h != NULL) {
     dea_free(ctx, h->branches);
+    dea_free(ctx, h->steps);
     dea_free(ctx, h->first);
     dea_free(ctx, h->b_Pa);
     dea_free(ctx, h->B);
@@ -152,14 +154,6 @@ struct dea_layer dea_solid_layer_at(const struct dea_solid *s, size_t e)
   return layer;
 }
 
-static void find_steps(const struct dea_branches *branches, double step_s,
-                       struct dea_branch_step *out)
-{
-  for (size_t i = 0; i < branches->count; i++) {
-    dea_branch_step_set(&branches->branch[i], step_s, &out[i]);
-  }
-}
-
 /* B of the points of an element. */
 static void begin_element(struct dea_solid_history *h, size_t from, size_t count,
                           const struct dea_branches *branches, const struct dea_branch_step *steps)
@@ -178,12 +172,12 @@ static void begin_element(struct dea_solid_history *h, size_t from, size_t count
 
 void dea_solid_history_begin(struct dea_solid_history *h, const struct dea_solid *s, double step_s)
 {
-  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   for (size_t l = 0; l < h->layer_count; l++) {
     const struct dea_branches *branches = &h->branches[l];
-    find_steps(branches, step_s, steps);
+    struct dea_branch_step *steps = h->steps[l];
     h->b_Pa[l] = 0;
     for (size_t i = 0; i < branches->count; i++) {
+      dea_branch_step_set(&branches->branch[i], step_s, &steps[i]);
       h->b_Pa[l] += branches->branch[i].modulus_Pa * (steps[i].end.e + steps[i].end.w0);
     }
     for (size_t e = 0; e < s->grid->element_count; e++) {
@@ -210,13 +204,9 @@ static void add_energies(const struct dea_solid_history *h, size_t at,
 }
 
 dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_history *h,
-                                   const struct dea_solid *s, double step_s,
-                                   struct dea_solid_branch_energies *out)
+                                   const struct dea_solid *s, struct dea_solid_branch_energies *out)
 {
-  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   dea_status status = DEA_OK;
-  int layer = -1; // that the steps are of
-  h->step_s = step_s;
   *out = (struct dea_solid_branch_energies){0};
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
@@ -224,15 +214,11 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
     if (h->first[e] == h->point_count) {
       continue;
     }
-    if (s->layer[e] != layer) {
-      layer = s->layer[e];
-      find_steps(branches, step_s, steps);
-    }
     status = find_strains(s, e, &strains);
     for (int q = 0; q < strains.count && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
-      add_energies(h, at, branches, steps, strains.C[q], strains.volume[q], out);
+      add_energies(h, at, branches, h->steps[s->layer[e]], strains.C[q], strains.volume[q], out);
     }
   }
   return status == DEA_OK ? DEA_OK
@@ -241,11 +227,10 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
 
 void dea_solid_history_accept(struct dea_solid_history *h, const struct dea_solid *s)
 {
-  struct dea_branch_step steps[DEA_BRANCHES_MAX];
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
+    const struct dea_branch_step *steps = h->steps[s->layer[e]];
     size_t from = h->first[e], to = from < h->point_count ? from + points_of(s, e) : from;
-    find_steps(branches, h->step_s, steps);
     for (size_t at = from; at < to; at++) {
       for (size_t i = 0; i < branches->count; i++) {
         dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at],

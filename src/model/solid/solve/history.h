@@ -20,14 +20,14 @@ void dea_branches_of_device(const struct dea_device *device, struct dea_branches
 
 struct dea_solid_history {
   size_t layer_count, point_count;
-  struct dea_branches *branches;    // [layer_count]
-  size_t *first;                    // [elements] its first point; point_count: elastic
-  double *b_Pa;                     // [layer_count] of the step
-  double *B;                        // [point_count][6] of the step
-  double (*inverse)[6];             // [point_count] C^-1 at the accepted state
-  double (*inverse_next)[6];        // at the end of the step that is tried
-  double step_s;                    // its length
-  double (*A)[DEA_BRANCHES_MAX][6]; // [point_count] there
+  struct dea_branches *branches; // [layer_count]
+  size_t *first;                 // [elements] its first point; point_count: elastic
+  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [layer_count] of the step
+  double *b_Pa;                                      // [layer_count] of the step
+  double *B;                                         // [point_count][6] of the step
+  double (*inverse)[6];                              // [point_count] C^-1 at the accepted state
+  double (*inverse_next)[6];                         // at the end of the step that is tried
+  double (*A)[DEA_BRANCHES_MAX][6];                  // [point_count] there
 };
 
 /* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
@@ -46,9 +46,9 @@ struct dea_solid_branch_energies {
   double stored, dissipated; // at the state; in the step to it
 };
 
-/* At the solid's displacements as the end of a step. */
+/* At the solid's displacements as the end of the step that has begun. */
 dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_history *history,
-                                   const struct dea_solid *solid, double step_s,
+                                   const struct dea_solid *solid,
                                    struct dea_solid_branch_energies *out);
 /* The state that was closed is the accepted one. */
 void dea_solid_history_accept(struct dea_solid_history *history, const struct dea_solid *solid);

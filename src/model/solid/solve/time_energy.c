@@ -49,7 +49,7 @@ dea_status dea_time_find_energies(struct dea_context *ctx, struct dea_solid_time
   double stored = 0, work = 0;
   *sums = t->sums;
   if (t->history != NULL) {
-    DEA_TRY(ctx, dea_solid_history_close(ctx, t->history, s, t->step_s, &branches));
+    DEA_TRY(ctx, dea_solid_history_close(ctx, t->history, s, &branches));
   }
   DEA_TRY(ctx, dea_time_find_stored(ctx, t, &stored, &t->capacitance_next_F));
   const double voltage_V[2] = {t->controls[0], s->voltage_V};
