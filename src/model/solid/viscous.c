@@ -203,12 +203,11 @@ double dea_branch_dissipation(const struct dea_branch *branch, const struct dea_
 {
   double sum = 0;
   for (size_t i = 0; i < step->count; i++) {
-    const struct dea_branch_weights w = step->place[i].weights;
     double now[6], inverse[6], share = step->place[i].share;
     for (int a = 0; a < 6; a++) {
       inverse[a] = from[a] + share * (to[a] - from[a]);
-      now[a] = w.e * A[a] + w.w0 * from[a] + w.w1 * inverse[a];
     }
+    dea_branch_update(&step->place[i].weights, A, from, inverse, now);
     sum += step->place[i].seconds * imbalance(now, inverse);
   }
   return 0.5 * branch->modulus_Pa / branch->time_s * sum;
