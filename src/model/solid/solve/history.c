@@ -3,9 +3,12 @@
 #include "model/solid/hex_points.h"
 #include "model/solid/solve/internal.h"
 
+#include <stdint.h>
 #include <string.h>
 
 enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
+
+#define ELASTIC SIZE_MAX // in place of an element's first point
 
 /* C, C^-1 and reference volume at the points of an element. */
 struct strains {
@@ -52,17 +55,13 @@ static size_t points_of(const struct dea_solid *s, size_t e)
 }
 
 /* Gives the elements of layers with branches their points; returns how many. */
-static size_t count_points(const struct dea_solid *s, struct dea_solid_history *h)
+static size_t place_points(const struct dea_solid *s, struct dea_solid_history *h)
 {
   size_t count = 0;
-  for (int pass = 0; pass < 2; pass++) {
-    h->point_count = count;
-    count = 0;
-    for (size_t e = 0; e < s->grid->element_count; e++) {
-      bool viscous = h->branches[s->layer[e]].count > 0;
-      h->first[e] = viscous ? count : h->point_count;
-      count += viscous ? points_of(s, e) : 0;
-    }
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    bool viscous = h->branches[s->layer[e]].count > 0;
+    h->first[e] = viscous ? count : ELASTIC;
+    count += viscous ? points_of(s, e) : 0;
   }
   return count;
 }
@@ -72,7 +71,7 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_solid_hist
   dea_status status = DEA_OK;
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
     struct strains strains;
-    if (h->first[e] == h->point_count) {
+    if (h->first[e] == ELASTIC) {
       continue;
     }
     status = find_strains(s, e, &strains);
@@ -90,7 +89,6 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_solid_hist
 static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
                           const struct dea_branches *branches, struct dea_solid_history *h)
 {
-  h->layer_count = s->layer_count;
   h->branches = dea_alloc(ctx, s->layer_count, sizeof *h->branches);
   h->steps = dea_alloc(ctx, s->layer_count, sizeof *h->steps);
   h->b_Pa = dea_alloc(ctx, s->layer_count, sizeof *h->b_Pa);
@@ -99,7 +97,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
     return DEA_E_MEMORY;
   }
   memcpy(h->branches, branches, s->layer_count * sizeof *branches);
-  size_t points = count_points(s, h);
+  size_t points = place_points(s, h);
   h->B = dea_alloc(ctx, points + 1, TENSOR_BYTES);
   h->inverse = dea_alloc(ctx, points + 1, TENSOR_BYTES);
   h->inverse_next = dea_alloc(ctx, points + 1, TENSOR_BYTES);
@@ -147,7 +145,7 @@ struct dea_layer dea_solid_layer_at(const struct dea_solid *s, size_t e)
 {
   const struct dea_solid_history *h = s->history;
   struct dea_layer layer = s->layers[s->layer[e]];
-  if (h != NULL && h->first[e] < h->point_count) {
+  if (h != NULL && h->first[e] != ELASTIC) {
     layer.viscous = h->B + 6 * h->first[e];
     layer.viscous_Pa = h->b_Pa[s->layer[e]];
   }
@@ -172,7 +170,7 @@ static void begin_element(struct dea_solid_history *h, size_t from, size_t count
 
 void dea_solid_history_begin(struct dea_solid_history *h, const struct dea_solid *s, double step_s)
 {
-  for (size_t l = 0; l < h->layer_count; l++) {
+  for (size_t l = 0; l < s->layer_count; l++) {
     const struct dea_branches *branches = &h->branches[l];
     struct dea_branch_step *steps = h->steps[l];
     h->b_Pa[l] = 0;
@@ -211,7 +209,7 @@ dea_status dea_solid_history_close(struct dea_context *ctx, struct dea_solid_his
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
     struct strains strains;
-    if (h->first[e] == h->point_count) {
+    if (h->first[e] == ELASTIC) {
       continue;
     }
     status = find_strains(s, e, &strains);
@@ -230,7 +228,7 @@ void dea_solid_history_accept(struct dea_solid_history *h, const struct dea_soli
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
     const struct dea_branch_step *steps = h->steps[s->layer[e]];
-    size_t from = h->first[e], to = from < h->point_count ? from + points_of(s, e) : from;
+    size_t from = h->first[e], to = from != ELASTIC ? from + points_of(s, e) : from;
     for (size_t at = from; at < to; at++) {
       for (size_t i = 0; i < branches->count; i++) {
         dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at],

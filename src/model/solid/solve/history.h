@@ -19,15 +19,14 @@ struct dea_device;
 void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out);
 
 struct dea_solid_history {
-  size_t layer_count, point_count;
   struct dea_branches *branches; // [layer_count]
-  size_t *first;                 // [elements] its first point; point_count: elastic
+  size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
   struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [layer_count] of the step
   double *b_Pa;                                      // [layer_count] of the step
-  double *B;                                         // [point_count][6] of the step
-  double (*inverse)[6];                              // [point_count] C^-1 at the accepted state
+  double *B;                                         // [points][6] of the step
+  double (*inverse)[6];                              // [points] C^-1 at the accepted state
   double (*inverse_next)[6];                         // at the end of the step that is tried
-  double (*A)[DEA_BRANCHES_MAX][6];                  // [point_count] there
+  double (*A)[DEA_BRANCHES_MAX][6];                  // [points] at the accepted state
 };
 
 /* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
