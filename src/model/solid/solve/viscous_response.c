@@ -7,7 +7,10 @@
 #include <complex.h>
 #include <string.h>
 
-enum { PARTS = 2 }; // of K: without branches, and M; then one part a layer with branches
+enum {
+  PARTS = 2,
+  LAYERS_MAX = 16
+}; // of K: without branches, and M; then one part a layer with branches
 
 struct system {
   struct dea_solid *solid;
@@ -222,7 +225,7 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
                            double *imaginary)
 {
   struct dea_solid *s = y->solid;
-  double complex factor[PARTS + 16];
+  double complex factor[PARTS + LAYERS_MAX];
   double *out[2] = {real, imaginary};
   set_factors(y, w, damping, factor);
   dea_status status = dea_solid_petsc(ctx, fill_matrix(y, factor, sum), "MatSetValuesBlocked");
@@ -284,7 +287,6 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
                                      size_t count, const size_t *nodes, size_t node_count,
                                      double (*out)[2][3])
 {
-  enum { LAYERS_MAX = 16 };
   Mat parts[PARTS + LAYERS_MAX] = {NULL};
   size_t layers[PARTS + LAYERS_MAX] = {0};
   struct system y = {.solid = s, .branches = branches, .part = parts, .layer = layers};
