@@ -17,6 +17,12 @@ static inline double bench_now_s(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Processor time of this program so far [s]: other work on the machine counts less. */
+static inline double bench_processor_s(void)
+{
+  return (double)clock() / CLOCKS_PER_SEC;
+}
+
 /* Shortest time [s] of `repeats` calls of work(user), after one call that is not counted: the
  * shortest is the one that other work on the machine disturbed least. */
 static inline double bench_best_s(void (*work)(void *user), void *user, int repeats)

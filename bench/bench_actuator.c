@@ -9,7 +9,6 @@
 #include "model/model.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { POINTS = 17, MESHES_MAX = 8, COMPARED = 13 }; // compared: up to 6.5 kV
 

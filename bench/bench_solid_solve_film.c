@@ -6,29 +6,23 @@
 #include "model/model.h"
 
 #include <math.h>
-#include <time.h>
 
 enum { TO_6_KV, TO_8_KV, SPANS, REPEATS = 3 };
 
 extern const struct dea_model_type dea_solid_module;
-
-static double processor_s(void)
-{
-  return (double)clock() / CLOCKS_PER_SEC;
-}
 
 /* Times of one sweep, kept where they are shorter. */
 static void sweep(struct dea_context *ctx, const struct dea_device *device, double times[SPANS])
 {
   struct dea_model *model;
   struct dea_load_point point;
-  double start = processor_s();
+  double start = bench_processor_s();
   bench_need(dea_solid_module.create(ctx, device, &model), ctx);
   for (int kV = 1; kV <= 8; kV++) {
     bench_need(dea_solid_module.solve(ctx, model, 1e3 * kV, &point), ctx);
     if (kV == 6 || kV == 8) {
       int span = kV == 6 ? TO_6_KV : TO_8_KV;
-      times[span] = fmin(times[span], processor_s() - start);
+      times[span] = fmin(times[span], bench_processor_s() - start);
     }
   }
   dea_solid_module.destroy(ctx, model);

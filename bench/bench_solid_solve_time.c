@@ -4,7 +4,6 @@
 #include "model/model.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { EQUILIBRIUM, ELASTIC, BRANCHES, INERTIA, KINDS, REPEATS = 2, STEPS = 12 };
 
@@ -20,7 +19,7 @@ static double sweep(struct dea_context *ctx, struct dea_device *device, int kind
   struct dea_load_point point;
   device->film.branch_count = kind == BRANCHES ? branches : 0;
   bench_need(type->create(ctx, device, &model), ctx);
-  double start = (double)clock(), error;
+  double start = bench_processor_s(), error;
   if (kind != EQUILIBRIUM) {
     bench_need(type->begin(ctx, model, &options, &point), ctx);
   }
@@ -33,7 +32,7 @@ static double sweep(struct dea_context *ctx, struct dea_device *device, int kind
       type->accept(model);
     }
   }
-  double seconds = ((double)clock() - start) / CLOCKS_PER_SEC;
+  double seconds = bench_processor_s() - start;
   type->destroy(ctx, model);
   return seconds;
 }
