@@ -6,7 +6,6 @@
 #include "fabricate/process.h"
 #include "output/json.h"
 
-
 static dea_status add_name(void *array, const char *name)
 {
   json_array_append_new(array, json_string(name));
