@@ -16,6 +16,8 @@
   X(DEA_E_DESIGN, 3, "the design file has errors")                                                 \
   X(DEA_E_IO, 5, "a file could not be read or written")                                            \
   X(DEA_E_TOOL, 5, "an external program failed or is missing")                                     \
+  X(DEA_E_INSTRUMENT, 6, "an instrument failed")                                                   \
+  X(DEA_E_INTERLOCK, 6, "a limit of the bench would be or was exceeded")                           \
   X(DEA_E_MEMORY, 5, "out of memory")                                                              \
   X(DEA_E_DOMAIN, 4, "a material law was asked beyond its domain")                                 \
   X(DEA_STATUS_SUSPECT, 4, "")                                                                     \

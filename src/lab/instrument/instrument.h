@@ -1,0 +1,88 @@
+/* Instruments behind one interface: what plays the voltage, what measures.
+ *
+ * A kind is one file instrument_<name>.c and one line in instrument_list.h; what needs a vendor's
+ * library loads it when it is opened. An instrument plays the output (a DAQ, the simulated bench),
+ * reads the analogue inputs on the same clock, sends profiles, or answers single readings; any of
+ * these together. Voltages here are those on the wire, before the amplifier's gain and the
+ * channels' factors. */
+#ifndef DEA_LAB_INSTRUMENT_INSTRUMENT_H
+#define DEA_LAB_INSTRUMENT_INSTRUMENT_H
+
+#include "lab/protocol/protocol.h"
+
+enum dea_instrument_role {
+  DEA_PLAYS_OUTPUT = 1, // takes the control voltage of the amplifier
+  DEA_READS_INPUTS = 2, // gives all inputs of the protocol, a sample of each at a time
+  DEA_SENDS_PROFILES = 4,
+  DEA_GIVES_READINGS = 8 // single values with their time, for channels of its own
+};
+
+/* A channel of single readings that an instrument brings along. */
+struct dea_instrument_reading {
+  char name[DEA_CHANNEL_NAME_SIZE];
+  enum dea_channel_kind kind;
+  char unit[DEA_CHANNEL_NAME_SIZE]; // "": the kind's
+};
+
+/* Where what arrives goes to; what a function returns other than DEA_OK is passed on. Times are on
+ * the recording's clock: 0 at start. */
+struct dea_intake {
+  void *user;
+  /* volts: [count][inputs of the protocol]; NAN: lost. */
+  dea_status (*samples)(void *user, const double *volts, size_t count);
+  /* z_m: [points], NAN where invalid, on the positions that `positions` gave. */
+  dea_status (*profile)(void *user, double time_s, const double *z_m);
+  dea_status (*reading)(void *user, size_t reading, double time_s, double value_SI);
+};
+
+/* An opened one; a kind's own struct begins with it. */
+struct dea_instrument {
+  const struct dea_instrument_type *type;
+  unsigned roles;
+  struct dea_instrument_reading readings[8];
+  size_t reading_count;
+  size_t profile_points; // known once opened
+  const double *x_m;     // [profile_points], lent by the instrument
+  size_t lost;           // samples, frames or replies that did not arrive or made no sense
+};
+
+struct dea_instrument_type {
+  const char *name;                // "sim"
+  const struct dea_record *record; // its keys, "kind" among them
+  size_t raw_size;                 // of what they are read into
+  unsigned roles;
+  /* raw: as read; protocol: lent, outlives the instrument. Connects, sets up, and waits for what
+   * it has to know (a sensor's first profile). The output stays at 0 V. DEA_E_INSTRUMENT with what
+   * is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's library is not there. */
+  dea_status (*open)(struct dea_context *ctx, const void *raw, const struct dea_protocol *protocol,
+                     struct dea_instrument **out);
+  /* Starts the clock. */
+  dea_status (*start)(struct dea_context *ctx, struct dea_instrument *instrument);
+  /* Queues control voltages [V] for the output, in the order played, one a sample of the protocol's
+   * rate; waits while the queue is full. NULL when it plays nothing. */
+  dea_status (*put)(struct dea_context *ctx, struct dea_instrument *instrument, const double *volts,
+                    size_t count);
+  /* Hands over what has arrived; waits up to timeout_s for something. A lost connection is
+   * DEA_E_INSTRUMENT. NULL when it only plays. */
+  dea_status (*get)(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
+                    const struct dea_intake *intake);
+  /* Ends at once with the output at 0 V; called also after failures, and never twice. */
+  void (*stop)(struct dea_context *ctx, struct dea_instrument *instrument);
+  void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
+};
+
+/* All kinds in the order of the list; static storage. NULL when there is none of that name. */
+const struct dea_instrument_type *const *dea_instrument_all(size_t *count);
+const struct dea_instrument_type *dea_instrument_find(const char *name);
+/* Tables of all kinds for printing, ended by NULL. */
+extern const struct dea_record *const dea_instrument_records[];
+
+/* Reads an instrument's section and opens it. A wrong key is a finding and DEA_E_DESIGN. out: owned
+ * by the caller (type->close), NULL on failure. */
+dea_status dea_instrument_open(struct dea_context *ctx,
+                               const struct dea_protocol_instrument *section,
+                               const struct dea_protocol *protocol, struct dea_instrument **out);
+/* Reads the sections of all instruments without opening any: wrong keys become findings. */
+dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol);
+
+#endif

@@ -1,0 +1,115 @@
+/* The protocol: what is played to an amplifier, what is measured, and what must never happen.
+ *
+ * A YAML file with the reader of design files: every value in its unit, every error at its place.
+ */
+#ifndef DEA_LAB_PROTOCOL_PROTOCOL_H
+#define DEA_LAB_PROTOCOL_PROTOCOL_H
+
+#include "design/design.h"
+#include "lab/recording/recording.h"
+
+enum {
+  DEA_PROTOCOL_VERSION = 1,
+  DEA_PROTOCOL_STEPS_MAX = 256,
+  DEA_PROTOCOL_INPUTS_MAX = 16,
+  DEA_PROTOCOL_INSTRUMENTS_MAX = 8,
+};
+
+/* One step of the sequence: a waveform from its start to its end, as often as asked, then 0 V. */
+struct dea_protocol_step {
+  struct dea_label label;
+  const struct dea_node *section; // of the waveform; lent by the document
+  struct dea_waveform *waveform;  // owned
+  struct dea_quantity repeat, pause_s;
+};
+
+/* An analogue input: value [SI] = volts * per_volt + at_zero. */
+struct dea_protocol_input {
+  struct dea_label name, terminal; // "centre laser", "ai1"
+  struct dea_choice kind;          // enum dea_channel_kind
+  struct dea_quantity range_V;     // of the input, +-
+  struct dea_label per_volt_text, at_zero_text, unit;
+  double per_volt, at_zero;
+  struct dea_quantity filter_Hz;
+};
+
+/* An instrument's section: its kind and keys, read with the table of that kind. */
+struct dea_protocol_instrument {
+  const struct dea_node *section; // lent by the document
+  const char *path;               // "instruments[0]"; interned
+};
+
+struct dea_protocol {
+  const char *file; // interned
+  struct dea_label title;
+  struct dea_label design_file;
+  struct dea_design *design; // owned; NULL: none named
+  char *text, *design_text;  // whole files; owned; the second NULL without a design
+
+  struct dea_protocol_step *steps; // [step_count], owned
+  size_t step_count;
+
+  struct {
+    struct dea_label name, terminal;         // "Trek 10/10B-HS", "ao0"
+    struct dea_quantity gain;                // output over control voltage, V/V
+    struct dea_quantity control_V;           // largest control voltage, +-
+    struct dea_quantity lowest_V, highest_V; // of the output
+    struct dea_quantity slew_V_per_s, current_A;
+  } amplifier;
+
+  struct dea_quantity rate_Hz;       // of all inputs and the output
+  struct dea_protocol_input *inputs; // [input_count], owned
+  size_t input_count;
+
+  struct {
+    struct dea_quantity field_margin;          // breakdown field over largest true field, at least
+    struct dea_quantity largest_field_V_per_m; // instead of it
+    struct dea_quantity trip_current_A, trip_time_s; // a current above it for that long ends it
+    struct dea_quantity voltage_error_V;             // largest |measured - asked| once settled
+    struct dea_quantity ramp_V_per_s;                // to 0 V, when it ends early
+  } safety;
+
+  struct dea_protocol_instrument instruments[DEA_PROTOCOL_INSTRUMENTS_MAX];
+  size_t instrument_count;
+  struct dea_protocol_instrument sim; // of the simulated bench; section NULL: all its defaults
+
+  struct dea_yaml *document; // owned
+  struct dea_listing values;
+};
+
+/* Reads a protocol and the design it names. Errors are findings; DEA_E_DESIGN after the whole file
+ * was looked at. out: owned by the caller, NULL on failure. */
+dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
+                             const struct dea_override *overrides, size_t override_count,
+                             struct dea_protocol **out);
+void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol);
+extern const struct dea_record dea_protocol_record;
+
+/* The sequence on one clock from 0 on. */
+double dea_protocol_duration_s(const struct dea_protocol *protocol);
+/* Asked voltage [V] at a time; 0 in pauses and after the end. */
+double dea_protocol_value(const struct dea_protocol *protocol, double time_s);
+/* Next time after time_s at which it bends, jumps or ends; INFINITY after the end. */
+double dea_protocol_corner(const struct dea_protocol *protocol, double time_s);
+/* Cycle of that number, counted over the whole sequence; false when it has no more. A waveform
+ * without cycles (constant, step) is one cycle. */
+bool dea_protocol_cycle(const struct dea_protocol *protocol, size_t number,
+                        struct dea_recorded_cycle *out);
+
+/* What the checks found out, for `dea drive` to print. NAN: not known. */
+struct dea_protocol_plan {
+  double duration_s;
+  size_t cycles, samples;
+  double lowest_V, highest_V;   // of the asked voltage
+  double largest_field_V_per_m; // true field of the film at that
+  double allowed_field_V_per_m;
+  double pull_in_V;             // lowest voltage without equilibrium; NAN: none below limits
+  double capacitance_F, rise_s; // of the film; for the largest jump, by slew and current
+  double stored_energy_J;       // in the film at the largest voltage
+};
+/* Compares the protocol with its amplifier, its channels and its design. What must not be played is
+ * an error finding, what a user should know a warning or a note. DEA_E_INTERLOCK with errors. */
+dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol *protocol,
+                              struct dea_protocol_plan *plan);
+
+#endif

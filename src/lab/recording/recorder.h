@@ -1,0 +1,51 @@
+/* Writes a recording while it runs: one HDF5 file that can be read whatever happens to the program.
+ *
+ * The file is open for one writer and many readers (HDF5's SWMR): data reach the operating system
+ * in an order in which the file is valid at any moment, so a program that is killed loses at most
+ * what came after the last flush. */
+#ifndef DEA_LAB_RECORDING_RECORDER_H
+#define DEA_LAB_RECORDING_RECORDER_H
+
+#include "lab/recording/recording.h"
+
+struct dea_recorder;
+
+struct dea_recorder_channel {
+  const char *name;
+  enum dea_channel_kind kind;
+  const char *unit;           // NULL: the kind's
+  double start_s, interval_s; // interval 0: every sample comes with its time
+  double filter_Hz;           // NAN: none
+};
+
+struct dea_recorder_options {
+  const char *title, *protocol, *design, *design_name, *provenance; // copied; NULL: none
+  const struct dea_recorder_channel *channels;
+  size_t channel_count;
+  size_t profile_points; // 0: no profile sensor
+  const double *x_m;     // [profile_points]
+  double flush_s;        // longest time between flushes of what was given; 0: 0.2 s
+};
+
+/* Makes the file, which must not exist. out: owned by the caller (dea_recorder_finish), NULL on
+ * failure. */
+dea_status dea_recorder_create(struct dea_context *ctx, const char *file,
+                               const struct dea_recorder_options *options,
+                               struct dea_recorder **out);
+/* Appends samples of a channel with an interval (a gap: NAN), or with their times. */
+dea_status dea_recorder_add(struct dea_recorder *recorder, size_t channel, const double *values,
+                            size_t count);
+dea_status dea_recorder_add_timed(struct dea_recorder *recorder, size_t channel,
+                                  const double *time_s, const double *values, size_t count);
+/* Appends a frame; z_m: [profile_points]. */
+dea_status dea_recorder_add_profile(struct dea_recorder *recorder, double time_s,
+                                    const double *z_m);
+/* Appends a completed cycle and flushes everything: from here on it survives. */
+dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
+                                  const struct dea_recorded_cycle *cycle);
+dea_status dea_recorder_flush(struct dea_recorder *recorder);
+/* Ends the file and frees the recorder, also after a failure; NULL is fine. ended: why it ended
+ * early, NULL or "" when it came to its end. */
+dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended);
+
+#endif

@@ -1,0 +1,108 @@
+/* A measurement: channels of samples, profiles of a line laser, the cycles that were completed.
+ *
+ * `dea drive` writes one while it runs (recorder.h), importers make one of other programs' files,
+ * reductions read one. All values are SI; a missing or invalid value is NAN. */
+#ifndef DEA_LAB_RECORDING_RECORDING_H
+#define DEA_LAB_RECORDING_RECORDING_H
+
+#include "base/context.h"
+
+#include <math.h>
+
+// X(enumerator, name in files, SI unit, display unit, factor SI -> display, meaning)
+#define DEA_CHANNEL_LIST(X)                                                                        \
+  X(COMMAND, "command", "V", "kV", 1e-3, "voltage asked of the amplifier")                         \
+  X(VOLTAGE, "voltage", "V", "kV", 1e-3, "voltage at the amplifier's output")                      \
+  X(CURRENT, "current", "A", "uA", 1e6, "current of the amplifier")                                \
+  X(DISPLACEMENT, "displacement", "m", "um", 1e6, "of a point laser, positive to the fibres")      \
+  X(FORCE, "force", "N", "mN", 1e3, "on the force cell's tip, positive when pushed away")          \
+  X(OTHER, "other", "", "", 1.0, "anything else, in the unit that its channel names")
+
+enum dea_channel_kind {
+#define DEA_CHANNEL_ENUM(enumerator, name, si, display, factor, meaning) DEA_CHANNEL_##enumerator,
+  DEA_CHANNEL_LIST(DEA_CHANNEL_ENUM)
+#undef DEA_CHANNEL_ENUM
+      DEA_CHANNEL_KINDS
+};
+
+struct dea_channel_meaning {
+  const char *name, *si_unit, *display_unit;
+  double factor; // SI -> display
+  const char *meaning;
+};
+extern const struct dea_channel_meaning dea_channel_meanings[DEA_CHANNEL_KINDS];
+/* NULL-terminated names, for choices of a schema. */
+extern const char *const dea_channel_names[DEA_CHANNEL_KINDS + 1];
+
+enum { DEA_CHANNEL_NAME_SIZE = 64, DEA_CHANNELS_MAX = 32 };
+
+/* Samples at start_s + i interval_s, or, when interval_s is 0, at time_s[i], which rise. */
+struct dea_channel {
+  char name[DEA_CHANNEL_NAME_SIZE]; // unique in its recording
+  enum dea_channel_kind kind;
+  char unit[DEA_CHANNEL_NAME_SIZE]; // SI unit of the kind; of DEA_CHANNEL_OTHER as the file says
+  double start_s, interval_s;
+  double filter_Hz; // low-pass that reductions apply; NAN: none
+  double *time_s;   // [count], owned; NULL with an interval
+  double *values;   // [count], owned
+  size_t count;
+};
+
+/* Frames of a profile sensor: heights along one line across the film. */
+struct dea_profiles {
+  size_t points, count;
+  double *x_m;    // [points], rising
+  double *time_s; // [count]
+  double *z_m;    // [count][points], upwards; NAN: no valid point
+};
+
+/* A cycle that was played to its end. */
+struct dea_recorded_cycle {
+  size_t step, number;   // of the protocol's sequence, and within that step, both from 0
+  double start_s, end_s; // of the recording's clock
+  double level_V;        // asked voltage farthest from 0
+};
+
+struct dea_recording {
+  const char *file;                      // interned; ""
+  char *title;                           // "" when there is none
+  char *protocol, *design, *design_name; // whole texts of the files, name of the second; NULL
+  char *provenance;                      // JSON; NULL
+  bool complete;                         // ended by its program, not by a crash
+  char ended[256];                       // why it ended early; ""
+  struct dea_channel channels[DEA_CHANNELS_MAX];
+  size_t channel_count;
+  struct dea_profiles profiles; // count 0 without
+  struct dea_recorded_cycle *cycles;
+  size_t cycle_count;
+};
+
+/* An empty one; owned by the caller, NULL on failure. */
+dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out);
+/* NULL is fine. */
+void dea_recording_destroy(struct dea_context *ctx, struct dea_recording *recording);
+
+/* Reads a file of a recorder, also one whose program was killed: what was flushed is there then,
+ * complete is false and `ended` says so. DEA_E_IO with the reason otherwise. */
+dea_status dea_recording_read(struct dea_context *ctx, const char *file,
+                              struct dea_recording **out);
+/* Writes the whole recording as a new file that any HDF5 program opens (a file of a killed program
+ * needs h5clear for that). */
+dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recording *recording,
+                               const char *file);
+
+/* First channel of a kind, or the one of that name; NULL when there is none. Lent. */
+const struct dea_channel *dea_recording_kind(const struct dea_recording *recording,
+                                             enum dea_channel_kind kind);
+const struct dea_channel *dea_recording_channel(const struct dea_recording *recording,
+                                                const char *name);
+/* Time of a sample [s], i < count. */
+static inline double dea_channel_time(const struct dea_channel *channel, size_t i)
+{
+  return channel->interval_s > 0 ? channel->start_s + (double)i * channel->interval_s
+                                 : channel->time_s[i];
+}
+/* Number of samples before time_s: the first index at or after it, count when there is none. */
+size_t dea_channel_index(const struct dea_channel *channel, double time_s);
+
+#endif
