@@ -1,4 +1,4 @@
-/* Single values of a schema: what schema.c reads sections with. Not for others. */
+/* Single values of a schema: what schema.c and kinds read sections with. Not for others. */
 #ifndef DEA_BASE_SCHEMA_VALUE_H
 #define DEA_BASE_SCHEMA_VALUE_H
 
@@ -21,6 +21,11 @@ dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place pl
 /* Reads one value into the member at target and lists it. */
 dea_status dea_schema_value_read(const struct dea_reader *reader,
                                  const struct dea_schema_value *value, char *target);
+/* Which of names[count] the section's key 'kind' says; *index = count after a finding. what: with
+ * its article, for messages ("a waveform"). */
+dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_node *node,
+                           const char *what, const char *const names[], size_t count,
+                           size_t *index);
 /* Sets the member at target to what says "absent". */
 void dea_schema_value_absent(const struct dea_field *field, char *target, struct dea_place place);
 

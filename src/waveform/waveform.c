@@ -4,7 +4,6 @@
 #include "waveform/wave_make.h"
 
 #include <math.h>
-#include <string.h>
 
 #define WAVE_DECLARE(name)                                                                         \
   extern const struct dea_wave_type dea_wave_##name;                                               \
@@ -35,31 +34,15 @@ const struct dea_wave_type *const *dea_wave_all(size_t *count)
 static dea_status find_type(const struct dea_reader *reader, const struct dea_node *node,
                             const struct dea_wave_type **out)
 {
-  const struct dea_node *kind = dea_node_find(node, "kind");
   const char *names[TYPES];
-  char list[256] = "";
+  size_t index;
   *out = NULL;
   for (size_t i = 0; i < TYPES; i++) {
     names[i] = types[i]->name;
-    strcat(strcat(list, i > 0 ? ", " : ""), names[i]);
-    if (kind != NULL && strcmp(kind->text, names[i]) == 0) {
-      *out = types[i];
-    }
   }
-  if (*out != NULL) {
-    return DEA_OK;
-  }
-  if (kind == NULL || kind->kind != DEA_NODE_VALUE || kind->empty) {
-    return dea_schema_error(reader,
-                            kind != NULL        ? kind->place
-                            : node->key != NULL ? node->key_place
-                                                : node->place,
-                            "a waveform needs its kind: %s", list);
-  }
-  const char *nearest = dea_nearest_name(kind->text, names, TYPES);
-  return dea_schema_error(reader, kind->place, "there is no waveform '%.60s'%s%s%s: %s", kind->text,
-                          nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                          nearest != NULL ? "'? All are" : "; there are", list);
+  DEA_TRY(reader->ctx, dea_schema_kind(reader, node, "a waveform", names, TYPES, &index));
+  *out = index < TYPES ? types[index] : NULL;
+  return DEA_OK;
 }
 
 dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_node *node,

@@ -51,9 +51,14 @@ struct dea_instrument_type {
   const struct dea_record *record; // its keys, "kind" among them
   size_t raw_size;                 // of what they are read into
   unsigned roles;
-  /* raw: as read; protocol: lent, outlives the instrument. Connects, sets up, and waits for what
-   * it has to know (a sensor's first profile). The output stays at 0 V. DEA_E_INSTRUMENT with what
-   * is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's library is not there. */
+  /* Adds findings on what the table cannot know; called without errors so far. NULL: all is fine.
+   */
+  dea_status (*check)(const struct dea_reader *reader, const void *raw,
+                      const struct dea_protocol *protocol);
+  /* raw: as read, lent for the call; protocol: lent, outlives the instrument. Connects, sets up,
+   * and waits for what it has to know (a sensor's first profile). The output stays at 0 V.
+   * DEA_E_INSTRUMENT with what is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's
+   * library is not there. */
   dea_status (*open)(struct dea_context *ctx, const void *raw, const struct dea_protocol *protocol,
                      struct dea_instrument **out);
   /* Starts the clock. */
@@ -77,8 +82,8 @@ const struct dea_instrument_type *dea_instrument_find(const char *name);
 /* Tables of all kinds for printing, ended by NULL. */
 extern const struct dea_record *const dea_instrument_records[];
 
-/* Reads an instrument's section and opens it. A wrong key is a finding and DEA_E_DESIGN. out: owned
- * by the caller (type->close), NULL on failure. */
+/* Reads an instrument's section (not NULL) and opens it. A wrong key is a finding and DEA_E_DESIGN.
+ * out: owned by the caller (type->close), NULL on failure. */
 dea_status dea_instrument_open(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_instrument **out);

@@ -1,0 +1,104 @@
+/* The list of kinds of instruments; reading their sections and opening them. */
+#include "lab/instrument/instrument.h"
+
+#include "base/schema_value.h"
+#include "lab/instrument/instrument_list.h"
+
+#include <string.h>
+
+#define INSTRUMENT_DECLARE(name)                                                                   \
+  extern const struct dea_instrument_type dea_instrument_##name;                                   \
+  extern const struct dea_record dea_instrument_##name##_record;
+DEA_INSTRUMENT_LIST(INSTRUMENT_DECLARE)
+#undef INSTRUMENT_DECLARE
+
+static const struct dea_instrument_type *const types[] = {
+#define INSTRUMENT_ROW(name) &dea_instrument_##name,
+    DEA_INSTRUMENT_LIST(INSTRUMENT_ROW)
+#undef INSTRUMENT_ROW
+        NULL};
+enum { TYPES = sizeof types / sizeof types[0] - 1 };
+
+const struct dea_record *const dea_instrument_records[] = {
+#define INSTRUMENT_RECORD(name) &dea_instrument_##name##_record,
+    DEA_INSTRUMENT_LIST(INSTRUMENT_RECORD)
+#undef INSTRUMENT_RECORD
+        NULL};
+
+const struct dea_instrument_type *const *dea_instrument_all(size_t *count)
+{
+  *count = TYPES;
+  return types;
+}
+
+const struct dea_instrument_type *dea_instrument_find(const char *name)
+{
+  for (size_t i = 0; types[i] != NULL; i++) {
+    if (strcmp(types[i]->name, name) == 0) {
+      return types[i];
+    }
+  }
+  return NULL;
+}
+
+/* Reads a section into *raw (owned by the caller). *raw stays NULL after findings. */
+static dea_status read_section(struct dea_context *ctx,
+                               const struct dea_protocol_instrument *section,
+                               const struct dea_protocol *protocol,
+                               const struct dea_instrument_type **type, void **raw)
+{
+  const struct dea_reader reader = {ctx, protocol->document, NULL};
+  const char *names[TYPES + 1];
+  size_t index, errors = dea_finding_count(ctx, DEA_ERROR);
+  *raw = NULL;
+  for (size_t i = 0; types[i] != NULL; i++) {
+    names[i] = types[i]->name;
+  }
+  DEA_TRY(ctx, dea_schema_kind(&reader, section->section, "an instrument", names, TYPES, &index));
+  *type = types[index];
+  if (*type == NULL) {
+    return DEA_OK;
+  }
+  void *read = dea_alloc(ctx, 1, (*type)->raw_size);
+  dea_status status = read != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = dea_schema_read(&reader, (*type)->record, section->section, section->path, read);
+  }
+  if (status == DEA_OK && (*type)->check != NULL && dea_finding_count(ctx, DEA_ERROR) == errors) {
+    status = (*type)->check(&reader, read, protocol);
+  }
+  if (status != DEA_OK || dea_finding_count(ctx, DEA_ERROR) > errors) {
+    dea_free(ctx, read);
+    read = NULL;
+  }
+  *raw = read;
+  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_instrument_open(struct dea_context *ctx,
+                               const struct dea_protocol_instrument *section,
+                               const struct dea_protocol *protocol, struct dea_instrument **out)
+{
+  const struct dea_instrument_type *type;
+  void *raw;
+  *out = NULL;
+  DEA_TRY(ctx, read_section(ctx, section, protocol, &type, &raw));
+  if (raw == NULL) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the section %s of %s has errors", section->path,
+                    protocol->file);
+  }
+  dea_status status = type->open(ctx, raw, protocol, out);
+  dea_free(ctx, raw);
+  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol)
+{
+  for (size_t i = 0; i < protocol->instrument_count; i++) {
+    const struct dea_instrument_type *type;
+    void *raw;
+    DEA_TRY(ctx, read_section(ctx, &protocol->instruments[i], protocol, &type, &raw));
+    dea_free(ctx, raw);
+  }
+  return DEA_OK;
+}
