@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "fabricate/canvas.h"
+#include "lab/import/mat.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/provenance.h"
@@ -153,6 +154,14 @@ static void check_cairo(struct report *report)
       "install libcairo2-dev, and build again; without it dea fab writes DXF and SVG only");
 }
 
+static void check_matio(struct report *report)
+{
+  char path[4096];
+  bool ok = dea_mat_find(path, sizeof path);
+  say(report, WISHED, ok, ".mat files", ok ? path : "not built",
+      "install libmatio-dev, and build again; without it files are exchanged as CSV");
+}
+
 static void check_gnuplot(struct report *report)
 {
   char output[OUTPUT_SIZE];
@@ -195,6 +204,7 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   check_gnuplot(&report);
   check_engine(&report);
   check_cairo(&report);
+  check_matio(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {
     status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");

@@ -65,8 +65,7 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
   return status;
 }
 
-/* Name of the hidden file for `path` ("dir/.name.PID.part"); owned by the caller. */
-static char *partial_name(struct dea_context *ctx, const char *path)
+char *dea_partial_name(struct dea_context *ctx, const char *path)
 {
   const char *slash = strrchr(path, '/');
   int folder = slash != NULL ? (int)(slash - path) + 1 : 0;
@@ -75,8 +74,7 @@ static char *partial_name(struct dea_context *ctx, const char *path)
   return text.data;
 }
 
-/* Gives a finished hidden file its name; removes it when that fails. */
-static dea_status partial_finish(struct dea_context *ctx, const char *partial, const char *path)
+dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path)
 {
   if (rename(partial, path) == 0) {
     return DEA_OK;
@@ -114,13 +112,13 @@ static bool write_all(const char *path, const char *bytes, size_t length)
 dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
                           size_t length)
 {
-  char *partial = partial_name(ctx, path);
+  char *partial = dea_partial_name(ctx, path);
   if (partial == NULL) {
     return DEA_E_MEMORY;
   }
   dea_status status;
   if (write_all(partial, bytes, length)) {
-    status = partial_finish(ctx, partial, path);
+    status = dea_partial_finish(ctx, partial, path);
   } else {
     status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));
     unlink(partial);

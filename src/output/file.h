@@ -16,6 +16,11 @@ bool dea_path_is_folder(const char *path);
  * that no interruption leaves half a file. Replaces an existing file. */
 dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
                           size_t length);
+/* The two halves of that, for files that another library writes: name of the hidden file for `path`
+ * ("dir/.name.PID.part"; owned by the caller, NULL on failure), and giving the finished one its
+ * name, or removing it when that fails. */
+char *dea_partial_name(struct dea_context *ctx, const char *path);
+dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
 /* The text of *text as file directory/name; fails for a text with a failed append. */
 dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
                           const char *directory, const char *name);

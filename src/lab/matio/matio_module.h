@@ -1,0 +1,18 @@
+/* Inside of the module that knows libmatio. */
+#ifndef DEA_LAB_MATIO_MATIO_MODULE_H
+#define DEA_LAB_MATIO_MATIO_MODULE_H
+
+#include "lab/import/mat.h"
+
+#include <matio.h>
+
+/* Silences libmatio; before every use of it. */
+void dea_matio_quiet(void);
+/* What a code of libmatio means, as the end of a sentence. */
+const char *dea_matio_reason(int error);
+
+dea_status dea_matio_write(struct dea_context *ctx, const char *file,
+                           const struct dea_mat_variable *variables, size_t count,
+                           enum dea_mat_version version);
+
+#endif
