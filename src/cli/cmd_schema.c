@@ -2,12 +2,13 @@
 
 #include "base/text.h"
 #include "design/schema.h"
+#include "lab/protocol/protocol.h"
 
 #include <string.h>
 
 static int run(struct dea_cli *cli, int argc, char **argv)
 {
-  bool json = false, markdown = false, material = false;
+  bool json = false, markdown = false, material = false, protocol = false;
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--json") == 0) {
       json = true;
@@ -15,6 +16,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
       markdown = true;
     } else if (strcmp(argv[i], "--material") == 0) {
       material = true;
+    } else if (strcmp(argv[i], "--protocol") == 0) {
+      protocol = true;
     } else {
       return cli_usage_error(cli, &cmd_schema, "unknown argument '%s'", argv[i]);
     }
@@ -22,7 +25,12 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   if (json && markdown) {
     return cli_usage_error(cli, &cmd_schema, "--json and --markdown exclude each other");
   }
-  const struct dea_record *record = material ? &dea_material_file_record : &dea_design_record;
+  if (material && protocol) {
+    return cli_usage_error(cli, &cmd_schema, "--material and --protocol exclude each other");
+  }
+  const struct dea_record *record = material   ? &dea_material_file_record
+                                    : protocol ? &dea_protocol_record
+                                               : &dea_design_record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   if (json) {
@@ -45,9 +53,10 @@ static int run(struct dea_cli *cli, int argc, char **argv)
 const struct dea_command cmd_schema = {
     .name = "schema",
     .summary = "Print every key of a design file: form, unit, limits, default, meaning",
-    .usage = "dea schema [--json | --markdown] [--material]\n\n"
+    .usage = "dea schema [--json | --markdown] [--material | --protocol]\n\n"
              "  --json      JSON Schema (draft 2020-12), for editors\n"
              "  --markdown  a table in Markdown\n"
-             "  --material  the keys of a material file instead\n",
+             "  --material  the keys of a material file instead\n"
+             "  --protocol  the keys of a protocol for `dea drive` instead\n",
     .run = run,
 };

@@ -21,6 +21,9 @@ struct dea_protocol_step {
   const struct dea_node *section; // of the waveform; lent by the document
   struct dea_waveform *waveform;  // owned
   struct dea_quantity repeat, pause_s;
+  double start_s;             // on the sequence's clock
+  size_t first_cycle, cycles; // number of its first one over the whole sequence; of one repetition
+  double lowest_V, highest_V; // of the waveform
 };
 
 /* An analogue input: value [SI] = volts * per_volt + at_zero. */
@@ -87,12 +90,15 @@ extern const struct dea_record dea_protocol_record;
 
 /* The sequence on one clock from 0 on. */
 double dea_protocol_duration_s(const struct dea_protocol *protocol);
-/* Asked voltage [V] at a time; 0 in pauses and after the end. */
+/* Asked voltage [V] at a time; 0 in pauses and after the end. Where it jumps: after the jump. Of
+ * sample i ask for time i / rate, not i times an interval, which is rounded. */
 double dea_protocol_value(const struct dea_protocol *protocol, double time_s);
 /* Next time after time_s at which it bends, jumps or ends; INFINITY after the end. */
 double dea_protocol_corner(const struct dea_protocol *protocol, double time_s);
+/* Number of cycles of the whole sequence. */
+size_t dea_protocol_cycles(const struct dea_protocol *protocol);
 /* Cycle of that number, counted over the whole sequence; false when it has no more. A waveform
- * without cycles (constant, step) is one cycle. */
+ * without cycles (a chirp) is one cycle. */
 bool dea_protocol_cycle(const struct dea_protocol *protocol, size_t number,
                         struct dea_recorded_cycle *out);
 
