@@ -36,17 +36,23 @@
   "electrodes: {diameter: 5 mm unstretched}\n"                                                     \
   "fibres: {count: 4, material: stiff}\n" FILM_MATERIAL
 
-/* The first finding that is an error and whose text holds part, or NULL. */
-static inline const struct dea_finding *find_error(const struct dea_context *ctx, const char *part)
+/* The first finding of that severity whose text holds part, or NULL. */
+static inline const struct dea_finding *find_finding(const struct dea_context *ctx,
+                                                     enum dea_severity severity, const char *part)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    if (findings[i].severity == DEA_ERROR && strstr(findings[i].text, part) != NULL) {
+    if (findings[i].severity == severity && strstr(findings[i].text, part) != NULL) {
       return &findings[i];
     }
   }
   return NULL;
+}
+
+static inline const struct dea_finding *find_error(const struct dea_context *ctx, const char *part)
+{
+  return find_finding(ctx, DEA_ERROR, part);
 }
 
 static inline void print_findings(const struct dea_context *ctx)

@@ -1,0 +1,248 @@
+/* What must not be played: refused at its place, with the numbers that say why. */
+#define _GNU_SOURCE // mkdtemp
+#include "failing_allocator.h"
+#include "model/lumped/lumped.h"
+#include "protocol_text.h"
+
+#include <math.h>
+
+static struct dea_protocol_plan plan;
+
+static dea_status check(const char *text)
+{
+  struct dea_protocol *p = good_protocol(ctx, text);
+  dea_finding_clear(ctx);
+  dea_status status = dea_protocol_check(ctx, p, &plan);
+  dea_protocol_destroy(ctx, p);
+  return status;
+}
+
+#define CHANNELS                                                                                   \
+  "channels:\n"                                                                                    \
+  "  - {name: V, quantity: voltage, input: ai0, per_volt: 1 kV}\n"                                 \
+  "  - {name: I, quantity: current, input: ai1, per_volt: 1 mA}\n"
+#define HEAD_WITHOUT_FIELD                                                                         \
+  "dea-protocol: 1\n"                                                                              \
+  "design: design.yaml\n" PROTOCOL_AMPLIFIER
+
+/* The true field of the film by the batch solver, which is no part of the check, up to a total
+ * stretch. */
+static double field_at(const char *design_file, double voltage_V, double most, double *stretch)
+{
+  struct dea_design *design;
+  struct dea_device *device;
+  assert_int_equal(dea_design_read(ctx, design_file, NULL, 0, &design), DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  const struct dea_lumped_batch batch = {1,
+                                         &device->film_thickness_unstretched_m,
+                                         &device->pre_stretch,
+                                         &device->coverage,
+                                         &voltage_V,
+                                         most,
+                                         stretch};
+  assert_int_equal(dea_lumped_batch_solve(&device->film, &batch), DEA_OK);
+  double thickness_m = device->film_thickness_m / (*stretch * *stretch);
+  *stretch *= device->pre_stretch;
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  return voltage_V / thickness_m;
+}
+
+/* The paper's protocol may be played once its field is allowed. */
+static void test_example_passes(void **state)
+{
+  (void)state;
+  struct dea_protocol *p;
+  double stretch;
+  dea_finding_clear(ctx);
+  assert_int_equal(
+      dea_protocol_read(ctx, DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", NULL, 0, &p), DEA_OK);
+  dea_status status = dea_protocol_check(ctx, p, &plan);
+  if (status != DEA_OK || dea_finding_count(ctx, DEA_WARNING) > 0) {
+    print_findings(ctx);
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  assert_true(plan.cycles == 135 && plan.duration_s == 270 && plan.samples == 270000);
+  assert_true(plan.highest_V == 8000 && plan.lowest_V == 0);
+  double field = field_at(DEA_SOURCE_DIR "/examples/frdea-4.yaml", 8000, 10, &stretch);
+  assert_close(plan.largest_field_V_per_m, field, 1e-6, 0);
+  assert_close(plan.allowed_field_V_per_m, 320e6, 1e-12, 0);
+  // 73.65 pF at 8 kV: 8 kV by 10 mA take 58.9 us, by 700 V/us 11.4 us
+  assert_close(plan.rise_s, plan.capacitance_F * 8000 / 10e-3, 1e-12, 0);
+  assert_close(plan.stored_energy_J, 0.5 * plan.capacitance_F * 64e6, 1e-12, 0);
+  assert_non_null(
+      find_finding(ctx, DEA_NOTE, "8 kV, takes 58.9 us: the amplifier charges the film's 73.7 pF"));
+  dea_protocol_destroy(ctx, p);
+}
+
+struct refusal {
+  const char *text, *part;
+  size_t line, column;
+};
+
+static void test_refusals(void **state)
+{
+  (void)state;
+  static const struct refusal refusals[] = {
+      {PROTOCOL_HEAD CHANNELS
+       "sequence:\n"
+       "  - {waveform: {kind: constant, voltage: 2 kV}}\n"
+       "  - {label: sweep, waveform: {kind: ramp, to: 16 kV, duration: 2 s}}\n",
+       "refused: the sequence asks for 16 kV at step 2 (sweep), the amplifier Trek 10/10B-HS gives "
+       "10 kV at most",
+       10, 47},
+      {PROTOCOL_HEAD CHANNELS
+       "waveform: {kind: staircase, values: [1 kV, 2 kV, -11 kV], frequency: 1 Hz}\n",
+       "refused: the sequence asks for -11 kV at step 1, the amplifier Trek 10/10B-HS gives -10 kV "
+       "at least",
+       8, 50},
+      {PROTOCOL_HEAD CHANNELS
+       "waveform: {kind: sine, mean: 6 kV, amplitude: 5 kV, frequency: 1 Hz}\n",
+       "refused: the sequence asks for 11 kV at step 1", 8, 30},
+      {HEAD_WITHOUT_FIELD CHANNELS "waveform: {kind: constant, voltage: 6 kV}\n",
+       "the breakdown field of film over a margin of 1.2", 7, 37},
+      {PROTOCOL_HEAD "channels:\n"
+                     "  - {name: V, quantity: voltage, input: ai0, per_volt: 1 kV, range: 5 V}\n"
+                     "  - {name: I, quantity: current, input: ai1, per_volt: 1 mA}\n"
+                     "waveform: {kind: constant, voltage: 6 kV}\n",
+       "refused: 6 kV give 6 V at the input of 'V', which reads 5 V at most", 6, 69},
+      {PROTOCOL_HEAD CHANNELS "rate: 1 kHz\n"
+                              "waveform: {kind: sine, amplitude: 1 kV, frequency: 300 Hz}\n",
+       "refused: a cycle of step 1 has 3.33 samples only at 1000 samples a second; 6000 samples", 8,
+       7},
+      {"dea-protocol: 1\n"
+       "amplifier: {gain: 1000, control: 5 V, max_voltage: 10 kV, min_voltage: 0 kV}\n"
+       "waveform: {kind: constant, voltage: 6 kV}\n",
+       "refused: 6 kV at step 1 need a control voltage of 6 V (gain 1000), the amplifier takes 5 V",
+       3, 37},
+      {"dea-protocol: 1\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV, min_voltage: 0 kV}\n"
+       "waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz}\n",
+       "asks for -1 kV at step 1, the amplifier gives 0 kV at least", 3, 35},
+      {"dea-protocol: 1\nrate: 1 MHz\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: 1 kV, duration: 1000 day}\n",
+       "refused: 8.64e+07 s are 8.64e+13 samples of every channel", 2, 7},
+  };
+  for (size_t i = 0; i < sizeof refusals / sizeof refusals[0]; i++) {
+    const struct refusal *r = &refusals[i];
+    assert_int_equal(check(r->text), DEA_E_INTERLOCK);
+    assert_int_equal(dea_status_exit_code(DEA_E_INTERLOCK), 6);
+    const struct dea_finding *f = find_finding(ctx, DEA_ERROR, r->part);
+    if (f == NULL || f->place.line != r->line || f->place.column != r->column) {
+      print_findings(ctx);
+      fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
+    }
+  }
+}
+
+/* What is allowed is where the field reaches it: 80 V/um s^1.5 of this film, over the margin. */
+static void test_allowed_voltage(void **state)
+{
+  (void)state;
+  double stretch, voltage_kV = 0;
+  assert_int_equal(check(HEAD_WITHOUT_FIELD CHANNELS "waveform: {kind: constant, voltage: 6 kV}\n"),
+                   DEA_E_INTERLOCK);
+  const struct dea_finding *f = find_finding(ctx, DEA_ERROR, "which is ");
+  assert_non_null(f);
+  assert_int_equal(sscanf(strstr(f->text, "which is "), "which is %lf kV", &voltage_kV), 1);
+  double field = field_at(in_folder("design.yaml"), 1e3 * voltage_kV, 10, &stretch);
+  assert_close(field, 80e6 * pow(stretch, 1.5) / 1.2, 0.01, 0);
+  field = field_at(in_folder("design.yaml"), 6000, 10, &stretch);
+  assert_close(plan.largest_field_V_per_m, field, 1e-6, 0);
+  assert_close(plan.allowed_field_V_per_m, 80e6 * pow(stretch, 1.5) / 1.2, 1e-6, 0);
+}
+
+/* A soft film without fibres that pulls in before the asked voltage. */
+static void test_pull_in(void **state)
+{
+  (void)state;
+  static const char soft[] =
+      "dea: 1\nfilm: {material: soft, thickness: 100 um}\npre_stretch: 1.1\n"
+      "frame: {inner_diameter: 30 mm}\nelectrodes: {diameter: 6 mm stretched}\n"
+      "materials:\n  - name: soft\n    kind: elastomer\n"
+      "    laws: [{id: a, law: neo-hookean, parameters: {mu: 100 kPa}, source: test}]\n"
+      "    permittivity: [{id: a, at_rest: 3, source: test}]\n";
+  struct dea_protocol *p;
+  write_in_folder("soft.yaml", soft);
+  write_in_folder("protocol.yaml",
+                  "dea-protocol: 1\ndesign: soft.yaml\n" PROTOCOL_AMPLIFIER CHANNELS
+                  "waveform: {kind: ramp, to: 9 kV, duration: 2 s}\n");
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), NULL, 0, &p), DEA_OK);
+  assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_E_INTERLOCK);
+  const struct dea_finding *f = find_finding(
+      ctx, DEA_ERROR, "refused: the film pulls in at 3.915 kV on its way to 9 kV at step 1");
+  assert_non_null(f);
+  assert_true(f->place.line == 7 && f->place.column == 28);
+  double stretch = 0, below_V = 0.99 * plan.pull_in_V, above_V = 1.01 * plan.pull_in_V;
+  field_at(in_folder("soft.yaml"), below_V, 1.7, &stretch);
+  assert_true(isfinite(stretch));
+  field_at(in_folder("soft.yaml"), above_V, 1.7, &stretch);
+  assert_true(isnan(stretch));
+  dea_protocol_destroy(ctx, p);
+}
+
+static void test_warnings(void **state)
+{
+  (void)state;
+  static const struct refusal warnings[] = {
+      {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: 1 kV}\n",
+       "no `design` is named", 1, 1},
+      {PROTOCOL_HEAD "waveform: {kind: constant, voltage: 1 kV}\n",
+       "no channel measures the current", 1, 1},
+      {PROTOCOL_HEAD "waveform: {kind: constant, voltage: 1 kV}\n",
+       "no channel measures the voltage", 1, 1},
+      {PROTOCOL_HEAD CHANNELS "waveform: {kind: sine, amplitude: 1 kV, frequency: 100 Hz}\n",
+       "a cycle of step 1 has 10 samples only", 1, 1},
+      {PROTOCOL_HEAD CHANNELS
+       "rate: 1 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 50 kHz, cycles: 10}\n",
+       "to charge the film's", 9, 11},
+      {PROTOCOL_HEAD CHANNELS
+       "rate: 10 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 500 kHz, cycles: 10}\n",
+       "step 1 changes with 8e+03 V/us, the amplifier follows with 700 V/us", 9, 11},
+      {PROTOCOL_HEAD CHANNELS
+       "sequence:\n  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n"
+       "  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n",
+       "step 1 has the label 'a' too", 10, 13},
+  };
+  for (size_t i = 0; i < sizeof warnings / sizeof warnings[0]; i++) {
+    const struct refusal *r = &warnings[i];
+    dea_status status = check(r->text);
+    const struct dea_finding *f = find_finding(ctx, DEA_WARNING, r->part);
+    if (status != DEA_OK || f == NULL || f->place.line != r->line ||
+        (r->column > 1 && f->place.column != r->column)) {
+      print_findings(ctx);
+      fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
+    }
+  }
+}
+
+static dea_status check_in_folder(struct dea_context *context)
+{
+  struct dea_protocol *p;
+  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  if (status == DEA_OK) {
+    status = dea_protocol_check(context, p, &plan);
+  }
+  dea_protocol_destroy(context, p);
+  return status;
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  check(HEAD_WITHOUT_FIELD CHANNELS "waveform: {kind: constant, voltage: 6 kV}\n");
+  assert_true(failing_ends(check_in_folder, DEA_E_INTERLOCK) > 10); // there was something to fail
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_example_passes),  cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_allowed_voltage), cmocka_unit_test(test_pull_in),
+      cmocka_unit_test(test_warnings),        cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
