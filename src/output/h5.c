@@ -7,7 +7,7 @@
 
 void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
 {
-  *h = (struct h5){.ctx = ctx, .path = path, .status = DEA_OK};
+  *h = (struct h5){.ctx = ctx, .path = path, .not_it = "not a complete results file:"};
   H5open();
   H5Eget_auto2(H5E_DEFAULT, &h->print, &h->print_data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -42,7 +42,6 @@ void dea_h5_fail(struct h5 *h, const char *what)
 }
 
 static const char cannot_write[] = "cannot write";
-static const char cannot_read[] = "not a complete results file:";
 
 static hid_t checked(struct h5 *h, hid_t id, const char *what)
 {
@@ -113,7 +112,7 @@ hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name)
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
   }
-  return checked(h, H5Gopen2(parent, name, H5P_DEFAULT), cannot_read);
+  return checked(h, H5Gopen2(parent, name, H5P_DEFAULT), h->not_it);
 }
 
 void dea_h5_close(hid_t object)
@@ -193,12 +192,23 @@ void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_
   dea_h5_close(space);
 }
 
+hsize_t dea_h5_file_size(const struct h5 *h, hid_t object)
+{
+  hsize_t size = 0;
+  hid_t file = h->status == DEA_OK ? H5Iget_file_id(object) : H5I_INVALID_HID;
+  if (file < 0 || H5Fget_filesize(file, &size) < 0) {
+    size = 0;
+  }
+  dea_h5_close(file);
+  return size;
+}
+
 hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
 {
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
   }
-  return checked(h, H5Dopen2(group, name, H5P_DEFAULT), cannot_read);
+  return checked(h, H5Dopen2(group, name, H5P_DEFAULT), h->not_it);
 }
 
 void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)
@@ -238,7 +248,7 @@ void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, si
   hid_t type = text_type(size);
   if (!is_single(space) || stored < 0 || H5Tget_class(stored) != H5T_STRING ||
       H5Tis_variable_str(stored) > 0 || H5Aread(attribute, type, out) < 0) {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
     out[0] = '\0';
   }
   out[size - 1] = '\0';
@@ -256,7 +266,7 @@ static void get_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
   if (!is_single(space) || H5Aread(attribute, memory_type, out) < 0) {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
   }
   dea_h5_close(space);
   dea_h5_close(attribute);
@@ -298,7 +308,7 @@ void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_
     h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: dataset '%s' has not %zu values",
                          h->path, name, count);
   } else if (space < 0 || H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
   }
   dea_h5_close(space);
   dea_h5_close(set);
@@ -314,15 +324,16 @@ char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name)
   hid_t space = set >= 0 ? H5Dget_space(set) : H5I_INVALID_HID;
   char *text = NULL;
   if (type >= 0 && is_single(space) && H5Tget_class(type) == H5T_STRING &&
-      H5Tis_variable_str(type) == 0 && H5Dget_storage_size(set) > 0) {
+      H5Tis_variable_str(type) == 0 && H5Dget_storage_size(set) > 0 &&
+      H5Tget_size(type) <= dea_h5_file_size(h, set)) {
     text = dea_alloc(h->ctx, H5Tget_size(type) + 1, 1);
     if (text == NULL) {
       h->status = DEA_E_MEMORY;
     } else if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
-      dea_h5_fail(h, cannot_read);
+      dea_h5_fail(h, h->not_it);
     }
   } else {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
   }
   dea_h5_close(space);
   dea_h5_close(type);
@@ -337,7 +348,7 @@ size_t dea_h5_link_count(struct h5 *h, hid_t group)
     return 0;
   }
   if (H5Gget_info(group, &info) < 0) {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
     return 0;
   }
   return (size_t)info.nlinks;
@@ -348,6 +359,6 @@ void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t
   out[0] = '\0';
   if (h->status == DEA_OK && H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, out,
                                                 size, H5P_DEFAULT) < 0) {
-    dea_h5_fail(h, cannot_read);
+    dea_h5_fail(h, h->not_it);
   }
 }

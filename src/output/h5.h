@@ -11,7 +11,8 @@
 
 struct h5 {
   struct dea_context *ctx;
-  const char *path; // of the file, for messages
+  const char *path;   // of the file, for messages
+  const char *not_it; // begins the message about a file that cannot be read; may be replaced
   dea_status status;
   H5E_auto2_t print; // what HDF5 did with errors before
   void *print_data;
@@ -42,6 +43,8 @@ void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
 void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
                       hid_t file_type, size_t count, const void *values, const char *unit,
                       const char *meaning);
+/* Bytes of the file that an object is in; 0 when they cannot be found out. */
+hsize_t dea_h5_file_size(const struct h5 *h, hid_t object);
 /* A dataset by name, for its attributes. */
 hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name);
 /* Gives an object of `from` the same name in `to` as well. */
@@ -59,7 +62,8 @@ bool dea_h5_has(const struct h5 *h, hid_t group, const char *name);
 /* A one-dimensional dataset of exactly `count` values. */
 void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
                       void *out);
-/* Text of a scalar dataset, NULL when it does not exist; owned by the caller. */
+/* Text of a scalar dataset, NULL when it does not exist; owned by the caller. A failure when the
+ * file is shorter than the text. */
 char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
 /* Number of links of a group, and the name of one of them in alphabetical order. */
 size_t dea_h5_link_count(struct h5 *h, hid_t group);

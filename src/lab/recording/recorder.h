@@ -25,6 +25,8 @@ struct dea_recorder_options {
   size_t profile_points; // 0: no profile sensor
   const double *x_m;     // [profile_points]
   double flush_s;        // longest time between flushes of what was given; 0: 0.2 s
+  bool plain;            // of data that are there already: no readers until it is finished, and a
+                         // format that programs with older versions of HDF5 read
 };
 
 /* Makes the file, which must not exist. out: owned by the caller (dea_recorder_finish), NULL on
@@ -32,7 +34,9 @@ struct dea_recorder_options {
 dea_status dea_recorder_create(struct dea_context *ctx, const char *file,
                                const struct dea_recorder_options *options,
                                struct dea_recorder **out);
-/* Appends samples of a channel with an interval (a gap: NAN), or with their times. */
+/* Appends samples of a channel with an interval (a gap: NAN), or with their times, which must rise
+ * (DEA_E_ARGUMENT, and nothing is appended). After any other failure all calls but finish do
+ * nothing and answer it again. */
 dea_status dea_recorder_add(struct dea_recorder *recorder, size_t channel, const double *values,
                             size_t count);
 dea_status dea_recorder_add_timed(struct dea_recorder *recorder, size_t channel,

@@ -1,0 +1,31 @@
+/* Plays a protocol through its instruments into a recording, and always comes back to 0 V. */
+#ifndef DEA_LAB_INSTRUMENT_DRIVE_H
+#define DEA_LAB_INSTRUMENT_DRIVE_H
+
+#include "base/context.h"
+
+struct dea_protocol;
+
+struct dea_drive_options {
+  bool simulate;    // play on the simulated bench of protocol->sim instead of the instruments
+  const char *file; // recording to make; it must not exist
+};
+
+struct dea_drive_report {
+  double played_s;          // of the protocol's sequence
+  size_t cycles;            // played to their end, and recorded
+  size_t lost;              // samples, frames and replies that did not arrive
+  bool reached_zero;        // the output went to 0 V as it should: by the protocol, or by the ramp
+  double largest_current_A; // by amount; NAN: no channel of it
+  char ended[256];          // why it ended early; ""
+};
+
+/* Checks the protocol (DEA_E_INTERLOCK, and nothing is played), opens the instruments, and plays.
+ * Where it ends early the output goes to 0 V along the protocol's ramp, still being recorded, and
+ * the recording stays readable: DEA_E_INTERRUPTED after a signal (a second one changes nothing),
+ * DEA_E_INTERLOCK after a limit was exceeded, DEA_E_INSTRUMENT when an instrument failed, DEA_E_IO
+ * when the recording could not be written. out is filled in all cases. */
+dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *protocol,
+                         const struct dea_drive_options *options, struct dea_drive_report *out);
+
+#endif

@@ -1,0 +1,25 @@
+/* Where HDF5 writes a recording to: a driver of ours below it, for the sake of failing well.
+ *
+ * When a write fails (a full disk), HDF5 must not go on and change other places of the file, and
+ * must still be able to close it. So the first write that fails is remembered and is the last that
+ * reaches the file, which then is as if the program had been killed at that moment; HDF5 itself is
+ * told that all is well. */
+#ifndef DEA_LAB_RECORDING_DISK_H
+#define DEA_LAB_RECORDING_DISK_H
+
+#include "output/h5.h"
+
+struct dea_disk {
+  int error;        // errno of the write that failed; 0: none has
+  long writes_left; // for tests: the disk is full after so many more; negative: never
+};
+
+/* Sets the driver in a list of file access properties; false: HDF5 failed. disk: lent, outlives the
+ * file. */
+bool dea_disk_use(hid_t access, struct dea_disk *disk);
+
+struct dea_recorder;
+/* Of a recorder; lent. */
+struct dea_disk *dea_recorder_disk(struct dea_recorder *recorder);
+
+#endif

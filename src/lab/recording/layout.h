@@ -1,0 +1,21 @@
+/* How a recording lies in its file; recorder.c writes it, read.c reads it.
+ *
+ *   attributes          format, version, title
+ *   protocol, design, provenance   whole texts; design has the attribute name
+ *   state               text of STATE_SIZE bytes, overwritten in place at the end
+ *   channels/KEY        attributes name, quantity, unit, index, start_s, interval_s, filter_Hz
+ *     values [n]        and, where interval_s is 0, time [n]
+ *   profiles            x_m [points], time_s [n], z_m [n][points]
+ *   cycles [n][5]       step, number, start_s, end_s, level_V */
+#ifndef DEA_LAB_RECORDING_LAYOUT_H
+#define DEA_LAB_RECORDING_LAYOUT_H
+
+#define DEA_RECORDING_FORMAT "dea recording"
+enum { DEA_RECORDING_VERSION = 1, DEA_STATE_SIZE = 512, DEA_CYCLE_WIDTH = 5 };
+
+/* What `state` says. */
+#define DEA_STATE_RUNNING "running"
+#define DEA_STATE_COMPLETE "complete"
+#define DEA_STATE_ENDED "ended: "
+
+#endif

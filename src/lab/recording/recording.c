@@ -1,0 +1,77 @@
+/* A recording in memory. */
+#include "lab/recording/recording.h"
+
+#include <string.h>
+
+dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out)
+{
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->file = "";
+  (*out)->title = dea_copy_text(ctx, "", 0);
+  if ((*out)->title == NULL) {
+    dea_free(ctx, *out);
+    *out = NULL;
+    return DEA_E_MEMORY;
+  }
+  return DEA_OK;
+}
+
+void dea_recording_destroy(struct dea_context *ctx, struct dea_recording *recording)
+{
+  if (recording == NULL) {
+    return;
+  }
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    dea_free(ctx, recording->channels[c].time_s);
+    dea_free(ctx, recording->channels[c].values);
+  }
+  dea_free(ctx, recording->profiles.x_m);
+  dea_free(ctx, recording->profiles.time_s);
+  dea_free(ctx, recording->profiles.z_m);
+  dea_free(ctx, recording->cycles);
+  dea_free(ctx, recording->title);
+  dea_free(ctx, recording->protocol);
+  dea_free(ctx, recording->design);
+  dea_free(ctx, recording->design_name);
+  dea_free(ctx, recording->provenance);
+  dea_free(ctx, recording);
+}
+
+const struct dea_channel *dea_recording_kind(const struct dea_recording *recording,
+                                             enum dea_channel_kind kind)
+{
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    if (recording->channels[c].kind == kind) {
+      return &recording->channels[c];
+    }
+  }
+  return NULL;
+}
+
+const struct dea_channel *dea_recording_channel(const struct dea_recording *recording,
+                                                const char *name)
+{
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    if (strcmp(recording->channels[c].name, name) == 0) {
+      return &recording->channels[c];
+    }
+  }
+  return NULL;
+}
+
+size_t dea_channel_index(const struct dea_channel *channel, double time_s)
+{
+  size_t low = 0, high = channel->count; // all before low are earlier, high and later are not
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (dea_channel_time(channel, middle) < time_s) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
