@@ -39,6 +39,7 @@ extern "C" {
 #include "lab/instrument/drive.h"
 #include "lab/recording/recorder.h"
 #include "lab/recording/recording.h"
+#include "lab/recording/table.h"
 #include "material/branch.h"
 #include "material/catalogue.h"
 #include "material/law.h"
