@@ -38,7 +38,7 @@ struct dea_command {
   X(cmd_plot)                                                                                      \
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
-  X(cmd_import)                                                                                    \
+  X(cmd_recording)                                                                                 \
   X(cmd_examples)                                                                                  \
   X(cmd_doctor)                                                                                    \
   X(cmd_completion)

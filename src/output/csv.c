@@ -101,8 +101,7 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   return status;
 }
 
-/* A name as one field: in quotes where it has a comma or quotes of its own. */
-static void add_name(struct dea_text *text, const char *name)
+void dea_csv_add_name(struct dea_text *text, const char *name)
 {
   bool quoted = strpbrk(name, ",\"\n") != NULL;
   dea_text_add(text, "%s", quoted ? "\"" : "");
@@ -130,7 +129,7 @@ static void add_profile(struct dea_text *text, const char *name,
 {
   for (size_t i = 0; i < record->count; i++) {
     if (name[0] != '\0') {
-      add_name(text, name);
+      dea_csv_add_name(text, name);
       dea_text_add(text, ",");
     }
     add_number(text, record->voltage_V * 1e-3);
@@ -169,7 +168,7 @@ static void add_variant(struct dea_text *text, const bool *used, bool meshes,
                         const struct dea_variant *variant)
 {
   for (size_t i = 0; i < variant->curve.count; i++) {
-    add_name(text, variant->name);
+    dea_csv_add_name(text, variant->name);
     dea_text_add(text, ",");
     if (meshes) {
       add_number(text, variant->refinement);

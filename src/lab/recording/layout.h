@@ -1,7 +1,7 @@
 /* How a recording lies in its file; recorder.c writes it, read.c reads it.
  *
- *   attributes          format, version, title
- *   protocol, design, provenance   whole texts; design has the attribute name
+ *   attributes format, version
+ *   title, protocol, design, design_name, provenance   whole texts, where there are any
  *   state               text of STATE_SIZE bytes, overwritten in place at the end
  *   channels/KEY        attributes name, quantity, unit, index, start_s, interval_s, filter_Hz
  *     values [n]        and, where interval_s is 0, time [n]

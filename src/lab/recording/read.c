@@ -1,12 +1,12 @@
+#define _POSIX_C_SOURCE 200809L // stat
 /* Reads recordings, also those of programs that were killed, and believes nothing in them. */
-#include "base/text.h"
 #include "lab/recording/layout.h"
 #include "lab/recording/recording.h"
 #include "lab/recording/series.h"
-#include "output/file.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static void wrong(struct h5 *h, const char *what)
 {
@@ -289,8 +289,12 @@ static hid_t open_file(struct h5 *h)
 dea_status dea_recording_read(struct dea_context *ctx, const char *file, struct dea_recording **out)
 {
   *out = NULL;
-  if (!dea_path_exists(file)) {
+  struct stat info;
+  if (stat(file, &info) != 0) {
     return dea_fail(ctx, DEA_E_IO, "%s does not exist", file);
+  }
+  if (!S_ISREG(info.st_mode)) { // a pipe would be waited for
+    return dea_fail(ctx, DEA_E_IO, "%s is no file that can hold a recording", file);
   }
   struct dea_recording *recording;
   DEA_TRY(ctx, dea_recording_create(ctx, &recording));

@@ -10,13 +10,15 @@
 #include "device/device.h"
 #include "lab/recording/recording.h"
 
-/* How a quantity of a cycle is formed; see docs/theory/reduction.md. */
+/* How a quantity of a cycle is formed; see docs/theory/reduction.md. NAN: not formed. */
 struct dea_cycle_value {
-  double rest, active;   // mean of the last part of the rest before, and of the active part
+  double rest, active;   // at the active part's time, by the rests on both sides; its last part
   double amplitude;      // active - rest
-  double uncertainty;    // 1 sigma of the amplitude, from the noise of both parts
+  double uncertainty;    // 1 sigma of the amplitude, from the noise of all parts
   double rise_s, fall_s; // 10 to 90 % of the amplitude; NAN: not resolved
   double creep;          // change within the active part, after its rise
+  double rest_before;    // mean of the last part of the rest before
+  double shared;         // covariance with the amplitude of the next cycle, whose rest it shares
 };
 
 /* What can be formed of a cycle. */
@@ -39,12 +41,14 @@ struct dea_reduced_cycle {
  * cycle, and standard uncertainty of the mean. */
 struct dea_reduced_level {
   double voltage_V;
-  size_t cycles;
+  size_t step, cycles;
   double mean[DEA_REDUCED_KINDS], std[DEA_REDUCED_KINDS], uncertainty[DEA_REDUCED_KINDS];
+  double noise[DEA_REDUCED_KINDS]; // uncertainty of one cycle's amplitude, root mean square
   double rise_s[DEA_REDUCED_KINDS], fall_s[DEA_REDUCED_KINDS]; // medians
   double creep[DEA_REDUCED_KINDS];                             // mean change within the active part
   double drift[DEA_REDUCED_KINDS]; // of the rest, a cycle, by a straight line
-  double shape;
+  double drift_uncertainty[DEA_REDUCED_KINDS];
+  double shape, shape_uncertainty;
   double *z_m, *z_std_m; // [points] mean profile against rest, and scatter; owned; NULL without
 };
 
@@ -55,14 +59,28 @@ struct dea_discharge {
   double time_s, voltage_V, peak_A, charge_C;
 };
 
-/* What is subtracted from the frames, and what the line laser sees of the frame. */
+/* What is subtracted from the frames, and what the line laser sees of the frame. A height z at x
+ * becomes z - offset of its frame - tan(tilt) (x - centre). NAN: not known. */
 struct dea_levelling {
   double centre_m;           // of the film, on the sensor's x
   double tilt_rad, offset_m; // of the line through both sides of the frame, mean of all frames
+  double offset_std_m;       // of the frames' own offsets
   double frame_height_m;     // of the frame above the film; NAN: not in the picture
+  double edges_m[2];         // inner edges of the frame, on the sensor's x
+  double beside_m;           // how far the line passes beside the film's centre, from its chord
   bool by_frame;             // false: by the film's outer part
-  double tip_radius_m, film_radius_m; // that were used
-  size_t invalid, outliers, total;    // points
+  double tip_radius_m, film_radius_m, electrode_radius_m; // that were used
+  double width_m;                                         // that centre and tips are averaged over
+  size_t frames, frames_at_rest;                          // those that the levelling is fitted to
+  size_t invalid, outliers, total;                        // points on the film
+};
+
+/* Of the current: what a discharge has to exceed, and how long it is not looked for after a corner
+ * of the voltage. */
+struct dea_current_limits {
+  double noise_A, factor; // a discharge is beyond factor * noise_A
+  double blind_s;
+  size_t samples; // looked at
 };
 
 struct dea_reduction {
@@ -76,7 +94,10 @@ struct dea_reduction {
   struct dea_discharge *discharges; // owned
   size_t discharge_count;
   double force_offset_N, preload_N; // unloaded cell, force at rest above it; NAN
-  double noise[DEA_REDUCED_KINDS];  // 1 sigma of a sample at rest
+  double noise[DEA_REDUCED_KINDS];  // 1 sigma of a sample at rest; NAN: not measured
+  struct dea_current_limits current;
+  struct dea_channel series[DEA_REDUCED_KINDS]; // in time, filtered, against rest; owned; count 0
+  double settle;                                // that was used
 };
 
 /* NAN or 0 where the design or the data say it. */
@@ -86,8 +107,9 @@ struct dea_reduce_options {
   double force_offset_N; // reading of the unloaded cell; NAN: the first samples' mean
 };
 
-/* device: of the recording's design; NULL without one. out: owned by the caller, NULL on failure.
- * What could not be formed and why becomes notes. DEA_E_IO for a recording without a voltage. */
+/* device: of the recording's design; NULL without one. options: NULL for all from there. out: owned
+ * by the caller, NULL on failure. What could not be formed and why becomes notes. DEA_E_IO for a
+ * recording without a voltage. */
 dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recording,
                       const struct dea_device *device, const struct dea_reduce_options *options,
                       struct dea_reduction **out);

@@ -1,0 +1,256 @@
+#define _GNU_SOURCE // getopt_long
+#include "cli/cli.h"
+
+#include "lab/recording/table.h"
+#include "output/json.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <string.h>
+
+struct request {
+  const char *file, *copy, *folder;
+  bool json;
+};
+
+static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
+{
+  static const struct option options[] = {{"json", no_argument, NULL, 'j'},
+                                          {"output", required_argument, NULL, 'o'},
+                                          {"csv", required_argument, NULL, 'c'},
+                                          {0}};
+  int letter;
+  opterr = 0;
+  while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
+    if (letter == 'j') {
+      request->json = true;
+    } else if (letter == 'o') {
+      request->copy = optarg;
+    } else if (letter == 'c') {
+      request->folder = optarg;
+    } else {
+      return cli_option_error(cli, &cmd_recording, letter, argv);
+    }
+  }
+  if (argc - optind != 1) {
+    return cli_usage_error(cli, &cmd_recording, "give one recording");
+  }
+  request->file = argv[optind];
+  return 0;
+}
+
+// What is in it ----------------------------------------------------------------------------------
+
+struct range {
+  double lowest, highest; // NAN without any value
+  size_t missing;
+};
+
+static struct range range_of(const double *values, size_t count)
+{
+  struct range range = {NAN, NAN, 0};
+  for (size_t i = 0; i < count; i++) {
+    range.missing += isnan(values[i]) ? 1U : 0U;
+    range.lowest = fmin(range.lowest, values[i]);
+    range.highest = fmax(range.highest, values[i]);
+  }
+  return range;
+}
+
+static double duration_of(const struct dea_channel *channel)
+{
+  if (channel->interval_s > 0) {
+    return (double)channel->count * channel->interval_s;
+  }
+  return channel->count > 0 ? channel->time_s[channel->count - 1] - channel->time_s[0] : 0.0;
+}
+
+static size_t steps_of(const struct dea_recording *recording)
+{
+  size_t steps = 0;
+  for (size_t i = 0; i < recording->cycle_count; i++) {
+    steps += i == 0 || recording->cycles[i].step != recording->cycles[i - 1].step;
+  }
+  return steps;
+}
+
+static void print_channel(const struct dea_channel *channel)
+{
+  char pace[48];
+  struct range range = range_of(channel->values, channel->count);
+  double factor = dea_channel_meanings[channel->kind].factor;
+  const char *unit = dea_channel_display_unit(channel);
+  if (channel->interval_s > 0) {
+    snprintf(pace, sizeof pace, "%.6g Hz", 1 / channel->interval_s);
+  } else {
+    snprintf(pace, sizeof pace, "readings");
+  }
+  printf("  %-22s %-13s %-12s %10.3f s %10zu values", channel->name,
+         dea_channel_meanings[channel->kind].name, pace, duration_of(channel), channel->count);
+  if (!isnan(range.lowest)) {
+    printf("  %.5g to %.5g %s", factor * range.lowest, factor * range.highest, unit);
+  }
+  if (range.missing > 0) {
+    printf(", %zu missing", range.missing);
+  }
+  putchar('\n');
+}
+
+static void print_profiles(const struct dea_profiles *profiles)
+{
+  size_t total = profiles->count * profiles->points;
+  struct range range = range_of(profiles->z_m, total);
+  double span_s = profiles->time_s[profiles->count - 1] - profiles->time_s[0];
+  printf("%-14s %zu of %zu points from %.5g to %.5g mm", "profiles", profiles->count,
+         profiles->points, 1e3 * profiles->x_m[0], 1e3 * profiles->x_m[profiles->points - 1]);
+  if (span_s > 0) {
+    printf(", %.4g a second", (double)(profiles->count - 1) / span_s);
+  }
+  if (!isnan(range.lowest)) {
+    printf(", heights %.5g to %.5g um", 1e6 * range.lowest, 1e6 * range.highest);
+  }
+  printf(", %.3g %% of the points invalid\n", 100.0 * (double)range.missing / (double)total);
+}
+
+static void print_provenance(const char *text)
+{
+  json_t *json = json_loads(text, 0, NULL), *value;
+  const char *key;
+  if (json_is_object(json)) {
+    json_object_foreach(json, key, value)
+    {
+      if (json_is_string(value)) {
+        printf("%-14s %s\n", key, json_string_value(value));
+      } else if (json_is_number(value)) {
+        printf("%-14s %g\n", key, json_number_value(value));
+      }
+    }
+  }
+  json_decref(json);
+}
+
+static void print_text(const struct dea_recording *recording)
+{
+  printf("%-14s %s\n", "title", recording->title[0] != '\0' ? recording->title : "(none)");
+  printf("%-14s %s%s\n", "complete", recording->complete ? "yes" : "no: ", recording->ended);
+  printf("%-14s %zu\n", "channels", recording->channel_count);
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    print_channel(&recording->channels[c]);
+  }
+  if (recording->profiles.count > 0) {
+    print_profiles(&recording->profiles);
+  }
+  printf("%-14s %zu completed", "cycles", recording->cycle_count);
+  if (recording->cycle_count > 0) {
+    double lowest = INFINITY, highest = -INFINITY;
+    for (size_t i = 0; i < recording->cycle_count; i++) {
+      lowest = fmin(lowest, recording->cycles[i].level_V);
+      highest = fmax(highest, recording->cycles[i].level_V);
+    }
+    printf(" in %zu steps, %.4g to %.4g kV", steps_of(recording), 1e-3 * lowest, 1e-3 * highest);
+  }
+  printf("\n%-14s %s\n", "protocol", recording->protocol != NULL ? "inside" : "none");
+  printf("%-14s %s\n", "design",
+         recording->design == NULL        ? "none"
+         : recording->design_name != NULL ? recording->design_name
+                                          : "inside");
+  if (recording->provenance != NULL) {
+    print_provenance(recording->provenance);
+  }
+}
+
+static json_t *json_of_channel(const struct dea_channel *channel)
+{
+  struct range range = range_of(channel->values, channel->count);
+  json_t *json = json_object();
+  dea_json_put_text(json, "name", channel->name);
+  dea_json_put_text(json, "quantity", dea_channel_meanings[channel->kind].name);
+  dea_json_put_text(json, "unit", channel->unit);
+  json_object_set_new(json, "count", json_integer((json_int_t)channel->count));
+  json_object_set_new(json, "missing", json_integer((json_int_t)range.missing));
+  if (channel->interval_s > 0) {
+    dea_json_put(json, "start_s", channel->start_s);
+    dea_json_put(json, "interval_s", channel->interval_s);
+  }
+  dea_json_put(json, "duration_s", duration_of(channel));
+  dea_json_put(json, "filter_Hz", channel->filter_Hz);
+  dea_json_put(json, "lowest", range.lowest);
+  dea_json_put(json, "highest", range.highest);
+  return json;
+}
+
+static void print_json(const struct dea_recording *recording)
+{
+  json_t *json = json_object(), *channels = json_array(), *cycles = json_array();
+  dea_json_put_text(json, "title", recording->title);
+  json_object_set_new(json, "complete", json_boolean(recording->complete));
+  dea_json_put_text(json, "ended", recording->ended);
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    json_array_append_new(channels, json_of_channel(&recording->channels[c]));
+  }
+  json_object_set_new(json, "channels", channels);
+  if (recording->profiles.count > 0) {
+    const struct dea_profiles *profiles = &recording->profiles;
+    struct range range = range_of(profiles->z_m, profiles->count * profiles->points);
+    json_t *object = json_pack("{s:I, s:I, s:I}", "frames", (json_int_t)profiles->count, "points",
+                               (json_int_t)profiles->points, "invalid", (json_int_t)range.missing);
+    dea_json_put(object, "from_m", profiles->x_m[0]);
+    dea_json_put(object, "to_m", profiles->x_m[profiles->points - 1]);
+    dea_json_put(object, "lowest_m", range.lowest);
+    dea_json_put(object, "highest_m", range.highest);
+    json_object_set_new(json, "profiles", object);
+  }
+  for (size_t i = 0; i < recording->cycle_count; i++) {
+    const struct dea_recorded_cycle *cycle = &recording->cycles[i];
+    json_t *object = json_pack("{s:I, s:I}", "step", (json_int_t)cycle->step, "number",
+                               (json_int_t)cycle->number);
+    dea_json_put(object, "start_s", cycle->start_s);
+    dea_json_put(object, "end_s", cycle->end_s);
+    dea_json_put(object, "level_V", cycle->level_V);
+    json_array_append_new(cycles, object);
+  }
+  json_object_set_new(json, "cycles", cycles);
+  dea_json_put_text(json, "design_name", recording->design_name);
+  json_t *provenance =
+      recording->provenance != NULL ? json_loads(recording->provenance, 0, NULL) : NULL;
+  json_object_set_new(json, "provenance", provenance != NULL ? provenance : json_null());
+  cli_print_json(json);
+}
+
+static int run(struct dea_cli *cli, int argc, char **argv)
+{
+  struct request request = {0};
+  struct dea_recording *recording = NULL;
+  int wrong = read_options(cli, argc, argv, &request);
+  if (wrong != 0) {
+    return wrong;
+  }
+  dea_status status = dea_recording_read(cli->ctx, request.file, &recording);
+  if (status == DEA_OK && request.copy != NULL) {
+    status = dea_recording_write(cli->ctx, recording, request.copy);
+  }
+  if (status == DEA_OK && request.folder != NULL) {
+    status = dea_recording_write_tables(cli->ctx, recording, request.folder);
+  }
+  if (status == DEA_OK && request.json) {
+    print_json(recording);
+  } else if (status == DEA_OK) {
+    print_text(recording);
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_recording_destroy(cli->ctx, recording);
+  return code;
+}
+
+const struct dea_command cmd_recording = {
+    .name = "recording",
+    .summary = "Say what is in a recording; copy or rescue it; write it as CSV",
+    .usage = "dea recording FILE [--json] [-o FILE] [--csv DIR]\n\n"
+             "  -o, --output FILE  write a clean copy as FILE, which must not exist: also of a\n"
+             "                     recording whose program was killed, and in a form that\n"
+             "                     programs with older versions of HDF5 read\n"
+             "  --csv DIR          write the channels, profiles and cycles as CSV files into DIR\n"
+             "  --json             what is in it as JSON\n",
+    .run = run,
+};

@@ -1,0 +1,18 @@
+/* A recording as CSV files, for programs that do not read HDF5. */
+#ifndef DEA_LAB_RECORDING_TABLE_H
+#define DEA_LAB_RECORDING_TABLE_H
+
+#include "lab/recording/recording.h"
+
+/* Writes into a folder, which is made where it is not there: channels.csv with time and all
+ * channels of the first clock (channels_2.csv with those of the next, ...), readings_1.csv, ...
+ * with each channel of single readings, profiles.csv with a line a frame, cycles.csv. Numbers in
+ * display units, which the headers name: "time (s),voltage (kV)"; a missing value is an empty
+ * field. DEA_E_INTERRUPTED leaves no half file. */
+dea_status dea_recording_write_tables(struct dea_context *ctx,
+                                      const struct dea_recording *recording, const char *folder);
+/* "voltage (kV)": name of a channel and its display unit, and the factor to it. */
+void dea_channel_title(const struct dea_channel *channel, char *out, size_t size);
+const char *dea_channel_display_unit(const struct dea_channel *channel);
+
+#endif

@@ -1,0 +1,34 @@
+#include "lab/reduce/reduce_parts.h"
+
+/* One way through the samples; y follows x with the time constant tau_s, exactly for a value that
+ * stays over each interval, so that the samples may lie unevenly. */
+static void pass(const struct dea_channel *channel, double tau_s, bool backward, double *values)
+{
+  double y = NAN, before_s = 0.0;
+  for (size_t k = 0; k < channel->count; k++) {
+    size_t i = backward ? channel->count - 1 - k : k;
+    double time_s = dea_channel_time(channel, i);
+    if (isnan(values[i])) {
+      continue;
+    }
+    double share = isnan(y) ? 1.0 : -expm1(-fabs(time_s - before_s) / tau_s);
+    y = isnan(y) ? values[i] : y + share * (values[i] - y);
+    values[i] = y;
+    before_s = time_s;
+  }
+}
+
+void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, double *values)
+{
+  for (size_t i = 0; i < channel->count; i++) {
+    values[i] = channel->values[i];
+  }
+  if (!(cutoff_Hz > 0.0)) {
+    return;
+  }
+  // Both ways together: 1 / (1 + (f / f1)^2) = 1 / sqrt(2) at f = cutoff.
+  double f1_Hz = cutoff_Hz / sqrt(sqrt(2.0) - 1.0);
+  double tau_s = 1.0 / (2.0 * acos(-1.0) * f1_Hz);
+  pass(channel, tau_s, false, values);
+  pass(channel, tau_s, true, values);
+}

@@ -1,0 +1,416 @@
+#include "lab/reduce/reduce_parts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What the steps hand on. */
+struct job {
+  struct dea_context *ctx;
+  const struct dea_recording *recording;
+  const struct dea_channel *asked, *measured; // NULL: not there
+  struct dea_voltage_scale scale;
+  struct dea_cycle_list list;
+  size_t *level_of; // [list.count], owned
+  double *offsets;  // of the frames, owned
+  struct dea_reduction *out;
+};
+
+#define NOTE(ctx, ...)                                                                             \
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0}, __VA_ARGS__))
+
+/* A copy with the channel's filter, values only as many as wanted later. */
+static dea_status copy_filtered(struct dea_context *ctx, const struct dea_channel *channel,
+                                struct dea_channel *out)
+{
+  *out = *channel;
+  out->values = dea_alloc(ctx, channel->count, sizeof *out->values);
+  out->time_s = NULL;
+  if (out->values == NULL) {
+    out->count = 0;
+    return DEA_E_MEMORY;
+  }
+  if (channel->time_s != NULL) {
+    out->time_s = dea_alloc(ctx, channel->count, sizeof *out->time_s);
+    if (out->time_s == NULL) {
+      return DEA_E_MEMORY; // what is there is freed with the reduction
+    }
+    memcpy(out->time_s, channel->time_s, channel->count * sizeof *out->time_s);
+  }
+  dea_filter_apply(channel, channel->filter_Hz, out->values);
+  return DEA_OK;
+}
+
+// Cycles -----------------------------------------------------------------------------------------
+
+/* Voltage of the cycles: measured where it was. */
+static dea_status set_voltages(struct job *job)
+{
+  struct dea_reduction *r = job->out;
+  struct dea_channel smooth = {0};
+  const struct dea_channel *u = job->measured;
+  double *scratch = NULL;
+  dea_status status = DEA_OK;
+  if (u != NULL) {
+    scratch = dea_alloc(job->ctx, u->count, 2 * sizeof *scratch);
+    status = scratch != NULL ? copy_filtered(job->ctx, u, &smooth) : DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < job->list.count && status == DEA_OK; i++) {
+    const struct dea_cycle_parts *part = &job->list.parts[i];
+    struct dea_reduced_cycle *cycle = &r->cycles[i];
+    struct dea_span span = dea_span_settled(part->active, r->settle, part->held);
+    double measured = u != NULL ? dea_window_mean(&smooth, span, scratch).mean : NAN;
+    cycle->cycle = part->cycle;
+    cycle->voltage_V = isnan(measured) ? part->cycle.level_V : measured;
+    cycle->shape = NAN;
+    for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+      struct dea_cycle_value *v = &cycle->values[kind];
+      v->rest = v->active = v->amplitude = v->uncertainty = NAN;
+      v->rise_s = v->fall_s = v->creep = v->rest_before = NAN;
+    }
+  }
+  dea_free(job->ctx, scratch);
+  dea_free(job->ctx, smooth.values);
+  dea_free(job->ctx, smooth.time_s);
+  return status;
+}
+
+/* Cycles whose voltage is no number cannot be put into any order. */
+static void drop_unknown(struct dea_cycle_list *list)
+{
+  size_t n = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    if (isfinite(list->parts[i].cycle.level_V)) {
+      list->parts[n++] = list->parts[i];
+    }
+  }
+  list->without += list->count - n;
+  list->count = n;
+}
+
+static dea_status find_cycles(struct job *job)
+{
+  const struct dea_channel *voltage = job->asked != NULL ? job->asked : job->measured;
+  DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, voltage, &job->scale));
+  DEA_TRY(job->ctx, dea_cycles_find(job->ctx, job->recording, voltage, &job->scale, &job->list));
+  drop_unknown(&job->list);
+  struct dea_reduction *r = job->out;
+  r->cycles = dea_alloc(job->ctx, job->list.count, sizeof *r->cycles);
+  job->level_of = dea_alloc(job->ctx, job->list.count, sizeof *job->level_of);
+  if (r->cycles == NULL || job->level_of == NULL) {
+    return DEA_E_MEMORY;
+  }
+  r->cycle_count = job->list.count;
+  return set_voltages(job);
+}
+
+static dea_status note_cycles(const struct job *job)
+{
+  struct dea_context *ctx = job->ctx;
+  const struct dea_recording *recording = job->recording;
+  size_t peaks = 0;
+  for (size_t i = 0; i < job->list.count; i++) {
+    peaks += !job->list.parts[i].held;
+  }
+  if (job->list.count == 0) {
+    NOTE(ctx, "the voltage stays at %.4g kV: there are no cycles, so no amplitudes are formed",
+         1e-3 * job->scale.rest_V);
+  }
+  if (job->measured == NULL) {
+    NOTE(ctx, "the voltage was not measured: the asked one is taken in its place");
+  }
+  if (peaks > 0) {
+    NOTE(ctx,
+         "%zu of %zu cycles hold no voltage: the time around the peak is taken for their "
+         "active part, without rise, fall and creep",
+         peaks, job->list.count);
+  }
+  if (job->list.without > 0) {
+    NOTE(ctx, "%zu of %zu cycles of the recording are left out: no active part was found in them",
+         job->list.without, recording->cycle_count);
+  }
+  if (job->list.outside > 0) {
+    NOTE(ctx, "%zu active part%s left out: in no completed cycle of the recording",
+         job->list.outside, job->list.outside == 1 ? " is" : "s are");
+  }
+  if (!recording->complete && recording->ended[0] != '\0') {
+    NOTE(ctx, "the recording is not complete: %s", recording->ended);
+  }
+  return DEA_OK;
+}
+
+// Profiles ---------------------------------------------------------------------------------------
+
+static bool profiles_usable(const struct dea_profiles *p)
+{
+  if (p->points < 16 || p->count == 0) {
+    return false;
+  }
+  for (size_t i = 0; i < p->points; i++) {
+    if (!isfinite(p->x_m[i]) || (i > 0 && !(p->x_m[i] > p->x_m[i - 1]))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static dea_status note_profiles(struct dea_context *ctx, const struct dea_levelling *l)
+{
+  if (!l->by_frame) {
+    NOTE(ctx, "no frame on both sides of the profiles: tilt by the film's outer part at rest, "
+              "centre where most moves; a drift of the sensor's height is not taken off");
+  }
+  if (l->beside_m > 0.15 * l->film_radius_m) {
+    NOTE(ctx,
+         "the frame is %.3g mm apart in the profiles, the film's diameter is %.3g mm: the "
+         "line passes about %.2g mm beside the centre",
+         1e3 * (l->edges_m[1] - l->edges_m[0]), 2e3 * l->film_radius_m, 1e3 * l->beside_m);
+  }
+  if (isnan(l->tip_radius_m)) {
+    NOTE(ctx, "no displacement at the fibre tips: their radius is not known (give --tip-radius, "
+              "or a design with fibres)");
+  }
+  if (isnan(l->electrode_radius_m)) {
+    NOTE(ctx, "no shape: the electrode's radius is not known (give --electrode-radius, or a "
+              "design)");
+  }
+  if (20 * (l->invalid + l->outliers) > l->total) {
+    NOTE(ctx, "%.2g %% of the points on the film are invalid and %.2g %% outliers",
+         100.0 * (double)l->invalid / (double)l->total,
+         100.0 * (double)l->outliers / (double)l->total);
+  }
+  return DEA_OK;
+}
+
+static dea_status reduce_profiles(struct job *job)
+{
+  const struct dea_profiles *profiles = &job->recording->profiles;
+  if (!profiles_usable(profiles)) {
+    if (profiles->count > 0) {
+      NOTE(job->ctx, "the profiles are left out: they need 16 points or more with rising x");
+    }
+    return DEA_OK;
+  }
+  DEA_TRY(job->ctx, dea_profiles_reduce(job->ctx, profiles, job->list.parts, job->list.count,
+                                        job->out, &job->offsets));
+  return note_profiles(job->ctx, &job->out->levelling);
+}
+
+// Channels ---------------------------------------------------------------------------------------
+
+/* Takes the first mean at rest off a series, so that it tells displacements. */
+static void against_rest(struct dea_channel *series, const struct dea_cycle_parts *first,
+                         double settle, double *scratch)
+{
+  double rest = NAN;
+  if (first != NULL) {
+    rest = dea_window_mean(series, dea_span_settled(first->rest, settle, true), scratch).mean;
+  }
+  for (size_t i = 0; i < series->count && isnan(rest); i++) {
+    rest = series->values[i];
+  }
+  for (size_t i = 0; i < series->count; i++) {
+    series->values[i] -= rest;
+  }
+}
+
+static dea_status reduce_force(struct job *job, double offset_N, double *scratch)
+{
+  struct dea_reduction *r = job->out;
+  struct dea_channel *force = &r->series[DEA_REDUCED_FORCE];
+  const struct dea_cycle_parts *first = job->list.count > 0 ? &job->list.parts[0] : NULL;
+  bool given = !isnan(offset_N);
+  double before_s = first != NULL ? first->rest.end_s : NAN;
+  r->force_offset_N = given ? offset_N : dea_force_offset(force, before_s, scratch);
+  if (isnan(r->force_offset_N)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < force->count; i++) {
+    force->values[i] -= r->force_offset_N;
+  }
+  if (first != NULL) {
+    struct dea_span rest = dea_span_settled(first->rest, r->settle, true);
+    r->preload_N = dea_window_mean(force, rest, scratch).mean;
+  }
+  if (!given) {
+    NOTE(job->ctx,
+         "the force cell's offset is the mean of its first readings, %.4g mN: a preload "
+         "that was there from the start cannot be told (give --force-offset)",
+         1e3 * r->force_offset_N);
+  }
+  return DEA_OK;
+}
+
+static dea_status reduce_channels(struct job *job, const struct dea_reduce_options *options)
+{
+  static const struct {
+    enum dea_channel_kind channel;
+    enum dea_reduced_kind kind;
+  } taken[] = {{DEA_CHANNEL_DISPLACEMENT, DEA_REDUCED_DISPLACEMENT},
+               {DEA_CHANNEL_FORCE, DEA_REDUCED_FORCE}};
+  struct dea_reduction *r = job->out;
+  for (size_t k = 0; k < sizeof taken / sizeof taken[0]; k++) {
+    const struct dea_channel *channel = dea_recording_kind(job->recording, taken[k].channel);
+    struct dea_channel *series = &r->series[taken[k].kind];
+    if (channel == NULL || channel->count == 0) {
+      continue;
+    }
+    DEA_TRY(job->ctx, copy_filtered(job->ctx, channel, series));
+    double *scratch = dea_alloc(job->ctx, channel->count, 2 * sizeof *scratch);
+    if (scratch == NULL) {
+      return DEA_E_MEMORY;
+    }
+    dea_status status = DEA_OK;
+    if (taken[k].kind == DEA_REDUCED_FORCE) {
+      status = reduce_force(job, options->force_offset_N, scratch);
+    } else {
+      against_rest(series, job->list.count > 0 ? &job->list.parts[0] : NULL, r->settle, scratch);
+    }
+    dea_free(job->ctx, scratch);
+    DEA_TRY(job->ctx, status);
+  }
+  return DEA_OK;
+}
+
+static dea_status reduce_cycles(struct job *job)
+{
+  struct dea_reduction *r = job->out;
+  bool unknown = false;
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    if (r->series[kind].count > 0 && r->cycle_count > 0) {
+      DEA_TRY(job->ctx,
+              dea_cycle_values(job->ctx, &r->series[kind], job->list.parts, r->cycle_count,
+                               r->settle, r->cycles, (enum dea_reduced_kind)kind, &r->noise[kind]));
+      unknown = unknown || isnan(r->noise[kind]);
+    }
+  }
+  if (unknown) {
+    NOTE(job->ctx, "the parts of a cycle hold too few samples to tell their noise: uncertainties "
+                   "of single cycles are not known");
+  }
+  DEA_TRY(job->ctx, dea_levels_form(job->ctx, r->cycles, r->cycle_count, 0.5 * job->scale.active_V,
+                                    &r->levels, &r->level_count, job->level_of));
+  return job->offsets == NULL || r->level_count == 0
+             ? DEA_OK
+             : dea_profiles_levels(job->ctx, &job->recording->profiles, job->list.parts,
+                                   job->level_of, job->offsets, r);
+}
+
+static dea_status reduce_current(struct job *job)
+{
+  const struct dea_channel *current = dea_recording_kind(job->recording, DEA_CHANNEL_CURRENT);
+  struct dea_reduction *r = job->out;
+  if (current == NULL || current->count < 8) {
+    return DEA_OK;
+  }
+  return dea_discharges_find(job->ctx, current, job->asked != NULL ? job->asked : job->measured,
+                             job->asked != NULL ? job->measured : NULL, &job->scale, &r->discharges,
+                             &r->discharge_count, &r->current);
+}
+
+// ------------------------------------------------------------------------------------------------
+
+/* Radii and share: asked for, or of the design, or not known. */
+static void take_options(const struct dea_device *device, const struct dea_reduce_options *options,
+                         struct dea_reduction *out)
+{
+  struct dea_levelling *l = &out->levelling;
+  bool fibres = device != NULL && device->fibre_count > 0;
+  *l = (struct dea_levelling){.centre_m = NAN,
+                              .tilt_rad = NAN,
+                              .offset_m = NAN,
+                              .offset_std_m = NAN,
+                              .frame_height_m = NAN,
+                              .edges_m = {NAN, NAN},
+                              .beside_m = NAN,
+                              .width_m = NAN,
+                              .tip_radius_m = options->tip_radius_m,
+                              .film_radius_m = options->film_radius_m,
+                              .electrode_radius_m = options->electrode_radius_m};
+  if (isnan(l->tip_radius_m) && fibres) {
+    l->tip_radius_m = device->fibre_tip_radius_m;
+  }
+  if (isnan(l->film_radius_m) && device != NULL) {
+    l->film_radius_m = device->frame_radius_m;
+  }
+  if (isnan(l->electrode_radius_m) && device != NULL) {
+    l->electrode_radius_m = device->electrode_radius_m;
+  }
+  out->settle = options->settle > 0.0 && options->settle <= 1.0 ? options->settle : 0.2;
+  out->force_offset_N = out->preload_N = NAN;
+  out->current = (struct dea_current_limits){.noise_A = NAN, .factor = NAN, .blind_s = NAN};
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    out->noise[kind] = NAN;
+  }
+}
+
+static dea_status reduce(struct job *job, const struct dea_reduce_options *options)
+{
+  DEA_TRY(job->ctx, find_cycles(job));
+  DEA_TRY(job->ctx, note_cycles(job));
+  DEA_TRY(job->ctx, reduce_profiles(job));
+  DEA_TRY(job->ctx, reduce_channels(job, options));
+  DEA_TRY(job->ctx, reduce_cycles(job));
+  return reduce_current(job);
+}
+
+/* A channel of a kind that has samples. */
+static const struct dea_channel *filled(const struct dea_recording *recording,
+                                        enum dea_channel_kind kind)
+{
+  const struct dea_channel *channel = dea_recording_kind(recording, kind);
+  return channel != NULL && channel->count > 0 ? channel : NULL;
+}
+
+dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recording,
+                      const struct dea_device *device, const struct dea_reduce_options *options,
+                      struct dea_reduction **out)
+{
+  static const struct dea_reduce_options none = {NAN, NAN, NAN, 0.0, NAN};
+  struct job job = {.ctx = ctx,
+                    .recording = recording,
+                    .asked = filled(recording, DEA_CHANNEL_COMMAND),
+                    .measured = filled(recording, DEA_CHANNEL_VOLTAGE)};
+  *out = NULL;
+  options = options != NULL ? options : &none;
+  if (job.asked == NULL && job.measured == NULL) {
+    return dea_fail(ctx, DEA_E_IO,
+                    "%s%shas no voltage, asked or measured, so that nothing can be told of it",
+                    recording->file != NULL ? recording->file : "",
+                    recording->file != NULL && recording->file[0] != '\0' ? " " : "the recording ");
+  }
+  job.out = dea_alloc(ctx, 1, sizeof *job.out);
+  if (job.out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  take_options(device, options, job.out);
+  dea_status status = reduce(&job, options);
+  dea_free(ctx, job.list.parts);
+  dea_free(ctx, job.level_of);
+  dea_free(ctx, job.offsets);
+  if (status != DEA_OK) {
+    dea_reduction_destroy(ctx, job.out);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = job.out;
+  return DEA_OK;
+}
+
+void dea_reduction_destroy(struct dea_context *ctx, struct dea_reduction *reduction)
+{
+  if (reduction == NULL) {
+    return;
+  }
+  for (size_t l = 0; l < reduction->level_count; l++) {
+    dea_free(ctx, reduction->levels[l].z_m);
+    dea_free(ctx, reduction->levels[l].z_std_m);
+  }
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    dea_free(ctx, reduction->series[kind].time_s);
+    dea_free(ctx, reduction->series[kind].values);
+  }
+  dea_free(ctx, reduction->radius_m);
+  dea_free(ctx, reduction->cycles);
+  dea_free(ctx, reduction->levels);
+  dea_free(ctx, reduction->discharges);
+  dea_free(ctx, reduction);
+}

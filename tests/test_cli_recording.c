@@ -1,0 +1,135 @@
+/* `dea recording`: what it says, the copy it makes of a killed one, its tables. */
+#define _GNU_SOURCE
+#include "command.h"
+#include "recording_samples.h"
+
+#include <jansson.h>
+
+enum { CYCLES = 3 };
+
+/* A recording of some cycles; killed: as a program leaves it that never came to its end. */
+static void record(const char *name, bool killed)
+{
+  char file[600];
+  snprintf(file, sizeof file, "%s/%s", command_folder, name);
+  fflush(NULL);
+  pid_t child = fork();
+  assert_true(child >= 0);
+  if (child == 0) {
+    struct dea_context *own;
+    struct dea_recorder *recorder;
+    bool good = dea_context_create(NULL, &own) == DEA_OK &&
+                sample_create(own, file, false, 0, &recorder) == DEA_OK;
+    for (size_t i = 0; i < CYCLES && good; i++) {
+      struct dea_recorded_cycle cycle = sample_cycle(i);
+      good = sample_add(recorder, i * SAMPLE_CYCLE, SAMPLE_CYCLE) == DEA_OK &&
+             sample_add_reading(recorder, i) == DEA_OK && sample_add_frame(recorder, i) == DEA_OK &&
+             dea_recorder_add_cycle(recorder, &cycle) == DEA_OK;
+    }
+    if (!killed) {
+      good = good && dea_recorder_finish(recorder, NULL) == DEA_OK;
+    }
+    _exit(good ? 0 : 1);
+  }
+  int status;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_int_equal(status, 0);
+}
+
+static void test_what_is_in_it(void **state)
+{
+  (void)state;
+  record("whole.h5", false);
+  assert_int_equal(command_run("recording whole.h5"), 0);
+  assert_contains(command_out, "complete       yes");
+  assert_contains(command_out, "10000 Hz");
+  assert_contains(command_out, "2100 values");
+  assert_contains(command_out, "3 completed in 1 steps");
+  assert_int_equal(command_run("recording --json whole.h5"), 0);
+  json_t *json = json_loads(command_out, 0, NULL);
+  assert_non_null(json);
+  json_t *channel = json_array_get(json_object_get(json, "channels"), 0);
+  double lowest = INFINITY, highest = -INFINITY;
+  for (size_t i = 0; i < (size_t)CYCLES * SAMPLE_CYCLE; i++) {
+    lowest = fmin(lowest, sample_value(0, i));
+    highest = fmax(highest, sample_value(0, i));
+  }
+  assert_close(json_number_value(json_object_get(channel, "lowest")), lowest, 1e-11, 0);
+  assert_close(json_number_value(json_object_get(channel, "highest")), highest, 1e-11, 0);
+  assert_int_equal(json_integer_value(json_object_get(channel, "missing")), 3);
+  json_t *cycle = json_array_get(json_object_get(json, "cycles"), 2);
+  assert_close(json_number_value(json_object_get(cycle, "end_s")), 0.46, 1e-12, 0);
+  json_decref(json);
+}
+
+static void test_killed_one_is_rescued(void **state)
+{
+  (void)state;
+  record("killed.h5", true);
+  assert_int_equal(command_run("recording killed.h5 -o copy.h5 --csv tables"), 0);
+  assert_contains(command_out, "no: its program was killed");
+  assert_int_equal(command_run("recording copy.h5"), 0);
+  assert_contains(command_out, "no: its program was killed");
+  assert_contains(command_out, "3 completed");
+  assert_int_equal(command_run("recording killed.h5 -o copy.h5"), 5);
+  assert_contains(command_err, "exists");
+}
+
+static void test_tables(void **state)
+{
+  (void)state;
+  double time_s, voltage_kV;
+  int used;
+  record("table.h5", false);
+  assert_int_equal(command_run("recording table.h5 --csv csv"), 0);
+  command_read("csv/channels.csv", command_out);
+  const char *at = command_out;
+  const char *header = "time (s),voltage (kV),centre/laser (um)\n";
+  assert_memory_equal(at, header, strlen(header));
+  at += strlen(header);
+  for (size_t i = 0; i < (size_t)CYCLES * SAMPLE_CYCLE; i++) {
+    int found = sscanf(at, "%lf,%lf%n", &time_s, &voltage_kV, &used);
+    assert_close(time_s, 0.25 + 1e-4 * (double)i, 1e-11, 0);
+    if (isnan(sample_value(0, i))) {
+      assert_int_equal(found, 1); // an empty field
+    } else {
+      assert_int_equal(found, 2);
+      assert_close(voltage_kV, 1e-3 * sample_value(0, i), 1e-11, 0);
+    }
+    at = strchr(at, '\n');
+    assert_non_null(at);
+    at++;
+  }
+  assert_int_equal(*at, '\0');
+  command_read("csv/readings_1.csv", command_out);
+  assert_contains(command_out, "time (s),temperature (K)\n");
+  command_read("csv/profiles.csv", command_out);
+  assert_contains(command_out, "time (s),z at x = -30 mm (um),");
+  assert_contains(command_out, "\n0.02,31,32,33,34,35,36,37\n");
+  command_read("csv/cycles.csv", command_out);
+  assert_contains(command_out, "\n0,1,0.32,0.39,0\n");
+}
+
+static void test_what_is_no_recording(void **state)
+{
+  (void)state;
+  command_write("text.h5", "no recording at all");
+  assert_int_equal(command_run("recording text.h5"), 5);
+  assert_contains(command_err, "text.h5");
+  assert_int_equal(command_run("recording nowhere.h5"), 5);
+  assert_contains(command_err, "does not exist");
+  assert_int_equal(command_run("recording /dev/null"), 5);
+  assert_int_equal(command_run("recording"), 2);
+  assert_int_equal(command_run("recording a b"), 2);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_is_in_it),
+      cmocka_unit_test(test_killed_one_is_rescued),
+      cmocka_unit_test(test_tables),
+      cmocka_unit_test(test_what_is_no_recording),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}

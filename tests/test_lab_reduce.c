@@ -1,0 +1,490 @@
+/* The reduction as a whole: recordings whose truth is known. */
+#include "failing_allocator.h"
+
+#include "context_fixture.h"
+#include "lab/reduce/reduce.h"
+#include "lab_signals.h"
+
+static const struct dea_reduce_options plain = {NAN, NAN, NAN, 0.0, NAN};
+
+static struct dea_reduction *reduced(const struct dea_recording *r,
+                                     const struct dea_reduce_options *options)
+{
+  struct dea_reduction *out;
+  dea_finding_clear(ctx);
+  dea_status status = dea_reduce(ctx, r, NULL, options, &out);
+  if (status != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  return out;
+}
+
+static bool noted(const char *words)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (strstr(findings[i].text, words) != NULL) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Uncertainties ----------------------------------------------------------------------------------
+
+/* Amplitudes of a point laser with a given correlation: of one cycle, and of the level's mean. */
+static void pulls_of(double rho, const char *what)
+{
+  struct signal_pulls cycle = {0}, level = {0};
+  struct signal_bench b = signal_bench_plain();
+  char name[64];
+  b.displacement = true;
+  b.sigma = 4e-6;
+  b.rho = rho;
+  b.drift_per_s = 2e-6;
+  for (uint64_t seed = 1; seed <= 200; seed++) {
+    struct dea_recording r = signal_record(&b, seed);
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(out->level_count, 1);
+    assert_int_equal(out->levels[0].cycles, 5);
+    const struct dea_cycle_value *v = &out->cycles[2].values[DEA_REDUCED_DISPLACEMENT];
+    signal_pull(&cycle, v->amplitude, 300e-6, v->uncertainty);
+    signal_pull(&level, out->levels[0].mean[DEA_REDUCED_DISPLACEMENT], 300e-6,
+                out->levels[0].uncertainty[DEA_REDUCED_DISPLACEMENT]);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+  snprintf(name, sizeof name, "a cycle, %s", what);
+  signal_check_pulls(name, &cycle);
+  snprintf(name, sizeof name, "a level, %s", what);
+  signal_check_pulls(name, &level);
+}
+
+static void test_uncertainty_of_independent_samples(void **state)
+{
+  (void)state;
+  pulls_of(0.0, "independent");
+}
+
+static void test_uncertainty_of_correlated_samples(void **state)
+{
+  (void)state;
+  pulls_of(0.7, "correlated");
+}
+
+static struct signal_bench line_laser(void)
+{
+  struct signal_bench b = signal_bench_plain();
+  b.points = 250;
+  b.cycles = 3;
+  b.point_sigma = 8e-6;
+  b.common_sigma = 6e-6;
+  b.rho = 0.3;
+  b.tilt = 0.03;
+  b.height_m = -1.2e-3;
+  b.centre_m = 0.8e-3;
+  b.outliers = 0.01;
+  b.lost = 0.03;
+  b.drift_per_s = 1e-6;
+  return b;
+}
+
+static void test_uncertainty_of_profiles(void **state)
+{
+  (void)state;
+  struct signal_pulls centre = {0}, tip = {0};
+  struct signal_bench b = line_laser();
+  struct dea_reduce_options options = plain;
+  options.film_radius_m = b.film_m;
+  options.electrode_radius_m = b.electrode_m;
+  options.tip_radius_m = 6e-3;
+  double tip_truth = 300e-6 * signal_shape(&b, 6e-3);
+  for (uint64_t seed = 1; seed <= 120; seed++) {
+    struct dea_recording r = signal_record(&b, seed);
+    struct dea_reduction *out = reduced(&r, &options);
+    assert_true(out->levelling.by_frame);
+    const struct dea_reduced_level *level = &out->levels[0];
+    signal_pull(&centre, level->mean[DEA_REDUCED_CENTRE], 300e-6,
+                level->uncertainty[DEA_REDUCED_CENTRE]);
+    signal_pull(&tip, level->mean[DEA_REDUCED_TIP], tip_truth, level->uncertainty[DEA_REDUCED_TIP]);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+  signal_check_pulls("a level's centre", &centre);
+  signal_check_pulls("a level's fibre tips", &tip);
+}
+
+// The frame --------------------------------------------------------------------------------------
+
+static void test_frame_is_found_and_taken_off(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.points = 800;
+  for (int known = 0; known < 2; known++) {
+    struct dea_reduce_options options = plain;
+    options.film_radius_m = known == 1 ? b.film_m : NAN;
+    options.electrode_radius_m = b.electrode_m;
+    struct dea_recording r = signal_record(&b, 7);
+    struct dea_reduction *out = reduced(&r, &options);
+    const struct dea_levelling *l = &out->levelling;
+    double pitch = r.profiles.x_m[1] - r.profiles.x_m[0];
+    assert_true(l->by_frame);
+    assert_close(l->centre_m, b.centre_m, 0.0, 2.0 * pitch);
+    assert_close(0.5 * (l->edges_m[1] - l->edges_m[0]), b.film_m, 0.0, 2.0 * pitch);
+    assert_close(tan(l->tilt_rad), b.tilt, 0.0, 2e-4);
+    assert_close(l->frame_height_m, b.frame_m, 0.05, 0.0);
+    double lost = (double)l->invalid / (double)l->total;
+    assert_close(lost, b.lost, 0.1, 0.0);
+    assert_close((double)l->outliers / (double)l->total, b.outliers, 0.15, 0.0);
+    for (size_t i = 0; i < out->points; i++) { // nothing of the frame is left
+      double z = out->levels[0].z_m[i];
+      assert_true(fabs(out->radius_m[i]) < b.film_m ||
+                  isnan(z)); // and the film is where it should be
+      if (!isnan(z)) {
+        assert_close(z, 300e-6 * signal_shape(&b, out->radius_m[i]), 0.0, 15e-6);
+      }
+    }
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+static void test_line_beside_the_centre_is_said(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  struct dea_reduce_options options = plain;
+  b.film_m = 14e-3; // a chord of a film of 15 mm
+  options.film_radius_m = 15e-3;
+  struct dea_recording r = signal_record(&b, 3);
+  struct dea_reduction *out = reduced(&r, &options);
+  assert_close(out->levelling.beside_m, sqrt(225.0 - 196.0) * 1e-3, 0.03, 0.0);
+  assert_true(noted("beside the centre"));
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
+static void test_without_frame_the_outer_film_levels(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.framed = false;
+  b.drift_per_s = 0.0;
+  b.points = 500;
+  struct dea_reduce_options options = plain;
+  options.tip_radius_m = 6e-3;
+  struct dea_recording r = signal_record(&b, 5);
+  struct dea_reduction *out = reduced(&r, &options);
+  assert_false(out->levelling.by_frame);
+  assert_true(noted("no frame"));
+  assert_true(isnan(out->levelling.frame_height_m));
+  assert_close(out->levelling.centre_m, b.centre_m, 0.0, 0.4e-3);
+  assert_close(tan(out->levelling.tilt_rad), b.tilt, 0.0, 1e-3);
+  assert_close(out->levels[0].mean[DEA_REDUCED_CENTRE], 300e-6, 0.0, 8e-6);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
+static void test_shape(void **state)
+{
+  (void)state;
+  const double cones[] = {0.0, 0.5, 1.0};
+  for (int k = 0; k < 3; k++) {
+    struct signal_bench b = line_laser();
+    b.cone = cones[k];
+    b.points = 400;
+    struct dea_reduce_options options = plain;
+    options.film_radius_m = b.film_m;
+    options.electrode_radius_m = b.electrode_m;
+    struct dea_recording r = signal_record(&b, 11);
+    struct dea_reduction *out = reduced(&r, &options);
+    const struct dea_reduced_level *level = &out->levels[0];
+    assert_true(level->shape_uncertainty > 0.0 && level->shape_uncertainty < 0.08);
+    assert_close(level->shape, b.cone, 0.0, 4.0 * level->shape_uncertainty + 0.01);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+// Levels, times, force ---------------------------------------------------------------------------
+
+static void check_levels(const struct signal_bench *b, const struct dea_reduction *out)
+{
+  assert_int_equal(out->level_count, b->level_count);
+  for (size_t l = 0; l < out->level_count; l++) {
+    const struct dea_reduced_level *level = &out->levels[l];
+    double V = b->levels_V[l];
+    assert_int_equal(level->cycles, b->cycles);
+    assert_close(level->voltage_V, V, 0.0, 5.0);
+    assert_close(level->mean[DEA_REDUCED_DISPLACEMENT], b->m_per_V2 * V * V, 0.0, 2e-6);
+    assert_close(level->mean[DEA_REDUCED_FORCE], b->N_per_V2 * V * V, 0.0, 2e-6);
+    if (V > 1500.0) { // ln 9 tau
+      assert_close(level->rise_s[DEA_REDUCED_DISPLACEMENT], log(9.0) * b->tau_s, 0.1, 0.0);
+      assert_close(level->fall_s[DEA_REDUCED_DISPLACEMENT], log(9.0) * b->tau_s, 0.1, 0.0);
+    }
+    assert_close(level->creep[DEA_REDUCED_DISPLACEMENT], 0.0, 0.0, 2e-6);
+    assert_close(level->drift[DEA_REDUCED_DISPLACEMENT], b->drift_per_s * b->cycle_s, 0.0,
+                 5.0 * level->drift_uncertainty[DEA_REDUCED_DISPLACEMENT]);
+  }
+}
+
+static void test_levels_with_and_without_a_list(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    struct signal_bench b = signal_bench_plain();
+    b.level_count = 8;
+    for (size_t l = 0; l < 8; l++) {
+      b.levels_V[l] = 1000.0 * (double)(l + 1);
+    }
+    b.list = k < 2;
+    b.command = k % 2 == 0;
+    b.voltage = k > 0;
+    b.displacement = b.force = true;
+    b.sigma = 1e-6;
+    b.drift_per_s = 0.5e-6;
+    b.preload_N = 20e-3;
+    b.cell_N = -3e-3;
+    b.lead_s = 3.0;
+    struct dea_recording r = signal_record(&b, 21);
+    struct dea_reduction *out = reduced(&r, &plain);
+    check_levels(&b, out);
+    assert_close(out->noise[DEA_REDUCED_DISPLACEMENT], 1e-6, 0.1, 0.0);
+    assert_close(out->force_offset_N, b.cell_N, 0.0, 2e-6);
+    assert_close(out->preload_N, b.preload_N, 0.0, 5e-6);
+    assert_int_equal(noted("was not measured"), k == 0);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+/* A level of 0 V has no edges; its cycles are where the others have theirs. */
+static void test_cycles_at_rest(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.level_count = 3;
+  b.levels_V[0] = 0.0;
+  b.levels_V[1] = 2000.0;
+  b.levels_V[2] = 4000.0;
+  b.displacement = true;
+  b.sigma = 1e-6;
+  struct dea_recording r = signal_record(&b, 2);
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_int_equal(out->level_count, 3);
+  assert_close(out->levels[0].voltage_V, 0.0, 0.0, 1e-9);
+  assert_close(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT], 0.0, 0.0,
+               4.0 * out->levels[0].uncertainty[DEA_REDUCED_DISPLACEMENT]);
+  assert_true(isnan(out->levels[0].rise_s[DEA_REDUCED_DISPLACEMENT]));
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
+static void fill_voltage(struct dea_recording *r, double (*voltage)(double))
+{
+  for (size_t i = 0; i < r->channels[0].count; i++) {
+    double t = dea_channel_time(&r->channels[0], i), V = voltage(t);
+    r->channels[0].values[i] = V;
+    r->channels[1].values[i] = 1e-9 * fabs(V);
+  }
+}
+
+static struct dea_recording two_channels(double rate_Hz, size_t count)
+{
+  struct dea_recording r = {.file = "", .title = "", .complete = true};
+  signal_channel(&r, "voltage", DEA_CHANNEL_VOLTAGE, rate_Hz, count);
+  signal_channel(&r, "displacement", DEA_CHANNEL_DISPLACEMENT, rate_Hz, count);
+  return r;
+}
+
+static double staircase(double t)
+{
+  return t < 1.0 || t >= 9.0 ? 0.0 : 1000.0 * floor(t);
+}
+
+static double one_step(double t)
+{
+  return t < 2.0 ? 0.0 : 5000.0;
+}
+
+static double half_sine(double t)
+{
+  return 2500.0 * (1.0 - cos(2.0 * acos(-1.0) * t));
+}
+
+static double triangle(double t)
+{
+  return 5000.0 * (1.0 - fabs(2.0 * (t - floor(t)) - 1.0));
+}
+
+static double both_signs(double t)
+{
+  return fmod(t, 2.0) < 1.0 ? 0.0 : fmod(t, 4.0) < 2.0 ? 3000.0 : -3000.0;
+}
+
+static void test_other_waveforms(void **state)
+{
+  (void)state;
+  const struct {
+    double (*voltage)(double);
+    size_t levels, cycles;
+    double largest_V, within;
+  } all[] = {{staircase, 8, 8, 8000.0, 1e-9},
+             {one_step, 1, 1, 5000.0, 1e-9},
+             {half_sine, 1, 10, 5000.0, 0.02},
+             {triangle, 1, 10, 5000.0, 0.03},
+             {both_signs, 2, 5, 3000.0, 1e-9}};
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
+    struct dea_recording r = two_channels(500.0, 5000);
+    fill_voltage(&r, all[k].voltage);
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(out->level_count, all[k].levels);
+    assert_int_equal(out->cycle_count, all[k].cycles);
+    const struct dea_reduced_level *last = &out->levels[out->level_count - 1];
+    assert_close(last->voltage_V, all[k].largest_V, all[k].within, 0.0);
+    if (k != 2 && k != 3) { // those of a peak rest where the voltage is not yet 0
+      assert_close(last->mean[DEA_REDUCED_DISPLACEMENT], 1e-9 * all[k].largest_V, 1e-9, 1e-15);
+    } else {
+      assert_close(last->mean[DEA_REDUCED_DISPLACEMENT], 1e-9 * all[k].largest_V, 0.04, 0.0);
+      assert_true(noted("hold no voltage"));
+    }
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+/* Creep that goes on through the active part, and a rise between two samples. */
+static void test_creep_and_fast_rise(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.displacement = true;
+  b.tau_s = 1e-4;
+  struct dea_recording r = signal_record(&b, 1);
+  struct dea_channel *z = &r.channels[1];
+  for (size_t i = 0; i < z->count; i++) {
+    double since = fmod(dea_channel_time(z, i) - b.lead_s + 1e-9, b.cycle_s);
+    z->values[i] += since >= 0.0 && since < 1.0 ? 20e-6 * since : 0.0;
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  const struct dea_reduced_level *level = &out->levels[0];
+  assert_true(isnan(level->rise_s[DEA_REDUCED_DISPLACEMENT]));            // faster than the samples
+  assert_close(level->creep[DEA_REDUCED_DISPLACEMENT], 16e-6, 0.03, 0.0); // 20 um/s for 0.8 s
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
+// Little or nothing ------------------------------------------------------------------------------
+
+static void test_without_voltage(void **state)
+{
+  (void)state;
+  struct dea_recording r = {.file = "", .title = ""};
+  struct dea_reduction *out;
+  assert_int_equal(dea_reduce(ctx, &r, NULL, NULL, &out), DEA_E_IO);
+  assert_null(out);
+  assert_non_null(strstr(dea_context_message(ctx), "no voltage"));
+}
+
+static void test_little(void **state)
+{
+  (void)state;
+  const size_t counts[] = {1, 2, 3, 9, 50};
+  for (size_t k = 0; k < 5; k++) {
+    for (int what = 0; what < 4; what++) {
+      struct dea_recording r = two_channels(100.0, counts[k]);
+      signal_channel(&r, "current", DEA_CHANNEL_CURRENT, 100.0, counts[k]);
+      signal_channel(&r, "force", DEA_CHANNEL_FORCE, 100.0, counts[k]);
+      for (size_t c = 0; c < r.channel_count; c++) {
+        for (size_t i = 0; i < counts[k]; i++) {
+          r.channels[c].values[i] = what == 0   ? 0.0
+                                    : what == 1 ? 5000.0
+                                    : what == 2 ? NAN
+                                                : (double)(i % 2) * 4000.0;
+        }
+      }
+      struct dea_reduction *out = reduced(&r, &plain);
+      assert_true(what == 3 || out->cycle_count == 0);
+      assert_true(out->cycle_count > 0 || noted("there are no cycles"));
+      assert_int_equal(out->discharge_count, 0);
+      dea_reduction_destroy(ctx, out);
+      signal_free(&r);
+    }
+  }
+}
+
+static void test_empty_profiles(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    struct signal_bench b = line_laser();
+    b.points = k == 1 ? 8 : 100;
+    struct dea_recording r = signal_record(&b, 1);
+    size_t all = r.profiles.points * r.profiles.count;
+    for (size_t i = 0; i < all && k == 0; i++) {
+      r.profiles.z_m[i] = NAN;
+    }
+    if (k == 2) {
+      r.profiles.x_m[4] = r.profiles.x_m[3];
+    }
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(out->cycle_count, 3);
+    assert_true(isnan(out->levels[0].mean[DEA_REDUCED_CENTRE]));
+    assert_true(noted(k == 0 ? "no frame" : "16 points or more"));
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+static struct dea_recording whole;
+
+static dea_status reduce_whole(struct dea_context *own)
+{
+  struct dea_reduction *out;
+  const struct dea_reduce_options options = {3e-3, 15e-3, 3.75e-3, 0.0, NAN};
+  dea_status status = dea_reduce(own, &whole, NULL, &options, &out);
+  dea_reduction_destroy(own, out);
+  return status;
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.points = 100;
+  b.frame_Hz = 10.0;
+  b.rate_Hz = 50.0;
+  b.voltage = b.displacement = b.force = true;
+  whole = signal_record(&b, 1);
+  size_t n = whole.channels[0].count;
+  struct dea_channel *current = signal_channel(&whole, "current", DEA_CHANNEL_CURRENT, 50.0, n);
+  for (size_t i = 0; i < n; i++) {
+    current->values[i] = i == n / 4 ? 1e-3 : 1e-7 * sin(7.0 * (double)i);
+  }
+  assert_true(failing_ends(reduce_whole, DEA_OK) > 30);
+  signal_free(&whole);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_uncertainty_of_independent_samples),
+      cmocka_unit_test(test_uncertainty_of_correlated_samples),
+      cmocka_unit_test(test_uncertainty_of_profiles),
+      cmocka_unit_test(test_frame_is_found_and_taken_off),
+      cmocka_unit_test(test_line_beside_the_centre_is_said),
+      cmocka_unit_test(test_without_frame_the_outer_film_levels),
+      cmocka_unit_test(test_shape),
+      cmocka_unit_test(test_levels_with_and_without_a_list),
+      cmocka_unit_test(test_cycles_at_rest),
+      cmocka_unit_test(test_other_waveforms),
+      cmocka_unit_test(test_creep_and_fast_rise),
+      cmocka_unit_test(test_without_voltage),
+      cmocka_unit_test(test_little),
+      cmocka_unit_test(test_empty_profiles),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
