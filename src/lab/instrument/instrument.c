@@ -2,15 +2,9 @@
 #include "lab/instrument/instrument.h"
 
 #include "base/schema_value.h"
-#include "lab/instrument/instrument_list.h"
+#include "lab/instrument/instrument_make.h"
 
 #include <string.h>
-
-#define INSTRUMENT_DECLARE(name)                                                                   \
-  extern const struct dea_instrument_type dea_instrument_##name;                                   \
-  extern const struct dea_record dea_instrument_##name##_record;
-DEA_INSTRUMENT_LIST(INSTRUMENT_DECLARE)
-#undef INSTRUMENT_DECLARE
 
 static const struct dea_instrument_type *const types[] = {
 #define INSTRUMENT_ROW(name) &dea_instrument_##name,

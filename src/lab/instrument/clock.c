@@ -1,0 +1,21 @@
+#define _POSIX_C_SOURCE 200809L // clock_gettime
+#include "lab/instrument/clock.h"
+
+#include <time.h>
+
+double dea_clock_s(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void dea_clock_wait(double seconds)
+{
+  if (seconds > 0) {
+    double limited = seconds < 3600 ? seconds : 3600;
+    struct timespec wait = {.tv_sec = (time_t)limited};
+    wait.tv_nsec = (long)(1e9 * (limited - (double)wait.tv_sec));
+    nanosleep(&wait, NULL);
+  }
+}

@@ -1,0 +1,10 @@
+/* The computer's clock, for instruments that have none of their own. */
+#ifndef DEA_LAB_INSTRUMENT_CLOCK_H
+#define DEA_LAB_INSTRUMENT_CLOCK_H
+
+/* Seconds of a clock that only goes forward, from an unknown start. */
+double dea_clock_s(void);
+/* Waits; a signal ends it early. At most an hour, nothing for less than 0. */
+void dea_clock_wait(double seconds);
+
+#endif

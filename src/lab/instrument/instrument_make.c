@@ -1,0 +1,40 @@
+#include "lab/instrument/instrument_make.h"
+
+#include "base/schema_value.h"
+
+#include <stdio.h>
+#include <string.h>
+
+dea_status dea_instrument_check_reading(const struct dea_reader *reader,
+                                        const struct dea_protocol *protocol,
+                                        const struct dea_label *name,
+                                        const struct dea_instrument *sketch)
+{
+  const char *taken = NULL;
+  for (size_t i = 0; i < sketch->reading_count; i++) {
+    taken = strcmp(sketch->readings[i].name, name->text) == 0 ? "another reading" : taken;
+  }
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    taken = strcmp(protocol->inputs[i].name.text, name->text) == 0 ? "an input" : taken;
+  }
+  if (taken != NULL) {
+    return dea_schema_error(reader, name->place, "'%.60s' is the name of %s too; give it another",
+                            name->text, taken);
+  }
+  if (strlen(name->text) >= DEA_CHANNEL_NAME_SIZE) {
+    return dea_schema_error(reader, name->place, "a name has at most %d bytes; shorten '%.20s...'",
+                            DEA_CHANNEL_NAME_SIZE - 1, name->text);
+  }
+  return DEA_OK;
+}
+
+void dea_instrument_add_reading(struct dea_instrument *instrument, const struct dea_label *name,
+                                const struct dea_choice *kind, const struct dea_label *unit)
+{
+  struct dea_instrument_reading *reading = &instrument->readings[instrument->reading_count++];
+  reading->kind = (enum dea_channel_kind)kind->value;
+  snprintf(reading->name, sizeof reading->name, "%.*s", DEA_CHANNEL_NAME_SIZE - 1, name->text);
+  if (reading->kind == DEA_CHANNEL_OTHER) {
+    snprintf(reading->unit, sizeof reading->unit, "%.*s", DEA_CHANNEL_NAME_SIZE - 1, unit->text);
+  }
+}

@@ -1,0 +1,15 @@
+/* Answers of SCPI instruments (SCPI 1999, IEEE 488.2). */
+#ifndef DEA_LAB_INSTRUMENT_SCPI_PARSE_H
+#define DEA_LAB_INSTRUMENT_SCPI_PARSE_H
+
+#include <stdbool.h>
+
+/* The first number of an answer such as "+1.04E-11", "1.2E-9A,+3.1E+2secs" or " 5". NAN for the
+ * numbers that SCPI has for infinity, its negative and no number: 9.9E37, -9.9E37 and 9.91E37
+ * (larger ones too). false when it does not begin with a number. */
+bool dea_scpi_number(const char *answer, double *value);
+/* An entry of the error queue: -113,"Undefined header". The code, 0 for none; *text: from the comma
+ * on, lent. false when it is none. */
+bool dea_scpi_error(const char *answer, int *code, const char **text);
+
+#endif

@@ -1,0 +1,377 @@
+// SCPI instruments against an emulator on the loopback interface.
+#define _POSIX_C_SOURCE 200809L // sockets
+#include "emulator.h"
+#include "failing_allocator.h"
+#include "lab/instrument/line_reader.h"
+#include "lab/instrument/scpi_parse.h"
+
+#include "context_fixture.h"
+
+/* How the emulated instrument behaves. */
+struct behaviour {
+  const char *identity, *error; // NULL: no answer
+  const char *current;          // answer to MEAS:CURR?, without its line end
+  size_t current_length;        // bytes of it that are sent, then it hangs up; 0: all
+  const char *before;           // sent before each answer
+  const char *then;             // answer of MEAS:CURR? from the second question on; NULL: the same
+  int asked;
+};
+
+static void answer(struct emulator *e, int connection, const char *question)
+{
+  struct behaviour *b = e->user;
+  const char *text = NULL;
+  char line[8192];
+  if (strcmp(question, "*IDN?") == 0) {
+    text = b->identity;
+  } else if (strcmp(question, "SYST:ERR?") == 0) {
+    text = b->error;
+  } else if (strcmp(question, "MEAS:FORC?") == 0) {
+    text = "  250";
+  } else if (strcmp(question, "MEAS:CURR?") == 0) {
+    text = b->asked++ > 0 && b->then != NULL ? b->then : b->current;
+  }
+  if (text != NULL) {
+    int length = snprintf(line, sizeof line, "%s%s\r\n", b->before != NULL ? b->before : "", text);
+    bool cut = text == b->current && b->current_length > 0;
+    emulator_send(e, connection, line, cut ? b->current_length : (size_t)length);
+    if (cut) {
+      shutdown(connection, SHUT_RDWR);
+    }
+  }
+}
+
+static void serve(struct emulator *e, int connection)
+{
+  struct dea_line_reader reader = {0};
+  char bytes[512];
+  size_t length;
+  while ((length = emulator_receive(e, connection, bytes, sizeof bytes)) > 0) {
+    const char *at = bytes, *line;
+    while ((line = dea_line_next(&reader, &at, &length)) != NULL) {
+      answer(e, connection, line);
+    }
+  }
+}
+
+static const struct behaviour usual = {
+    "ACME,Electrometer 6,0815,1.0", "+0,\"No error\"", "+2.5E-9A", 0, NULL, NULL, 0};
+static const char reads[] =
+    "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 0.15 s\ninterval: 5 ms\n"
+    "setup: [\"FUNC 'CURR'\", \"ZCOR ON\"]\nat_stop: [OUTP OFF]\nidentity: Electrometer\n"
+    "readings:\n"
+    "  - {name: leakage, query: \"MEAS:CURR?\", quantity: current}\n"
+    "  - {name: load, query: \"MEAS:FORC?\", quantity: force, factor: 1e-3, offset: 1}\n";
+
+struct bench {
+  struct emulator emulator;
+  struct behaviour behaviour;
+  struct dea_protocol protocol;
+  struct dea_instrument *instrument;
+  struct emulator_intake intake;
+  char text[2048];
+};
+
+static dea_status begin(struct bench *b, const struct behaviour *behaviour, const char *section)
+{
+  b->behaviour = *behaviour;
+  emulator_start(&b->emulator, serve, &b->behaviour);
+  snprintf(b->text, sizeof b->text, section, b->emulator.port);
+  dea_finding_clear(ctx);
+  dea_status status = emulator_open(ctx, &b->protocol, b->text, &b->instrument);
+  if (status == DEA_OK) {
+    status = b->instrument->type->start(ctx, b->instrument);
+  }
+  return status;
+}
+
+static void end(struct bench *b)
+{
+  if (b->instrument != NULL) {
+    emulator_close(ctx, b->instrument);
+  }
+  emulator_stop(&b->emulator);
+}
+
+static void assert_message(dea_status status, dea_status wanted, const char *part)
+{
+  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
+    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
+             dea_context_message(ctx), part);
+  }
+}
+
+static void test_numbers(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    double value; // NAN: no number
+    bool good;
+  } cases[] = {{"+1.04E-11", 1.04e-11, true},
+               {" -5", -5, true},
+               {".5", 0.5, true},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", 1.2e-9, true},
+               {"3;4", 3, true},
+               {"9.9E37", NAN, true},
+               {"-9.9E+37", NAN, true},
+               {"+9.91E37", NAN, true},
+               {"1e999", NAN, true},
+               {"", NAN, false},
+               {"nan", NAN, false},
+               {"INF", NAN, false},
+               {"ON", NAN, false},
+               {"-", NAN, false},
+               {"12:30:01", NAN, false},
+               {"1.2.3", NAN, false},
+               {"#15hello", NAN, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    double value = 0;
+    bool good = dea_scpi_number(cases[i].text, &value);
+    if (good != cases[i].good ||
+        (good && !(value == cases[i].value) && !(isnan(value) && isnan(cases[i].value)))) {
+      fail_msg("'%s' gave %d, %g", cases[i].text, good, value);
+    }
+  }
+  const char *text;
+  int code;
+  assert_true(dea_scpi_error("-113,\"Undefined header\"", &code, &text));
+  assert_int_equal(code, -113);
+  assert_string_equal(text, "\"Undefined header\"");
+  assert_true(dea_scpi_error("+0,\"No error\"", &code, &text));
+  assert_int_equal(code, 0);
+  assert_false(dea_scpi_error("nothing", &code, &text));
+  assert_false(dea_scpi_error("1e30,\"x\"", &code, &text));
+}
+
+static void test_reads(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const size_t fragments[] = {0, 1, 2, 5};
+  for (size_t f = 0; f < sizeof fragments / sizeof fragments[0]; f++) {
+    memset(&b, 0, sizeof b);
+    b.emulator.fragment = fragments[f];
+    assert_int_equal(begin(&b, &usual, reads), DEA_OK);
+    assert_int_equal(b.instrument->roles, DEA_GIVES_READINGS);
+    assert_int_equal(b.instrument->reading_count, 2);
+    assert_string_equal(b.instrument->readings[1].name, "load");
+    assert_int_equal(b.instrument->readings[1].kind, DEA_CHANNEL_FORCE);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 8, 0, 0), DEA_OK);
+    assert_true(b.intake.readings >= 8);
+    for (size_t i = 0; i < 8; i++) {
+      assert_int_equal(b.intake.reading[i].reading, i % 2);
+      assert_close(b.intake.reading[i].value, i % 2 == 0 ? 2.5e-9 : 1.25, 1e-12, 0);
+      assert_true(b.intake.reading[i].time_s >= 0 && b.intake.reading[i].time_s < 2);
+      assert_true(i == 0 || b.intake.reading[i].time_s > b.intake.reading[i - 1].time_s);
+    }
+    // Three intervals of 5 ms, never less; half an answer's way may be missing.
+    assert_true(b.intake.reading[6].time_s - b.intake.reading[0].time_s > 0.01);
+    assert_int_equal(b.instrument->lost, 0);
+    end(&b);
+    assert_true(strncmp(b.emulator.log, "*IDN?\n*CLS\nFUNC 'CURR'\nZCOR ON\nSYST:ERR?\n", 40) == 0);
+    assert_string_equal(strstr(b.emulator.log, "OUTP OFF"), "OUTP OFF\n");
+  }
+}
+
+static void test_plays(void **state)
+{
+  (void)state;
+  static const char plays[] = "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 1 s\n"
+                              "output: \"SOUR:VOLT %%g\"\noutput_interval: 4 ms\nqueue: 20 ms\n";
+  static struct bench b;
+  double volts[60];
+  b.protocol.rate_Hz.si = 1000;
+  assert_int_equal(begin(&b, &usual, plays), DEA_OK);
+  assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT);
+  for (size_t i = 0; i < 60; i++) {
+    volts[i] = i < 30 ? 0.125 * (double)(i / 10) : -1.5;
+  }
+  // 60 ms do not fit into a queue of 20 ms: this waits until the first 40 have been played.
+  assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 60), DEA_OK);
+  for (int i = 0; i < 20 && strstr(b.emulator.log, "-1.5") == NULL; i++) {
+    const struct dea_intake nothing = {0};
+    assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0.01, &nothing), DEA_OK);
+  }
+  end(&b);
+  const char *log = strstr(b.emulator.log, "SOUR:VOLT 0\n");
+  assert_non_null(log);
+  assert_string_equal(log, "SOUR:VOLT 0\nSYST:ERR?\nSOUR:VOLT 0.125\nSOUR:VOLT 0.25\n"
+                           "SOUR:VOLT -1.5\nSOUR:VOLT 0\n");
+}
+
+static void test_makes_no_sense(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static char long_line[5000];
+  memset(long_line, 'x', sizeof long_line - 1);
+  static const char *const answers[] = {"nothing", "\x01\x02", long_line};
+  for (size_t i = 0; i < 3; i++) {
+    struct behaviour behaviour = usual;
+    memset(&b, 0, sizeof b);
+    behaviour.current = answers[i];
+    behaviour.then = "7";
+    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 3, 0, 0), DEA_OK);
+    assert_true(isnan(b.intake.reading[0].value)); // lost, and the next is good again
+    assert_close(b.intake.reading[1].value, 1.25, 1e-12, 0);
+    assert_close(b.intake.reading[2].value, 7, 1e-12, 0);
+    assert_int_equal(b.instrument->lost, 1);
+    end(&b);
+  }
+}
+
+static void test_speaks_unasked(void **state)
+{
+  (void)state;
+  static struct bench b;
+  struct behaviour behaviour = usual;
+  behaviour.current = "1\r\n2\r\n\r\n3"; // the first is the answer
+  memset(&b, 0, sizeof b);
+  assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0), DEA_OK);
+  assert_close(b.intake.reading[0].value, 1, 1e-12, 0);
+  assert_true(b.instrument->lost == 0 || b.instrument->lost == 2);
+  end(&b);
+}
+
+static void test_goes_silent(void **state)
+{
+  (void)state;
+  static struct bench b;
+  struct behaviour behaviour = usual;
+  behaviour.current = NULL;
+  memset(&b, 0, sizeof b);
+  assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+  dea_status status = emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0);
+  assert_message(status, DEA_E_INSTRUMENT, "did not answer 'MEAS:CURR?' within 0.15 s");
+  end(&b);
+  memset(&b, 0, sizeof b);
+  behaviour.identity = NULL;
+  assert_message(begin(&b, &behaviour, reads), DEA_E_INSTRUMENT, "did not answer '*IDN?'");
+  end(&b);
+}
+
+static void test_hangs_up(void **state)
+{
+  (void)state;
+  static struct bench b;
+  struct behaviour behaviour = usual;
+  for (size_t n = 1; n <= strlen(usual.current); n++) {
+    memset(&b, 0, sizeof b);
+    behaviour.current_length = n;
+    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    dea_status status = emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0);
+    assert_message(status, DEA_E_INSTRUMENT, "the connection to the instrument at 127.0.0.1");
+    assert_int_equal(b.intake.readings, 0); // half a number is none
+    end(&b);                                // writes to it without SIGPIPE
+  }
+}
+
+static void test_not_there(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  snprintf(b.text, sizeof b.text, reads, emulator_no_port());
+  assert_message(emulator_open(ctx, &b.protocol, b.text, &b.instrument), DEA_E_INSTRUMENT,
+                 "Connection refused");
+  snprintf(b.text, sizeof b.text, "kind: scpi\naddress: no.such.host.invalid\noutput: V %%g\n");
+  b.protocol.rate_Hz.si = 100;
+  assert_message(emulator_open(ctx, &b.protocol, b.text, &b.instrument), DEA_E_INSTRUMENT,
+                 "is not known");
+}
+
+static void test_refuses(void **state)
+{
+  (void)state;
+  static struct bench b;
+  struct behaviour behaviour = usual;
+  memset(&b, 0, sizeof b);
+  behaviour.identity = "OTHER,Scope,1,2";
+  assert_message(begin(&b, &behaviour, reads), DEA_E_INSTRUMENT,
+                 "is a 'OTHER,Scope,1,2', not a 'Electrometer'");
+  end(&b);
+  memset(&b, 0, sizeof b);
+  behaviour = usual;
+  behaviour.error = "-113,\"Undefined header\"";
+  assert_message(begin(&b, &behaviour, reads), DEA_E_INSTRUMENT,
+                 "does not accept its setup: error -113, \"Undefined header\"");
+  end(&b);
+  memset(&b, 0, sizeof b);
+  behaviour.error = NULL; // knows no SYST:ERR?
+  assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
+  end(&b);
+}
+
+static void test_wrong_keys(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text, *finding;
+  } cases[] = {
+      {"kind: scpj\n", "there is no instrument 'scpj'; did you mean 'scpi'?"},
+      {"address: x\n", "an instrument needs its kind: "},
+      {"kind: scpi\naddress: x\n", "it neither reads nor plays"},
+      {"kind: scpi\naddress: x\noutput: VOLT\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %s\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g %n\n", "must have one %g"},
+      {"kind: scpi\nadress: x\noutput: VOLT %g\n", "did you mean 'address'?"},
+      {"kind: scpi\naddress: x\nport: 70000\noutput: VOLT %g\n", "port"},
+      {"kind: scpi\naddress: x\nreadings: [{name: a, query: b}, {name: a, query: c}]\n",
+       "is the name of another reading too"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_protocol protocol = {0};
+    struct dea_instrument *instrument;
+    size_t count;
+    dea_finding_clear(ctx);
+    assert_int_equal(emulator_open(ctx, &protocol, cases[i].text, &instrument), DEA_E_DESIGN);
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    assert_true(count >= 1);
+    if (strstr(findings[0].text, cases[i].finding) == NULL || findings[0].place.line == 0) {
+      fail_msg("'%s' lacks '%s'", findings[0].text, cases[i].finding);
+    }
+  }
+  dea_finding_clear(ctx);
+}
+
+static struct bench memory_bench;
+
+static void work(struct dea_context *context)
+{
+  struct dea_instrument *instrument;
+  struct dea_protocol protocol = {.rate_Hz.si = 100};
+  dea_status status = emulator_open(context, &protocol, memory_bench.text, &instrument);
+  failing_check(context, status);
+  if (status == DEA_OK) {
+    emulator_close(context, instrument);
+  }
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  struct bench *b = &memory_bench;
+  b->behaviour = usual;
+  emulator_start(&b->emulator, serve, &b->behaviour);
+  int length = snprintf(b->text, sizeof b->text, reads, b->emulator.port);
+  snprintf(b->text + length, sizeof b->text - (size_t)length, "output: VOLT %%g\n");
+  assert_true(failing_each(work) > 3);
+  emulator_stop(&b->emulator);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_numbers),        cmocka_unit_test(test_reads),
+      cmocka_unit_test(test_plays),          cmocka_unit_test(test_makes_no_sense),
+      cmocka_unit_test(test_speaks_unasked), cmocka_unit_test(test_goes_silent),
+      cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_not_there),
+      cmocka_unit_test(test_refuses),        cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
