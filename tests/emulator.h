@@ -51,7 +51,7 @@ static inline size_t emulator_receive(struct emulator *emulator, int connection,
                                       size_t room)
 {
   struct pollfd entry = {.fd = connection, .events = POLLIN};
-  while (!atomic_load(&emulator->ended)) {
+  do { // what was sent before the end is still taken
     if (poll(&entry, 1, 5) > 0) {
       ssize_t got = recv(connection, bytes, room, 0);
       size_t length = got > 0 ? (size_t)got : 0, at = atomic_load(&emulator->got);
@@ -61,7 +61,7 @@ static inline size_t emulator_receive(struct emulator *emulator, int connection,
       }
       return length;
     }
-  }
+  } while (!atomic_load(&emulator->ended));
   return 0;
 }
 
