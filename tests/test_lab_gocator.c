@@ -1,0 +1,433 @@
+// The Gocator's messages and its connection, against an emulator on the loopback interface.
+#define _POSIX_C_SOURCE 200809L // sockets
+#include "emulator.h"
+#include "failing_allocator.h"
+#include "gocator_bytes.h"
+#include "lab/instrument/clock.h"
+
+#include "context_fixture.h"
+
+/* What the emulated sensor sends on its data connection: `head`, then frames until it is enough. */
+struct sensor {
+  struct gocator_bytes head;
+  const struct gocator_bytes *frames[8];
+  size_t count, cut; // bytes of the last frame that are sent, then it hangs up; 0: all
+  bool hangs_up;
+  int status; // of its reply to Start; -1: none
+  const char *text[8];
+};
+
+/* Control: replies to every command of six bytes. */
+static void serve_control(struct emulator *e, int connection)
+{
+  struct sensor *s = e->user;
+  char bytes[64];
+  size_t length = 0, more;
+  while ((more = emulator_receive(e, connection, bytes + length, sizeof bytes - length)) > 0) {
+    for (length += more; length >= 6; length -= 6) {
+      static struct gocator_bytes reply;
+      reply.length = 0;
+      gocator_put(&reply, 10, 4);
+      reply.bytes[reply.length++] = (unsigned char)bytes[4];
+      reply.bytes[reply.length++] = (unsigned char)bytes[5];
+      gocator_put(&reply, s->status, 4);
+      if (s->status != -1) {
+        emulator_send(e, connection, reply.bytes, reply.length);
+      }
+      memmove(bytes, bytes + 6, length - 6);
+    }
+  }
+}
+
+static void serve_data(struct emulator *e, int connection)
+{
+  struct sensor *s = e->user;
+  char bytes[64];
+  emulator_send(e, connection, s->head.bytes, s->head.length);
+  for (size_t i = 0; i < s->count; i++) {
+    // Each on its own, so that the first is there when the instrument is opened.
+    dea_clock_wait(i == 0 ? 0 : 0.03);
+    bool cut = i + 1 == s->count && s->cut > 0;
+    emulator_send(e, connection, s->frames[i]->bytes, cut ? s->cut : s->frames[i]->length);
+  }
+  if (s->hangs_up) {
+    shutdown(connection, SHUT_RDWR);
+  }
+  while (emulator_receive(e, connection, bytes, sizeof bytes) > 0) {
+  }
+}
+
+struct bench {
+  struct emulator data, control;
+  struct sensor sensor;
+  struct dea_protocol protocol;
+  struct dea_instrument *instrument;
+  struct emulator_intake intake;
+  struct gocator_bytes frames[8];
+  char text[1024];
+};
+
+static const char usual[] =
+    "kind: gocator\naddress: 127.0.0.1\nport: %d\ncontrol_port: %d\n"
+    "timeout: 0.25 s\n"
+    "measurements: [{name: centre, id: 3}, {name: tip, id: 7, factor: -1e-6}]\n";
+
+static dea_status begin(struct bench *b, const char *section,
+                        void (*serve)(struct emulator *e, int connection))
+{
+  emulator_start(&b->data, serve, &b->sensor);
+  emulator_start(&b->control, serve_control, &b->sensor);
+  snprintf(b->text, sizeof b->text, section, b->data.port, b->control.port);
+  dea_finding_clear(ctx);
+  b->intake.points = GOCATOR_WIDTH;
+  dea_status status = emulator_open(ctx, &b->protocol, b->text, &b->instrument);
+  if (status == DEA_OK) {
+    status = b->instrument->type->start(ctx, b->instrument);
+  }
+  return status;
+}
+
+static void end(struct bench *b)
+{
+  if (b->instrument != NULL) {
+    emulator_close(ctx, b->instrument);
+  }
+  emulator_stop(&b->data);
+  emulator_stop(&b->control);
+  memset(b, 0, sizeof *b);
+  b->sensor.status = 1;
+}
+
+static void assert_message(dea_status status, dea_status wanted, const char *part)
+{
+  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
+    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
+             dea_context_message(ctx), part);
+  }
+}
+
+static void test_frames(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const size_t fragments[] = {0, 1, 7};
+  b.sensor.status = 1;
+  for (size_t f = 0; f < 3; f++) {
+    static const int numbers[] = {0, 1, 2, 6}; // three are missing
+    for (size_t i = 0; i < 4; i++) {
+      gocator_frame(&b.frames[i], numbers[i], 5000000 + 30000 * numbers[i]);
+      b.sensor.frames[i] = &b.frames[i];
+    }
+    b.sensor.count = 4;
+    b.data.fragment = fragments[f];
+    assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
+    assert_int_equal(b.instrument->roles, DEA_SENDS_PROFILES | DEA_GIVES_READINGS);
+    assert_int_equal(b.instrument->profile_points, GOCATOR_WIDTH);
+    for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
+      assert_close(b.instrument->x_m[i], -20e-6 + 10e-6 * (double)i, 1e-12, 1e-18);
+    }
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 6, 3, 0), DEA_OK);
+    assert_int_equal(b.intake.profiles, 3);
+    assert_int_equal(b.instrument->lost, 3);
+    assert_true(b.intake.profile_time_s[0] >= 0 && b.intake.profile_time_s[0] < 5);
+    // The sensor's clock, whenever the frames came.
+    assert_close(b.intake.profile_time_s[1] - b.intake.profile_time_s[0], 0.03, 0, 1e-9);
+    assert_close(b.intake.profile_time_s[2] - b.intake.profile_time_s[0], 0.15, 0, 1e-9);
+    for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
+      assert_close(b.intake.z_m[2][i], 1e-3 + 0.5e-6 * (double)(i + 1), 1e-12, 0);
+    }
+    assert_int_equal(b.intake.readings, 6);
+    assert_close(b.intake.reading[0].value, 1e-3, 1e-12, 0); // 1 mm
+    assert_close(b.intake.reading[1].value, -5e-6, 1e-12, 0);
+    assert_close(b.intake.reading[4].time_s, b.intake.profile_time_s[2], 0, 1e-9);
+    end(&b);
+  }
+}
+
+static void test_invalid_and_other_grid(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const int16_t line[] = {0, 10, 20, -32768, 40, 50, 60, 70, 80, 90};
+  memset(&b, 0, sizeof b);
+  b.sensor.status = 1;
+  gocator_frame(&b.frames[0], 0, 0);
+  // Half the spacing, then a wider field, then points: heights of 10 um a 10 um, one missing.
+  gocator_stamp(&b.frames[1], 1, 1000);
+  gocator_profile(&b.frames[1], 0, 10, 5000, 500, -20, 0, line);
+  gocator_stamp(&b.frames[2], 2, 2000);
+  gocator_profile(&b.frames[2], 0, 4, 20000, 500, -30, 0, line);
+  gocator_stamp(&b.frames[3], 3, 3000);
+  gocator_profile(&b.frames[3], 1, 10, 2500, 500, -20, 0, line);
+  for (size_t i = 0; i < 4; i++) {
+    b.sensor.frames[i] = &b.frames[i];
+  }
+  b.sensor.count = 4;
+  assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 3, 0), DEA_OK);
+  assert_int_equal(b.intake.profiles, 3);
+  // Positions -20, -10, 0, 10, 20 um; units of 0.5 um.
+  static const double wanted[3][GOCATOR_WIDTH] = {
+      {0, 20, 40, 60, 80}, {5, 10, 15, 20, NAN}, {0, 20, 40, 60, 80}};
+  for (size_t k = 0; k < 3; k++) {
+    for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
+      double z = b.intake.z_m[k][i] / 0.5e-6;
+      if (isnan(wanted[k][i]) != isnan(z) || fabs(z - wanted[k][i]) > 1e-6) {
+        fail_msg("frame %zu, point %zu: %g, wanted %g", k, i, z, wanted[k][i]);
+      }
+    }
+  }
+  assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1); // interpolated
+  end(&b);
+}
+
+static void test_start_and_stop(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const struct {
+    int status;
+    dea_status wanted;
+    const char *message, *commands;
+    size_t length;
+  } cases[] = {
+      {1, DEA_OK, "", "\x06\0\0\0\x0d\x10\x06\0\0\0\x01\x10", 12},
+      {-1000, DEA_OK, "", "\x06\0\0\0\x0d\x10", 6}, // it ran already: not stopped
+      {0, DEA_E_INSTRUMENT, "does not start: status 0", "\x06\0\0\0\x0d\x10", 6},
+      {-1, DEA_E_INSTRUMENT, "does not answer the command to start", "\x06\0\0\0\x0d\x10", 6},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    memset(&b, 0, sizeof b);
+    b.sensor.status = cases[i].status;
+    gocator_frame(&b.frames[0], 0, 0);
+    b.sensor.frames[0] = &b.frames[0];
+    b.sensor.count = 1;
+    assert_message(begin(&b, usual, serve_data), cases[i].wanted,
+                   cases[i].wanted != DEA_OK ? cases[i].message : dea_context_message(ctx));
+    if (b.instrument != NULL) {
+      emulator_close(ctx, b.instrument);
+      b.instrument = NULL;
+    }
+    emulator_stop(&b.control);
+    emulator_stop(&b.data);
+    assert_int_equal(atomic_load(&b.control.got), cases[i].length);
+    assert_memory_equal(b.control.log, cases[i].commands, cases[i].length);
+  }
+}
+
+static void test_goes_silent(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  b.sensor.status = 1; // not one frame
+  assert_message(begin(&b, usual, serve_data), DEA_E_INSTRUMENT,
+                 "no profile came from the Gocator");
+  end(&b);
+  gocator_frame(&b.frames[0], 0, 0);
+  b.sensor.frames[0] = &b.frames[0];
+  b.sensor.count = 1; // one, and no more
+  assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
+  assert_message(emulator_get(ctx, b.instrument, &b.intake, 0, 1, 0), DEA_E_INSTRUMENT,
+                 "for 0.25 s; look at its laser");
+  end(&b);
+}
+
+static void test_hangs_up(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  gocator_frame(&b.frames[0], 0, 0);
+  size_t length = b.frames[0].length;
+  for (size_t cut = 1; cut <= length; cut += cut < 30 ? 1 : 23) {
+    memset(&b, 0, sizeof b);
+    b.sensor.status = 1;
+    b.sensor.hangs_up = true;
+    gocator_frame(&b.frames[0], 0, 0);
+    gocator_frame(&b.frames[1], 1, 30000);
+    b.sensor.frames[0] = &b.frames[0];
+    b.sensor.frames[1] = &b.frames[1];
+    b.sensor.count = 2;
+    b.sensor.cut = cut;
+    assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
+    assert_message(emulator_get(ctx, b.instrument, &b.intake, 0, 2, 0), DEA_E_INSTRUMENT,
+                   "the connection to the Gocator at 127.0.0.1");
+    assert_int_equal(b.intake.profiles, cut == length ? 1 : 0);
+    end(&b);
+  }
+}
+
+static void test_garbage(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  b.sensor.status = 1;
+  memcpy(b.sensor.head.bytes, "HTTP/1.1 400 Bad Request\r\n", 26);
+  b.sensor.head.length = 26;
+  assert_message(begin(&b, usual, serve_data), DEA_E_INSTRUMENT, "is not a Gocator's data");
+  end(&b);
+  // A message that contradicts itself is left out, and the next ones are good.
+  gocator_profile(&b.sensor.head, 0, GOCATOR_WIDTH, 10000, 500, 0, 0, gocator_ranges);
+  b.sensor.head.bytes[12] = 200;
+  for (int i = 0; i < 3; i++) {
+    gocator_frame(&b.frames[i], i, 30000 * i);
+    b.sensor.frames[i] = &b.frames[i];
+  }
+  b.frames[1].bytes[10] = 0xff; // size of a stamp: its profile has no time of its own
+  b.frames[1].bytes[11] = 0xff;
+  b.sensor.count = 3;
+  assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 1, 0), DEA_OK);
+  assert_true(b.instrument->lost >= 1);
+  end(&b);
+}
+
+static void test_not_there(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  snprintf(b.text, sizeof b.text, usual, emulator_no_port(), emulator_no_port());
+  assert_message(emulator_open(ctx, &b.protocol, b.text, &b.instrument), DEA_E_INSTRUMENT,
+                 "there is no connection to the Gocator at 127.0.0.1, port");
+  b.sensor.status = 1;
+  emulator_start(&b.data, serve_data, &b.sensor);
+  snprintf(b.text, sizeof b.text, usual, b.data.port, emulator_no_port());
+  assert_message(emulator_open(ctx, &b.protocol, b.text, &b.instrument), DEA_E_INSTRUMENT,
+                 "the Gocator's control at 127.0.0.1");
+  emulator_stop(&b.data);
+}
+
+/* Text: answers to Start and Result, or lines unasked. */
+static void serve_text(struct emulator *e, int connection)
+{
+  struct sensor *s = e->user;
+  char bytes[256];
+  size_t length, next = 0;
+  while ((length = emulator_receive(e, connection, bytes, sizeof bytes)) > 0) {
+    bool start = length >= 5 && memcmp(bytes, "Start", 5) == 0;
+    const char *line = start ? "OK\r\n" : next < 8 ? s->text[next++] : NULL;
+    for (; line != NULL; line = start && next < 8 ? s->text[next++] : NULL) {
+      emulator_send(e, connection, line, strlen(line));
+      dea_clock_wait(start ? 0.03 : 0);
+    }
+  }
+}
+
+static const char polled[] =
+    "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: polled\nstart: no\ntimeout: 0.25 s\n"
+    "interval: 5 ms\nmeasurements: [{name: centre, id: 3}, {name: tip, id: 7}]\n";
+
+static void test_polled(void **state)
+{
+  (void)state;
+  static struct bench b;
+  for (size_t fragment = 0; fragment < 3; fragment++) {
+    memset(&b, 0, sizeof b);
+    b.data.fragment = fragment;
+    b.sensor.text[0] = "OK,M00,03,V151290,D0,M01,07,V18520,D0\r\n";
+    b.sensor.text[1] = "\x01garbage\r\nOK,M00,03,VINVALID,D2,M01,07,V-1,D0,M01,09,V5,D0\r\n";
+    b.sensor.text[2] = "ERROR,Specified measurement ID not found. Please verify your input\r\n";
+    assert_int_equal(begin(&b, polled, serve_text), DEA_OK);
+    assert_message(emulator_get(ctx, b.instrument, &b.intake, 9, 0, 0), DEA_E_INSTRUMENT,
+                   "answers: Specified measurement ID not found");
+    assert_int_equal(b.intake.readings, 4);
+    assert_close(b.intake.reading[0].value, 0.15129, 1e-12, 0);
+    assert_close(b.intake.reading[1].value, 0.01852, 1e-12, 0);
+    assert_true(isnan(b.intake.reading[2].value));
+    assert_close(b.intake.reading[3].value, -1e-6, 1e-12, 0);
+    assert_true(b.intake.reading[2].time_s > b.intake.reading[0].time_s);
+    assert_int_equal(b.instrument->lost, 2); // the garbage and the invalid one
+    assert_true(strncmp(b.data.log, "Result,3,7\r\nResult,3,7\r\n", 24) == 0);
+    end(&b);
+  }
+}
+
+static void test_text(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const char text[] =
+      "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: text\ntimeout: 0.25 s\n"
+      "measurements: [{name: centre, id: 3}]\n";
+  memset(&b, 0, sizeof b);
+  for (size_t i = 0; i < 4; i++) {
+    b.sensor.text[i] = "M00,03,V250,D0\r";
+  }
+  assert_int_equal(begin(&b, text, serve_text), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 2, 0, 0), DEA_OK);
+  assert_close(b.intake.reading[0].value, 250e-6, 1e-12, 0);
+  assert_message(emulator_get(ctx, b.instrument, &b.intake, 9, 0, 0), DEA_E_INSTRUMENT,
+                 "no measurement came from the Gocator's text");
+  emulator_close(ctx, b.instrument);
+  b.instrument = NULL;
+  emulator_stop(&b.data);
+  emulator_stop(&b.control);
+  assert_string_equal(b.data.log, "Start\r\nStop\r\n");
+}
+
+static void test_wrong_keys(void **state)
+{
+  (void)state;
+  static const char *const cases[][2] = {
+      {"kind: gocator\nmode: text\n", "without profiles it needs its 'measurements'"},
+      {"kind: gocator\nmeasurements: [{name: a, id: 1}, {name: b, id: 1}]\n",
+       "measurement 1 is read into 'a' already"},
+      {"kind: gocator\nmode: binary\n", "mode"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_protocol protocol = {0};
+    struct dea_instrument *instrument;
+    size_t count;
+    dea_finding_clear(ctx);
+    assert_int_equal(emulator_open(ctx, &protocol, cases[i][0], &instrument), DEA_E_DESIGN);
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    assert_true(count >= 1 && strstr(findings[0].text, cases[i][1]) != NULL);
+  }
+  dea_finding_clear(ctx);
+}
+
+static struct bench memory_bench;
+
+static void work(struct dea_context *context)
+{
+  struct dea_instrument *instrument;
+  struct dea_protocol protocol = {0};
+  dea_status status = emulator_open(context, &protocol, memory_bench.text, &instrument);
+  failing_check(context, status);
+  if (status == DEA_OK) {
+    emulator_close(context, instrument);
+  }
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  struct bench *b = &memory_bench;
+  b->sensor.status = 1;
+  gocator_frame(&b->frames[0], 0, 0);
+  b->sensor.frames[0] = &b->frames[0];
+  b->sensor.count = 1;
+  emulator_start(&b->data, serve_data, &b->sensor);
+  emulator_start(&b->control, serve_control, &b->sensor);
+  snprintf(b->text, sizeof b->text, usual, b->data.port, b->control.port);
+  assert_true(failing_each(work) > 4);
+  emulator_stop(&b->data);
+  emulator_stop(&b->control);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_frames),         cmocka_unit_test(test_invalid_and_other_grid),
+      cmocka_unit_test(test_start_and_stop), cmocka_unit_test(test_goes_silent),
+      cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_garbage),
+      cmocka_unit_test(test_not_there),      cmocka_unit_test(test_polled),
+      cmocka_unit_test(test_text),           cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
