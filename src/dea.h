@@ -36,6 +36,8 @@ extern "C" {
 #include "fabricate/part.h"
 #include "fabricate/plan.h"
 #include "fabricate/workshop.h"
+#include "lab/import/import.h"
+#include "lab/import/mat.h"
 #include "lab/instrument/drive.h"
 #include "lab/recording/recorder.h"
 #include "lab/recording/recording.h"

@@ -39,6 +39,7 @@ struct dea_command {
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
   X(cmd_recording)                                                                                 \
+  X(cmd_import)                                                                                    \
   X(cmd_examples)                                                                                  \
   X(cmd_doctor)                                                                                    \
   X(cmd_completion)

@@ -7,17 +7,21 @@
 #include "base/schema.h"
 #include "lab/recording/recording.h"
 
+enum { DEA_TABLE_COLUMNS_MAX = 8192 };
+
 /* A column as the file has it. */
 struct dea_table_column {
-  char *name;             // "Dev1/ai0"; owned
+  char *name;             // "Dev1/ai0", UTF-8; owned
   char *unit;             // as written, "": none; owned
   double start, interval; // of its samples when the file says so [s]; interval NAN: it does not
   double *values;         // [count], owned; NAN: missing
   size_t count;
+  size_t clock; // 1 + the column with its times when the file says so; 0: it does not
 };
 
 struct dea_table {
-  const char *file; // interned
+  const char *file;   // interned
+  const char *format; // name of its importer
   struct dea_table_column *columns;
   size_t column_count, column_room;
   char *note; // what the file says of itself; NULL; owned
@@ -36,10 +40,15 @@ struct dea_importer {
 };
 
 const struct dea_importer *const *dea_importer_all(size_t *count);
-/* Adds an empty column with room for `room` values; NULL on failure. */
+/* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
+bool dea_name_ends(const char *file, const char *ending);
+/* Adds an empty column with room for `room` values; NULL on failure. Name and unit become UTF-8. */
 struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table *table,
                                        const char *name, size_t name_length, const char *unit,
                                        size_t unit_length, size_t room);
+/* What the file says of itself, instead of what was there. */
+dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, const char *text,
+                          size_t length);
 
 /* Reads a file with the format that recognises it, or the one of that name (NULL: any). out: owned
  * by the caller, NULL on failure. */
@@ -50,8 +59,40 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table);
 /* What columns mean; read from YAML, or guessed from names and units. */
 struct dea_mapping;
 dea_status dea_mapping_read(struct dea_context *ctx, const char *file, struct dea_mapping **out);
+/* The same from text; file: for messages. */
+dea_status dea_mapping_read_memory(struct dea_context *ctx, const char *file, const char *bytes,
+                                   size_t length, struct dea_mapping **out);
 void dea_mapping_destroy(struct dea_context *ctx, struct dea_mapping *mapping);
 extern const struct dea_record dea_mapping_record;
+
+/* What is made of a column. */
+enum dea_column_use {
+  DEA_USE_LEFT,    // nothing
+  DEA_USE_TIME,    // times of others
+  DEA_USE_CLOCK,   // one number that is the rate or the interval of others
+  DEA_USE_CHANNEL, // a channel
+  DEA_USE_PROFILE, // a point of all frames of a profile sensor
+  DEA_USE_PLACE,   // where these points are
+};
+struct dea_column_role {
+  enum dea_column_use use;
+  enum dea_channel_kind kind; // of a channel
+  double factor, offset;      // SI value = value * factor + offset
+  size_t clock;               // 1 + the column with its times; 0: none
+  double interval_s;          // NAN: by its times
+  const char *why;            // one clause for people, or why it is left; static or lent by mapping
+};
+/* What each column of a table is for; roles: [column_count]. mapping: NULL guesses. Errors are
+ * findings in the mapping; DEA_E_DESIGN then. */
+dea_status dea_table_roles(struct dea_context *ctx, const struct dea_table *table,
+                           const struct dea_mapping *mapping, struct dea_column_role *roles);
+/* Name of what a role takes a column for: "voltage", "time", "left". */
+const char *dea_role_name(const struct dea_column_role *role);
+
+/* Moves the columns of another table to the end of this one, which must have the same clock.
+ * DEA_E_IO otherwise. */
+dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table,
+                          struct dea_table *other);
 
 /* Makes a recording of a table. mapping: NULL guesses. What a column was taken for, and which ones
  * were left, become notes. out: owned by the caller, NULL on failure. */

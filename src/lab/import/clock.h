@@ -1,0 +1,20 @@
+/* Times of samples: an interval where they are uniform. */
+#ifndef DEA_LAB_IMPORT_CLOCK_H
+#define DEA_LAB_IMPORT_CLOCK_H
+
+#include "lab/import/import.h"
+
+struct dea_clock {
+  double start_s, interval_s; // interval 0: by time_s
+  double *time_s;             // [count], owned; NULL with an interval
+  size_t count;
+};
+
+/* The clock of a column of times, SI value = value * factor. Times that fall, repeat or are missing
+ * are findings with their row, DEA_E_IO then. */
+dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table, size_t column,
+                          double factor, struct dea_clock *out);
+/* Whether two of them are the same to a thousandth of a step. */
+bool dea_clock_same(const struct dea_clock *a, const struct dea_clock *b);
+
+#endif

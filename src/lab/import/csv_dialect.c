@@ -1,0 +1,334 @@
+#include "lab/import/csv_dialect.h"
+
+#include <ctype.h>
+#include <string.h>
+
+enum { SAMPLE_LINES = 2000, SAMPLE_BYTES = 1 << 22 };
+
+/* The lines that are looked at: neither empty nor comments. */
+struct sample {
+  struct dea_context *ctx;
+  const char *file;
+  struct dea_slice *lines; // [count]
+  size_t *numbers;         // [count] of lines
+  size_t count;
+  bool ends;  // with the text
+  char given; // separator that a line "sep=;" of Excel says; '\0'
+};
+
+/* One way to read them, and how well it does. */
+struct candidate {
+  char separator, decimal;
+  size_t count, rows, numeric, first;
+  bool all_numeric;
+};
+
+bool dea_csv_is_comment(struct dea_slice line)
+{
+  line = dea_slice_trim(line);
+  return line.length > 0 &&
+         (line.text[0] == '#' || line.text[0] == '%' || dea_slice_starts(line, "//"));
+}
+
+bool dea_csv_is_blank(struct dea_slice line)
+{
+  for (size_t i = 0; i < line.length; i++) {
+    if (strchr(" \t,;\"", line.text[i]) == NULL || line.text[i] == '\0') {
+      return false;
+    }
+  }
+  return true;
+}
+
+static dea_status take_sample(struct sample *sample, struct dea_slice text)
+{
+  struct dea_lines lines = {text.text, text.text + text.length, 0};
+  struct dea_slice line;
+  sample->lines = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->lines);
+  sample->numbers = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->numbers);
+  if (sample->lines == NULL || sample->numbers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  while (sample->count < SAMPLE_LINES &&
+         (sample->count < 2 || lines.next - text.text < SAMPLE_BYTES) &&
+         dea_lines_next(&lines, &line)) {
+    if (lines.line == 1 && line.length >= 5 && dea_slice_starts(line, "sep=")) {
+      sample->given = line.text[4];
+    } else if (!dea_csv_is_blank(line) && !dea_csv_is_comment(line)) {
+      sample->lines[sample->count] = line;
+      sample->numbers[sample->count++] = lines.line;
+    }
+  }
+  sample->ends = lines.next >= lines.end;
+  return DEA_OK;
+}
+
+/* Looks at one line: which fields are text, how many are numbers. */
+static size_t look(struct dea_slice line, const struct candidate *c, bool *text, size_t *count)
+{
+  struct dea_slice field;
+  double value;
+  size_t numeric = 0;
+  *count = 0;
+  while (dea_slice_field(&line, c->separator, &field)) {
+    if (*count < DEA_TABLE_COLUMNS_MAX) {
+      bool number = dea_slice_number(field, c->decimal, &value);
+      text[*count] = !number;
+      numeric += number && value == value;
+    }
+    ++*count;
+  }
+  return numeric;
+}
+
+/* How many lines before and with `last` are of its form. */
+static void judge(const struct sample *sample, size_t last, struct candidate *c, bool *text,
+                  bool *other)
+{
+  c->rows = 0;
+  c->numeric = look(sample->lines[last], c, text, &c->count);
+  if (c->numeric == 0 || c->count > DEA_TABLE_COLUMNS_MAX) {
+    return;
+  }
+  c->all_numeric = memchr(text, true, c->count) == NULL;
+  c->first = last;
+  c->rows = 1;
+  for (size_t i = last; i-- > 0;) {
+    size_t count, numeric = look(sample->lines[i], c, other, &count);
+    bool same = count == c->count;
+    for (size_t k = 0; same && k < count; k++) {
+      same = !other[k] || text[k];
+    }
+    if (!same) {
+      break;
+    }
+    c->rows++;
+    c->first = numeric > 0 ? i : c->first;
+  }
+}
+
+static bool is_better(const struct candidate *a, const struct candidate *b)
+{
+  if ((a->rows > 0) != (b->rows > 0) || a->rows == 0) {
+    return a->rows > 0;
+  }
+  if (a->all_numeric != b->all_numeric) {
+    return a->all_numeric;
+  }
+  return a->rows != b->rows ? a->rows > b->rows : a->numeric > b->numeric;
+}
+
+/* "1,234.5" or "1.234,5". */
+static bool has_thousands(struct dea_slice field)
+{
+  size_t commas = 0, points = 0;
+  for (size_t i = 0; i < field.length; i++) {
+    char c = field.text[i];
+    commas += c == ',';
+    points += c == '.';
+    if (strchr("+-.,", c) == NULL && !isdigit((unsigned char)c)) {
+      return false;
+    }
+  }
+  return commas > 0 && points > 0;
+}
+
+static dea_status refuse_thousands(const struct sample *sample, size_t last, bool *found)
+{
+  static const char separators[] = {';', '\t', ',', '|', ' '};
+  for (size_t i = 0; i < sizeof separators; i++) {
+    struct dea_slice rest = sample->lines[last], field;
+    while (dea_slice_field(&rest, separators[i], &field)) {
+      if (has_thousands(field)) {
+        const struct dea_place place = {sample->file, sample->numbers[last],
+                                        (size_t)(field.text - sample->lines[last].text) + 1};
+        *found = true;
+        return dea_finding_add(sample->ctx, DEA_ERROR, place,
+                               "'%.*s' has a comma and a point: numbers with marks between "
+                               "thousands are not read; export them without",
+                               (int)(field.length < 40 ? field.length : 40), field.text);
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+/* The best way to read the sample; best->rows 0 when there is none. */
+static void choose(const struct sample *sample, bool *text, bool *other, struct candidate *best)
+{
+  static const struct candidate all[] = {
+      {.separator = '\t', .decimal = '.'}, {.separator = '\t', .decimal = ','},
+      {.separator = ';', .decimal = '.'},  {.separator = ';', .decimal = ','},
+      {.separator = ',', .decimal = '.'},  {.separator = ',', .decimal = ','},
+      {.separator = '|', .decimal = '.'},  {.separator = '|', .decimal = ','},
+      {.separator = ' ', .decimal = '.'},  {.separator = ' ', .decimal = ','}};
+  *best = (struct candidate){0};
+  // the last line may be cut off, or be none of the numbers
+  for (size_t back = 1; back <= 2 && back <= sample->count; back++) {
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+      struct candidate c = all[i];
+      if (sample->given != '\0' && c.separator != sample->given) {
+        continue;
+      }
+      judge(sample, sample->count - back, &c, text, other);
+      if (is_better(&c, best)) {
+        *best = c;
+      }
+    }
+  }
+}
+
+/* Numbers further up would be lost: two tables in one file, or a line between them that is none. */
+static dea_status check_above(const struct sample *sample, const struct candidate *best,
+                              bool *flags)
+{
+  size_t alone = 0;
+  for (size_t i = 0; i < best->first; i++) {
+    size_t count, numeric = look(sample->lines[i], best, flags, &count);
+    bool numbers =
+        numeric > 0 && count <= DEA_TABLE_COLUMNS_MAX && memchr(flags, true, count) == NULL;
+    alone = numbers && count == 1 ? alone + 1 : 0;
+    if ((numbers && count > 1) || alone > 1) {
+      const struct dea_place place = {sample->file, sample->numbers[i], 1};
+      DEA_TRY(sample->ctx,
+              dea_finding_add(sample->ctx, DEA_ERROR, place,
+                              "numbers stand here, and below other lines those from line %zu on: "
+                              "split the file, or take out what is between them",
+                              sample->numbers[best->first]));
+      return dea_fail(sample->ctx, DEA_E_IO, "'%s' has more than one table", sample->file);
+    }
+  }
+  return DEA_OK;
+}
+
+/* The lines above the numbers that may be titles, also comments. */
+static void find_titles(struct dea_slice text, struct dea_csv_dialect *out)
+{
+  struct dea_lines lines = {text.text, out->data, 0};
+  struct dea_slice line;
+  while (dea_lines_next(&lines, &line)) {
+    bool comment = dea_csv_is_comment(line);
+    line = dea_slice_trim(line);
+    if (comment) {
+      size_t mark = line.text[0] == '/' ? 2 : 1;
+      line = dea_slice_trim((struct dea_slice){line.text + mark, line.length - mark});
+    }
+    if (dea_csv_is_blank(line) || (lines.line == 1 && dea_slice_starts(line, "sep="))) {
+      continue;
+    }
+    size_t last = DEA_CSV_TITLES_MAX - 1;
+    memmove(out->titles + 1, out->titles, last * sizeof *out->titles);
+    memmove(out->title_lines + 1, out->title_lines, last * sizeof *out->title_lines);
+    out->titles[0] = line;
+    out->title_lines[0] = lines.line;
+    out->title_count += out->title_count < DEA_CSV_TITLES_MAX;
+  }
+}
+
+/* Without a decimal mark in the sample the first one of the rest decides. */
+static char find_decimal(struct dea_slice text, const struct candidate *best, const char *data)
+{
+  if (best->separator == ',' || best->decimal == ',') {
+    return best->decimal;
+  }
+  for (const char *c = data; c + 1 < text.text + text.length; c++) {
+    if ((*c == '.' || *c == ',') && isdigit((unsigned char)c[1])) {
+      return *c;
+    }
+  }
+  return best->decimal;
+}
+
+static dea_status fill(const struct sample *sample, struct dea_slice text,
+                       const struct candidate *best, struct dea_csv_dialect *out)
+{
+  out->separator = best->separator;
+  out->count = best->count;
+  out->data = sample->lines[best->first].text;
+  out->line = sample->numbers[best->first] - 1;
+  out->decimal = find_decimal(text, best, out->data);
+  find_titles(text, out);
+  // "1,5" below one title is a number with a decimal comma, not two
+  if (out->separator == ',' && out->count == 2 && out->title_count > 0 &&
+      dea_slice_count(out->titles[0], ',') == 1 &&
+      memchr(out->data, '.', sample->lines[best->first].length) == NULL) {
+    out->separator = ';';
+    out->decimal = ',';
+    out->count = 1;
+  }
+  out->text = dea_alloc(sample->ctx, DEA_TABLE_COLUMNS_MAX, sizeof *out->text);
+  if (out->text == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const struct candidate chosen = {.separator = out->separator, .decimal = out->decimal};
+  size_t count;
+  look(sample->lines[best->first + best->rows - 1], &chosen, out->text, &count);
+  return DEA_OK;
+}
+
+/* A line between titles and numbers that looks like numbers with something odd in them would be
+ * lost otherwise. */
+static dea_status check_last_title(struct dea_context *ctx, const char *file,
+                                   const struct dea_csv_dialect *dialect)
+{
+  struct dea_slice rest, field, odd = {"", 0};
+  size_t numbers = 0, count = 0;
+  double value;
+  if (dialect->title_count == 0 || dialect->count < 2) {
+    return DEA_OK;
+  }
+  rest = dialect->titles[0];
+  while (dea_slice_field(&rest, dialect->separator, &field)) {
+    bool number = dea_slice_number(field, dialect->decimal, &value);
+    bool due = count < dialect->count && !dialect->text[count];
+    numbers += due && number && value == value;
+    odd = due && !number && odd.length == 0 ? field : odd;
+    count++;
+  }
+  if (count != dialect->count || numbers == 0 || odd.length == 0) {
+    return DEA_OK;
+  }
+  const struct dea_place place = {file, dialect->title_lines[0],
+                                  (size_t)(odd.text - dialect->titles[0].text) + 1};
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+                               "'%.*s' stands in a line of numbers; write a missing one as NaN or "
+                               "leave it empty",
+                               (int)(odd.length < 40 ? odd.length : 40), odd.text));
+  return dea_fail(ctx, DEA_E_IO, "'%s' has a line that is neither titles nor numbers", file);
+}
+
+static dea_status find(struct sample *sample, struct dea_slice text, bool *flags,
+                       struct dea_csv_dialect *out)
+{
+  struct candidate best;
+  bool found = false;
+  DEA_TRY(sample->ctx, take_sample(sample, text));
+  choose(sample, flags, flags + DEA_TABLE_COLUMNS_MAX, &best);
+  if (sample->count > 0 && (best.rows == 0 || !best.all_numeric)) {
+    DEA_TRY(sample->ctx, refuse_thousands(sample, sample->count - 1, &found));
+  }
+  if (found) {
+    return dea_fail(sample->ctx, DEA_E_IO, "'%s' cannot be read", sample->file);
+  }
+  if (best.rows == 0) {
+    return dea_fail(sample->ctx, DEA_E_IO,
+                    "'%s' has no lines of numbers parted by commas, semicolons, tabs or blanks",
+                    sample->file);
+  }
+  DEA_TRY(sample->ctx, fill(sample, text, &best, out));
+  DEA_TRY(sample->ctx, check_last_title(sample->ctx, sample->file, out));
+  return check_above(sample, &best, flags);
+}
+
+dea_status dea_csv_dialect_find(struct dea_context *ctx, const char *file, struct dea_slice text,
+                                struct dea_csv_dialect *out)
+{
+  struct sample sample = {.ctx = ctx, .file = file};
+  *out = (struct dea_csv_dialect){0};
+  bool *flags = dea_alloc(ctx, 2 * (size_t)DEA_TABLE_COLUMNS_MAX, sizeof *flags);
+  dea_status status = flags != NULL ? find(&sample, text, flags, out) : DEA_E_MEMORY;
+  dea_free(ctx, sample.lines);
+  dea_free(ctx, sample.numbers);
+  dea_free(ctx, flags);
+  return status;
+}

@@ -1,0 +1,13 @@
+/* What a column may be, by its name and unit. */
+#ifndef DEA_LAB_IMPORT_GUESS_H
+#define DEA_LAB_IMPORT_GUESS_H
+
+#include "lab/import/import.h"
+
+enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2 }; // beside enum dea_channel_kind
+
+int dea_guess_by_name(const char *name);
+/* si: SI unit of the column's unit. */
+int dea_guess_by_unit(const char *name, const char *si);
+
+#endif

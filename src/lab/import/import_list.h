@@ -1,0 +1,8 @@
+/* The formats of files that can be imported; the first that recognises a file reads it. */
+#ifndef DEA_LAB_IMPORT_IMPORT_LIST_H
+#define DEA_LAB_IMPORT_IMPORT_LIST_H
+
+// X(name of the `const struct dea_importer`)
+#define DEA_IMPORTER_LIST(X) X(dea_import_csv)
+
+#endif

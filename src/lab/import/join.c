@@ -1,0 +1,92 @@
+/* Several files of one measurement as one table. */
+#include "lab/import/clock.h"
+
+#include <math.h>
+
+/* What a table's samples are counted by. */
+struct table_clock {
+  struct dea_clock clock;
+  size_t column; // of the times; the table's count: none
+  bool known;
+};
+
+static dea_status find(struct dea_context *ctx, const struct dea_table *table,
+                       struct table_clock *out)
+{
+  *out = (struct table_clock){.column = table->column_count};
+  struct dea_column_role *roles = dea_alloc(ctx, table->column_count, sizeof *roles);
+  dea_status status = roles != NULL ? dea_table_roles(ctx, table, NULL, roles) : DEA_E_MEMORY;
+  for (size_t i = 0; status == DEA_OK && i < table->column_count && !out->known; i++) {
+    const struct dea_table_column *column = &table->columns[i];
+    if (roles[i].use == DEA_USE_TIME) {
+      out->column = i;
+      out->known = true;
+      status = dea_clock_read(ctx, table, i, roles[i].factor, &out->clock);
+    } else if (column->interval > 0) {
+      out->known = true;
+      out->clock = (struct dea_clock){.start_s = column->start, .interval_s = column->interval};
+      out->clock.count = column->count;
+    } else if (column->count > out->clock.count) {
+      out->clock.count = column->count; // no clock: at least as many samples
+    }
+  }
+  dea_free(ctx, roles);
+  return status;
+}
+
+static dea_status move(struct dea_context *ctx, struct dea_table *table, struct dea_table *other,
+                       size_t times)
+{
+  size_t count = table->column_count + other->column_count;
+  if (count > DEA_TABLE_COLUMNS_MAX) {
+    return dea_fail(ctx, DEA_E_IO, "'%s' and '%s' have more than %d columns together", table->file,
+                    other->file, (int)DEA_TABLE_COLUMNS_MAX);
+  }
+  void *moved = dea_resize(ctx, table->columns, count, sizeof *table->columns);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  table->columns = moved;
+  table->column_room = count;
+  size_t before = table->column_count;
+  for (size_t i = 0; i < other->column_count; i++) {
+    struct dea_table_column *column = &other->columns[i];
+    if (i == times) { // they are those of the first file
+      dea_free(ctx, column->name);
+      dea_free(ctx, column->unit);
+      dea_free(ctx, column->values);
+      continue;
+    }
+    if (column->clock > 0 && column->clock != times + 1) {
+      column->clock += before - (column->clock > times + 1);
+    } else {
+      column->clock = 0;
+    }
+    table->columns[table->column_count++] = *column;
+  }
+  other->column_count = 0;
+  return DEA_OK;
+}
+
+dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, struct dea_table *other)
+{
+  struct table_clock a = {0}, b = {0};
+  dea_status status = find(ctx, table, &a);
+  if (status == DEA_OK) {
+    status = find(ctx, other, &b);
+  }
+  if (status == DEA_OK) {
+    bool same = a.known && b.known   ? dea_clock_same(&a.clock, &b.clock)
+                : a.known == b.known ? a.clock.count == b.clock.count
+                                     : false;
+    status = same ? move(ctx, table, other, b.column)
+                  : dea_fail(ctx, DEA_E_IO,
+                             "'%s' and '%s' have different clocks (%zu samples from %.6g s and %zu "
+                             "from %.6g s): import each into a recording of its own",
+                             table->file, other->file, a.clock.count, a.clock.start_s,
+                             b.clock.count, b.clock.start_s);
+  }
+  dea_free(ctx, a.clock.time_s);
+  dea_free(ctx, b.clock.time_s);
+  return status;
+}

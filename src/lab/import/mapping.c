@@ -1,0 +1,310 @@
+#include "lab/import/mapping.h"
+
+#include "base/file.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
+#define AT(member) offsetof(struct dea_mapping, member)
+#define OF(member) offsetof(struct dea_mapped, member)
+
+static const struct dea_field column_fields[] = {
+    {.key = "column",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(column),
+     .required = true,
+     .doc = "name of the column, as `dea import --list` shows it",
+     .example = "Dev1/ai0"},
+    {.key = "as",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = OF(as),
+     .choices = dea_channel_names,
+     .required = true,
+     .doc = "what it is",
+     .example = "voltage"},
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(name),
+     .absent_text = "the column's name",
+     .doc = "name of the channel",
+     .example = "high voltage"},
+    {.key = "unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(unit),
+     .absent_text = "the file's",
+     .doc = "unit of the column's numbers",
+     .example = "kV"},
+    {.key = "per_unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(per_unit),
+     .absent_text = "1",
+     .doc = "what 1 in the column stands for: a quantity, or a number of its units; a monitor of "
+            "1 V a kV: 1 kV",
+     .example = "1 kV"},
+    {.key = "at_zero",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(at_zero),
+     .absent_text = "0",
+     .doc = "what 0 in the column stands for",
+     .example = "-2.5 mm"},
+    {.key = "time",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(time),
+     .absent_text = "that of all",
+     .doc = "column with the times of this one",
+     .example = "t laser"},
+    {.key = "filter",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = OF(filter_Hz),
+     .unit = "Hz",
+     .max = 1e9,
+     .above_min = true,
+     .absent_text = "none",
+     .doc = "low-pass that `dea reduce` applies",
+     .example = "200 Hz"},
+};
+static const struct dea_record column_record = {"columns", "a column that becomes a channel",
+                                                column_fields, COUNT(column_fields)};
+
+static const struct dea_field profile_fields[] = {
+    {.key = "columns",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.columns),
+     .required = true,
+     .doc = "names of the points' columns in their order, * for any text",
+     .example = "z*"},
+    {.key = "unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.unit),
+     .absent_text = "the file's",
+     .doc = "unit of the heights",
+     .example = "mm"},
+    {.key = "per_unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.per_unit),
+     .absent_text = "1",
+     .doc = "what 1 stands for; negative for a sensor that looks from below",
+     .example = "-1"},
+    {.key = "at_zero",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.at_zero),
+     .absent_text = "0",
+     .doc = "what 0 stands for",
+     .example = "0 mm"},
+    {.key = "x_from",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(profile.x_from_m),
+     .unit = "m",
+     .doc = "where the first point is along the line",
+     .example = "-15 mm"},
+    {.key = "x_to",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(profile.x_to_m),
+     .unit = "m",
+     .doc = "where the last one is",
+     .example = "15 mm"},
+    {.key = "x",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.x),
+     .absent_text = "x_from to x_to",
+     .doc = "column with a place for each point, in place of x_from and x_to",
+     .example = "x"},
+    {.key = "x_unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.x_unit),
+     .absent_text = "the file's",
+     .doc = "unit of that column",
+     .example = "mm"},
+    {.key = "time",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(profile.time),
+     .absent_text = "that of all",
+     .doc = "column with the times of the frames",
+     .example = "frame time"},
+};
+static const struct dea_record profile_record = {"profile",
+                                                 "columns that are the points of a profile sensor",
+                                                 profile_fields, COUNT(profile_fields)};
+
+static const struct dea_field mapping_fields[] = {
+    {.key = "dea-import",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(version),
+     .unit = "1",
+     .min = DEA_MAPPING_VERSION,
+     .max = DEA_MAPPING_VERSION,
+     .required = true,
+     .doc = "version of the format of mappings",
+     .example = "1"},
+    {.key = "title",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(title),
+     .absent_text = "none",
+     .doc = "what was measured",
+     .example = "FRDEA-4, 1 Hz"},
+    {.key = "rate",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(rate_Hz),
+     .unit = "Hz",
+     .max = 1e12,
+     .above_min = true,
+     .group = 1,
+     .option = 1,
+     .absent_text = "from the file",
+     .doc = "samples a second, of a file without times",
+     .example = "10 kHz"},
+    {.key = "time",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(time),
+     .group = 1,
+     .option = 2,
+     .absent_text = "guessed",
+     .doc = "column with the times",
+     .example = "Time"},
+    {.key = "time_unit",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(time_unit),
+     .absent_text = "the file's, else s",
+     .doc = "unit of the times",
+     .example = "ms"},
+    {.key = "columns",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(columns),
+     .record = &column_record,
+     .list_max = DEA_MAPPED_MAX,
+     .element_size = sizeof(struct dea_mapped),
+     .count_offset = AT(column_count),
+     .absent_text = "none",
+     .doc = "columns that become channels",
+     .example = "[{column: Dev1/ai0, as: voltage, per_unit: 1 kV}]"},
+    {.key = "profile",
+     .kind = DEA_FIELD_RECORD,
+     .record = &profile_record,
+     .present_offset = AT(has_profile),
+     .absent_text = "none",
+     .doc = "columns that are the points of a profile sensor, a frame a row"},
+    {.key = "ignore",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(ignore),
+     .list_max = DEA_IGNORED_MAX,
+     .element_size = sizeof(struct dea_label),
+     .count_offset = AT(ignore_count),
+     .absent_text = "none",
+     .doc = "columns to leave without a note, * for any text",
+     .example = "[Comment, Dev1/ai7]"},
+};
+
+const struct dea_record dea_mapping_record = {"mapping",
+                                              "what the columns of a measurement's file mean",
+                                              mapping_fields, COUNT(mapping_fields)};
+
+bool dea_mapping_matches(const char *name, const char *wanted, bool pattern)
+{
+  const char *star = NULL, *again = NULL; // the last '*', and where what follows it was tried
+  while (*name != '\0') {
+    if (pattern && *wanted == '*') {
+      star = wanted++;
+      again = name;
+    } else if (tolower((unsigned char)*name) == tolower((unsigned char)*wanted)) {
+      name++;
+      wanted++;
+    } else if (star != NULL) {
+      wanted = star + 1;
+      name = ++again;
+    } else {
+      return false;
+    }
+  }
+  while (pattern && *wanted == '*') {
+    wanted++;
+  }
+  return *wanted == '\0';
+}
+
+/* What the schema cannot say. */
+static dea_status check(struct dea_context *ctx, const struct dea_mapping *mapping)
+{
+  for (size_t i = 0; i < mapping->column_count; i++) {
+    const struct dea_label *name = &mapping->columns[i].column;
+    for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
+      if (dea_mapping_matches(mapping->columns[k].column.text, name->text, false)) {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+                                     "the column '%.60s' is taken in line %zu already", name->text,
+                                     mapping->columns[k].column.place.line));
+      }
+    }
+  }
+  if (!mapping->has_profile) {
+    return DEA_OK;
+  }
+  bool named = mapping->profile.x.text[0] != '\0';
+  bool from = !isnan(mapping->profile.x_from_m.si), to = !isnan(mapping->profile.x_to_m.si);
+  if (named ? from || to : !from || !to) {
+    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.columns.place,
+                           "profile: where its points are is said by x_from and x_to, or by x");
+  }
+  if (!named && mapping->profile.x_from_m.si == mapping->profile.x_to_m.si) {
+    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.x_to_m.place,
+                           "x_to is where x_from is");
+  }
+  return DEA_OK;
+}
+
+static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,
+                             struct dea_mapping *mapping)
+{
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  DEA_TRY(ctx, dea_yaml_parse(ctx, mapping->file, bytes, length, &mapping->document));
+  struct dea_reader reader = {ctx, mapping->document, NULL};
+  const struct dea_node *root = dea_yaml_root(mapping->document);
+  DEA_TRY(ctx, dea_schema_read(&reader, &dea_mapping_record, root, "", mapping));
+  if (root->kind == DEA_NODE_SECTION) {
+    DEA_TRY(ctx, check(ctx, mapping));
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", mapping->file, found,
+                    found > 1 ? "s" : "");
+  }
+  return DEA_OK;
+}
+
+dea_status dea_mapping_read_memory(struct dea_context *ctx, const char *file, const char *bytes,
+                                   size_t length, struct dea_mapping **out)
+{
+  *out = NULL;
+  struct dea_mapping *mapping = dea_alloc(ctx, 1, sizeof *mapping);
+  if (mapping == NULL) {
+    return DEA_E_MEMORY;
+  }
+  mapping->file = dea_intern(ctx, file);
+  dea_status status =
+      mapping->file != NULL ? read_bytes(ctx, bytes, length, mapping) : DEA_E_MEMORY;
+  if (status != DEA_OK) {
+    dea_mapping_destroy(ctx, mapping);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = mapping;
+  return DEA_OK;
+}
+
+dea_status dea_mapping_read(struct dea_context *ctx, const char *file, struct dea_mapping **out)
+{
+  char *bytes;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = dea_mapping_read_memory(ctx, file, bytes, length, out);
+  dea_free(ctx, bytes);
+  return status;
+}
+
+void dea_mapping_destroy(struct dea_context *ctx, struct dea_mapping *mapping)
+{
+  if (mapping != NULL) {
+    dea_yaml_destroy(ctx, mapping->document);
+    dea_free(ctx, mapping);
+  }
+}

@@ -1,0 +1,321 @@
+/* What each column of a table is for: as the mapping says, or as names and units make believe. */
+#include "base/text.h"
+#include "lab/import/guess.h"
+#include "lab/import/mapping.h"
+#include "lab/import/scale.h"
+#include "lab/import/titles.h"
+
+#include <math.h>
+#include <string.h>
+
+struct work {
+  struct dea_context *ctx;
+  const struct dea_table *table;
+  const struct dea_mapping *mapping;
+  struct dea_column_role *roles;
+  size_t errors;
+};
+
+const char *dea_role_name(const struct dea_column_role *role)
+{
+  switch (role->use) {
+  case DEA_USE_TIME:
+    return "time";
+  case DEA_USE_CLOCK:
+    return "clock";
+  case DEA_USE_CHANNEL:
+    return dea_channel_names[role->kind];
+  case DEA_USE_PROFILE:
+    return "profile";
+  case DEA_USE_PLACE:
+    return "place";
+  default:
+    return "left";
+  }
+}
+
+// By the mapping ---------------------------------------------------------------------------------
+
+/* Column of that name, or the table's count after an error with the nearest name. */
+static dea_status find_column(struct work *work, const struct dea_label *wanted, size_t *out)
+{
+  const struct dea_table *table = work->table;
+  const char *names[256];
+  size_t count = table->column_count < 256 ? table->column_count : 256;
+  for (*out = 0; *out < table->column_count; ++*out) {
+    if (strcmp(table->columns[*out].name, wanted->text) == 0) {
+      return DEA_OK;
+    }
+  }
+  for (*out = 0; *out < table->column_count; ++*out) {
+    if (dea_mapping_matches(table->columns[*out].name, wanted->text, false)) {
+      return DEA_OK;
+    }
+  }
+  for (size_t i = 0; i < count; i++) {
+    names[i] = table->columns[i].name;
+  }
+  const char *nearest = dea_nearest_name(wanted->text, names, count);
+  work->errors++;
+  return dea_finding_add(work->ctx, DEA_ERROR, wanted->place,
+                         "'%s' has no column '%.80s'; %s%.80s%s", table->file, wanted->text,
+                         nearest != NULL ? "did you mean '" : "dea import --list shows what it has",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+/* Gives a column a use; an error when it has another one. */
+static dea_status take(struct work *work, size_t column, enum dea_column_use use,
+                       struct dea_place place)
+{
+  struct dea_column_role *role = &work->roles[column];
+  if (role->use != DEA_USE_LEFT && role->use != use) {
+    work->errors++;
+    return dea_finding_add(work->ctx, DEA_ERROR, place, "the column '%.60s' is taken as %s already",
+                           work->table->columns[column].name, dea_role_name(role));
+  }
+  role->use = use;
+  role->why = "by the mapping";
+  return DEA_OK;
+}
+
+/* Scale of a column; counts an error. */
+static dea_status scale(struct work *work, size_t column, const char *si,
+                        const struct dea_scale_text *text, struct dea_place place)
+{
+  struct dea_column_role *role = &work->roles[column];
+  bool good;
+  DEA_TRY(work->ctx, dea_scale_find(work->ctx, &work->table->columns[column], si, text, place,
+                                    &role->factor, &role->offset, &good));
+  work->errors += !good;
+  return DEA_OK;
+}
+
+/* The column of times that a key names. */
+static dea_status take_time(struct work *work, const struct dea_label *name, size_t *clock)
+{
+  const struct dea_scale_text text = {.unit = &work->mapping->time_unit};
+  size_t column;
+  DEA_TRY(work->ctx, find_column(work, name, &column));
+  if (column == work->table->column_count) {
+    return DEA_OK;
+  }
+  *clock = column + 1;
+  DEA_TRY(work->ctx, take(work, column, DEA_USE_TIME, name->place));
+  return scale(work, column, "s", &text, name->place);
+}
+
+static dea_status take_channel(struct work *work, const struct dea_mapped *mapped)
+{
+  const struct dea_scale_text text = {&mapped->unit, &mapped->per_unit, &mapped->at_zero};
+  size_t column;
+  DEA_TRY(work->ctx, find_column(work, &mapped->column, &column));
+  if (column == work->table->column_count) {
+    return DEA_OK;
+  }
+  DEA_TRY(work->ctx, take(work, column, DEA_USE_CHANNEL, mapped->column.place));
+  struct dea_column_role *role = &work->roles[column];
+  role->kind = (enum dea_channel_kind)mapped->as.value;
+  DEA_TRY(work->ctx, scale(work, column, dea_channel_meanings[role->kind].si_unit, &text,
+                           mapped->column.place));
+  return mapped->time.text[0] != '\0' ? take_time(work, &mapped->time, &role->clock) : DEA_OK;
+}
+
+static dea_status take_profile(struct work *work)
+{
+  const struct dea_mapping *mapping = work->mapping;
+  const struct dea_scale_text text = {&mapping->profile.unit, &mapping->profile.per_unit,
+                                      &mapping->profile.at_zero};
+  const struct dea_label *pattern = &mapping->profile.columns;
+  size_t found = 0, clock = 0, errors = work->errors;
+  if (mapping->profile.time.text[0] != '\0') {
+    DEA_TRY(work->ctx, take_time(work, &mapping->profile.time, &clock));
+  }
+  if (mapping->profile.x.text[0] != '\0') {
+    const struct dea_scale_text x_text = {.unit = &mapping->profile.x_unit};
+    size_t column;
+    DEA_TRY(work->ctx, find_column(work, &mapping->profile.x, &column));
+    if (column < work->table->column_count) {
+      DEA_TRY(work->ctx, take(work, column, DEA_USE_PLACE, mapping->profile.x.place));
+      DEA_TRY(work->ctx, scale(work, column, "m", &x_text, mapping->profile.x.place));
+    }
+  }
+  for (size_t i = 0; i < work->table->column_count && work->errors == errors; i++) {
+    // a column that another key names is none of its points
+    if (work->roles[i].use == DEA_USE_LEFT &&
+        dea_mapping_matches(work->table->columns[i].name, pattern->text, true)) {
+      DEA_TRY(work->ctx, take(work, i, DEA_USE_PROFILE, pattern->place));
+      DEA_TRY(work->ctx, scale(work, i, "m", &text, pattern->place));
+      work->roles[i].clock = clock;
+      found++;
+    }
+  }
+  if (found < 2 && work->errors == errors) {
+    work->errors++;
+    return dea_finding_add(work->ctx, DEA_ERROR, pattern->place,
+                           "'%.60s' names %zu column%s of '%s', and a profile has at least 2",
+                           pattern->text, found, found == 1 ? "" : "s", work->table->file);
+  }
+  return DEA_OK;
+}
+
+static dea_status take_mapping(struct work *work, size_t *clock)
+{
+  const struct dea_mapping *mapping = work->mapping;
+  if (mapping->time.text[0] != '\0') {
+    DEA_TRY(work->ctx, take_time(work, &mapping->time, clock));
+  }
+  for (size_t i = 0; i < mapping->column_count; i++) {
+    DEA_TRY(work->ctx, take_channel(work, &mapping->columns[i]));
+  }
+  if (mapping->has_profile) {
+    DEA_TRY(work->ctx, take_profile(work));
+  }
+  return DEA_OK;
+}
+
+// Guessing ---------------------------------------------------------------------------------------
+
+/* Times and clocks, which are guessed also beside a mapping that names none. */
+static void guess_times(struct work *work)
+{
+  for (size_t i = 0; i < work->table->column_count; i++) {
+    const struct dea_table_column *column = &work->table->columns[i];
+    struct dea_column_role *role = &work->roles[i];
+    double factor = 1;
+    if (role->use != DEA_USE_LEFT) {
+      continue;
+    }
+    int clock = dea_title_clock(column->name);
+    const char *si = dea_title_unit(work->ctx, column->unit, &factor);
+    if (column->count == 1 && clock != 0) {
+      bool good =
+          column->unit[0] == '\0' || (si != NULL && strcmp(si, clock > 0 ? "Hz" : "s") == 0);
+      if (good) {
+        role->use = DEA_USE_CLOCK;
+        role->factor = column->unit[0] != '\0' ? factor : 1;
+        role->why = clock > 0 ? "samples a second" : "time between samples";
+      }
+      continue;
+    }
+    bool named = dea_guess_by_name(column->name) == DEA_GUESS_TIME;
+    bool seconds = si != NULL && strcmp(si, "s") == 0;
+    if (column->count > 1 && (seconds || (named && column->unit[0] == '\0'))) {
+      role->use = DEA_USE_TIME;
+      role->factor = seconds ? factor : 1;
+      role->why = seconds ? "by its unit" : "by its name, in s";
+    }
+  }
+}
+
+static void guess_channel(struct work *work, size_t i)
+{
+  const struct dea_table_column *column = &work->table->columns[i];
+  struct dea_column_role *role = &work->roles[i];
+  double factor = 1;
+  const char *si = dea_title_unit(work->ctx, column->unit, &factor);
+  int kind = dea_guess_by_name(column->name);
+  if (role->use != DEA_USE_LEFT || column->count < 2) {
+    return;
+  }
+  bool named = kind >= 0;
+  if (named && column->unit[0] != '\0' &&
+      (si == NULL || strcmp(si, dea_channel_meanings[kind].si_unit) != 0)) {
+    bool volts = si != NULL && strcmp(si, "V") == 0;
+    role->why = volts ? "a sensor's voltage: say per_unit in a mapping"
+                      : "its unit does not fit its name: say what it is in a mapping";
+    return;
+  }
+  if (!named && si != NULL) {
+    kind = dea_guess_by_unit(column->name, si);
+  }
+  if (kind < 0) {
+    return;
+  }
+  role->use = DEA_USE_CHANNEL;
+  role->kind = (enum dea_channel_kind)kind;
+  role->factor = factor;
+  role->why = !named                    ? "by its unit"
+              : column->unit[0] != '\0' ? "by its name and unit"
+                                        : "by its name; no unit, taken as SI";
+}
+
+// Clocks -----------------------------------------------------------------------------------------
+
+/* The column of times that goes with column i: the last one before it of its length, else any. */
+static size_t find_clock(const struct work *work, size_t i)
+{
+  const struct dea_table *table = work->table;
+  size_t clock = 0;
+  for (size_t k = 0; k < table->column_count; k++) {
+    if (work->roles[k].use == DEA_USE_TIME && table->columns[k].count == table->columns[i].count &&
+        (clock == 0 || k < i)) {
+      clock = k + 1;
+    }
+  }
+  return clock;
+}
+
+/* Interval of a rate or interval that stands alone; NAN without one. */
+static double lone_interval(const struct work *work)
+{
+  for (size_t k = 0; k < work->table->column_count; k++) {
+    const struct dea_table_column *column = &work->table->columns[k];
+    if (work->roles[k].use == DEA_USE_CLOCK) {
+      double value = column->values[0] * work->roles[k].factor;
+      double interval = dea_title_clock(column->name) > 0 ? 1 / value : value;
+      if (isfinite(interval) && interval > 0) {
+        return interval;
+      }
+    }
+  }
+  return NAN;
+}
+
+static void set_clocks(struct work *work, size_t clock)
+{
+  double lone = lone_interval(work);
+  for (size_t i = 0; i < work->table->column_count; i++) {
+    const struct dea_table_column *column = &work->table->columns[i];
+    struct dea_column_role *role = &work->roles[i];
+    bool needs = role->use == DEA_USE_CHANNEL || role->use == DEA_USE_PROFILE;
+    if (!needs || role->clock > 0) {
+      continue;
+    }
+    if (work->mapping != NULL && !isnan(work->mapping->rate_Hz.si)) {
+      role->interval_s = 1 / work->mapping->rate_Hz.si;
+    } else if (clock > 0) {
+      role->clock = clock;
+    } else if (column->clock > 0) {
+      role->clock = column->clock;
+    } else if (column->interval > 0) {
+      role->interval_s = column->interval;
+    } else {
+      role->clock = find_clock(work, i);
+      role->interval_s = role->clock == 0 ? lone : NAN;
+    }
+  }
+}
+
+dea_status dea_table_roles(struct dea_context *ctx, const struct dea_table *table,
+                           const struct dea_mapping *mapping, struct dea_column_role *roles)
+{
+  struct work work = {ctx, table, mapping, roles, 0};
+  size_t clock = 0;
+  for (size_t i = 0; i < table->column_count; i++) {
+    roles[i] = (struct dea_column_role){.factor = 1, .interval_s = NAN, .why = "not known"};
+  }
+  if (mapping != NULL) {
+    DEA_TRY(ctx, take_mapping(&work, &clock));
+  }
+  if (mapping == NULL || (mapping->time.text[0] == '\0' && isnan(mapping->rate_Hz.si))) {
+    guess_times(&work);
+  }
+  for (size_t i = 0; mapping == NULL && i < table->column_count; i++) {
+    guess_channel(&work, i);
+  }
+  set_clocks(&work, clock);
+  if (work.errors > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the mapping does not fit '%s'", table->file);
+  }
+  return DEA_OK;
+}

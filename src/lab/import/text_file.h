@@ -1,0 +1,17 @@
+/* Bytes of a text file, whatever its encoding, as text that slices are taken of. */
+#ifndef DEA_LAB_IMPORT_TEXT_FILE_H
+#define DEA_LAB_IMPORT_TEXT_FILE_H
+
+#include "base/context.h"
+#include "lab/import/slices.h"
+
+/* Takes off a byte order mark; UTF-16 with one becomes UTF-8 in *copy (the caller's, NULL when the
+ * bytes themselves are lent). UTF-8 and Latin-1 stay as they are: what is not ASCII is in names
+ * only, which dea_table_add converts. DEA_E_IO after a finding when a byte 0 says that it is no
+ * text. */
+dea_status dea_text_file_open(struct dea_context *ctx, const char *file, const unsigned char *bytes,
+                              size_t length, char **copy, struct dea_slice *text);
+/* Whether the first bytes are text. */
+bool dea_text_file_is(const unsigned char *head, size_t length);
+
+#endif

@@ -1,0 +1,195 @@
+#include "lab/import/text_rows.h"
+
+#include "lab/import/titles.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ERRORS_MAX = 20, NONE = -1 };
+
+struct rows {
+  struct dea_context *ctx;
+  const struct dea_csv_dialect *dialect;
+  struct dea_table *table;
+  int *column;  // [dialect->count] of the table, or NONE: text
+  double *row;  // [dialect->count]
+  size_t count; // of rows so far
+  size_t blank; // lines of separators only since the last row
+  size_t errors;
+};
+
+static int shown(struct dea_slice slice)
+{
+  return (int)(slice.length < 40 ? slice.length : 40);
+}
+
+/* How many rows there can be: lines, each of which takes a byte a field. */
+static size_t rows_room(struct dea_slice text, const struct dea_csv_dialect *dialect)
+{
+  const char *end = text.text + text.length;
+  size_t left = (size_t)(end - dialect->data), lines = 1;
+  for (const char *c = dialect->data; (c = memchr(c, '\n', (size_t)(end - c))) != NULL; c++) {
+    lines++;
+  }
+  size_t most = left / dialect->count + 1;
+  return lines < most ? lines : most;
+}
+
+/* A name for what has none: "column 3". */
+static dea_status add_column(struct rows *rows, size_t index, struct dea_slice title,
+                             const struct dea_slice *given, size_t room)
+{
+  struct dea_slice name = title, unit = {"", 0};
+  char number[32];
+  if (given != NULL && given->length > 0) {
+    double factor;
+    char text[64];
+    unit = *given;
+    bool bracket = unit.length > 2 && (unit.text[0] == '(' || unit.text[0] == '[');
+    unit = bracket ? dea_slice_trim((struct dea_slice){unit.text + 1, unit.length - 2}) : unit;
+    snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
+    unit = dea_slice_is(unit, "-") && dea_title_unit(rows->ctx, text, &factor) == NULL
+               ? (struct dea_slice){"", 0}
+               : unit;
+  } else {
+    dea_title_split(rows->ctx, title, &name, &unit);
+  }
+  if (name.length == 0) {
+    snprintf(number, sizeof number, "column %zu", index + 1);
+    name = (struct dea_slice){number, strlen(number)};
+  }
+  rows->column[index] = (int)rows->table->column_count;
+  return dea_table_add(rows->ctx, rows->table, name.text, name.length, unit.text, unit.length,
+                       room) != NULL
+             ? DEA_OK
+             : dea_context_status(rows->ctx);
+}
+
+static dea_status add_columns(struct rows *rows, struct dea_slice text,
+                              const struct dea_slice *titles, const struct dea_slice *units)
+{
+  size_t room = rows_room(text, rows->dialect);
+  for (size_t i = 0; i < rows->dialect->count; i++) {
+    rows->column[i] = NONE;
+    if (!rows->dialect->text[i]) {
+      DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
+    } else {
+      const struct dea_place place = {rows->table->file, rows->dialect->line + 1, 1};
+      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, DEA_NOTE, place,
+                                         "column %zu '%.*s' holds text and is left out", i + 1,
+                                         shown(titles[i]), titles[i].text));
+    }
+  }
+  return DEA_OK;
+}
+
+/* The row in rows->row becomes the next one, after NAN for blank ones before it. */
+static void keep_row(struct rows *rows)
+{
+  for (; rows->blank > 0; rows->blank--, rows->count++) {
+    for (size_t k = 0; k < rows->table->column_count; k++) {
+      rows->table->columns[k].values[rows->count] = NAN;
+    }
+  }
+  for (size_t i = 0; i < rows->dialect->count; i++) {
+    if (rows->column[i] != NONE) {
+      rows->table->columns[rows->column[i]].values[rows->count] = rows->row[i];
+    }
+  }
+  rows->count++;
+}
+
+static dea_status read_field(struct rows *rows, size_t line, struct dea_slice whole, size_t index,
+                             struct dea_slice field)
+{
+  if (index >= rows->dialect->count || rows->column[index] == NONE ||
+      dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
+    return DEA_OK;
+  }
+  const struct dea_place place = {rows->table->file, line, (size_t)(field.text - whole.text) + 1};
+  rows->errors++;
+  return dea_finding_add(rows->ctx, DEA_ERROR, place,
+                         "'%.*s' is not a number%s; write a missing one as NaN or leave it empty",
+                         shown(field), field.text,
+                         rows->dialect->decimal == ',' ? " with a decimal comma" : "");
+}
+
+/* last: the file ends in this line, without a line end. */
+static dea_status read_line(struct rows *rows, size_t line, struct dea_slice whole, bool last)
+{
+  const struct dea_csv_dialect *dialect = rows->dialect;
+  struct dea_slice rest = whole, field = {"", 0};
+  size_t count = dea_slice_count(whole, dialect->separator);
+  const struct dea_place place = {rows->table->file, line, 1};
+  if (last && count < dialect->count) {
+    return dea_finding_add(rows->ctx, DEA_WARNING, place,
+                           "the last line has %zu of %zu fields: the file was cut off there; the "
+                           "line is left out",
+                           count, dialect->count);
+  }
+  for (size_t i = 0; dea_slice_field(&rest, dialect->separator, &field); i++) {
+    count -= i >= dialect->count && field.length == 0; // separators at the end of a line
+  }
+  if (count != dialect->count) {
+    rows->errors++;
+    return dea_finding_add(rows->ctx, DEA_ERROR, place,
+                           "the line has %zu field%s where %zu are due: when another table begins "
+                           "here, split the file",
+                           count, count == 1 ? "" : "s", dialect->count);
+  }
+  size_t before = rows->errors;
+  rest = whole;
+  for (size_t i = 0; dea_slice_field(&rest, dialect->separator, &field); i++) {
+    DEA_TRY(rows->ctx, read_field(rows, line, whole, i, field));
+  }
+  if (rows->errors == before) {
+    keep_row(rows);
+  }
+  return DEA_OK;
+}
+
+static dea_status read_lines(struct rows *rows, struct dea_slice text)
+{
+  struct dea_lines lines = {rows->dialect->data, text.text + text.length, rows->dialect->line};
+  struct dea_slice line;
+  while (rows->errors < ERRORS_MAX && dea_lines_next(&lines, &line)) {
+    if (dea_csv_is_comment(line) || dea_slice_trim(line).length == 0) {
+      continue;
+    }
+    if (dea_csv_is_blank(line)) {
+      rows->blank += dea_slice_count(line, rows->dialect->separator) >= rows->dialect->count;
+      continue;
+    }
+    bool last = lines.next == lines.end && lines.end[-1] != '\n';
+    DEA_TRY(rows->ctx, read_line(rows, lines.line, line, last));
+    if ((lines.line & 0xffff) == 0) {
+      dea_progress(rows->ctx, "reading", (size_t)(lines.next - text.text), text.length);
+      if (dea_interrupted(rows->ctx)) {
+        return dea_fail(rows->ctx, DEA_E_INTERRUPTED, "interrupted");
+      }
+    }
+  }
+  for (size_t k = 0; k < rows->table->column_count; k++) {
+    rows->table->columns[k].count = rows->count;
+  }
+  return rows->errors == 0 ? DEA_OK
+                           : dea_fail(rows->ctx, DEA_E_IO, "'%s' has lines that cannot be read",
+                                      rows->table->file);
+}
+
+dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
+                              const struct dea_csv_dialect *dialect, const struct dea_slice *titles,
+                              const struct dea_slice *units, struct dea_table *out)
+{
+  struct rows rows = {.ctx = ctx, .dialect = dialect, .table = out};
+  rows.column = dea_alloc(ctx, dialect->count, sizeof *rows.column);
+  rows.row = rows.column != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.row) : NULL;
+  dea_status status = rows.row != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = read_lines(&rows, text);
+  }
+  dea_free(ctx, rows.column);
+  dea_free(ctx, rows.row);
+  return status;
+}

@@ -1,0 +1,246 @@
+#include "lab/import/titles.h"
+
+#include "base/csv_line.h"
+#include "base/units.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { UNIT_SIZE = 48 };
+
+/* In which dimensions a unit is looked for: those of channels first. */
+static const char *const si_units[] = {"s",  "V", "A", "m",   "N", "Hz", "1",      "Pa",
+                                       "kg", "K", "W", "ohm", "F", "C",  "radian", "V/m"};
+
+/* 1, 0 or -1: out of memory or without a table of units, which the context knows. */
+static int read_unit(struct dea_context *ctx, const char *unit, const char **si, double *factor)
+{
+  char text[UNIT_SIZE + 4], why[DEA_WHY_SIZE];
+  snprintf(text, sizeof text, "1 %s", unit);
+  for (size_t i = 0; i < sizeof si_units / sizeof si_units[0]; i++) {
+    const char *example = strcmp(si_units[i], "1") == 0 ? text : "1 s";
+    const struct dea_measure due = {si_units[i], example};
+    if (dea_units_read(ctx, text, due, factor, why)) {
+      *si = si_units[i];
+      return 1;
+    }
+    if (strstr(why, "is not a known unit") != NULL || strstr(why, "is not a number") != NULL) {
+      return 0;
+    }
+  }
+  return 0;
+}
+
+const char *dea_title_unit(struct dea_context *ctx, const char *unit, double *factor)
+{
+  const char *si = NULL;
+  char lower[UNIT_SIZE];
+  size_t n = strlen(unit);
+  if (n == 0 || n >= UNIT_SIZE) {
+    return NULL;
+  }
+  if (read_unit(ctx, unit, &si, factor) != 1 && n > 2) { // "Volts", but not "MV" as "mv"
+    for (size_t i = 0; i <= n; i++) {
+      lower[i] = (char)tolower((unsigned char)unit[i]);
+    }
+    read_unit(ctx, lower, &si, factor);
+  }
+  return si;
+}
+
+bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
+{
+  static const char *const others[] = {"\xc2\xb0"
+                                       "C",
+                                       "\xb0"
+                                       "C",
+                                       "degC",
+                                       "a.u.",
+                                       "-",
+                                       "1",
+                                       "counts",
+                                       "\xb5m",
+                                       "\xb5"
+                                       "A",
+                                       "\xb5s",
+                                       "\xb5N"};
+  char text[UNIT_SIZE];
+  double factor;
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+    if (dea_slice_is(unit, others[i])) {
+      return true;
+    }
+  }
+  if (unit.length == 0 || unit.length >= sizeof text) {
+    return false;
+  }
+  memcpy(text, unit.text, unit.length);
+  text[unit.length] = '\0';
+  return dea_title_unit(ctx, text, &factor) != NULL;
+}
+
+/* Units that are taken without brackets: what udunits knows beside these ("in", "a", "d") stands at
+ * the end of names that mean something else. */
+static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
+{
+  // \xc2\xb5 is the micro sign
+  static const char *const units[] = {
+      "s",  "ms", "us",        "\xc2\xb5s", "ns",  "min", "V",         "kV", "mV",
+      "mA", "uA", "nA",        "m",         "mm",  "um",  "\xc2\xb5m", "nm", "cm",
+      "N",  "mN", "\xc2\xb5N", "uN",        "kHz", "Hz",  "MV",        "MHz"};
+  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    if (unit.length == strlen(units[i]) && memcmp(unit.text, units[i], unit.length) == 0) {
+      return true;
+    }
+  }
+  // "channel_A" is no current
+  return unit.length == 1 && unit.text[0] == 'A' &&
+         (dea_slice_is(name, "i") || dea_slice_is(name, "current") || dea_slice_is(name, "strom"));
+}
+
+/* Unit behind the last '/', '_' or " in ". */
+static bool split_bare(struct dea_slice title, struct dea_slice *name, struct dea_slice *unit)
+{
+  for (size_t i = title.length; i-- > 1;) {
+    size_t skip = title.text[i] == '/' || title.text[i] == '_' ? 1 : 0;
+    if (skip == 0 && i + 4 < title.length && memcmp(title.text + i, " in ", 4) == 0) {
+      skip = 4;
+    }
+    if (skip > 0) {
+      struct dea_slice before = dea_slice_trim((struct dea_slice){title.text, i});
+      struct dea_slice after =
+          dea_slice_trim((struct dea_slice){title.text + i + skip, title.length - i - skip});
+      if (is_bare_unit(before, after)) {
+        *name = before;
+        *unit = after;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea_slice *name,
+                     struct dea_slice *unit)
+{
+  title = dea_slice_trim(title);
+  *name = title;
+  *unit = (struct dea_slice){"", 0};
+  // the last pair of brackets that holds a unit
+  for (size_t close = title.length; close-- > 0;) {
+    char end = title.text[close], start = end == ')' ? '(' : '[';
+    if (end != ')' && end != ']') {
+      continue;
+    }
+    size_t open = close;
+    while (open > 0 && title.text[open] != start) {
+      open--;
+    }
+    struct dea_slice inside = dea_slice_trim(
+        (struct dea_slice){title.text + open + 1, close > open ? close - open - 1 : 0});
+    if (title.text[open] == start && dea_title_is_unit(ctx, inside)) {
+      struct dea_slice before = dea_slice_trim((struct dea_slice){title.text, open});
+      *unit = inside;
+      // "w (um) @ t=0.1" stays whole
+      *name = close + 1 == title.length ? before : title;
+      if (name->length > 0 && (name->text[name->length - 1] == '/')) {
+        *name = dea_slice_trim((struct dea_slice){name->text, name->length - 1});
+      }
+      return;
+    }
+  }
+  split_bare(title, name, unit);
+}
+
+/* Where the next title of a line parted by blanks ends: at `blanks` of them outside of brackets; a
+ * bracket after blanks still belongs to it. */
+static size_t title_end(struct dea_slice line, size_t blanks)
+{
+  size_t depth = 0;
+  for (size_t i = 0; i < line.length; i++) {
+    char c = line.text[i];
+    if (c == '(' || c == '[') {
+      depth++;
+    } else if ((c == ')' || c == ']') && depth > 0) {
+      depth--;
+    } else if (depth == 0 && (c == ' ' || c == '\t')) {
+      size_t n = 0;
+      while (i + n < line.length && (line.text[i + n] == ' ' || line.text[i + n] == '\t')) {
+        n++;
+      }
+      char next = i + n < line.length ? line.text[i + n] : '\0';
+      bool tab = memchr(line.text + i, '\t', n) != NULL;
+      if ((n >= blanks || tab) && !(next == '(' || next == '[')) {
+        return i;
+      }
+      i += n - 1;
+    }
+  }
+  return line.length;
+}
+
+static size_t part_blanks(struct dea_slice line, size_t blanks, size_t room, struct dea_slice *out)
+{
+  size_t count = 0;
+  line = dea_slice_trim(line);
+  while (line.length > 0) {
+    size_t n = title_end(line, blanks);
+    if (count < room) {
+      out[count] = dea_slice_trim((struct dea_slice){line.text, n});
+    }
+    count++;
+    line = dea_slice_trim((struct dea_slice){line.text + n, line.length - n});
+  }
+  return count;
+}
+
+bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out)
+{
+  if (separator == ' ') {
+    return part_blanks(line, 2, count, out) == count || part_blanks(line, 1, count, out) == count;
+  }
+  struct dea_slice field;
+  size_t n = 0;
+  while (dea_slice_field(&line, separator, &field)) {
+    if (n < count) {
+      out[n] = field;
+    } else if (field.length > 0) {
+      return false;
+    }
+    n++;
+  }
+  return n == count || n == count + 1;
+}
+
+int dea_title_clock(const char *name)
+{
+  static const char *const rates[] = {"fs",
+                                      "rate",
+                                      "sample rate",
+                                      "samplerate",
+                                      "sampling rate",
+                                      "sampling frequency",
+                                      "sample frequency",
+                                      "samples per second",
+                                      "abtastrate",
+                                      "samplingrate",
+                                      "sr"};
+  static const char *const intervals[] = {
+      "dt",        "ts",       "sample interval", "sampling interval", "delta t",
+      "tinterval", "interval", "sample period",   "sampling period",   "abtastintervall"};
+  char folded[DEA_CSV_FIELD_MAX];
+  const char *dot = strrchr(name, '.'); // of a struct: data.fs
+  dea_csv_fold(dot != NULL ? dot + 1 : name, folded);
+  for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+    if (strcmp(folded, rates[i]) == 0) {
+      return 1;
+    }
+  }
+  for (size_t i = 0; i < sizeof intervals / sizeof intervals[0]; i++) {
+    if (strcmp(folded, intervals[i]) == 0) {
+      return -1;
+    }
+  }
+  return 0;
+}

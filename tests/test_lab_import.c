@@ -1,0 +1,235 @@
+/* Import of text: CSV in the dialects of instruments and spreadsheets. */
+#define _GNU_SOURCE
+#include "failing_allocator.h"
+#include "import_text.h"
+
+static const double t3[] = {0, 0.001, 0.002}, v3[] = {0, 0.5, -1.25e3};
+
+/* Different texts of the same two columns. */
+static void test_dialects(void **state)
+{
+  (void)state;
+  static const char *const texts[] = {
+      "Time (s),Voltage (kV)\n0,0\n0.001,0.5\n0.002,-1.25E+03\n",
+      "Time [s];Voltage [kV]\r\n0,000;0,0\r\n0,001;0,5\r\n0,002;-1,25e3\r\n",
+      "Time/s\tVoltage/kV\n0\t0\n.001\t0.5\n.002\t-1250.\n",
+      "Time / s;Voltage / kV\n0;0\n0.001;0.5\n0.002;-1250\n",
+      "Time_s  Voltage_kV\n  0  0\n  1.0e-3   0.5\n  2.0D-3 -1250\n",
+      "Time (s)  Voltage (kV)\n0 0\n0,001 0,5\n0,002 -1250,0\n",
+      "Time in s;Voltage in kV\n0;0\n0,001;0,5\n0,002;-1250",
+      "\xef\xbb\xbfTime (s),Voltage (kV)\n0,0\n0.001,0.5\n0.002,-1250\n",
+      "sep=;\nTime (s);Voltage (kV)\n0;0\n0,001;0,5\n0,002;-1250\n",
+      "# Time (s), Voltage (kV)\n0,0\n0.001,0.5\n0.002,-1250\n",
+      "% Time (s) Voltage (kV)\n0 0\n0.001 0.5\n0.002 -1250\n",
+      "// written by a logger\n// Time (s)\tVoltage (kV)\n0\t0\n0.001\t0.5\n0.002\t-1250\n",
+      "Time,Voltage\ns,kV\n0,0\n0.001,0.5\n0.002,-1250\n",
+      "Time;Voltage\n(s);(kV)\nclock;monitor\n0;0\n0.001;0.5\n0.002;-1250\n",
+      "Scope 7\nSerial;12\nComment;a, b\n\nTime (s);Voltage (kV)\n\n0;0\n0,001;0,5\n0,002;-1250\n",
+      "\"Time (s)\",\"Voltage (kV)\"\n\"0\",\"0\"\n\"0.001\",\"0.5\"\n\"0.002\",\"-1250\"\n",
+      "\"Time (s)\",\"Voltage (kV)\"\n\"0,0\",\"0,0\"\n\"0,001\",\"0,5\"\n\"0,002\",\"-1250,0\"\n",
+      "Time (s);Voltage (kV);\n0;0;\n0,001;0,5;\n0,002;-1250;\n",
+      "Time (s),Voltage (kV)\n0,0\n# stopped here\n0.001,0.5\n\n0.002,-1250\n,\n,\n",
+      "Time (s)|Voltage (kV)\n0|0\n0.001|0.5\n0.002|-1250\n",
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    char name[32];
+    snprintf(name, sizeof name, "dialect-%zu.csv", i);
+    struct dea_table *table = read_text(name, texts[i]);
+    assert_column(table, "Time", "s", t3, 3);
+    assert_column(table, "Voltage", "kV", v3, 3);
+    assert_int_equal(table->column_count, 2);
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void test_encodings(void **state)
+{
+  (void)state;
+  static const unsigned char latin[] = "Zeit (s);Strom (\xb5"
+                                       "A)\n0;1,5\n1;2,5\n";
+  static const double current[] = {1.5, 2.5};
+  struct dea_table *table = read_bytes("latin.csv", latin, sizeof latin - 1);
+  assert_column(table, "Strom",
+                "\xc2\xb5"
+                "A",
+                current, 2);
+  dea_table_destroy(ctx, table);
+  for (int big = 0; big < 2; big++) {
+    unsigned char wide[2 * sizeof latin];
+    wide[big] = 0xff;
+    wide[1 - big] = 0xfe;
+    for (size_t i = 0; i < sizeof latin - 1; i++) {
+      wide[2 + 2 * i + (size_t)big] = latin[i];
+      wide[3 + 2 * i - (size_t)(2 * big) + (size_t)big] = 0;
+    }
+    table = read_bytes("wide.csv", wide, 2 * sizeof latin);
+    assert_column(table, "Strom",
+                  "\xc2\xb5"
+                  "A",
+                  current, 2);
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void test_missing_values(void **state)
+{
+  (void)state;
+  static const double v[] = {1, NAN, NAN, NAN, NAN, NAN, 2};
+  struct dea_table *table = read_text(
+      "missing.csv", "t,V (V),x\n0,1,1\n1,,1\n2,NaN,1\n3,-nan,1\n4,OL,1\n5,1.#QNAN,1\n6,2,1\n");
+  assert_column(table, "V", "V", v, 7);
+  dea_table_destroy(ctx, table);
+}
+
+/* To the last bit: against strtod in the C locale. */
+static void test_numbers_exact(void **state)
+{
+  (void)state;
+  static const char *const numbers[] = {"0.1",
+                                        "1e-7",
+                                        "123456789.123456789",
+                                        "9007199254740993",
+                                        "4.35",
+                                        "2.2250738585072014e-308",
+                                        "1.7976931348623157e308",
+                                        "0.000123456789012345678901",
+                                        "-5e-324",
+                                        "1E+03",
+                                        "+7.",
+                                        "1e23",
+                                        "8.41e21",
+                                        "100000000000000000000000"};
+  enum { COUNT = sizeof numbers / sizeof numbers[0] };
+  double values[COUNT];
+  char text[1000] = "x\n";
+  for (size_t i = 0; i < COUNT; i++) {
+    strcat(strcat(text, numbers[i]), "\n");
+    values[i] = strtod(numbers[i], NULL);
+  }
+  struct dea_table *table = read_text("exact.csv", text);
+  assert_column(table, "x", "", values, COUNT);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_headers(void **state)
+{
+  (void)state;
+  struct dea_table *table = read_text("no.csv", "0,1\n1,2\n");
+  assert_string_equal(table->columns[0].name, "column 1");
+  dea_table_destroy(ctx, table);
+  table = read_text("odd.csv", "Dev1/ai0,Force (filtered),channel_A,laser_in,I_A,T (\xc2\xb0"
+                               "C)\n1,2,3,4,5,6\n7,8,9,1,2,3\n");
+  static const char *const names[] = {"Dev1/ai0", "Force (filtered)", "channel_A", "laser_in", "I",
+                                      "T"};
+  static const char *const units[] = {"",
+                                      "",
+                                      "",
+                                      "",
+                                      "A",
+                                      "\xc2\xb0"
+                                      "C"};
+  for (size_t i = 0; i < 6; i++) {
+    assert_string_equal(table->columns[i].name, names[i]);
+    assert_string_equal(table->columns[i].unit, units[i]);
+  }
+  dea_table_destroy(ctx, table);
+  table = read_text("one.csv", "Voltage\n1,5\n2,5\n"); // one column with a decimal comma
+  static const double v[] = {1.5, 2.5};
+  assert_column(table, "Voltage", "", v, 2);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_text_columns_and_rates(void **state)
+{
+  (void)state;
+  static const double v[] = {1, 2};
+  struct dea_table *table = read_text(
+      "text.csv", "Sample rate: 2 kHz\nDate;V (V)\n2023-05-01 10:00;1\n2023-05-01 10:01;2\n");
+  assert_column(table, "V", "V", v, 2);
+  const struct dea_table_column *rate = column_of(table, "Sample rate");
+  assert_int_equal(rate->count, 1);
+  assert_true(rate->values[0] == 2);
+  assert_string_equal(rate->unit, "kHz");
+  assert_true(is_said(DEA_NOTE, "'Date' holds text"));
+  dea_table_destroy(ctx, table);
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    size_t line;
+    const char *part;
+  } cases[] = {
+      {"t;V\n0;1,234.5\n1;2,345.6\n", 3, "a comma and a point"},
+      {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 3, "a comma and a point"},
+      {"t,V\n0,1\n1,oops\n2,3\n", 3, "'oops' stands in a line of numbers"},
+      {"t,V\n0,1\n1,2\nt,V\n0,1\n1,2\n2,3\n", 2, "from line 5 on"},
+      {"t,V\n0,1\n1,2\n2,3,4\n3,4,5\n4,5,6\n", 2, "from line 4 on"},
+      {"t,V\n0,1\n1,2\nend\n", 4, "1 field where 2 are due"},
+      {"just words\nand more\n", 0, "no lines of numbers"},
+      {"a\0b", 0, "no format that is known"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    size_t length = i == 7 ? 3 : strlen(cases[i].text);
+    assert_refused("bad.csv", cases[i].text, length, cases[i].line, cases[i].part);
+  }
+  write_bytes("empty.csv", "", 0);
+  struct dea_table *table;
+  assert_int_equal(dea_table_read(ctx, in_folder("empty.csv"), NULL, &table), DEA_E_IO);
+  assert_int_equal(dea_table_read(ctx, in_folder("none.csv"), NULL, &table), DEA_E_IO);
+  assert_int_equal(dea_table_read(ctx, folder, NULL, &table), DEA_E_IO);
+  assert_int_equal(dea_table_read(ctx, in_folder("bad.csv"), "cvs", &table), DEA_E_USAGE);
+  assert_non_null(strstr(dea_context_message(ctx), "did you mean 'csv'"));
+}
+
+/* Lines that differ after the part that the dialect was found in. */
+static void test_late_errors(void **state)
+{
+  (void)state;
+  static char text[40000];
+  size_t n = (size_t)snprintf(text, sizeof text, "t,V\n");
+  for (int i = 0; i < 2500; i++) {
+    n += (size_t)snprintf(text + n, sizeof text - n,
+                          i == 2100   ? "%d,a1\n"
+                          : i == 2200 ? "%d\n"
+                                      : "%d,1\n",
+                          i);
+  }
+  assert_refused("late.csv", text, n, 2102, "'a1' is not a number");
+  assert_true(is_said(DEA_ERROR, "1 field where 2 are due"));
+  // a file that was cut off in its last line
+  struct dea_table *table = read_text("cut.csv", "t,V,W\n0,1,2\n1,2,3\n2,3");
+  assert_int_equal(table->columns[0].count, 2);
+  assert_true(is_said(DEA_WARNING, "cut off"));
+  dea_table_destroy(ctx, table);
+}
+
+static void read_once(struct dea_context *own)
+{
+  struct dea_table *table;
+  dea_status status = dea_table_read(own, in_folder("memory.csv"), NULL, &table);
+  failing_check(own, status);
+  dea_table_destroy(own, table);
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  const char *text = "Scope\nrate;100 Hz\nTime (s);Voltage (kV);note\n0;0;a\n1;0,5;b\n2;1;c\n";
+  write_bytes("memory.csv", text, strlen(text));
+  assert_true(failing_each(read_once) > 10);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_dialects),       cmocka_unit_test(test_encodings),
+      cmocka_unit_test(test_missing_values), cmocka_unit_test(test_numbers_exact),
+      cmocka_unit_test(test_headers),        cmocka_unit_test(test_text_columns_and_rates),
+      cmocka_unit_test(test_refused),        cmocka_unit_test(test_late_errors),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
