@@ -3,7 +3,7 @@
 
 #include "base/csv_line.h"
 #include "base/file.h"
-#include "base/units.h"
+#include "output/csv_columns.h"
 #include "output/file.h"
 
 #include <math.h>
@@ -129,11 +129,10 @@ static void read_unit(struct reader *r, const char *title, const char *unit, boo
     field->factor = 0.01;
     return;
   }
-  char one[FIELD_MAX + 2], why[DEA_WHY_SIZE], example[32];
-  snprintf(one, sizeof one, "1 %s", unit);
+  char why[DEA_WHY_SIZE], example[32];
   snprintf(example, sizeof example, "1 %s", c->display_unit);
   const struct dea_measure due = {.unit = c->si_unit, .example = example};
-  if (!dea_units_read(r->ctx, one, due, &field->factor, why) && why[0] != '\0' &&
+  if (!dea_csv_unit(r->ctx, unit, due, &field->factor, why) && why[0] != '\0' &&
       one_more_error(r)) {
     dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "the unit in '%s' does not fit: %s",
                     title, why);
