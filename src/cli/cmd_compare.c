@@ -1,11 +1,12 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "cli/compare_many.h"
 #include "cli/figure_options.h"
 #include "output/compare_output.h"
 #include "output/csv.h"
 #include "output/figure.h"
-#include "output/file.h"
+#include "output/measured.h"
 #include "output/store.h"
 
 #include <getopt.h>
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PAIRS_MAX = DEA_DESIGN_MODELS_MAX, QUANTITIES_MAX = DEA_LOAD_POINT_COLUMNS };
+enum { PAIRS_MAX = DEA_DESIGN_MODELS_MAX };
 
 /* One of the two sides: a run or measurements. */
 struct side {
@@ -24,13 +25,8 @@ struct side {
 
 struct request {
   struct side side[2];
-  char model[2][DEA_NAME_SIZE]; // asked for with --model, "" for any
-  int columns[QUANTITIES_MAX];
-  size_t column_count;
-  double tolerance; // NAN for none
-  const char *folder;
-  struct dea_plot_format format;
-  bool json;
+  const char *model[2]; // asked for with --model, "" for any
+  const struct compare_request *line;
 };
 
 /* A pair of curves and what came out. */
@@ -43,10 +39,10 @@ struct pair {
 
 // Command line -----------------------------------------------------------------------------------
 
-static int add_quantity(struct dea_cli *cli, const char *name, struct request *request)
+static int add_quantity(struct dea_cli *cli, const char *name, struct compare_request *request)
 {
   int column = dea_point_column_find(name);
-  if (column >= 0 && request->column_count < QUANTITIES_MAX) {
+  if (column >= 0 && request->column_count < COMPARE_QUANTITIES_MAX) {
     request->columns[request->column_count++] = column;
     return 0;
   }
@@ -87,7 +83,7 @@ static bool read_models(const char *text, char model[2][DEA_NAME_SIZE])
   return true;
 }
 
-static int take_option(struct dea_cli *cli, int letter, struct request *request)
+static int take_option(struct dea_cli *cli, int letter, struct compare_request *request)
 {
   switch (letter) {
   case 't':
@@ -98,9 +94,11 @@ static int take_option(struct dea_cli *cli, int letter, struct request *request)
   case 'q':
     return add_quantity(cli, optarg, request);
   case 'm':
-    if (!read_models(optarg, request->model)) {
+    if (request->model_count == DEA_DESIGN_MODELS_MAX ||
+        !read_models(optarg, request->models[request->model_count])) {
       return cli_usage_error(cli, &cmd_compare, "'%s' names no model", optarg);
     }
+    request->model_count++;
     return 0;
   case 'o':
     request->folder = optarg;
@@ -121,7 +119,7 @@ static int take_option(struct dea_cli *cli, int letter, struct request *request)
   }
 }
 
-static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
+static int read_options(struct dea_cli *cli, int argc, char **argv, struct compare_request *request)
 {
   static const struct option options[] = {{"tolerance", required_argument, NULL, 't'},
                                           {"quantity", required_argument, NULL, 'q'},
@@ -139,36 +137,25 @@ static int read_options(struct dea_cli *cli, int argc, char **argv, struct reque
     }
     code = take_option(cli, letter, request);
   }
-  if (code == 0 && argc - optind != 2) {
-    return cli_usage_error(cli, &cmd_compare, "give two: a run, and a run or a table");
+  if (code == 0 && argc - optind < 2) {
+    return cli_usage_error(cli, &cmd_compare,
+                           "give two or more: runs, and a run or what was measured");
   }
-  if (code == 0) {
-    request->side[0].name = argv[optind];
-    request->side[1].name = argv[optind + 1];
+  if (code == 0 && argc - optind > COMPARE_NAMES_MAX) {
+    return cli_usage_error(cli, &cmd_compare, "at most %d runs can be compared at a time",
+                           COMPARE_NAMES_MAX - 1);
+  }
+  for (; code == 0 && optind < argc; optind++) {
+    request->names[request->name_count++] = argv[optind];
   }
   return code;
 }
 
 // Sides ------------------------------------------------------------------------------------------
 
-/* True for a file that starts like HDF5. */
-static bool is_store(const char *path)
-{
-  char head[8] = {0};
-  FILE *file = fopen(path, "rb");
-  bool good = file != NULL && fread(head, 1, sizeof head, file) == sizeof head &&
-              memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
-  if (file != NULL) {
-    fclose(file);
-  }
-  return good;
-}
-
 static dea_status side_read(struct dea_context *ctx, struct side *side)
 {
-  size_t n = strlen(side->name);
-  bool named_store = n > 3 && strcmp(side->name + n - 3, ".h5") == 0;
-  if (named_store || dea_path_is_folder(side->name) || is_store(side->name)) {
+  if (cli_compare_is_run(side->name)) {
     return dea_run_read(ctx, side->name, &side->run);
   }
   return dea_measurement_read(ctx, side->name, &side->measurement);
@@ -279,37 +266,19 @@ static dea_status note_left_out(struct dea_context *ctx, const struct pair *pair
 static dea_status compare_pair(struct dea_context *ctx, const struct request *request,
                                struct pair *pair)
 {
-  const int *only = request->column_count == 1 ? &request->columns[0] : NULL;
+  const int *only = request->line->column_count == 1 ? &request->line->columns[0] : NULL;
   DEA_TRY(ctx, dea_compare_curves(ctx, pair->a, pair->b, pair->b_std, only != NULL ? *only : -1,
                                   &pair->comparison));
   pair->compared.comparison = pair->comparison;
   DEA_TRY(ctx, note_left_out(ctx, pair));
-  if (request->column_count < 2) {
+  if (request->line->column_count < 2) {
     return DEA_OK;
   }
-  struct dea_comparison *c = pair->comparison;
-  size_t found = 0;
-  for (size_t i = 0; i < c->misfit_count; i++) {
-    for (size_t q = 0; q < request->column_count; q++) {
-      if (c->misfits[i].column == request->columns[q]) {
-        struct dea_misfit wanted = c->misfits[i]; // swapped, so that all are still freed
-        c->misfits[i] = c->misfits[found];
-        c->misfits[found++] = wanted;
-        break;
-      }
-    }
-  }
-  if (found < request->column_count) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common");
-  }
-  while (c->misfit_count > found) {
-    struct dea_misfit *last = &c->misfits[--c->misfit_count];
-    dea_free(ctx, last->voltage_V);
-    dea_free(ctx, last->a);
-    dea_free(ctx, last->b);
-    dea_free(ctx, last->b_std);
-  }
-  return DEA_OK;
+  size_t found = dea_comparison_keep(ctx, pair->comparison, request->line->columns,
+                                     request->line->column_count);
+  return found < request->line->column_count
+             ? dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common")
+             : DEA_OK;
 }
 
 static void print_table(const struct pair *pair, double tolerance)
@@ -323,9 +292,8 @@ static void print_table(const struct pair *pair, double tolerance)
     char title[96];
     dea_column_title(c, title, sizeof title);
     printf("%-28s %6zu %12.5g %12.5g %8.4g %12.5g %8.3g %% %8.3g %%%s\n", title, m->count,
-           c->factor * m->rms, c->factor * m->largest, 1e-3 * m->largest_at_V, c->factor * m->bias,
-           100.0 * m->relative_rms, 100.0 * m->relative_largest,
-           !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
+           c->factor * m->rms, c->factor * m->largest, 1e-3 * m->largest_at, c->factor * m->bias,
+           100.0 * m->relative_rms, 100.0 * m->relative_largest, cli_compare_mark(m, tolerance));
   }
 }
 
@@ -353,12 +321,11 @@ static dea_status draw(struct dea_context *ctx, const struct request *request,
 {
   for (size_t i = 0; i < count; i++) {
     DEA_TRY(ctx, dea_compared_draw(ctx, &pairs[i].compared, count > 1 ? pairs[i].a->model : "",
-                                   &request->format, request->folder));
+                                   &request->line->format, request->line->folder));
   }
   return DEA_OK;
 }
 
-/* DEA_E_DIFFERS with the worst quantity when a tolerance is given and exceeded. */
 static dea_status judge(struct dea_context *ctx, const struct pair *pairs, size_t count,
                         double tolerance)
 {
@@ -369,12 +336,7 @@ static dea_status judge(struct dea_context *ctx, const struct pair *pairs, size_
       worst = worst == NULL || m->relative_largest > worst->relative_largest ? m : worst;
     }
   }
-  if (isnan(tolerance) || worst == NULL || worst->relative_largest <= tolerance) {
-    return DEA_OK;
-  }
-  return dea_fail(ctx, DEA_E_DIFFERS, "%s differs by %.3g %% of its range, more than %.3g %%",
-                  dea_point_columns[worst->column].key, 100.0 * worst->relative_largest,
-                  100.0 * tolerance);
+  return cli_compare_judge(ctx, worst, "", tolerance);
 }
 
 static dea_status compare(struct dea_cli *cli, struct request *request, struct pair *pairs,
@@ -392,30 +354,33 @@ static dea_status compare(struct dea_cli *cli, struct request *request, struct p
                                    "first part of one was compared",
                                    pairs[i].compared.a, pairs[i].compared.b));
     }
-    if (!request->json) {
-      print_table(&pairs[i], request->tolerance);
+    if (!request->line->json) {
+      print_table(&pairs[i], request->line->tolerance);
     }
   }
-  if (request->json) {
-    DEA_TRY(ctx, print_json(ctx, pairs, *count, request->tolerance));
+  if (request->line->json) {
+    DEA_TRY(ctx, print_json(ctx, pairs, *count, request->line->tolerance));
   }
-  if (request->folder != NULL) {
+  if (request->line->folder != NULL) {
     DEA_TRY(ctx, draw(ctx, request, pairs, *count));
   }
-  return judge(ctx, pairs, *count, request->tolerance);
+  return judge(ctx, pairs, *count, request->line->tolerance);
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+/* The two-sided comparison: pairs of curves, each with its difference. */
+static int compare_two(struct dea_cli *cli, const struct compare_request *line)
 {
-  struct request request = {.tolerance = NAN, .format = {.svg = true, .width_m = 0.085}};
+  struct request request = {.side = {{.name = line->names[0]}, {.name = line->names[1]}},
+                            .model = {"", ""},
+                            .line = line};
   struct pair pairs[PAIRS_MAX];
   memset(pairs, 0, sizeof pairs);
   size_t count = 0;
-  int code = read_options(cli, argc, argv, &request);
-  if (code != 0) {
-    return code;
+  if (line->model_count > 0) {
+    request.model[0] = line->models[0][0];
+    request.model[1] = line->models[0][1];
   }
-  code = cli_report(cli, compare(cli, &request, pairs, &count));
+  int code = cli_report(cli, compare(cli, &request, pairs, &count));
   for (size_t i = 0; i < count; i++) {
     dea_comparison_destroy(cli->ctx, pairs[i].comparison);
   }
@@ -424,25 +389,43 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static int run(struct dea_cli *cli, int argc, char **argv)
+{
+  struct compare_request request = {.tolerance = NAN, .format = {.svg = true, .width_m = 0.085}};
+  int code = read_options(cli, argc, argv, &request);
+  if (code != 0) {
+    return code;
+  }
+  bool two = request.name_count == 2 && request.model_count < 2 &&
+             !dea_measured_is_folder(request.names[0]) && !dea_measured_is_folder(request.names[1]);
+  return two ? compare_two(cli, &request) : cli_report(cli, cli_compare_many(cli, &request));
+}
+
 const struct dea_command cmd_compare = {
     .name = "compare",
-    .summary = "Compare two runs, or a run and a table of measurements",
+    .summary = "Compare runs with a run or with what was measured",
     .usage =
-        "dea compare A B [--tolerance SHARE] [--quantity KEY]... [--model MODEL]\n"
+        "dea compare A... B [--tolerance SHARE] [--quantity KEY]... [--model MODEL]...\n"
         "            [-o DIR] [--format LIST] [--width MM] [--json]\n"
         "\n"
-        "A and B are folders of runs; B may be a CSV table with headers such as 'V (kV)',\n"
-        "'z centre (um)', 'z centre std (um)'. Curves of the same model are compared. Differences\n"
-        "are a - b, relative ones over the range of b. The exit code is 1 when a tolerance is "
-        "given\n"
-        "and the largest difference of a quantity exceeds it.\n"
+        "A are folders of runs. B, with which they are compared, is a folder of a run, a CSV "
+        "table\n"
+        "with headers such as 'V (kV)', 'z centre (um)', 'z centre std (um)', or a folder written\n"
+        "by dea reduce (measurement.csv, profiles.csv, history.csv). Two runs: curves of the same\n"
+        "model are compared, each pair in a figure with its difference. More of them, several\n"
+        "--model, or a reduced measurement: all curves in one figure a quantity, with a band of\n"
+        "one standard deviation, then profiles across the film and histories in time.\n"
+        "Differences are a - b, relative ones over the range of b. The exit code is 1 when a\n"
+        "tolerance is given and the largest difference of a quantity against the voltage "
+        "exceeds it.\n"
         "\n"
-        "  A                  folder of a run\n"
-        "  B                  folder of a run, or a CSV table\n"
+        "  A                  folder of a run; can be repeated\n"
+        "  B                  folder of a run or of dea reduce, or a CSV table\n"
         "  --tolerance SHARE  largest difference allowed, such as 5%\n"
         "  --quantity KEY     only this quantity, such as fibre_tip_z_m; can be repeated\n"
-        "  --model MODEL      only this model; lumped:axisymmetric takes one of A, the other of B\n"
-        "  -o, --output DIR   draw each quantity with its difference into this folder\n"
+        "  --model MODEL      only this model; can be repeated. lumped:axisymmetric takes one of\n"
+        "                     A, the other of B\n"
+        "  -o, --output DIR   draw the figures into this folder\n"
         "  --format LIST      formats such as svg,pdf,png; svg if not given\n"
         "  --width MM         width, 85 for one column or 170 for two\n"
         "  --json             print the comparison as JSON\n",

@@ -8,20 +8,28 @@
 #include <stdio.h>
 #include <string.h>
 
-static json_t *misfit_json(const struct dea_misfit *m, double tolerance)
+json_t *dea_misfit_json(const struct dea_misfit *m, const char *at_unit, double tolerance)
 {
   const struct dea_column *column = &dea_point_columns[m->column];
+  char at[32];
   json_t *object = json_object();
+  snprintf(at, sizeof at, "largest_at_%s", at_unit);
   dea_json_put_text(object, "quantity", column->key);
   dea_json_put_text(object, "unit", column->si_unit);
   json_object_set_new(object, "points", json_integer((json_int_t)m->count));
   dea_json_put(object, "rms", m->rms);
   dea_json_put(object, "largest", m->largest);
-  dea_json_put(object, "largest_at_V", m->largest_at_V);
+  dea_json_put(object, at, m->largest_at);
   dea_json_put(object, "bias", m->bias);
   dea_json_put(object, "range", m->range);
   dea_json_put(object, "relative_rms", m->relative_rms);
   dea_json_put(object, "relative_largest", m->relative_largest);
+  if (m->std_count > 0) {
+    json_object_set_new(object, "std_points", json_integer((json_int_t)m->std_count));
+    dea_json_put(object, "chi_square_per_point", m->chi_square);
+    dea_json_put(object, "within_1_std", m->within_1_std);
+    dea_json_put(object, "within_2_std", m->within_2_std);
+  }
   if (!isnan(tolerance)) {
     json_object_set_new(object, "within", json_boolean(m->relative_largest <= tolerance));
   }
@@ -35,7 +43,8 @@ json_t *dea_compared_json(const struct dea_compared *compared, double tolerance)
   dea_json_put_text(object, "b", compared->b);
   json_t *quantities = json_array();
   for (size_t i = 0; i < compared->comparison->misfit_count; i++) {
-    json_array_append_new(quantities, misfit_json(&compared->comparison->misfits[i], tolerance));
+    json_array_append_new(quantities,
+                          dea_misfit_json(&compared->comparison->misfits[i], "V", tolerance));
   }
   json_object_set_new(object, "quantities", quantities);
   return object;
@@ -49,7 +58,7 @@ static dea_status add(struct dea_context *ctx, struct dea_panel *panel, const st
   DEA_TRY(ctx, dea_panel_add(ctx, panel, m->count, out));
   double factor = dea_point_columns[m->column].factor;
   for (size_t i = 0; i < m->count; i++) {
-    (*out)->values[i] = 1e-3 * m->voltage_V[i];
+    (*out)->values[i] = 1e-3 * m->at[i];
     (*out)->values[m->count + i] = factor * (values[i] - (less != NULL ? less[i] : 0.0));
     (*out)->values[2 * m->count + i] = std != NULL ? factor * std[i] : NAN;
   }

@@ -12,9 +12,12 @@ struct dea_compared {
   char a[DEA_LABEL_SIZE], b[DEA_LABEL_SIZE]; // names for people: "run-1 lumped"
 };
 
-/* Object {a, b, quantities: [{quantity, unit, points, rms, largest, largest_at_V, bias, range,
- * relative_rms, relative_largest, within}]}; `within` only with a tolerance (NAN: none). NULL when
- * memory is short. */
+/* Object {quantity, unit, points, rms, largest, largest_at_V, bias, range, relative_rms,
+ * relative_largest, std_points, chi_square_per_point, within_1_std, within_2_std, within}; what is
+ * of std only where uncertainties are known, `within` only with a tolerance (NAN: none).
+ * at_unit: of what the misfit is over, "V". NULL when memory is short. */
+json_t *dea_misfit_json(const struct dea_misfit *misfit, const char *at_unit, double tolerance);
+/* Object {a, b, quantities: [of dea_misfit_json]}. NULL when memory is short. */
 json_t *dea_compared_json(const struct dea_compared *compared, double tolerance);
 
 /* For each quantity compare_KEY.gp, .dat and pictures in directory (made if need be): both curves,

@@ -44,12 +44,10 @@ static double slope_at(const double *x, const double *y, size_t count, size_t i)
                      (y[i + 1] - y[i]) / (x[i + 1] - x[i]));
 }
 
-double dea_interpolate(const double *x, const double *y, size_t count, double at)
+/* Last i with x[i] <= at and i < last, for x[0] <= at. */
+static size_t find_piece(const double *x, size_t last, double at)
 {
-  if (count == 0 || !(at >= x[0]) || !(at <= x[count - 1])) {
-    return NAN;
-  }
-  size_t low = 0, high = count - 1;
+  size_t low = 0, high = last;
   while (high - low > 1) {
     size_t middle = low + (high - low) / 2;
     if (x[middle] <= at) {
@@ -58,7 +56,16 @@ double dea_interpolate(const double *x, const double *y, size_t count, double at
       high = middle;
     }
   }
-  if (at == x[low] || high == low) {
+  return low;
+}
+
+double dea_interpolate(const double *x, const double *y, size_t count, double at)
+{
+  if (count == 0 || !(at >= x[0]) || !(at <= x[count - 1])) {
+    return NAN;
+  }
+  size_t low = count > 1 ? find_piece(x, count - 1, at) : 0, high = low + 1;
+  if (at == x[low] || high == count) {
     return y[low]; // so that a common voltage gives the very value
   }
   if (at == x[high]) {
@@ -69,6 +76,19 @@ double dea_interpolate(const double *x, const double *y, size_t count, double at
   double s = 1.0 - t;
   return s * s * (1.0 + 2.0 * t) * y[low] + t * t * (1.0 + 2.0 * s) * y[high] +
          h * t * s * (s * m0 - t * m1);
+}
+
+double dea_interpolate_linear(const double *x, const double *y, size_t count, double at)
+{
+  if (count == 0 || !(at >= x[0]) || !(at <= x[count - 1])) {
+    return NAN;
+  }
+  size_t low = find_piece(x, count, at);
+  if (low + 1 == count || x[low] == at) {
+    return y[low];
+  }
+  double t = (at - x[low]) / (x[low + 1] - x[low]);
+  return (1.0 - t) * y[low] + t * y[low + 1];
 }
 
 /* Points of a curve up to where it turns back in voltage. */
@@ -111,18 +131,49 @@ static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
   return a->count == b->count;
 }
 
-static void add_point(struct dea_misfit *misfit, double voltage_V, double a, double b, double std)
+dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, struct dea_misfit *out)
+{
+  *out = (struct dea_misfit){.column = column};
+  out->at = dea_alloc(ctx, room, sizeof *out->at);
+  out->a = dea_alloc(ctx, room, sizeof *out->a);
+  out->b = dea_alloc(ctx, room, sizeof *out->b);
+  out->b_std = dea_alloc(ctx, room, sizeof *out->b_std);
+  return out->at != NULL && out->a != NULL && out->b != NULL && out->b_std != NULL ? DEA_OK
+                                                                                   : DEA_E_MEMORY;
+}
+
+void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std)
 {
   if (!isnan(a) && !isnan(b)) {
     size_t n = misfit->count++;
-    misfit->voltage_V[n] = voltage_V;
+    misfit->at[n] = at;
     misfit->a[n] = a;
     misfit->b[n] = b;
     misfit->b_std[n] = std;
   }
 }
 
-static void summarise(struct dea_misfit *m)
+/* How the differences are against the standard uncertainties. */
+static void summarise_std(struct dea_misfit *m)
+{
+  size_t one = 0, two = 0;
+  double squares = 0.0;
+  for (size_t i = 0; i < m->count; i++) {
+    if (m->b_std[i] > 0.0) {
+      double ratio = fabs(m->a[i] - m->b[i]) / m->b_std[i];
+      m->std_count++;
+      squares += ratio * ratio;
+      one += ratio <= 1.0;
+      two += ratio <= 2.0;
+    }
+  }
+  double n = m->std_count > 0 ? (double)m->std_count : NAN;
+  m->chi_square = squares / n;
+  m->within_1_std = (double)one / n;
+  m->within_2_std = (double)two / n;
+}
+
+void dea_misfit_summarise(struct dea_misfit *m)
 {
   double squares = 0.0, sum = 0.0, low = INFINITY, high = -INFINITY, magnitude = 0.0;
   for (size_t i = 0; i < m->count; i++) {
@@ -131,7 +182,7 @@ static void summarise(struct dea_misfit *m)
     sum += difference;
     if (fabs(difference) > fabs(m->largest) || i == 0) {
       m->largest = fabs(difference);
-      m->largest_at_V = m->voltage_V[i];
+      m->largest_at = m->at[i];
     }
     low = fmin(low, m->b[i]);
     high = fmax(high, m->b[i]);
@@ -142,14 +193,16 @@ static void summarise(struct dea_misfit *m)
   m->range = high > low ? high - low : magnitude;
   m->relative_rms = m->rms == 0.0 ? 0.0 : m->rms / m->range;
   m->relative_largest = m->largest == 0.0 ? 0.0 : m->largest / m->range;
+  summarise_std(m);
 }
 
-static void misfit_free(struct dea_context *ctx, struct dea_misfit *misfit)
+void dea_misfit_free(struct dea_context *ctx, struct dea_misfit *misfit)
 {
-  dea_free(ctx, misfit->voltage_V);
+  dea_free(ctx, misfit->at);
   dea_free(ctx, misfit->a);
   dea_free(ctx, misfit->b);
   dea_free(ctx, misfit->b_std);
+  misfit->at = misfit->a = misfit->b = misfit->b_std = NULL;
 }
 
 /* How two curves are brought to common voltages. */
@@ -179,7 +232,7 @@ static void fill(const struct pairing *p, double *x, double *y, struct dea_misfi
     double other = p->point_by_point ? dea_point_get(&table->points[i], m->column)
                                      : dea_interpolate(x, y, n, v);
     double std = p->b_std != NULL && p->at_b ? dea_point_get(&p->b_std[i], m->column) : NAN;
-    add_point(m, v, p->at_b ? other : own, p->at_b ? own : other, std);
+    dea_misfit_add(m, v, p->at_b ? other : own, p->at_b ? own : other, std);
   }
 }
 
@@ -188,24 +241,19 @@ static dea_status compare_column(struct dea_context *ctx, const struct pairing *
 {
   struct dea_misfit *m = &comparison->misfits[comparison->misfit_count];
   size_t points = p->at_b ? p->b->count : p->a->count;
-  *m = (struct dea_misfit){.column = column};
+  dea_status made = dea_misfit_make(ctx, column, points, m);
   double *x = dea_alloc(ctx, p->leg, sizeof *x), *y = dea_alloc(ctx, p->leg, sizeof *y);
-  m->voltage_V = dea_alloc(ctx, points, sizeof *m->voltage_V);
-  m->a = dea_alloc(ctx, points, sizeof *m->a);
-  m->b = dea_alloc(ctx, points, sizeof *m->b);
-  m->b_std = dea_alloc(ctx, points, sizeof *m->b_std);
-  bool good = x != NULL && y != NULL && m->voltage_V != NULL && m->a != NULL && m->b != NULL &&
-              m->b_std != NULL;
+  bool good = made == DEA_OK && x != NULL && y != NULL;
   if (good) {
     fill(p, x, y, m);
   }
   dea_free(ctx, x);
   dea_free(ctx, y);
   if (good && m->count > 0) {
-    summarise(m);
+    dea_misfit_summarise(m);
     comparison->misfit_count++;
   } else {
-    misfit_free(ctx, m);
+    dea_misfit_free(ctx, m);
   }
   return good ? DEA_OK : DEA_E_MEMORY;
 }
@@ -263,7 +311,28 @@ void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comp
     return;
   }
   for (size_t i = 0; i < comparison->misfit_count; i++) {
-    misfit_free(ctx, &comparison->misfits[i]);
+    dea_misfit_free(ctx, &comparison->misfits[i]);
   }
   dea_free(ctx, comparison);
+}
+
+size_t dea_comparison_keep(struct dea_context *ctx, struct dea_comparison *comparison,
+                           const int *columns, size_t count)
+{
+  size_t found = 0;
+  for (size_t i = 0; i < comparison->misfit_count; i++) {
+    bool wanted = count == 0;
+    for (size_t q = 0; q < count; q++) {
+      wanted = wanted || comparison->misfits[i].column == columns[q];
+    }
+    if (wanted) {
+      struct dea_misfit kept = comparison->misfits[i]; // swapped, so that all are still freed
+      comparison->misfits[i] = comparison->misfits[found];
+      comparison->misfits[found++] = kept;
+    }
+  }
+  while (comparison->misfit_count > found) {
+    dea_misfit_free(ctx, &comparison->misfits[--comparison->misfit_count]);
+  }
+  return found;
 }

@@ -4,15 +4,20 @@
 
 #include "result/columns.h"
 
-/* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these voltages
- * (the largest |b| when all are equal); relative values are over it. Arrays [count], owned. */
+/* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
+ * largest |b| when all are equal); relative values are over it. Arrays [count], owned. */
 struct dea_misfit {
   int column; // of dea_point_columns
   size_t count;
-  double *voltage_V, *a, *b;
+  double *at; // voltage [V]; time [s] of a history, place [m] of a profile
+  double *a, *b;
   double *b_std; // standard uncertainty of b, NAN where unknown
-  double rms, largest, largest_at_V, bias, range;
+  double rms, largest, largest_at, bias, range;
   double relative_rms, relative_largest;
+  // Of the points whose b_std is known and not 0, against it; NAN without any.
+  size_t std_count;
+  double chi_square; // mean of (difference/b_std)^2: 1 when all differences are noise
+  double within_1_std, within_2_std; // shares of them that differ by no more than that
 };
 
 struct dea_comparison {
@@ -33,9 +38,26 @@ dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a
                               const struct dea_curve *b, const struct dea_load_point *b_std,
                               int column, struct dea_comparison **out);
 void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comparison);
+/* Keeps the misfits of these columns; returns how many there are. count 0: all stay. */
+size_t dea_comparison_keep(struct dea_context *ctx, struct dea_comparison *comparison,
+                           const int *columns, size_t count);
+
+/* A misfit of a column with room for that many points, by hand: add, then summarise. Freed by the
+ * caller, also after a failure. */
+dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room,
+                           struct dea_misfit *out);
+/* Adds a point, at most room; not one where a or b is NAN. std: NAN for unknown. */
+void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std);
+/* Fills what follows from the points, of which there is at least one. */
+void dea_misfit_summarise(struct dea_misfit *misfit);
+void dea_misfit_free(struct dea_context *ctx, struct dea_misfit *misfit);
 
 /* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
  * [x[0], x[count-1]]. */
 double dea_interpolate(const double *x, const double *y, size_t count, double at);
+
+/* Value at `at` of the straight pieces through (x[i], y[i]), x never falling (of two equal ones the
+ * later counts); NAN outside. */
+double dea_interpolate_linear(const double *x, const double *y, size_t count, double at);
 
 #endif

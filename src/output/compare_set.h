@@ -1,0 +1,86 @@
+/* Several curves beside one reference: models, simulations and a measurement in one figure and one
+ * table. */
+#ifndef DEA_OUTPUT_COMPARE_SET_H
+#define DEA_OUTPUT_COMPARE_SET_H
+
+#include "output/json.h"
+#include "output/measured.h"
+#include "output/plot.h"
+#include "result/compare_history.h"
+#include "result/compare_profile.h"
+
+enum { DEA_SET_CURVES_MAX = 16 };
+
+/* A model of a run. */
+struct dea_set_curve {
+  char name[DEA_LABEL_SIZE];         // short, for keys and tables
+  const struct dea_result *result;   // lent
+  const char *model;                 // lent
+  const struct dea_curve *curve;     // against the voltage; lent, NULL: none
+  const struct dea_curve *reference; // that it is set against; lent
+  struct dea_comparison *comparison; // owned; NULL: nothing in common
+};
+
+/* A model's line across the film beside a measured profile. */
+struct dea_set_profile {
+  size_t curve, measured; // of the set's curves, of the measured profiles
+  enum dea_half half;
+  struct dea_film_line line; // owned
+  struct dea_misfit misfit;  // owned
+};
+
+/* A quantity of a model's history beside the measured one. */
+struct dea_set_history {
+  size_t curve;
+  const struct dea_curve *transient; // lent
+  enum dea_measured_column column;
+  struct dea_clock_shift clock; // of the model's times; edges 0: clocks as they are
+  struct dea_misfit misfit;     // owned
+};
+
+struct dea_compare_set {
+  char reference[DEA_LABEL_SIZE];
+  const struct dea_measured *measured;       // lent; NULL: the reference is a run
+  const struct dea_result *reference_result; // lent; NULL: the reference is a measurement
+  struct dea_set_curve curves[DEA_SET_CURVES_MAX];
+  size_t curve_count;
+  struct dea_set_profile *profiles; // owned
+  size_t profile_count;
+  struct dea_set_history *histories; // owned
+  size_t history_count;
+};
+
+/* One of measured and reference_result is not NULL. out: owned by the caller, NULL on failure. */
+dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference,
+                                  const struct dea_measured *measured,
+                                  const struct dea_result *reference_result,
+                                  struct dea_compare_set **out);
+void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *set);
+/* Adds a model of a result; reference_model: of the reference run, "" for the same or else its
+ * first. DEA_E_UNSUPPORTED for one too many. */
+dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
+                               const char *name, const struct dea_result *result, const char *model,
+                               const char *reference_model);
+/* Computes all misfits. columns: quantities wanted, count 0: all. What is left out, and signs that
+ * differ, become notes; DEA_E_ARGUMENT when nothing is left or no curve has a quantity that was
+ * asked for. */
+dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
+                                   const int *columns, size_t count);
+/* Misfit of a quantity against the voltage with the largest relative difference, and its curve;
+ * NULL when there is none. Lent. */
+const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set, size_t *curve);
+
+/* "along a fibre", "between fibres". */
+extern const char *const dea_half_names[DEA_HALVES];
+
+/* Object {schema, tolerance, reference, comparisons: [{a, b, quantities: [of dea_misfit_json]}],
+ * profiles: [{a, half, voltage_V, of dea_misfit_json}], histories: [{a, shift_s, edges, of
+ * dea_misfit_json}]}. NULL when memory is short. */
+json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance);
+/* Writes into directory (made if need be) compare_KEY for each quantity: all curves and the
+ * reference with a band of one standard deviation; compare_profile at the largest voltage that was
+ * measured and computed; compare_history_KEY. Script, data and pictures each. */
+dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compare_set *set,
+                                const struct dea_plot_format *format, const char *directory);
+
+#endif

@@ -1,0 +1,147 @@
+/* dea compare with what dea reduce writes: figures with bands, files that are wrong, failing
+ * allocations. */
+#define _GNU_SOURCE // mkdtemp
+#include "failing_allocator.h"
+#include "measured_run.h"
+#include "output/compare_set.h"
+
+static void test_all_curves_are_in_one_figure(void **state)
+{
+  (void)state;
+  static char text[COMMAND_TEXT_MAX];
+  assert_int_equal(command_run("compare run run2 red --model lumped --model 3d -o fig "
+                               "--format svg,png"),
+                   0);
+  command_read("fig/compare_centre_z_m.dat", text);
+  static const char *const titles[] = {"\302\261 1 std", "run, lumped", "run, 3d",
+                                       "run2, lumped",   "run2, 3d",    "measured"};
+  for (int k = 0; k < 6; k++) { // the band first, the points last: above all else
+    char head[80];
+    snprintf(head, sizeof head, "# index %d: %s\n", k, titles[k]);
+    assert_contains(text, head);
+  }
+  assert_contains(text, "\n2 179 201\n4 409 431\n6 559 581\n"); // +- 11 um
+  assert_contains(text, "\n2 190\n4 420\n6 570\n");
+  command_read("fig/compare_centre_z_m.gp", text);
+  assert_contains(text, "using 1:2:3 axes x1y1 with filledcurves");
+  command_read("fig/compare_force_N.dat", text); // no std: no band
+  assert_null(strstr(text, "1 std"));
+  command_read("fig/compare_profile.dat", text);
+  assert_contains(text, "between fibres");
+  command_read("fig/compare_history_centre_z_m.png", text);
+  command_read("fig/compare_profile.svg", text);
+  // Points in no order have bars in place of a band.
+  make_folder("loop");
+  command_write("loop/measurement.csv", "V (kV),z centre (um),z centre std (um)\n1,99,2\n2,190,3\n"
+                                        "1,110,2\n");
+  assert_int_equal(command_run("compare run loop -o loopfig"), 0);
+  command_read("loopfig/compare_centre_z_m.gp", text);
+  assert_contains(text, "with yerrorbars");
+  assert_null(strstr(text, "filledcurves"));
+}
+
+/* Writes folder bad with a file of that text, compares, and looks for the message. */
+static void is_bad(const char *name, const char *text, const char *message)
+{
+  char path[80];
+  command_write("bad/measurement.csv", points);
+  command_write("bad/profiles.csv", "V (kV),x (mm),z (um)\n2,0,1\n");
+  command_write("bad/history.csv", "time (s)\n0\n");
+  snprintf(path, sizeof path, "bad/%s", name);
+  command_write(path, text);
+  assert_int_equal(command_run("compare run bad"), 5);
+  assert_contains(command_err, message);
+}
+
+static void test_bad_files_with_their_places(void **state)
+{
+  (void)state;
+  make_folder("bad");
+  is_bad("measurement.csv", "V (kV),z centre (um)\n1,x\n",
+         "measurement.csv:2:3: error: 'x' is not");
+  is_bad("measurement.csv", "z centre (um)\n1\n", "measurement.csv:1:1: error: no column of volt");
+  is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0,1\n2,1,abc\n",
+         "profiles.csv:3:5: error: 'abc' is not a number");
+  is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0,1\n2,2,1\n2,1,1\n",
+         "profiles.csv:4:1: error: x does not rise");
+  is_bad("profiles.csv", "V (kV),z (um)\n2,0\n",
+         "profiles.csv:1:1: error: no column such as 'x (mm)'");
+  is_bad("profiles.csv", "V (kV),x (kV),z (um)\n2,0,1\n",
+         "profiles.csv:1:8: error: the unit in 'x (kV)' does not fit");
+  is_bad("profiles.csv", "V (kV),x,z (um)\n2,0,1\n",
+         "profiles.csv:1:8: error: 'x' needs a unit in parentheses, for example 'x (mm)'");
+  is_bad("profiles.csv", "V (kV),x (mm),x (mm),z (um)\n2,0,1,1\n",
+         "profiles.csv:1:15: error: 'x (mm)' is there twice");
+  is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0,1,7\n",
+         "more fields than the header, which has 3");
+  is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0\n", "fewer fields than the header");
+  is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,,1\n", "profiles.csv:2:3: error: a row without");
+  is_bad("profiles.csv", "# nothing\n", "no rows of numbers");
+  is_bad("profiles.csv", "", "no rows of numbers");
+  is_bad("history.csv", "time (s),V (kV)\n0,1\n0,1\n", "history.csv:3:1: error: the time does not");
+  is_bad("history.csv", "V (kV)\n1\n", "history.csv:1:1: error: no column such as 'time (s)'");
+  is_bad("history.csv", "time (s)\n1e999\n", "history.csv:2:1: error: '1e999' is not a number");
+  command_write("bad/profiles.csv", "V (kV),x (mm),z (um),colour\n2,0,1,7\n");
+  command_write("bad/history.csv", "time (s)\n0\n");
+  assert_int_equal(command_run("compare run bad"), 0);
+  assert_contains(command_err, "profiles.csv:1:22: note: column 'colour' is not used");
+  make_folder("empty");
+  assert_int_equal(command_run("compare run empty"), 5);
+}
+
+static void test_many_errors_are_cut(void **state)
+{
+  (void)state;
+  FILE *file = open_table("bad/history.csv");
+  fputs("time (s)\n", file);
+  for (int i = 0; i < 1000; i++) {
+    fputs("x\n", file);
+  }
+  fclose(file);
+  assert_int_equal(command_run("compare run bad"), 5);
+  assert_contains(command_err, "history.csv:21:1");
+  assert_null(strstr(command_err, "history.csv:23:1"));
+}
+
+/* Reading, computing and JSON with failing allocations. */
+static void compare_once(struct dea_context *ctx)
+{
+  char path[600];
+  struct dea_measured *measured = NULL;
+  struct dea_compare_set *set = NULL;
+  struct dea_result *result = NULL;
+  struct dea_design design = fake_design();
+  snprintf(path, sizeof path, "%s/small", command_folder);
+  dea_status status = dea_measured_read(ctx, path, &measured);
+  status = status == DEA_OK ? known_result(ctx, &design, &result) : status;
+  status = status == DEA_OK ? dea_compare_set_create(ctx, "small", measured, NULL, &set) : status;
+  status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
+  status =
+      status == DEA_OK ? dea_compare_set_add(ctx, set, "lumped", result, "lumped", "") : status;
+  status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
+  failing_check(ctx, status);
+  dea_compare_set_destroy(ctx, set);
+  dea_result_destroy(ctx, result);
+  dea_measured_destroy(ctx, measured);
+}
+
+static void test_with_failing_allocations(void **state)
+{
+  (void)state;
+  make_folder("small");
+  command_write("small/measurement.csv", points);
+  command_write("small/profiles.csv", "V (kV),x (mm),z (um)\n2,0,20\n2,1,19\n4,0,40\n");
+  command_write("small/history.csv", "time (s),V (kV),z centre (um)\n0,0,0\n1,6,600\n2,0,0\n");
+  assert_true(failing_each(compare_once) > 60);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_all_curves_are_in_one_figure),
+      cmocka_unit_test(test_bad_files_with_their_places),
+      cmocka_unit_test(test_many_errors_are_cut),
+      cmocka_unit_test(test_with_failing_allocations),
+  };
+  return cmocka_run_group_tests(tests, compare_set_up, command_tear_down);
+}
