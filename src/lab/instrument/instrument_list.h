@@ -3,5 +3,6 @@
 // X(name): instrument_<name>.c with `const struct dea_instrument_type dea_instrument_<name>` and
 // its table `const struct dea_record dea_instrument_<name>_record`.
 #define DEA_INSTRUMENT_LIST(X)                                                                     \
+  X(sim)                                                                                           \
   X(gocator)                                                                                       \
   X(scpi)

@@ -74,7 +74,7 @@ struct dea_protocol {
 
   struct dea_protocol_instrument instruments[DEA_PROTOCOL_INSTRUMENTS_MAX];
   size_t instrument_count;
-  struct dea_protocol_instrument sim; // of the simulated bench; section NULL: all its defaults
+  struct dea_protocol_instrument sim; // of the simulated bench; always there, with its kind
 
   struct dea_yaml *document; // owned
   struct dea_listing values;

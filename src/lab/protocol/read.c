@@ -294,6 +294,20 @@ static dea_status parse(struct dea_context *ctx, struct dea_protocol *protocol, 
   return DEA_OK;
 }
 
+/* The simulated bench is always there: what is not said of it has defaults. */
+static dea_status complete_sim(struct dea_context *ctx, struct dea_yaml *document)
+{
+  const struct dea_node *root = dea_yaml_root(document), *sim;
+  if (root->kind != DEA_NODE_SECTION) {
+    return DEA_OK;
+  }
+  sim = dea_node_find(root, "sim");
+  if (sim != NULL && (sim->kind != DEA_NODE_SECTION || dea_node_find(sim, "kind") != NULL)) {
+    return DEA_OK;
+  }
+  return dea_yaml_override(ctx, document, "sim.kind", "sim");
+}
+
 static dea_status copy_lists(struct dea_context *ctx, struct dea_protocol_raw *raw)
 {
   struct dea_protocol *protocol = &raw->protocol;
@@ -320,6 +334,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *file,
   }
   DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &protocol->text, &length));
   DEA_TRY(ctx, parse(ctx, protocol, length, overrides, override_count));
+  DEA_TRY(ctx, complete_sim(ctx, protocol->document));
   const struct dea_node *root = dea_yaml_root(protocol->document);
   const struct dea_reader reader = {ctx, protocol->document, &protocol->values};
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_protocol_record, root, "", raw));
