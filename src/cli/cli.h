@@ -38,6 +38,7 @@ struct dea_command {
   X(cmd_plot)                                                                                      \
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
+  X(cmd_reduce)                                                                                    \
   X(cmd_recording)                                                                                 \
   X(cmd_import)                                                                                    \
   X(cmd_examples)                                                                                  \
@@ -89,8 +90,5 @@ void cli_print_json(json_t *json);
 void cli_progress(void *cli, const char *what, size_t done, size_t total);
 /* True after SIGINT or SIGTERM. */
 bool cli_interrupted(void);
-/* From here on no signal ends or stops the program at once, not a second one either, because the
- * voltage has to come down first: hang-up and quit count as an interruption too. */
-void cli_voltage_is_on(void);
 
 #endif

@@ -35,10 +35,17 @@ static double creep_of(const struct values *v, const struct dea_cycle_parts *par
   double length_s = settled.end_s - settled.begin_s;
   double begin_s = edge_s + 3.0 * fmax(reached_s - edge_s, 0.0);
   struct dea_span early = {begin_s, begin_s + length_s};
-  if (!(early.end_s <= settled.begin_s)) { // also without a rise
+  if (isnan(reached_s) || !(early.end_s <= settled.begin_s)) {
     return NAN;
   }
   return settled_mean - dea_window_mean(v->series, early, v->scratch).mean;
+}
+
+/* Middle of a part, from where its end is looked for: the last sample before an edge may lie far
+ * before it. The begin of the next part when there is no such part. */
+static double later_half(struct dea_span part, struct dea_span next)
+{
+  return isnan(part.begin_s) ? next.begin_s : 0.5 * (part.begin_s + part.end_s);
 }
 
 static struct dea_cycle_value value_of(const struct values *v, const struct dea_cycle_parts *parts)
@@ -65,14 +72,14 @@ static struct dea_cycle_value value_of(const struct values *v, const struct dea_
     value.shared = isnan(of_after) ? 0.0 : weight * (1.0 - weight) * of_after;
   }
   if (parts->rises && !isnan(value.amplitude)) {
-    double edge_s = isnan(parts->rest.end_s) ? parts->active.begin_s : parts->rest.end_s, reached_s;
-    struct dea_span rise = {edge_s, parts->active.end_s};
+    double reached_s;
+    struct dea_span rise = {later_half(parts->rest, parts->active), parts->active.end_s};
     double from = isnan(rest.mean) ? value.rest : rest.mean;
     value.rise_s = dea_rise_time(v->series, rise, from, active.mean, v->rest.sample, &reached_s);
     value.creep = creep_of(v, parts, settled, active.mean, reached_s);
   }
   if (parts->falls && !isnan(after.mean)) {
-    struct dea_span fall = {parts->active.end_s, parts->after.end_s};
+    struct dea_span fall = {later_half(parts->active, parts->after), parts->after.end_s};
     value.fall_s = dea_rise_time(v->series, fall, active.mean, after.mean, v->rest.sample, &unused);
   }
   return value;

@@ -1,0 +1,160 @@
+/* Voltage and series at common times (dea_history_table_fill). */
+#include "lab/reduce/output.h"
+
+#include <stdlib.h>
+
+enum { COLUMNS_MAX = DEA_REDUCED_KINDS + 1 };
+
+struct columns {
+  const struct dea_channel *list[COLUMNS_MAX];
+  size_t count, samples;
+  double begin_s, end_s;
+};
+
+static void add_column(struct columns *columns, const struct dea_channel *channel)
+{
+  double begin_s = dea_channel_time(channel, 0);
+  double end_s = dea_channel_time(channel, channel->count - 1);
+  columns->begin_s = columns->count == 0 ? begin_s : fmin(columns->begin_s, begin_s);
+  columns->end_s = columns->count == 0 ? end_s : fmax(columns->end_s, end_s);
+  columns->samples += channel->count;
+  columns->list[columns->count++] = channel;
+}
+
+/* Times of the smallest and the largest value among samples begin <= i < end. */
+static size_t add_extremes(const struct dea_channel *channel, size_t begin, size_t end,
+                           double *times, size_t n)
+{
+  size_t low = end, high = end;
+  for (size_t i = begin; i < end; i++) {
+    if (!isnan(channel->values[i])) {
+      low = low == end || channel->values[i] < channel->values[low] ? i : low;
+      high = high == end || channel->values[i] > channel->values[high] ? i : high;
+    }
+  }
+  if (low != end) {
+    times[n++] = dea_channel_time(channel, low);
+  }
+  if (high != low) {
+    times[n++] = dea_channel_time(channel, high);
+  }
+  return n;
+}
+
+/* Times that are kept of one column: all, or of even stretches. */
+static size_t add_times(const struct columns *columns, size_t c, size_t stretches, double *times,
+                        size_t n)
+{
+  const struct dea_channel *channel = columns->list[c];
+  if (stretches == 0) {
+    for (size_t i = 0; i < channel->count; i++) {
+      times[n++] = dea_channel_time(channel, i);
+    }
+    return n;
+  }
+  double length_s = (columns->end_s - columns->begin_s) / (double)stretches;
+  size_t begin = 0;
+  for (size_t k = 1; k <= stretches; k++) {
+    size_t end = k == stretches
+                     ? channel->count
+                     : dea_channel_index(channel, columns->begin_s + (double)k * length_s);
+    n = end > begin ? add_extremes(channel, begin, end, times, n) : n;
+    begin = end > begin ? end : begin;
+  }
+  return n;
+}
+
+static int by_size(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* By a straight line between two neighbours that are no farther apart than usual; else NAN. */
+static double value_at(const struct dea_channel *channel, double time_s)
+{
+  size_t i = dea_channel_index(channel, time_s), last = channel->count - 1;
+  if (i < channel->count && !(dea_channel_time(channel, i) > time_s)) {
+    return channel->values[i];
+  }
+  if (i == 0 || i > last) {
+    return NAN;
+  }
+  double a = dea_channel_time(channel, i - 1), b = dea_channel_time(channel, i);
+  double usual = (dea_channel_time(channel, last) - dea_channel_time(channel, 0)) / (double)last;
+  double share = (time_s - a) / (b - a);
+  return b - a <= 2.5 * usual ? (1.0 - share) * channel->values[i - 1] + share * channel->values[i]
+                              : NAN;
+}
+
+static dea_status fill_values(struct dea_context *ctx, const struct dea_channel *channel,
+                              const struct dea_history_table *table, double **values)
+{
+  *values = dea_alloc(ctx, table->rows, sizeof **values);
+  if (*values == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < table->rows; i++) {
+    (*values)[i] = value_at(channel, table->time_s[i]);
+  }
+  return DEA_OK;
+}
+
+/* The measured voltage, or the asked one. */
+static const struct dea_channel *voltage_of(const struct dea_recording *recording)
+{
+  const struct dea_channel *measured = dea_recording_kind(recording, DEA_CHANNEL_VOLTAGE);
+  return measured != NULL && measured->count > 0
+             ? measured
+             : dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
+}
+
+dea_status dea_history_table_fill(struct dea_context *ctx, const struct dea_recording *recording,
+                                  const struct dea_reduction *reduction, size_t most,
+                                  struct dea_history_table *out)
+{
+  struct columns columns = {0};
+  const struct dea_channel *voltage = voltage_of(recording);
+  *out = (struct dea_history_table){0};
+  add_column(&columns, voltage); // there is one, or there were no reduction
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    if (reduction->series[kind].count > 0) {
+      add_column(&columns, &reduction->series[kind]);
+    }
+  }
+  out->thinned = columns.samples > most;
+  size_t stretches = out->thinned ? most / (2 * columns.count) : 0, n = 0;
+  out->time_s = dea_alloc(ctx, out->thinned ? most : columns.samples, sizeof *out->time_s);
+  if (out->time_s == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t c = 0; c < columns.count; c++) {
+    n = add_times(&columns, c, stretches, out->time_s, n);
+  }
+  qsort(out->time_s, n, sizeof *out->time_s, by_size);
+  for (size_t i = 0; i < n; i++) {
+    if (out->rows == 0 || out->time_s[i] > out->time_s[out->rows - 1]) {
+      out->time_s[out->rows++] = out->time_s[i];
+    }
+  }
+  dea_status status = fill_values(ctx, voltage, out, &out->voltage_V);
+  for (int kind = 0; kind < DEA_REDUCED_KINDS && status == DEA_OK; kind++) {
+    if (reduction->series[kind].count > 0) {
+      status = fill_values(ctx, &reduction->series[kind], out, &out->values[kind]);
+    }
+  }
+  if (status != DEA_OK) {
+    dea_history_table_free(ctx, out);
+  }
+  return status;
+}
+
+void dea_history_table_free(struct dea_context *ctx, struct dea_history_table *table)
+{
+  dea_free(ctx, table->time_s);
+  dea_free(ctx, table->voltage_V);
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    dea_free(ctx, table->values[kind]);
+  }
+  *table = (struct dea_history_table){0};
+}

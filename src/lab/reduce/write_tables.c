@@ -1,0 +1,338 @@
+#include "lab/reduce/output.h"
+
+#include "output/file.h"
+
+#include <stdio.h>
+
+const struct dea_reduced_meaning dea_reduced_meanings[DEA_REDUCED_KINDS] = {
+    [DEA_REDUCED_CENTRE] = {"z centre", "centre", "m", "um", 1e6},
+    [DEA_REDUCED_TIP] = {"z fibre tip", "fibre_tip", "m", "um", 1e6},
+    [DEA_REDUCED_DISPLACEMENT] = {"z point laser", "point_laser", "m", "um", 1e6},
+    [DEA_REDUCED_FORCE] = {"force", "force", "N", "mN", 1e3},
+};
+
+bool dea_reduced_has(const struct dea_reduction *reduction, enum dea_reduced_kind kind)
+{
+  for (size_t l = 0; l < reduction->level_count; l++) {
+    if (!isnan(reduction->levels[l].mean[kind])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+enum dea_reduced_kind dea_reduced_main(const struct dea_reduction *reduction)
+{
+  static const enum dea_reduced_kind order[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_DISPLACEMENT,
+                                                DEA_REDUCED_FORCE};
+  for (size_t k = 0; k < sizeof order / sizeof order[0]; k++) {
+    if (dea_reduced_has(reduction, order[k])) {
+      return order[k];
+    }
+  }
+  return DEA_REDUCED_KINDS;
+}
+
+struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level)
+{
+  const struct dea_reduced_level *first = &reduction->levels[level];
+  const struct dea_reduced_level *last = &reduction->levels[reduction->level_count - 1];
+  double within_V = 0.01 * fmax(fabs(reduction->levels[0].voltage_V), fabs(last->voltage_V));
+  struct dea_reduced_row row = {0};
+  while (first + row.levels <= last && first[row.levels].voltage_V - first->voltage_V <= within_V) {
+    double n = (double)first[row.levels].cycles;
+    row.voltage_V += n * first[row.levels].voltage_V;
+    row.cycles += first[row.levels++].cycles;
+  }
+  row.voltage_V /= (double)row.cycles;
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    double n = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
+    for (size_t l = 0; l < row.levels; l++) {
+      double m = isnan(first[l].mean[kind]) ? 0.0 : (double)first[l].cycles;
+      n += m;
+      sum += m > 0.0 ? m * first[l].mean[kind] : 0.0;
+      noise += isnan(first[l].noise[kind]) ? 0.0 : m * first[l].noise[kind] * first[l].noise[kind];
+    }
+    row.mean[kind] = sum / n; // NAN without any
+    for (size_t l = 0; l < row.levels && n > 0.0; l++) {
+      double m = (double)first[l].cycles, off = first[l].mean[kind] - row.mean[kind];
+      squares += isnan(off) ? 0.0 : m * off * off;
+      squares += isnan(first[l].std[kind]) ? 0.0 : (m - 1.0) * pow(first[l].std[kind], 2.0);
+    }
+    double scatter = n > 1.0 ? sqrt(squares / (n - 1.0)) : 0.0;
+    double std = fmax(scatter, n > 0.0 ? sqrt(noise / n) : 0.0);
+    row.std[kind] = std > 0.0 ? std : NAN;
+  }
+  return row;
+}
+
+// Fields -----------------------------------------------------------------------------------------
+
+static void add(struct dea_text *text, double value)
+{
+  dea_text_add(text, ",");
+  if (!isnan(value)) {
+    dea_text_add(text, "%.10g", value);
+  }
+}
+
+/* "name what (unit)", in place of "name (unit)" for what "". */
+static void add_title(struct dea_text *text, const char *name, const char *what, const char *unit)
+{
+  dea_text_add(text, ",%s%s%s (%s)", name, what[0] != '\0' ? " " : "", what, unit);
+}
+
+static dea_status write(struct dea_context *ctx, struct dea_text *text, void *before,
+                        const char *directory, const char *name)
+{
+  dea_c_locale_leave(before);
+  dea_status status = dea_text_write(ctx, text, directory, name);
+  dea_text_free(text);
+  return status;
+}
+
+/* Where a file's numbers come from, as a comment. */
+static void add_source(struct dea_text *text, const struct dea_recording *recording)
+{
+  dea_text_add(text, "# Reduced from ");
+  for (const char *c = recording->file != NULL ? recording->file : ""; *c != '\0'; c++) {
+    dea_text_add(text, "%c", *c == '\n' || *c == '\r' ? ' ' : *c);
+  }
+  dea_text_add(text, "%s\n",
+               recording->file == NULL || recording->file[0] == '\0' ? "a recording" : "");
+}
+
+// Tables -----------------------------------------------------------------------------------------
+
+/* The kind behind a column of `dea compare`: the point laser's where there is no profile. */
+static const enum dea_reduced_kind measured_centre[2] = {DEA_REDUCED_CENTRE,
+                                                         DEA_REDUCED_DISPLACEMENT};
+
+static dea_status write_measurement(struct dea_context *ctx, const struct dea_recording *recording,
+                                    const struct dea_reduction *r, const char *directory)
+{
+  enum dea_reduced_kind kinds[3];
+  size_t count = 0;
+  for (int k = 0; k < 2 && count == 0; k++) {
+    if (dea_reduced_has(r, measured_centre[k])) {
+      kinds[count++] = measured_centre[k];
+    }
+  }
+  if (dea_reduced_has(r, DEA_REDUCED_TIP)) {
+    kinds[count++] = DEA_REDUCED_TIP;
+  }
+  if (dea_reduced_has(r, DEA_REDUCED_FORCE)) {
+    kinds[count++] = DEA_REDUCED_FORCE;
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  add_source(&text, recording);
+  dea_text_add(&text,
+               "# std: of one cycle, the larger of the standard deviation from cycle to cycle "
+               "and of what the noise of its samples gives\nV (kV)");
+  for (size_t k = 0; k < count; k++) {
+    enum dea_reduced_kind named =
+        kinds[k] == DEA_REDUCED_DISPLACEMENT ? DEA_REDUCED_CENTRE : kinds[k];
+    const struct dea_reduced_meaning *m = &dea_reduced_meanings[named];
+    add_title(&text, m->name, "", m->unit);
+    add_title(&text, m->name, "std", m->unit);
+  }
+  for (size_t l = 0; l < r->level_count;) {
+    struct dea_reduced_row row = dea_reduced_row_at(r, l);
+    dea_text_add(&text, "\n%.10g", 1e-3 * row.voltage_V);
+    for (size_t k = 0; k < count; k++) {
+      add(&text, dea_reduced_meanings[kinds[k]].factor * row.mean[kinds[k]]);
+      add(&text, dea_reduced_meanings[kinds[k]].factor * row.std[kinds[k]]);
+    }
+    l += row.levels;
+  }
+  dea_text_add(&text, "\n");
+  return write(ctx, &text, before, directory, "measurement.csv");
+}
+
+static dea_status write_levels(struct dea_context *ctx, const struct dea_reduction *r,
+                               const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "V (kV),step,cycles,shape,shape uncertainty");
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    const struct dea_reduced_meaning *m = &dea_reduced_meanings[kind];
+    if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
+      char each[32];
+      snprintf(each, sizeof each, "%s/cycle", m->unit);
+      add_title(&text, m->name, "", m->unit);
+      add_title(&text, m->name, "std", m->unit);
+      add_title(&text, m->name, "noise", m->unit);
+      add_title(&text, m->name, "uncertainty", m->unit);
+      add_title(&text, m->name, "rise", "s");
+      add_title(&text, m->name, "fall", "s");
+      add_title(&text, m->name, "creep", m->unit);
+      add_title(&text, m->name, "drift", each);
+      add_title(&text, m->name, "drift uncertainty", each);
+    }
+  }
+  for (size_t l = 0; l < r->level_count; l++) {
+    const struct dea_reduced_level *level = &r->levels[l];
+    dea_text_add(&text, "\n%.10g,%zu,%zu", 1e-3 * level->voltage_V, level->step, level->cycles);
+    add(&text, level->shape);
+    add(&text, level->shape_uncertainty);
+    for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+      if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
+        double f = dea_reduced_meanings[kind].factor;
+        add(&text, f * level->mean[kind]);
+        add(&text, f * level->std[kind]);
+        add(&text, f * level->noise[kind]);
+        add(&text, f * level->uncertainty[kind]);
+        add(&text, level->rise_s[kind]);
+        add(&text, level->fall_s[kind]);
+        add(&text, f * level->creep[kind]);
+        add(&text, f * level->drift[kind]);
+        add(&text, f * level->drift_uncertainty[kind]);
+      }
+    }
+  }
+  dea_text_add(&text, "\n");
+  return write(ctx, &text, before, directory, "levels.csv");
+}
+
+static dea_status write_cycles(struct dea_context *ctx, const struct dea_reduction *r,
+                               const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "step,cycle,start (s),end (s),asked V (kV),V (kV),shape");
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    const struct dea_reduced_meaning *m = &dea_reduced_meanings[kind];
+    if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
+      add_title(&text, m->name, "", m->unit);
+      add_title(&text, m->name, "uncertainty", m->unit);
+      add_title(&text, m->name, "rest", m->unit);
+      add_title(&text, m->name, "active", m->unit);
+      add_title(&text, m->name, "rise", "s");
+      add_title(&text, m->name, "fall", "s");
+      add_title(&text, m->name, "creep", m->unit);
+    }
+  }
+  for (size_t k = 0; k < r->cycle_count; k++) {
+    const struct dea_reduced_cycle *c = &r->cycles[k];
+    dea_text_add(&text, "\n%zu,%zu", c->cycle.step, c->cycle.number);
+    add(&text, c->cycle.start_s);
+    add(&text, c->cycle.end_s);
+    add(&text, 1e-3 * c->cycle.level_V);
+    add(&text, 1e-3 * c->voltage_V);
+    add(&text, c->shape);
+    for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+      const struct dea_cycle_value *v = &c->values[kind];
+      double f = dea_reduced_meanings[kind].factor;
+      const double fields[] = {f * v->amplitude, f * v->uncertainty, f * v->rest, f * v->active,
+                               v->rise_s,        v->fall_s,          f * v->creep};
+      for (size_t i = 0; i < 7 && dea_reduced_has(r, (enum dea_reduced_kind)kind); i++) {
+        add(&text, fields[i]);
+      }
+    }
+  }
+  dea_text_add(&text, "\n");
+  return write(ctx, &text, before, directory, "cycles.csv");
+}
+
+static dea_status write_discharges(struct dea_context *ctx, const struct dea_reduction *r,
+                                   const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "time (s),kind,V (kV),peak (uA),charge (nC)");
+  for (size_t i = 0; i < r->discharge_count; i++) {
+    const struct dea_discharge *d = &r->discharges[i];
+    dea_text_add(&text, "\n%.10g,%s", d->time_s,
+                 d->kind == DEA_BREAKDOWN ? "breakdown" : "discharge");
+    add(&text, 1e-3 * d->voltage_V);
+    add(&text, 1e6 * d->peak_A);
+    add(&text, 1e9 * d->charge_C);
+  }
+  dea_text_add(&text, "\n");
+  return write(ctx, &text, before, directory, "discharges.csv");
+}
+
+static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduction *r,
+                                 const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "V (kV),x (mm),z (um),z std (um)\n");
+  for (size_t l = 0; l < r->level_count; l++) {
+    const struct dea_reduced_level *level = &r->levels[l];
+    for (size_t i = 0; i < r->points; i++) {
+      if (!isnan(level->z_m[i])) {
+        dea_text_add(&text, "%.10g", 1e-3 * level->voltage_V);
+        add(&text, 1e3 * r->radius_m[i]);
+        add(&text, 1e6 * level->z_m[i]);
+        add(&text, 1e6 * level->z_std_m[i]);
+        dea_text_add(&text, "\n");
+      }
+    }
+  }
+  return write(ctx, &text, before, directory, "profiles.csv");
+}
+
+static dea_status write_history(struct dea_context *ctx, const struct dea_recording *recording,
+                                const struct dea_reduction *r, const char *directory)
+{
+  struct dea_history_table table;
+  DEA_TRY(ctx, dea_history_table_fill(ctx, recording, r, DEA_HISTORY_ROWS_MAX, &table));
+  const bool profile = table.values[DEA_REDUCED_CENTRE] != NULL;
+  const double *columns[] = {
+      table.values[measured_centre[profile ? 0 : 1]],
+      table.values[DEA_REDUCED_TIP],
+      table.values[DEA_REDUCED_FORCE],
+  };
+  static const enum dea_reduced_kind named[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_TIP,
+                                                DEA_REDUCED_FORCE};
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  add_source(&text, recording);
+  if (table.thinned) {
+    dea_text_add(&text, "# thinned: the smallest and the largest sample of each of even stretches "
+                        "of time\n");
+  }
+  dea_text_add(&text, "time (s),V (kV)");
+  for (size_t k = 0; k < 3; k++) {
+    if (columns[k] != NULL) {
+      add_title(&text, dea_reduced_meanings[named[k]].name, "",
+                dea_reduced_meanings[named[k]].unit);
+    }
+  }
+  for (size_t i = 0; i < table.rows; i++) {
+    dea_text_add(&text, "\n%.10g", table.time_s[i]);
+    add(&text, 1e-3 * table.voltage_V[i]);
+    for (size_t k = 0; k < 3; k++) {
+      if (columns[k] != NULL) {
+        add(&text, dea_reduced_meanings[named[k]].factor * columns[k][i]);
+      }
+    }
+  }
+  dea_text_add(&text, "\n");
+  dea_history_table_free(ctx, &table);
+  return write(ctx, &text, before, directory, "history.csv");
+}
+
+dea_status dea_reduction_write_tables(struct dea_context *ctx,
+                                      const struct dea_recording *recording,
+                                      const struct dea_reduction *reduction, const char *directory)
+{
+  if (reduction->level_count > 0) {
+    DEA_TRY(ctx, write_measurement(ctx, recording, reduction, directory));
+    DEA_TRY(ctx, write_levels(ctx, reduction, directory));
+    DEA_TRY(ctx, write_cycles(ctx, reduction, directory));
+  }
+  if (reduction->level_count > 0 && reduction->points > 0) {
+    DEA_TRY(ctx, write_profiles(ctx, reduction, directory));
+  }
+  if (reduction->current.samples > 0) {
+    DEA_TRY(ctx, write_discharges(ctx, reduction, directory));
+  }
+  return write_history(ctx, recording, reduction, directory);
+}
