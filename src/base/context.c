@@ -286,6 +286,11 @@ void dea_context_set_interrupt(struct dea_context *ctx, const volatile sig_atomi
   ctx->interrupt = flag;
 }
 
+const volatile sig_atomic_t *dea_context_get_interrupt(const struct dea_context *ctx)
+{
+  return ctx->interrupt;
+}
+
 bool dea_interrupted(const struct dea_context *ctx)
 {
   return ctx->interrupt != NULL && *ctx->interrupt != 0;

@@ -112,6 +112,8 @@ void dea_context_set_progress(struct dea_context *ctx, dea_progress_fn fn, void 
 void dea_progress(struct dea_context *ctx, const char *what, size_t done, size_t total);
 /* flag: lent; a non-zero value (set by a signal handler) stops long work between points. */
 void dea_context_set_interrupt(struct dea_context *ctx, const volatile sig_atomic_t *flag);
+/* The flag that is set; NULL: none. */
+const volatile sig_atomic_t *dea_context_get_interrupt(const struct dea_context *ctx);
 bool dea_interrupted(const struct dea_context *ctx);
 
 #endif

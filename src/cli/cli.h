@@ -90,5 +90,8 @@ void cli_print_json(json_t *json);
 void cli_progress(void *cli, const char *what, size_t done, size_t total);
 /* True after SIGINT or SIGTERM. */
 bool cli_interrupted(void);
+/* From here on no signal ends or stops the program at once, not a second one either, because the
+ * voltage has to come down first: hang-up and quit count as an interruption too. */
+void cli_voltage_is_on(void);
 
 #endif

@@ -17,11 +17,11 @@ static const struct dea_command *const commands[] = {
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-static volatile sig_atomic_t interrupt_flag;
+static volatile sig_atomic_t interrupt_flag, voltage_flag;
 
 static void on_signal(int number)
 {
-  if (interrupt_flag != 0) {
+  if (interrupt_flag != 0 && voltage_flag == 0) {
     _exit(128 + number); // a second one: the user means it
   }
   interrupt_flag = 1;
@@ -167,6 +167,16 @@ static void watch_signals(void)
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   signal(SIGPIPE, SIG_IGN);
+}
+
+void cli_voltage_is_on(void)
+{
+  struct sigaction action = {.sa_handler = on_signal};
+  sigemptyset(&action.sa_mask);
+  voltage_flag = 1;
+  sigaction(SIGHUP, &action, NULL); // the terminal is closed
+  sigaction(SIGQUIT, &action, NULL);
+  signal(SIGTSTP, SIG_IGN); // a stopped program leaves the voltage where it is
 }
 
 static int run_command(struct dea_cli *cli, int argc, char **argv)

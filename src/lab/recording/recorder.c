@@ -1,6 +1,6 @@
-#define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "lab/recording/recorder.h"
 
+#include "lab/instrument/clock.h"
 #include "lab/recording/disk.h"
 #include "lab/recording/layout.h"
 #include "lab/recording/series.h"
@@ -8,7 +8,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 enum { GROUP_NAME_SIZE = DEA_CHANNEL_NAME_SIZE + 24 };
 
@@ -32,13 +31,6 @@ struct dea_recorder {
   double last_frame_s;
   double flush_s, flushed_s; // longest time between flushes, time of the last one
 };
-
-static double now_s(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // Making the file --------------------------------------------------------------------------------
 
@@ -310,7 +302,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   recorder->frame_time = recorder->frames = recorder->cycles = none;
   recorder->last_frame_s = -INFINITY;
   recorder->flush_s = options->flush_s > 0 ? options->flush_s : 0.2;
-  recorder->flushed_s = now_s();
+  recorder->flushed_s = dea_clock_s();
   recorder->path = dea_copy_text(ctx, file, SIZE_MAX);
   if (recorder->path == NULL) {
     return DEA_E_MEMORY;
@@ -381,12 +373,12 @@ static void flush_samples(struct h5 *h, struct dea_recorder *recorder)
     dea_series_flush(h, &recorder->frames);
     dea_series_flush(h, &recorder->frame_time);
   }
-  recorder->flushed_s = now_s();
+  recorder->flushed_s = dea_clock_s();
 }
 
 static void flush_when_due(struct h5 *h, struct dea_recorder *recorder)
 {
-  if (now_s() - recorder->flushed_s >= recorder->flush_s) {
+  if (dea_clock_s() - recorder->flushed_s >= recorder->flush_s) {
     flush_samples(h, recorder);
   }
 }

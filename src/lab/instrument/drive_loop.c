@@ -1,0 +1,472 @@
+/* Plays a protocol. Whatever happens, the loop goes on until the output has come to 0 V: a fault
+ * only changes what is asked from the sequence to the ramp. What cannot be played any more, because
+ * the playing instrument has failed, is stopped at once. */
+#include "lab/instrument/drive_loop.h"
+
+#include "lab/instrument/clock.h"
+#include "lab/instrument/drive_output.h"
+#include "lab/instrument/drive_watch.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+// of the output: how much is given at a time, and how far at most it is ahead of the inputs, which
+// is what a fault has to wait for before the ramp begins
+static const double block_s = 0.05, ahead_s = 0.3;
+static const double wait_s = 0.05;         // for what arrives
+static const double last_frame_wait_s = 1; // for the profile that ends the last cycle
+static const double rounding = 1e-6;       // of a sample's distance to the next
+
+struct loop;
+/* Who gives what arrives. */
+struct giver {
+  struct loop *loop;
+  struct dea_instrument *instrument;
+  size_t first_channel; // of its readings
+  double last_s[DEA_CHANNELS_MAX];
+  double heard_s; // when samples or frames came last, by the computer's clock
+  bool failed;
+};
+
+struct loop {
+  struct dea_context *ctx;
+  const struct dea_protocol *protocol;
+  struct giver givers[DEA_PROTOCOL_INSTRUMENTS_MAX + 1];
+  size_t count;
+  struct giver *player, *reader, *sensor; // of givers; NULL: none
+  struct dea_recorder *recorder;
+  struct dea_drive_output output;
+  struct dea_drive_watch watch;
+  size_t put, got, recorded; // samples of the output, of the inputs, of the command's channel
+  size_t block, ahead;       // samples
+  double *asked, *volts;     // [room] of the samples on their way, by number; [block]
+  size_t room;
+  double *columns; // [channels on the clock][block]: samples to be recorded
+  size_t columns_used;
+  double last_frame_s, frame_interval_s;
+  double started_s, lost_reader_s; // by the computer's clock
+  double stall_s;
+  bool ending;       // a fault came
+  dea_status status; // of it
+  struct dea_drive_report *report;
+};
+
+// Ends -------------------------------------------------------------------------------------------
+
+/* The first fault: from here on the ramp. */
+static void end_early(struct loop *loop, dea_status status, const char *format, ...)
+    DEA_PRINTF(3, 4);
+static void end_early(struct loop *loop, dea_status status, const char *format, ...)
+{
+  if (loop->ending) {
+    return;
+  }
+  va_list args;
+  va_start(args, format);
+  vsnprintf(loop->report->ended, sizeof loop->report->ended, format, args);
+  va_end(args);
+  loop->ending = true;
+  loop->status = status;
+  dea_drive_output_ramp(&loop->output);
+}
+
+static void instrument_failed(struct loop *loop, struct giver *giver)
+{
+  giver->failed = true;
+  if (giver == loop->reader) {
+    loop->lost_reader_s = dea_clock_s();
+  }
+  end_early(loop, DEA_E_INSTRUMENT, "%s: %s", giver->instrument->type->name,
+            dea_context_message(loop->ctx));
+}
+
+/* A recording that cannot be written any more ends the measurement, not the ramp. */
+static void check_recorder(struct loop *loop, dea_status status)
+{
+  if (status != DEA_OK) {
+    end_early(loop, status, "%s", dea_context_message(loop->ctx));
+  }
+}
+
+static bool reads(const struct loop *loop)
+{
+  return loop->reader != NULL && !loop->reader->failed;
+}
+
+// What arrives -----------------------------------------------------------------------------------
+
+static void record_columns(struct loop *loop)
+{
+  size_t channels = loop->protocol->input_count + 1;
+  for (size_t c = 0; c < channels && loop->columns_used > 0; c++) {
+    check_recorder(loop, dea_recorder_add(loop->recorder, c, loop->columns + c * loop->block,
+                                          loop->columns_used));
+  }
+  loop->columns_used = 0;
+}
+
+/* The next sample of all channels; values: of the inputs, NULL: lost. */
+static double record_sample(struct loop *loop, const double *values)
+{
+  double asked_V = loop->asked[loop->recorded++ % loop->room];
+  loop->columns[loop->columns_used] = asked_V;
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    loop->columns[(i + 1) * loop->block + loop->columns_used] =
+        values != NULL ? values[i] : (double)NAN;
+  }
+  if (++loop->columns_used == loop->block) {
+    record_columns(loop);
+  }
+  return asked_V;
+}
+
+static void take_sample(struct loop *loop, const double *volts)
+{
+  char why[DEA_WHY_ENDED_SIZE];
+  double values[DEA_PROTOCOL_INPUTS_MAX];
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &loop->protocol->inputs[i];
+    values[i] = volts[i] * input->per_volt + input->at_zero;
+  }
+  double asked_V = record_sample(loop, values);
+  loop->got++;
+  if (!dea_drive_watch_sample(&loop->watch, asked_V, values, why)) {
+    end_early(loop, DEA_E_INTERLOCK, "%s", why);
+  }
+}
+
+/* The functions of the intake never fail: what goes wrong with the recording is no fault of the
+ * instrument. */
+static dea_status take_samples(void *user, const double *volts, size_t count)
+{
+  struct giver *giver = user;
+  struct loop *loop = giver->loop;
+  for (size_t i = 0; i < count && giver == loop->reader; i++) {
+    if (loop->got == loop->put) {
+      if (!loop->output.over) {
+        end_early(loop, DEA_E_INSTRUMENT,
+                  "%s: the inputs are ahead of the output, which ran dry: the computer is too slow "
+                  "for this rate, or busy",
+                  giver->instrument->type->name);
+      }
+      break; // after the end
+    }
+    take_sample(loop, volts + i * loop->protocol->input_count);
+  }
+  giver->heard_s = count > 0 ? dea_clock_s() : giver->heard_s;
+  return DEA_OK;
+}
+
+static dea_status take_profile(void *user, double time_s, const double *z_m)
+{
+  struct giver *giver = user;
+  struct loop *loop = giver->loop;
+  if (giver != loop->sensor || !isfinite(time_s) || time_s <= loop->last_frame_s) {
+    loop->report->lost++;
+    return DEA_OK;
+  }
+  if (isfinite(loop->last_frame_s)) {
+    loop->frame_interval_s = time_s - loop->last_frame_s;
+  }
+  loop->last_frame_s = time_s;
+  giver->heard_s = dea_clock_s();
+  check_recorder(loop, dea_recorder_add_profile(loop->recorder, time_s, z_m));
+  return DEA_OK;
+}
+
+static dea_status take_reading(void *user, size_t reading, double time_s, double value)
+{
+  struct giver *giver = user;
+  struct loop *loop = giver->loop;
+  if (reading >= giver->instrument->reading_count || !isfinite(time_s) ||
+      time_s <= giver->last_s[reading]) {
+    loop->report->lost++;
+    return DEA_OK;
+  }
+  giver->last_s[reading] = time_s;
+  check_recorder(loop, dea_recorder_add_timed(loop->recorder, giver->first_channel + reading,
+                                              &time_s, &value, 1));
+  return DEA_OK;
+}
+
+static void get_from(struct loop *loop, struct giver *giver, double timeout_s)
+{
+  const struct dea_intake intake = {giver, take_samples, take_profile, take_reading};
+  const struct dea_instrument_type *type = giver->instrument->type;
+  if (!giver->failed && type->get != NULL &&
+      type->get(loop->ctx, giver->instrument, timeout_s, &intake) != DEA_OK) {
+    instrument_failed(loop, giver);
+  }
+}
+
+/* Who has been silent for too long has failed. */
+static void check_heard(struct loop *loop, struct giver *giver, double longest_s, const char *what)
+{
+  if (giver != NULL && !giver->failed && dea_clock_s() - giver->heard_s > longest_s) {
+    dea_fail(loop->ctx, DEA_E_INSTRUMENT, "no %s has come for %.3g s", what, longest_s);
+    instrument_failed(loop, giver);
+  }
+}
+
+/* Without inputs to wait for the asked voltage is recorded when it is given away. */
+static void record_asked(struct loop *loop)
+{
+  while (!reads(loop) && !loop->player->failed && loop->recorded < loop->put) {
+    record_sample(loop, NULL);
+    loop->report->lost += loop->reader != NULL;
+  }
+}
+
+/* From all; waits for the one that reads the inputs, or for the first. */
+static void get_all(struct loop *loop, double timeout_s)
+{
+  struct giver *waited = reads(loop) ? loop->reader : &loop->givers[0];
+  double before_s = dea_clock_s();
+  get_from(loop, waited, timeout_s);
+  for (size_t i = 0; i < loop->count; i++) {
+    if (&loop->givers[i] != waited) {
+      get_from(loop, &loop->givers[i], 0);
+    }
+  }
+  record_asked(loop);
+  record_columns(loop);
+  check_heard(loop, loop->reader, loop->put > loop->got ? loop->stall_s : INFINITY, "sample");
+  check_heard(loop, loop->sensor, fmax(loop->stall_s, 5 * loop->frame_interval_s), "profile");
+  if (!reads(loop)) { // nothing that would keep the loop from turning idly
+    dea_clock_wait(fmin(timeout_s, 0.01) - (dea_clock_s() - before_s));
+  }
+}
+
+// What is played ---------------------------------------------------------------------------------
+
+static void put_block(struct loop *loop)
+{
+  double asked_V[64];
+  size_t filled = 0;
+  while (filled < loop->block && !loop->output.over) {
+    size_t room = loop->block - filled < 64 ? loop->block - filled : 64;
+    size_t n = dea_drive_output_next(&loop->output, room, asked_V);
+    for (size_t i = 0; i < n; i++) {
+      loop->asked[(loop->put + filled) % loop->room] = asked_V[i];
+      loop->volts[filled++] = asked_V[i] / loop->protocol->amplifier.gain.si;
+    }
+  }
+  struct giver *player = loop->player;
+  if (filled > 0 &&
+      player->instrument->type->put(loop->ctx, player->instrument, loop->volts, filled) != DEA_OK) {
+    instrument_failed(loop, player);
+  } else {
+    loop->put += filled;
+  }
+}
+
+/* Samples that have gone out, as far as can be known: their inputs have come, or their time has
+ * passed. */
+static double gone_out(const struct loop *loop)
+{
+  double rate_Hz = loop->protocol->rate_Hz.si;
+  if (reads(loop)) {
+    return (double)loop->got;
+  }
+  if (loop->reader != NULL) {
+    return (double)loop->got + (dea_clock_s() - loop->lost_reader_s) * rate_Hz;
+  }
+  return (dea_clock_s() - loop->started_s) * rate_Hz;
+}
+
+/* The clocks of a computer and of a DAQ agree to some ten parts in a million. */
+static bool has_room(const struct loop *loop)
+{
+  double ahead = (double)loop->ahead + (reads(loop) ? 0 : 2e-4 * (double)loop->put);
+  return !loop->output.over && (double)loop->put - gone_out(loop) < ahead;
+}
+
+static bool is_played(const struct loop *loop)
+{
+  double margin = reads(loop) ? 0 : 2 * wait_s * loop->protocol->rate_Hz.si;
+  return loop->output.over && gone_out(loop) >= (double)loop->put + margin;
+}
+
+// Cycles -----------------------------------------------------------------------------------------
+
+static bool is_recorded(const struct loop *loop, const struct dea_recorded_cycle *cycle)
+{
+  double rate_Hz = loop->protocol->rate_Hz.si;
+  size_t end = (size_t)ceil(cycle->end_s * rate_Hz - rounding);
+  if (loop->output.played < end || loop->put < end || (reads(loop) && loop->got < end)) {
+    return false;
+  }
+  if (loop->reader != NULL ? loop->got < end : dea_clock_s() - loop->started_s < cycle->end_s) {
+    return false;
+  }
+  // the next frame will lie behind the end
+  return loop->sensor == NULL || loop->last_frame_s + 1.5 * loop->frame_interval_s >= cycle->end_s;
+}
+
+static void mark_cycles(struct loop *loop)
+{
+  struct dea_recorded_cycle cycle;
+  while (dea_protocol_cycle(loop->protocol, loop->report->cycles, &cycle) &&
+         is_recorded(loop, &cycle)) {
+    dea_status status = dea_recorder_add_cycle(loop->recorder, &cycle);
+    check_recorder(loop, status);
+    if (status != DEA_OK) {
+      return;
+    }
+    loop->report->cycles++;
+  }
+}
+
+// The loop ---------------------------------------------------------------------------------------
+
+static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
+{
+  double duration_s = dea_protocol_duration_s(loop->protocol), shown_s = -1;
+  bool played = false;
+  while (!played && !loop->player->failed) {
+    if (interrupt != NULL && *interrupt != 0) {
+      end_early(loop, DEA_E_INTERRUPTED, "interrupted");
+    }
+    bool more = has_room(loop);
+    if (more) {
+      put_block(loop);
+    }
+    get_all(loop, more ? 0 : wait_s);
+    mark_cycles(loop);
+    played = is_played(loop);
+    double now_s = floor((double)loop->output.played / loop->protocol->rate_Hz.si);
+    if (now_s > shown_s) {
+      dea_progress(loop->ctx, loop->ending ? "ramp to 0 V (s)" : "drive (s)", (size_t)now_s,
+                   (size_t)ceil(duration_s));
+      shown_s = now_s;
+    }
+  }
+}
+
+/* A profile sensor is a little behind. */
+static void wait_for_frames(struct loop *loop)
+{
+  struct dea_recorded_cycle cycle;
+  double until_s = dea_clock_s() + last_frame_wait_s;
+  while (loop->sensor != NULL && !loop->sensor->failed && !loop->ending &&
+         dea_protocol_cycle(loop->protocol, loop->report->cycles, &cycle) &&
+         dea_clock_s() < until_s) {
+    get_from(loop, loop->sensor, wait_s);
+    mark_cycles(loop);
+    dea_clock_wait(0.001);
+  }
+}
+
+static void start_all(struct loop *loop)
+{
+  loop->started_s = dea_clock_s();
+  for (size_t i = 0; i < loop->count && !loop->ending; i++) { // the one that plays comes last
+    struct giver *giver = &loop->givers[i];
+    giver->heard_s = dea_clock_s();
+    if (giver->instrument->type->start(loop->ctx, giver->instrument) != DEA_OK) {
+      instrument_failed(loop, giver);
+    }
+  }
+}
+
+static void stop_all(struct loop *loop)
+{
+  for (size_t i = loop->count; i-- > 0;) { // the one that plays comes first
+    struct dea_instrument *instrument = loop->givers[i].instrument;
+    instrument->type->stop(loop->ctx, instrument);
+    loop->report->lost += instrument->lost;
+  }
+}
+
+// Set up -----------------------------------------------------------------------------------------
+
+static dea_status set_givers(struct loop *loop, const struct dea_drive_bench *bench)
+{
+  struct dea_drive_roles roles;
+  DEA_TRY(loop->ctx, dea_drive_find_roles(loop->ctx, loop->protocol, bench, &roles));
+  size_t channel = loop->protocol->input_count + 1;
+  for (size_t i = 0, k = 0; i < bench->count; i++) {
+    struct dea_instrument *instrument = bench->instruments[i];
+    struct giver *giver = &loop->givers[instrument == roles.player ? bench->count - 1 : k++];
+    *giver = (struct giver){.loop = loop, .instrument = instrument, .first_channel = channel};
+    channel += instrument->reading_count;
+    for (size_t r = 0; r < DEA_CHANNELS_MAX; r++) {
+      giver->last_s[r] = -INFINITY;
+    }
+    loop->player = instrument == roles.player ? giver : loop->player;
+    loop->reader = instrument == roles.reader ? giver : loop->reader;
+    loop->sensor = instrument == roles.sensor ? giver : loop->sensor;
+  }
+  loop->count = bench->count;
+  return DEA_OK;
+}
+
+static dea_status set_rooms(struct loop *loop)
+{
+  double rate_Hz = loop->protocol->rate_Hz.si;
+  loop->block = (size_t)fmax(1, rint(block_s * rate_Hz));
+  loop->ahead = (size_t)fmax(2, rint(ahead_s * rate_Hz));
+  loop->room = loop->ahead + 2 * loop->block;
+  loop->asked = dea_alloc(loop->ctx, loop->room, sizeof *loop->asked);
+  loop->volts = dea_alloc(loop->ctx, loop->block, sizeof *loop->volts);
+  loop->columns =
+      dea_alloc(loop->ctx, loop->block * (loop->protocol->input_count + 1), sizeof *loop->columns);
+  bool good = loop->asked != NULL && loop->volts != NULL && loop->columns != NULL;
+  return good ? DEA_OK : DEA_E_MEMORY;
+}
+
+static dea_status finish(struct loop *loop)
+{
+  struct dea_drive_report *report = loop->report;
+  report->played_s = fmin((double)loop->output.played / loop->protocol->rate_Hz.si,
+                          dea_protocol_duration_s(loop->protocol));
+  report->reached_zero = !loop->player->failed || loop->output.played == 0;
+  report->largest_current_A = loop->watch.largest_current_A;
+  dea_status finished = dea_recorder_finish(loop->recorder, report->ended);
+  if (loop->status != DEA_OK) {
+    return dea_fail(loop->ctx, loop->status, "the measurement ended after %.4g s: %s%s",
+                    report->played_s, report->ended,
+                    report->reached_zero ? "" : "; the output was stopped at once");
+  }
+  return finished;
+}
+
+dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *protocol,
+                          const struct dea_drive_bench *bench, const char *file,
+                          struct dea_drive_report *out)
+{
+  struct loop loop = {.ctx = ctx, .protocol = protocol, .report = out, .stall_s = bench->stall_s};
+  *out = (struct dea_drive_report){.largest_current_A = NAN};
+  loop.last_frame_s = -INFINITY;
+  dea_status status = set_givers(&loop, bench);
+  status = status == DEA_OK ? set_rooms(&loop) : status;
+  if (status == DEA_OK) {
+    const struct dea_instrument *sensor = loop.sensor != NULL ? loop.sensor->instrument : NULL;
+    status = dea_drive_recorder(ctx, protocol, bench, file, sensor, &loop.recorder);
+  }
+  if (status == DEA_OK) {
+    // instruments that wait must not end for a signal: they are needed for the ramp
+    const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
+    dea_context_set_interrupt(ctx, NULL);
+    dea_drive_output_start(&loop.output, protocol);
+    dea_drive_watch_start(&loop.watch, protocol, bench->settle_s);
+    start_all(&loop);
+    if (!loop.ending) {
+      play(&loop, interrupt);
+      wait_for_frames(&loop);
+    }
+    stop_all(&loop);
+    dea_context_set_interrupt(ctx, interrupt);
+    status = finish(&loop);
+  } else {
+    for (size_t i = 0; i < bench->count; i++) {
+      bench->instruments[i]->type->stop(ctx, bench->instruments[i]);
+    }
+  }
+  dea_free(ctx, loop.asked);
+  dea_free(ctx, loop.volts);
+  dea_free(ctx, loop.columns);
+  return status;
+}

@@ -1,0 +1,23 @@
+/* What is asked of the amplifier, sample after sample: the protocol's sequence, and from any of
+ * them on a ramp to 0 V. Sample i is at i / rate; a corner that falls on a sample is at it. */
+#ifndef DEA_LAB_INSTRUMENT_DRIVE_OUTPUT_H
+#define DEA_LAB_INSTRUMENT_DRIVE_OUTPUT_H
+
+#include "lab/protocol/protocol.h"
+
+struct dea_drive_output {
+  const struct dea_protocol *protocol; // lent
+  size_t played, total; // samples of the sequence, the last one 0 V; so far, and in all
+  double corner_s;      // the next one
+  double last_V;        // that was asked; 0 before the first
+  double step_V;        // largest change from sample to sample of the ramp
+  bool ramping, over;
+};
+
+void dea_drive_output_start(struct dea_drive_output *output, const struct dea_protocol *protocol);
+/* The next asked voltages [V], at most `room`; the number of them, 0 when it is over. */
+size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, double *asked_V);
+/* From here on a ramp from the last voltage to 0 V. */
+void dea_drive_output_ramp(struct dea_drive_output *output);
+
+#endif

@@ -1,0 +1,30 @@
+/* The limits of a protocol, looked at in every sample that comes in. */
+#ifndef DEA_LAB_INSTRUMENT_DRIVE_WATCH_H
+#define DEA_LAB_INSTRUMENT_DRIVE_WATCH_H
+
+#include "lab/protocol/protocol.h"
+
+enum { DEA_WHY_ENDED_SIZE = 256 };
+
+struct dea_drive_watch {
+  const struct dea_protocol *protocol; // lent
+  size_t lasting;                      // samples that a limit has to be exceeded in a row
+  size_t blind;                        // samples in a row that may be missing
+  size_t exceeded[DEA_PROTOCOL_INPUTS_MAX], missing[DEA_PROTOCOL_INPUTS_MAX];
+  /* Lowest and highest asked voltage of this window and the one before: what an amplifier that
+   * settles within a window may be at. */
+  double lowest_V[2], highest_V[2];
+  size_t window, in_window;
+  double largest_current_A; // by amount; NAN: none came
+};
+
+/* settle_s: time that the voltage has to follow what is asked. */
+void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
+                           double settle_s);
+/* Looks at one sample: asked voltage, and the values of all inputs in SI (NAN: lost). False when
+ * the measurement must end; `why` then says it. A limit has to be exceeded for the protocol's
+ * trip_time; a channel that is watched and gives nothing for half a second ends it too. */
+bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
+                            char why[DEA_WHY_ENDED_SIZE]);
+
+#endif

@@ -1,0 +1,479 @@
+/* lab/instrument/drive: what is played and recorded is the protocol; whatever fails, the output
+ * comes down to 0 V within the ramp, every instrument is stopped once, and the recording is
+ * readable. */
+#define _GNU_SOURCE
+#include "fake_instruments.h"
+#include "protocol_text.h"
+
+#include <sys/resource.h>
+
+#define CHANNELS                                                                                   \
+  "channels:\n"                                                                                    \
+  "  - {name: voltage, quantity: voltage, input: ai0, per_volt: 1 kV}\n"                           \
+  "  - {name: current, quantity: current, input: ai1, per_volt: 1 mA}\n"                           \
+  "  - {name: laser, quantity: displacement, input: ai2, per_volt: 200 um, at_zero: 1 mm}\n"
+#define SQUARE                                                                                     \
+  "dea-protocol: 1\n" PROTOCOL_AMPLIFIER                                                           \
+  "safety: {ramp: 20 kV/s, trip_current: 1 mA, trip_time: 5 ms, voltage_error: 300 V}\n"           \
+  "rate: 1 kHz\n"                                                                                  \
+  "waveform: {kind: square, high: 2 kV, frequency: 10 Hz, cycles: 12}\n"
+
+enum { RATE = 1000, PERIOD = 100, CYCLES = 12, LENGTH = PERIOD * CYCLES };
+static const double ramp_V = 20e3 / RATE; // largest step of it
+
+static double square(size_t i)
+{
+  return i < LENGTH && i % PERIOD < PERIOD / 2 ? 2000 : 0;
+}
+
+/* A bench of both, and what came out. */
+struct trial {
+  struct dea_protocol *protocol;
+  struct fake_daq *daq;
+  struct fake_sensor sensor;
+  volatile sig_atomic_t flag;
+  double stall_s;
+  struct dea_drive_report report;
+  dea_status status;
+  struct dea_recording *recording;
+};
+
+static void trial_open(struct trial *t, const char *text, const struct fake_script *script)
+{
+  *t = (struct trial){.protocol = good_protocol(ctx, text), .stall_s = 3};
+  t->daq = malloc(sizeof *t->daq);
+  assert_non_null(t->daq);
+  fake_daq_open(t->protocol, script, &t->flag, t->daq);
+  fake_sensor_open(t->daq, &t->sensor);
+}
+
+static void trial_play(struct trial *t, bool sensor)
+{
+  struct dea_instrument *all[2] = {&t->daq->common, &t->sensor.common};
+  struct dea_drive_bench bench = {all, sensor ? 2 : 1, 0.005, t->stall_s};
+  unlink(in_folder("drive.h5"));
+  dea_context_set_interrupt(ctx, &t->flag);
+  t->status = dea_drive_play(ctx, t->protocol, &bench, in_folder("drive.h5"), &t->report);
+  assert_ptr_equal(dea_context_get_interrupt(ctx), &t->flag);
+  dea_context_set_interrupt(ctx, NULL);
+  assert_int_equal(t->daq->stops, 1);
+  assert_int_equal(t->sensor.stops, sensor ? 1 : 0);
+  if (t->status != DEA_OK) {
+    assert_true(t->report.ended[0] != '\0');
+    assert_non_null(strstr(dea_context_message(ctx), t->report.ended));
+  }
+}
+
+static void trial_read(struct trial *t)
+{
+  if (dea_recording_read(ctx, in_folder("drive.h5"), &t->recording) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  assert_int_equal(t->recording->cycle_count, t->report.cycles);
+  assert_true(t->recording->complete == (t->status == DEA_OK));
+  assert_string_equal(t->recording->ended, t->report.ended);
+}
+
+static void trial_close(struct trial *t)
+{
+  dea_recording_destroy(ctx, t->recording);
+  dea_protocol_destroy(ctx, t->protocol);
+  free(t->daq);
+}
+
+/* Samples that are the sequence's. From there on it is a ramp to 0 V, which ends there. */
+static size_t check_ramp(const struct fake_daq *daq)
+{
+  size_t n = 0;
+  while (n < daq->put && n <= LENGTH && daq->out[n] * fake_gain == square(n)) {
+    n++;
+  }
+  double last_V = n > 0 ? square(n - 1) : 0;
+  for (size_t i = n; i < daq->put; i++) {
+    double asked_V = daq->out[i] * fake_gain;
+    assert_true(fabs(asked_V - last_V) <= ramp_V * (1 + 1e-12));
+    assert_true(fabs(asked_V) <= fabs(last_V));
+    last_V = asked_V;
+  }
+  assert_true(last_V == 0);
+  assert_true(daq->put - n <= 2000 / 20 + 1); // and no longer than it takes
+  return n;
+}
+
+/* Completed are the cycles that were played to their end before the ramp. */
+static void check_cycles(const struct trial *t, size_t played)
+{
+  for (size_t i = 0; i < t->recording->cycle_count; i++) {
+    const struct dea_recorded_cycle *cycle = &t->recording->cycles[i];
+    assert_int_equal(cycle->number, i);
+    assert_close(cycle->end_s, 0.1 * (double)(i + 1), 0, 1e-12);
+    assert_true((i + 1) * PERIOD <= played);
+  }
+  assert_true(t->recording->cycle_count + 1 >= played / PERIOD);
+}
+
+static void check_channels(const struct trial *t)
+{
+  const struct dea_recording *r = t->recording;
+  for (size_t i = 0; i < r->channels[0].count; i++) {
+    double volts[3];
+    assert_true(r->channels[0].values[i] == t->daq->out[i] * fake_gain);
+    fake_read(t->daq, i, volts);
+    const double wanted[3] = {1e3 * volts[0], 1e-3 * volts[1], 2e-4 * volts[2] + 1e-3};
+    for (size_t k = 0; k < 3; k++) {
+      double value = r->channels[k + 1].values[i];
+      assert_true(isnan(wanted[k]) ? isnan(value) : fabs(value - wanted[k]) < 1e-9);
+    }
+  }
+}
+
+// What is played ---------------------------------------------------------------------------------
+
+static void test_plays_and_records_the_protocol(void **state)
+{
+  (void)state;
+  struct trial t;
+  trial_open(&t, SQUARE CHANNELS, &fake_good);
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_OK);
+  assert_int_equal(t.daq->put, LENGTH + 1);
+  assert_int_equal(check_ramp(t.daq), LENGTH + 1);
+  assert_true(t.report.reached_zero && t.report.lost == 0 && t.report.cycles == CYCLES);
+  assert_close(t.report.played_s, 1.2, 0, 1e-12);
+  assert_close(t.report.largest_current_A, 2e-5, 1e-12, 0);
+  trial_read(&t);
+  check_channels(&t);
+  const struct dea_recording *r = t.recording;
+  assert_int_equal(r->channel_count, 5);
+  for (size_t c = 0; c < 4; c++) {
+    assert_int_equal(r->channels[c].count, LENGTH + 1);
+  }
+  assert_string_equal(r->channels[0].name, "command");
+  assert_int_equal(r->channels[3].kind, DEA_CHANNEL_DISPLACEMENT);
+  assert_string_equal(r->channels[4].unit, "K");
+  assert_int_equal(r->profiles.count, 61);
+  assert_int_equal(r->channels[4].count, 61);
+  assert_true(r->profiles.z_m[3 * 50] == 50 * fake_frame_s && isnan(r->profiles.z_m[3 * 50 + 1]));
+  assert_non_null(strstr(r->protocol, "frequency: 10 Hz"));
+  assert_non_null(strstr(r->provenance, "fake sensor"));
+  check_cycles(&t, LENGTH);
+  trial_close(&t);
+}
+
+static void test_instruments_of_any_pace(void **state)
+{
+  (void)state;
+  static const size_t paces[] = {1, 7, 64, 5000};
+  for (size_t k = 0; k < 4; k++) {
+    struct trial t;
+    struct fake_script script = fake_good;
+    script.at_a_time = paces[k];
+    script.idle = k == 1 ? 5 : 1;
+    trial_open(&t, SQUARE CHANNELS, &script);
+    trial_play(&t, k % 2 == 0);
+    assert_int_equal(t.status, DEA_OK);
+    assert_int_equal(check_ramp(t.daq), LENGTH + 1);
+    assert_int_equal(t.report.cycles, CYCLES);
+    trial_close(&t);
+  }
+}
+
+static void test_without_channels_the_clock_paces(void **state)
+{
+  (void)state;
+  struct trial t;
+  struct fake_script script = fake_good;
+  script.inputs = false;
+  trial_open(&t, SQUARE, &script);
+  trial_play(&t, false);
+  assert_int_equal(t.status, DEA_OK);
+  assert_int_equal(check_ramp(t.daq), LENGTH + 1);
+  trial_read(&t);
+  assert_int_equal(t.recording->channels[0].count, LENGTH + 1);
+  assert_int_equal(t.recording->cycle_count, CYCLES);
+  trial_close(&t);
+}
+
+// What fails -------------------------------------------------------------------------------------
+
+/* Plays with a fault and checks what must hold in all of them but those of the DAQ itself. */
+static void expect_ramp(const struct fake_script *script, bool sensor, long fail_frame,
+                        dea_status wanted, const char *reason)
+{
+  struct trial t;
+  trial_open(&t, SQUARE CHANNELS, script);
+  t.sensor.fail_frame = fail_frame;
+  t.stall_s = 0.3;
+  trial_play(&t, sensor);
+  if (t.status != wanted || strstr(t.report.ended, reason) == NULL) {
+    fail_msg("%s: %s", dea_status_name(t.status), t.report.ended);
+  }
+  assert_true(t.report.reached_zero);
+  size_t played = check_ramp(t.daq);
+  assert_true(played < LENGTH);
+  trial_read(&t);
+  check_channels(&t);
+  assert_int_equal(t.recording->channels[0].count, t.daq->got);
+  size_t seen = fail_frame >= 0 ? (size_t)fail_frame * RATE / 50 : t.daq->got; // frames of 20 ms
+  check_cycles(&t, played < seen ? played : seen);
+  trial_close(&t);
+}
+
+static void test_signals(void **state)
+{
+  (void)state;
+  for (long put = 0; put < 22; put++) {
+    struct fake_script script = fake_good;
+    script.interrupt_put = put;
+    script.at_a_time = 20 + (size_t)put;
+    expect_ramp(&script, put % 2 == 0, -1, DEA_E_INTERRUPTED, "interrupted");
+  }
+}
+
+static void test_current_trips(void **state)
+{
+  (void)state;
+  for (long from = 0; from < 700; from += 61) {
+    struct fake_script script = fake_good;
+    script.current_from = from;
+    expect_ramp(&script, from % 2 == 0, -1, DEA_E_INTERLOCK, "trip_current");
+  }
+}
+
+static void test_wrong_voltage_trips(void **state)
+{
+  (void)state;
+  for (long from = 0; from < 700; from += 53) {
+    struct fake_script script = fake_good;
+    script.voltage_from = from;
+    expect_ramp(&script, false, -1, DEA_E_INTERLOCK, "voltage_error");
+  }
+}
+
+static void test_lost_samples_do_not_end_it_but_silence_does(void **state)
+{
+  (void)state;
+  struct trial t;
+  struct fake_script script = fake_good;
+  script.missing_from = 130;
+  script.missing_to = 500;
+  trial_open(&t, SQUARE CHANNELS, &script);
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_OK);
+  trial_read(&t);
+  check_channels(&t); // NAN where they were lost
+  trial_close(&t);
+  script.missing_to = 5000;
+  expect_ramp(&script, true, -1, DEA_E_INTERLOCK, "has given no value");
+}
+
+static void test_lost_sensor(void **state)
+{
+  (void)state;
+  for (long frame = 0; frame < 36; frame += 7) {
+    expect_ramp(&fake_good, true, frame, DEA_E_INSTRUMENT, "the fake sensor has failed");
+  }
+}
+
+static void test_inputs_ahead_of_the_output(void **state)
+{
+  (void)state;
+  struct fake_script script = fake_good;
+  struct trial t;
+  script.ahead_put = 9;
+  script.at_a_time = 60;
+  trial_open(&t, SQUARE CHANNELS, &script);
+  trial_play(&t, false);
+  assert_int_equal(t.status, DEA_E_INSTRUMENT);
+  assert_non_null(strstr(t.report.ended, "ran dry"));
+  check_ramp(t.daq);
+  trial_close(&t);
+}
+
+/* The playing instrument itself fails: nothing can be put any more, it is stopped at once. */
+static void test_failed_daq_is_stopped(void **state)
+{
+  (void)state;
+  for (long k = 0; k < 15; k++) {
+    for (int put = 0; put < 2; put++) {
+      struct trial t;
+      struct fake_script script = fake_good;
+      *(put ? &script.fail_put : &script.fail_get) = k;
+      trial_open(&t, SQUARE CHANNELS, &script);
+      trial_play(&t, true);
+      assert_int_equal(t.status, DEA_E_INSTRUMENT);
+      assert_non_null(strstr(t.report.ended, put ? "put has failed" : "get has failed"));
+      assert_false(t.report.reached_zero);
+      trial_read(&t);
+      check_channels(&t);
+      trial_close(&t);
+    }
+  }
+  struct trial t;
+  struct fake_script script = fake_good;
+  script.silent_from = 333;
+  trial_open(&t, SQUARE CHANNELS, &script);
+  t.stall_s = 0.2;
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_E_INSTRUMENT);
+  assert_non_null(strstr(t.report.ended, "no sample has come for 0.2 s"));
+  trial_read(&t);
+  assert_int_equal(t.recording->cycle_count, 3);
+  trial_close(&t);
+}
+
+static void test_failed_start(void **state)
+{
+  (void)state;
+  for (int of_sensor = 0; of_sensor < 2; of_sensor++) {
+    struct trial t;
+    struct fake_script script = fake_good;
+    script.fail_start = of_sensor ? -1 : 0;
+    trial_open(&t, SQUARE CHANNELS, &script);
+    t.sensor.fail_start = of_sensor ? 0 : -1;
+    trial_play(&t, true);
+    assert_int_equal(t.status, DEA_E_INSTRUMENT);
+    assert_int_equal(t.daq->put, 0);
+    assert_true(t.report.reached_zero);
+    trial_read(&t);
+    trial_close(&t);
+  }
+}
+
+/* Inputs of one instrument, output of another: without the inputs the ramp goes on. */
+static void test_reader_apart_from_the_player(void **state)
+{
+  (void)state;
+  for (long fail = -1; fail < 30; fail += 10) {
+    struct trial t;
+    struct fake_script script = fake_good;
+    struct fake_daq *player = malloc(sizeof *player);
+    assert_non_null(player);
+    trial_open(&t, SQUARE CHANNELS, &script);
+    script.inputs = false;
+    fake_daq_open(t.protocol, &script, &t.flag, player);
+    t.daq->common.roles = DEA_READS_INPUTS;
+    t.daq->script.fail_get = fail;
+    t.daq->script.at_a_time = 40;
+    t.daq->script.ahead_put = 0;
+    t.daq->puts = 1; // of nothing: it reads 0 V on its own clock
+    struct dea_instrument *all[2] = {&player->common, &t.daq->common};
+    struct dea_drive_bench bench = {all, 2, 0.005, 3};
+    unlink(in_folder("drive.h5"));
+    t.protocol->safety.voltage_error_V.si = 1e5;
+    t.status = dea_drive_play(ctx, t.protocol, &bench, in_folder("drive.h5"), &t.report);
+    // its clock is ahead when the output is given 50 samples for its 40: not before the end
+    assert_int_equal(t.status, fail < 0 ? DEA_OK : DEA_E_INSTRUMENT);
+    assert_true(t.report.reached_zero);
+    check_ramp(player);
+    assert_int_equal(player->stops, 1);
+    assert_int_equal(t.daq->stops, 1);
+    trial_read(&t);
+    trial_close(&t);
+    free(player);
+  }
+}
+
+static void test_full_disk_ramps_down(void **state)
+{
+  (void)state;
+  struct rlimit before, small;
+  struct trial t;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  trial_open(&t, SQUARE CHANNELS, &fake_good);
+  small = before;
+  small.rlim_cur = 50000;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+  trial_play(&t, true);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+  assert_int_equal(t.status, DEA_E_IO);
+  assert_true(t.report.reached_zero && t.daq->put > 0);
+  check_ramp(t.daq);
+  trial_close(&t);
+  signal(SIGXFSZ, handler);
+}
+
+static void test_frames_without_time_are_counted(void **state)
+{
+  (void)state;
+  struct trial t;
+  trial_open(&t, SQUARE CHANNELS, &fake_good);
+  t.sensor.wrong_frame = 8;
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_OK);
+  assert_int_equal(t.report.lost, 1);
+  trial_close(&t);
+}
+
+static void test_benches_that_cannot_play(void **state)
+{
+  (void)state;
+  struct trial t;
+  struct fake_daq *second = malloc(sizeof *second);
+  assert_non_null(second);
+  trial_open(&t, SQUARE CHANNELS, &fake_good);
+  fake_daq_open(t.protocol, &fake_good, &t.flag, second);
+  struct dea_instrument *all[2] = {&t.daq->common, &second->common};
+  struct dea_drive_bench bench = {all, 2, 0.005, 3};
+  static const struct {
+    unsigned first, second;
+    const char *why;
+  } cases[] = {{DEA_PLAYS_OUTPUT, DEA_PLAYS_OUTPUT, "two of them play"},
+               {DEA_READS_INPUTS, DEA_SENDS_PROFILES, "none of them plays"},
+               {DEA_PLAYS_OUTPUT, DEA_SENDS_PROFILES, "none of them reads"},
+               {DEA_PLAYS_OUTPUT | DEA_READS_INPUTS, DEA_READS_INPUTS, "two of them read"},
+               {DEA_PLAYS_OUTPUT | DEA_SENDS_PROFILES, DEA_SENDS_PROFILES, "two of them send"}};
+  for (size_t k = 0; k < 5; k++) {
+    t.daq->common.roles = cases[k].first;
+    second->common.roles = cases[k].second;
+    t.daq->stops = second->stops = 0;
+    t.status = dea_drive_play(ctx, t.protocol, &bench, in_folder("none.h5"), &t.report);
+    assert_int_equal(t.status, DEA_E_INSTRUMENT);
+    assert_non_null(strstr(dea_context_message(ctx), cases[k].why));
+    assert_true(t.daq->stops == 1 && second->stops == 1 && t.daq->starts == 0);
+    assert_false(there("none.h5"));
+  }
+  trial_close(&t);
+  free(second);
+}
+
+static void test_run_checks_first(void **state)
+{
+  (void)state;
+  struct dea_drive_report report;
+  const struct dea_drive_options options = {false, in_folder("none.h5")};
+  struct dea_protocol *p =
+      good_protocol(ctx, "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
+                         "waveform: {kind: square, high: 16 kV, frequency: 1 Hz}\n");
+  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INTERLOCK);
+  dea_protocol_destroy(ctx, p);
+  p = good_protocol(ctx, SQUARE CHANNELS);
+  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INSTRUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "names no instruments"));
+  assert_false(there("none.h5"));
+  dea_protocol_destroy(ctx, p);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_plays_and_records_the_protocol),
+      cmocka_unit_test(test_instruments_of_any_pace),
+      cmocka_unit_test(test_without_channels_the_clock_paces),
+      cmocka_unit_test(test_signals),
+      cmocka_unit_test(test_current_trips),
+      cmocka_unit_test(test_wrong_voltage_trips),
+      cmocka_unit_test(test_lost_samples_do_not_end_it_but_silence_does),
+      cmocka_unit_test(test_lost_sensor),
+      cmocka_unit_test(test_inputs_ahead_of_the_output),
+      cmocka_unit_test(test_failed_daq_is_stopped),
+      cmocka_unit_test(test_failed_start),
+      cmocka_unit_test(test_reader_apart_from_the_player),
+      cmocka_unit_test(test_full_disk_ramps_down),
+      cmocka_unit_test(test_frames_without_time_are_counted),
+      cmocka_unit_test(test_benches_that_cannot_play),
+      cmocka_unit_test(test_run_checks_first),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
