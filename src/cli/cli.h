@@ -33,6 +33,7 @@ struct dea_command {
   X(cmd_check)                                                                                     \
   X(cmd_fab)                                                                                       \
   X(cmd_mesh)                                                                                      \
+  X(cmd_drive)                                                                                     \
   X(cmd_schema)                                                                                    \
   X(cmd_materials)                                                                                 \
   X(cmd_plot)                                                                                      \
@@ -84,6 +85,8 @@ int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int
                      char **argv);
 /* Prints a command's usage to stdout. */
 void cli_print_usage(const struct dea_command *command);
+/* All findings so far as an array; owned by the caller. */
+json_t *cli_findings_json(const struct dea_context *ctx);
 /* Prints JSON to stdout; takes it. */
 void cli_print_json(json_t *json);
 /* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */

@@ -109,7 +109,7 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   print_material("fibres", &device->fibre);
 }
 
-static json_t *findings_json(const struct dea_context *ctx)
+json_t *cli_findings_json(const struct dea_context *ctx)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
@@ -149,7 +149,7 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
 {
   json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good",
                            dea_finding_count(cli->ctx, DEA_ERROR) == 0 && device != NULL,
-                           "findings", findings_json(cli->ctx));
+                           "findings", cli_findings_json(cli->ctx));
   if (design != NULL) {
     json_object_set_new(json, "values", values_json(design));
   }

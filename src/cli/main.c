@@ -122,7 +122,8 @@ static void print_help(void)
   puts(
       "\nBefore or after the command: --quiet, --verbose. 'dea COMMAND --help' says more.\n"
       "Exit codes: 0 ok, 1 comparison out of tolerance, 2 usage, 3 bad design, 4 not converged or\n"
-      "no equilibrium (partial results kept), 5 file or program, 130 interrupted.\n\n"
+      "no equilibrium (partial results kept), 5 file or program, 6 instrument or interlock,\n"
+      "130 interrupted.\n\n"
       "Start with:  dea examples frdea-4 > my.yaml && dea run my.yaml");
 }
 

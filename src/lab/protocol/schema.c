@@ -2,6 +2,8 @@
  */
 #include "lab/protocol/schema.h"
 
+#include "lab/instrument/instrument_make.h"
+
 #include <stddef.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -241,6 +243,8 @@ static const struct dea_record input_record = {"channel", "an analogue input", i
 static const struct dea_record safety_record = {"safety", "what must not be exceeded",
                                                 safety_fields, COUNT(safety_fields)};
 
+static const struct dea_record *const sim_records[] = {&dea_instrument_sim_record, NULL};
+
 static const struct dea_field protocol_fields[] = {
     {.key = "dea-protocol",
      .kind = DEA_FIELD_INTEGER,
@@ -317,11 +321,13 @@ static const struct dea_field protocol_fields[] = {
      .list_max = DEA_PROTOCOL_INSTRUMENTS_MAX,
      .element_size = sizeof(struct dea_protocol_instrument),
      .count_offset = AT(instrument_count),
+     .kinds = dea_instrument_records,
      .absent_text = "none: only --sim and --export",
      .doc = "what plays and measures; each with its kind and the keys of that"},
     {.key = "sim",
      .kind = DEA_FIELD_SECTION,
      .offset = AT(sim),
+     .kinds = sim_records,
      .absent_text = "its defaults",
      .doc = "the simulated bench of --sim"},
 };

@@ -1,0 +1,336 @@
+#define _GNU_SOURCE // getopt_long
+#include "cli/cli.h"
+
+#include "base/file.h"
+#include "lab/instrument/drive.h"
+#include "lab/instrument/instrument.h"
+#include "output/file.h"
+#include "output/json.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <string.h>
+
+struct request {
+  const char *protocol, *output; // NULL: not given
+  bool arm, simulate, json, force;
+  struct dea_override overrides[CLI_OVERRIDES_MAX];
+  size_t override_count;
+};
+
+// Command line -----------------------------------------------------------------------------------
+
+/* -1, or the exit code after a usage error. */
+static int parse(struct dea_cli *cli, int argc, char **argv, struct request *out)
+{
+  static const struct option longs[] = {{"arm", no_argument, NULL, 'a'},
+                                        {"sim", no_argument, NULL, 'm'},
+                                        {"output", required_argument, NULL, 'o'},
+                                        {"set", required_argument, NULL, 's'},
+                                        {"force", no_argument, NULL, 'f'},
+                                        {"json", no_argument, NULL, 'j'},
+                                        {NULL, 0, NULL, 0}};
+  int option;
+  *out = (struct request){0};
+  opterr = 0;
+  while ((option = getopt_long(argc, argv, ":o:f", longs, NULL)) != -1) {
+    switch (option) {
+    case 'a':
+      out->arm = true;
+      break;
+    case 'm':
+      out->simulate = true;
+      break;
+    case 'o':
+      out->output = optarg;
+      break;
+    case 's':
+      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
+        return cli_usage_error(cli, &cmd_drive, "--set takes KEY=VALUE, not '%s'", optarg);
+      }
+      break;
+    case 'f':
+      out->force = true;
+      break;
+    case 'j':
+      out->json = true;
+      break;
+    default:
+      return cli_option_error(cli, &cmd_drive, option, argv);
+    }
+  }
+  if (argc - optind != 1) {
+    return cli_usage_error(cli, &cmd_drive,
+                           argc == optind ? "a protocol is needed" : "one protocol at a time");
+  }
+  if (out->arm && out->simulate) {
+    return cli_usage_error(cli, &cmd_drive, "--arm and --sim exclude each other");
+  }
+  out->protocol = argv[optind];
+  return -1;
+}
+
+// What would be played ---------------------------------------------------------------------------
+
+/* What an instrument does, as a clause. */
+static void roles_text(unsigned roles, char out[96])
+{
+  static const struct {
+    unsigned role;
+    const char *text;
+  } all[] = {{DEA_PLAYS_OUTPUT, "plays the output"},
+             {DEA_READS_INPUTS, "reads the channels"},
+             {DEA_SENDS_PROFILES, "sends profiles"},
+             {DEA_GIVES_READINGS, "gives readings"}};
+  out[0] = '\0';
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    if ((roles & all[i].role) != 0) {
+      strcat(strcat(out, out[0] != '\0' ? ", " : ""), all[i].text);
+    }
+  }
+}
+
+static void print_sequence(const struct dea_protocol *protocol)
+{
+  puts("Sequence");
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    const struct dea_protocol_step *step = &protocol->steps[i];
+    double length_s = step->repeat.si * step->waveform->end_s;
+    printf("  %zu  %-16s  %-10s  %g kV to %g kV, %zu cycle%s in %g s", i + 1, step->label.text,
+           step->waveform->type->name, 1e-3 * step->lowest_V, 1e-3 * step->highest_V,
+           (size_t)step->repeat.si * step->cycles,
+           (size_t)step->repeat.si * step->cycles == 1 ? "" : "s", length_s);
+    if (step->pause_s.si > 0) {
+      printf(", then %g s at 0 V", step->pause_s.si);
+    }
+    putchar('\n');
+  }
+}
+
+static void print_film(const struct dea_protocol_plan *plan)
+{
+  if (!isnan(plan->largest_field_V_per_m)) {
+    printf("  %-16s  %.4g V/um", "true field", 1e-6 * plan->largest_field_V_per_m);
+    if (!isnan(plan->allowed_field_V_per_m)) {
+      printf(" of %.4g V/um that are allowed", 1e-6 * plan->allowed_field_V_per_m);
+    }
+    putchar('\n');
+  }
+  if (!isnan(plan->pull_in_V)) {
+    printf("  %-16s  %.4g kV\n", "pull-in", 1e-3 * plan->pull_in_V);
+  }
+  if (!isnan(plan->capacitance_F)) {
+    printf("  %-16s  %.3g pF, %.3g mJ stored\n", "film", 1e12 * plan->capacitance_F,
+           1e3 * plan->stored_energy_J);
+  }
+  if (plan->rise_s > 0) {
+    printf("  %-16s  %.3g us\n", "largest jump in", 1e6 * plan->rise_s);
+  }
+}
+
+static void print_plan(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
+{
+  double gain = protocol->amplifier.gain.si;
+  printf("%s%s%s\n\n", protocol->file, protocol->title.text[0] != '\0' ? ": " : "",
+         protocol->title.text);
+  print_sequence(protocol);
+  printf("\nPlan\n  %-16s  %g s, %zu cycle%s\n", "duration", plan->duration_s, plan->cycles,
+         plan->cycles == 1 ? "" : "s");
+  printf("  %-16s  %zu of %zu channel%s at %g a second\n", "samples", plan->samples,
+         protocol->input_count, protocol->input_count == 1 ? "" : "s", protocol->rate_Hz.si);
+  printf("  %-16s  %g kV to %g kV, by a control voltage of %g V to %g V\n", "voltage",
+         1e-3 * plan->lowest_V, 1e-3 * plan->highest_V, plan->lowest_V / gain,
+         plan->highest_V / gain);
+  print_film(plan);
+  puts("\nInstruments");
+  for (size_t i = 0; i < protocol->instrument_count; i++) {
+    const struct dea_node *kind = dea_node_find(protocol->instruments[i].section, "kind");
+    const struct dea_instrument_type *type = dea_instrument_find(kind != NULL ? kind->text : "");
+    char roles[96] = "";
+    roles_text(type != NULL ? type->roles : 0, roles);
+    printf("  %zu  %-16s  %s\n", i + 1, type != NULL ? type->name : "?", roles);
+  }
+  if (protocol->instrument_count == 0) {
+    puts("  none: there is only --sim");
+  }
+}
+
+static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
+{
+  json_t *json = json_object();
+  json_object_set_new(json, "cycles", json_integer((json_int_t)plan->cycles));
+  json_object_set_new(json, "samples", json_integer((json_int_t)plan->samples));
+  json_object_set_new(json, "channels", json_integer((json_int_t)protocol->input_count));
+  dea_json_put(json, "duration_s", plan->duration_s);
+  dea_json_put(json, "rate_Hz", protocol->rate_Hz.si);
+  dea_json_put(json, "lowest_V", plan->lowest_V);
+  dea_json_put(json, "highest_V", plan->highest_V);
+  dea_json_put(json, "largest_field_V_per_m", plan->largest_field_V_per_m);
+  dea_json_put(json, "allowed_field_V_per_m", plan->allowed_field_V_per_m);
+  dea_json_put(json, "pull_in_V", plan->pull_in_V);
+  dea_json_put(json, "capacitance_F", plan->capacitance_F);
+  dea_json_put(json, "stored_energy_J", plan->stored_energy_J);
+  dea_json_put(json, "rise_s", plan->rise_s);
+  return json;
+}
+
+// Playing ----------------------------------------------------------------------------------------
+
+/* Makes room for the recording. */
+static dea_status clear_output(struct dea_cli *cli, const struct request *request, const char *file)
+{
+  if (!dea_path_exists(file)) {
+    return DEA_OK;
+  }
+  if (!request->force) {
+    return dea_fail(cli->ctx, DEA_E_IO,
+                    "'%s' is there already; -o names another file, --force replaces this one",
+                    file);
+  }
+  if (dea_path_is_folder(file) || remove(file) != 0) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' cannot be replaced", file);
+  }
+  return DEA_OK;
+}
+
+static dea_status play(struct dea_cli *cli, const struct request *request,
+                       const struct dea_protocol *protocol, const char *file,
+                       struct dea_drive_report *report)
+{
+  const struct dea_drive_options options = {request->simulate, file};
+  if (request->arm && protocol->instrument_count == 0) {
+    return dea_fail(cli->ctx, DEA_E_INSTRUMENT,
+                    "%s names no `instruments` to play it; --sim plays it on a simulated bench",
+                    protocol->file);
+  }
+  DEA_TRY(cli->ctx, clear_output(cli, request, file));
+  return dea_drive_run(cli->ctx, protocol, &options, report);
+}
+
+static json_t *report_json(const struct dea_drive_report *report, const char *file)
+{
+  json_t *json = json_object();
+  dea_json_put_text(json, "file", file);
+  dea_json_put(json, "played_s", report->played_s);
+  json_object_set_new(json, "cycles", json_integer((json_int_t)report->cycles));
+  json_object_set_new(json, "lost", json_integer((json_int_t)report->lost));
+  json_object_set_new(json, "reached_zero", json_boolean(report->reached_zero));
+  dea_json_put(json, "largest_current_A", report->largest_current_A);
+  dea_json_put_text(json, "ended", report->ended);
+  return json;
+}
+
+static void print_report(const struct dea_drive_report *report, const char *file)
+{
+  printf("\nRecording\n  %-16s  %s\n", "file", file);
+  printf("  %-16s  %.6g s, %zu cycle%s to the end\n", "played", report->played_s, report->cycles,
+         report->cycles == 1 ? "" : "s");
+  printf("  %-16s  %zu sample%s or frames\n", "lost", report->lost, report->lost == 1 ? "" : "s");
+  if (!isnan(report->largest_current_A)) {
+    printf("  %-16s  %.4g uA\n", "largest current", 1e6 * report->largest_current_A);
+  }
+  printf("  %-16s  %s\n", "output",
+         report->reached_zero ? "at 0 V" : "NOT KNOWN TO BE AT 0 V: switch the amplifier off");
+  if (report->ended[0] != '\0') {
+    printf("  %-16s  %s\n", "ended early", report->ended);
+  }
+  printf("\nNext:  dea reduce %s\n", file);
+}
+
+// The command ------------------------------------------------------------------------------------
+
+/* Reads and checks; *protocol is owned by the caller, also after a failure. */
+static dea_status look(struct dea_cli *cli, const struct request *request,
+                       struct dea_protocol **protocol, struct dea_protocol_plan *plan,
+                       bool *planned)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, dea_protocol_read(ctx, request->protocol, request->overrides,
+                                 request->override_count, protocol));
+  DEA_TRY(ctx, dea_instrument_check(ctx, *protocol));
+  if (dea_finding_count(ctx, DEA_ERROR) > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the instruments of '%s' have errors", (*protocol)->file);
+  }
+  dea_status status = dea_protocol_check(ctx, *protocol, plan);
+  *planned = status == DEA_OK || status == DEA_E_INTERLOCK;
+  return status;
+}
+
+static json_t *whole_json(struct dea_cli *cli, const struct request *request, dea_status status,
+                          const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
+{
+  json_t *json = json_object();
+  dea_json_put_text(json, "protocol", request->protocol);
+  json_object_set_new(json, "good", json_boolean(status == DEA_OK));
+  json_object_set_new(json, "findings", cli_findings_json(cli->ctx));
+  if (plan != NULL) {
+    json_object_set_new(json, "plan", plan_json(protocol, plan));
+  }
+  return json;
+}
+
+static int run(struct dea_cli *cli, int argc, char **argv)
+{
+  struct request request;
+  struct dea_protocol *protocol = NULL;
+  struct dea_protocol_plan plan;
+  struct dea_drive_report report = {.largest_current_A = NAN};
+  struct dea_text name = {.ctx = cli->ctx};
+  bool planned = false, played = false;
+  int wrong = parse(cli, argc, argv, &request);
+  if (wrong >= 0) {
+    return wrong;
+  }
+  dea_status status = look(cli, &request, &protocol, &plan, &planned);
+  if (planned && !request.json) {
+    print_plan(protocol, &plan);
+    fflush(stdout);
+  }
+  cli_folder_name(request.protocol, "h5", &name);
+  const char *file = request.output != NULL ? request.output : dea_text_get(&name);
+  if (status == DEA_OK && name.failed) {
+    status = DEA_E_MEMORY;
+  }
+  if (status == DEA_OK && (request.arm || request.simulate)) {
+    status = play(cli, &request, protocol, file, &report);
+    played = dea_path_exists(file) && (status == DEA_OK || report.played_s > 0);
+  }
+  if (request.json) {
+    json_t *json = whole_json(cli, &request, status, protocol, planned ? &plan : NULL);
+    if (played) {
+      json_object_set_new(json, "recording", report_json(&report, file));
+    }
+    cli_print_json(json);
+  } else if (played) {
+    print_report(&report, file);
+  } else if (status == DEA_OK) {
+    printf("\nNothing was played. Next:  dea drive %s --sim\n", request.protocol);
+  }
+  fflush(stdout);
+  int code = cli_report(cli, status);
+  dea_text_free(&name);
+  dea_protocol_destroy(cli->ctx, protocol);
+  return code;
+}
+
+const struct dea_command cmd_drive = {
+    .name = "drive",
+    .summary = "Play a protocol to a high-voltage amplifier and record what the film does",
+    .usage =
+        "dea drive PROTOCOL [--arm | --sim] [-o FILE] [--set KEY=VALUE]... [options]\n\n"
+        "Without --arm or --sim nothing is played: the plan is printed, and what is wrong with "
+        "it.\n"
+        "\n"
+        "  --arm              play on the instruments of the protocol: HIGH VOLTAGE\n"
+        "  --sim              play on a simulated bench, a model of the design with noise\n"
+        "  -o, --output FILE  name of the recording; by default that of the protocol with .h5, in\n"
+        "                     the current folder\n"
+        "  -f, --force        replace a recording of that name\n"
+        "  --set KEY=VALUE    take VALUE in place of the file's, for example --set rate=2kHz\n"
+        "  --json             plan, findings and what was recorded as JSON\n\n"
+        "Ctrl-C brings the voltage to 0 V along the protocol's ramp. Exit code 6: a limit of the\n"
+        "bench would be or was exceeded, or an instrument failed. 'dea schema --protocol' lists "
+        "the\n"
+        "keys of a protocol.\n",
+    .run = run,
+};
