@@ -48,6 +48,33 @@ static void test_json(void **state)
   json_decref(json);
 }
 
+/* On the simulated bench, and not over what is there. */
+static void test_simulated(void **state)
+{
+  (void)state;
+  json_error_t error;
+  static const char text[] = "drive " EXAMPLE "  --set "
+                             "'sequence=[{waveform: {kind: staircase, values: [2 kV, 3 kV], "
+                             "cycles: 2, frequency: 5 Hz}}]' --sim -o s.h5";
+  char again[600];
+  assert_int_equal(command_run(text), 0);
+  assert_contains(command_out, "played            0.8 s, 4 cycles to the end");
+  assert_contains(command_out, "output            at 0 V");
+  assert_contains(command_out, "Next:  dea reduce s.h5");
+  assert_int_equal(command_run(text), 5);
+  assert_contains(command_err, "'s.h5' is there already");
+  snprintf(again, sizeof again, "%s --force --json", text);
+  assert_int_equal(command_run(again), 0);
+  json_t *json = json_loads(command_out, 0, &error);
+  json_t *recording = json_object_get(json, "recording");
+  assert_int_equal(json_integer_value(json_object_get(recording, "cycles")), 4);
+  assert_true(json_is_true(json_object_get(recording, "reached_zero")));
+  assert_true(json_number_value(json_object_get(recording, "largest_current_A")) > 10e-6);
+  json_decref(json);
+  assert_int_equal(command_run("recording s.h5"), 0);
+  assert_contains(command_out, "cycles         4 completed");
+}
+
 static void test_usage(void **state)
 {
   (void)state;
@@ -89,7 +116,8 @@ static void test_schema(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dry_run), cmocka_unit_test(test_too_much), cmocka_unit_test(test_json),
+      cmocka_unit_test(test_dry_run), cmocka_unit_test(test_too_much),
+      cmocka_unit_test(test_json),    cmocka_unit_test(test_simulated),
       cmocka_unit_test(test_usage),   cmocka_unit_test(test_schema),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

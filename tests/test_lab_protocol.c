@@ -39,7 +39,7 @@ static void test_cyclic_example(void **state)
   assert_true(p->amplifier.slew_V_per_s.si == 7e8);
   assert_int_equal(p->input_count, 3);
   assert_int_equal(p->inputs[0].kind.value, DEA_CHANNEL_VOLTAGE);
-  assert_close(p->inputs[2].per_volt, 2e-4, 1e-14, 0);
+  assert_close(p->inputs[2].per_volt, 1e-3, 1e-14, 0);
   assert_non_null(p->design);
   assert_non_null(strstr(p->text, "dea-protocol"));
   assert_non_null(strstr(p->design_text, "pre_stretch"));
