@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -79,6 +80,14 @@ static inline void command_write(const char *name, const char *text)
   assert_non_null(file);
   assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
   fclose(file);
+}
+
+/* Makes a folder in command_folder. */
+static inline void command_folder_make(const char *name)
+{
+  char path[600];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  assert_int_equal(mkdir(path, 0777), 0);
 }
 
 #define assert_contains(text, part)                                                                \

@@ -6,8 +6,6 @@
 #include "fake_result.h"
 #include "output/run_folder.h"
 
-#include <sys/stat.h>
-
 static const double film_m = 15e-3;
 
 // A run whose answers are known -------------------------------------------------------------------
@@ -111,13 +109,6 @@ static inline void make_run(const char *name)
 
 // What was measured -------------------------------------------------------------------------------
 
-static inline void make_folder(const char *name)
-{
-  char path[600];
-  snprintf(path, sizeof path, "%s/%s", command_folder, name);
-  assert_int_equal(mkdir(path, 0777), 0);
-}
-
 /* lumped minus this: 10, -20, 30 um of 11 um each; 3d minus this: -150, -260, -210 um. */
 static const char points[] = "# made up\nV (kV),z centre (um),z centre std (um),force (mN)\n"
                              "2,190,11,4\n4,420,11,8\n6,570,11,12\n";
@@ -172,7 +163,7 @@ static inline int compare_set_up(void **state)
   }
   make_run("run");
   make_run("run2");
-  make_folder("red");
+  command_folder_make("red");
   command_write("red/measurement.csv", points);
   write_profiles("red/profiles.csv");
   write_history("red/history.csv", true);

@@ -102,7 +102,7 @@ static void test_history_on_one_clock(void **state)
   assert_contains(command_err, "moved by 3.25 s, which lays 2 of its pulses on measured ones");
   json_decref(root);
   // Without a voltage the clocks are what they are, and that is said.
-  make_folder("clockless");
+  command_folder_make("clockless");
   command_write("clockless/measurement.csv", points);
   write_history("clockless/history.csv", false);
   assert_int_equal(command_run("compare run clockless --model lumped --json"), 0);
@@ -204,7 +204,7 @@ static void test_tolerance_and_quantity(void **state)
 static void test_opposite_signs_are_said(void **state)
 {
   (void)state;
-  make_folder("below");
+  command_folder_make("below");
   command_write("below/measurement.csv", "V (kV),z centre (um)\n2,-190\n4,-420\n");
   assert_int_equal(command_run("compare run below --json"), 0);
   assert_contains(command_err, "z centre of 3d and of below have opposite signs; nothing was "

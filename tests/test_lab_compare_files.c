@@ -31,7 +31,7 @@ static void test_all_curves_are_in_one_figure(void **state)
   command_read("fig/compare_history_centre_z_m.png", text);
   command_read("fig/compare_profile.svg", text);
   // Points in no order have bars in place of a band.
-  make_folder("loop");
+  command_folder_make("loop");
   command_write("loop/measurement.csv", "V (kV),z centre (um),z centre std (um)\n1,99,2\n2,190,3\n"
                                         "1,110,2\n");
   assert_int_equal(command_run("compare run loop -o loopfig"), 0);
@@ -56,7 +56,7 @@ static void is_bad(const char *name, const char *text, const char *message)
 static void test_bad_files_with_their_places(void **state)
 {
   (void)state;
-  make_folder("bad");
+  command_folder_make("bad");
   is_bad("measurement.csv", "V (kV),z centre (um)\n1,x\n",
          "measurement.csv:2:3: error: 'x' is not");
   is_bad("measurement.csv", "z centre (um)\n1\n", "measurement.csv:1:1: error: no column of volt");
@@ -85,7 +85,7 @@ static void test_bad_files_with_their_places(void **state)
   command_write("bad/history.csv", "time (s)\n0\n");
   assert_int_equal(command_run("compare run bad"), 0);
   assert_contains(command_err, "profiles.csv:1:22: note: column 'colour' is not used");
-  make_folder("empty");
+  command_folder_make("empty");
   assert_int_equal(command_run("compare run empty"), 5);
 }
 
@@ -128,7 +128,7 @@ static void compare_once(struct dea_context *ctx)
 static void test_with_failing_allocations(void **state)
 {
   (void)state;
-  make_folder("small");
+  command_folder_make("small");
   command_write("small/measurement.csv", points);
   command_write("small/profiles.csv", "V (kV),x (mm),z (um)\n2,0,20\n2,1,19\n4,0,40\n");
   command_write("small/history.csv", "time (s),V (kV),z centre (um)\n0,0,0\n1,6,600\n2,0,0\n");

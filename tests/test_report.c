@@ -252,8 +252,9 @@ static void test_page_of_an_example(void **state)
   assert_well_formed();
   assert_self_contained();
   assert_contains(page, "<h1>Fibre-reinforced actuator, four fibres, 100 um film</h1>");
-  assert_contains(page, "178.4 kPa");       // a parameter
-  assert_contains(page, "Table 1");         // and its source
+  assert_contains(page, "178.4 kPa"); // a parameter
+  assert_contains(page, "Table 1");   // and its source
+  assert_contains(page, "viscosity (assumed): branch 2</th><td class=\"n\">3 % of the shear");
   assert_contains(page, "sha256-");         // of style and script
   assert_contains(page, "compute.voltage"); // a value of the design
   assert_contains(page, "--set");           // and that it was overridden
@@ -298,14 +299,21 @@ static void test_runs_beside_each_other(void **state)
 static void test_measurement(void **state)
 {
   (void)state;
-  command_write("measured.csv", "voltage (V), z centre (um), z centre std (um)\n"
-                                "1000, 12.5, 2\n4000, 250, 15\n");
+  static const char measured[] = "voltage (V), z centre (um), z centre std (um)\n"
+                                 "1000, 12.5, 2\n4000, 250, 15\n";
+  command_write("measured.csv", measured);
   command_write("wrong.csv", "voltage, z centre (um)\n1, 2\n");
   assert_int_equal(command_run("report a.run --measurement measured.csv -o m.html"), 0);
   read_page("m.html");
   assert_well_formed();
   assert_contains(page, "Computed and measured");
   assert_contains(page, "\"t\":\"measured\",\"c\":6,\"r\":0,\"p\":1,\"v\":[[1,4],[12.5,250]]");
+  // A folder of dea reduce: the same points.
+  command_folder_make("red");
+  command_write("red/measurement.csv", measured);
+  assert_int_equal(command_run("report a.run --measurement red -o m.html"), 0);
+  read_page("m.html");
+  assert_contains(page, "\"p\":1,\"v\":[[1,4],[12.5,250]]");
   assert_int_equal(command_run("report a.run --measurement wrong.csv -o w.html"), 5);
   assert_contains(command_err, "wrong.csv:1:");
   assert_int_equal(command_run("report a.run --finger 3kV -o w.html"), 2);

@@ -94,7 +94,8 @@ const struct dea_command cmd_report = {
         "  RUN                folder of a run, or its results.h5\n"
         "  -o, --output FILE  the page; report.html in the first run's folder if not given.\n"
         "                     Replaces an older page, but no other file\n"
-        "  --measurement FILE measured points as CSV, as for dea compare, beside the runs\n"
+        "  --measurement FILE measured points beside the runs: CSV as for dea compare, or\n"
+        "                     a folder written by dea reduce\n"
         "  --finger STIFFNESS stiffness of a fingertip that is pushed, '0.5 N/mm' if not given;\n"
         "                     '0 N/mm' for none\n",
     .run = run,

@@ -116,9 +116,9 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
 {
   char below[320];
   double x = 0.5 * size[0], y = 0.5 * size[1];
-  snprintf(below, sizeof below, "%.80s; %s; lengths of the %s film, pre-stretch %.4g; %s",
-           dea_path_name(w->plan.design->file), part->seen, dea_film_state_name(part->state),
-           w->plan.stretch, part->paper ? "not to be cut" : "finished part, without kerf");
+  snprintf(below, sizeof below, "%s; %s; lengths of the %s film, pre-stretch %.4g; %.80s",
+           part->paper ? "not to be cut" : "finished part, without kerf", part->seen,
+           dea_film_state_name(part->state), w->plan.stretch, dea_path_name(w->plan.design->file));
   dea_draft_head(paper, size[0], size[1], part->title, below);
   dea_draft_scale(paper, size[0],
                   "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");

@@ -3,6 +3,7 @@
 
 #include "base/version.h"
 #include "output/file.h"
+#include "output/measured.h"
 #include "output/report/assets.h"
 #include "output/report/section.h"
 
@@ -169,10 +170,12 @@ dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], s
     return dea_fail(ctx, DEA_E_ARGUMENT, "a report takes 1 to %d runs, not %zu",
                     DEA_REPORT_RUNS_MAX, count);
   }
+  struct dea_measured *measured = NULL;
   void *before = dea_c_locale_enter();
   dea_status status = DEA_OK;
   if (options->measurement != NULL) { // before the runs: its findings are errors
-    status = dea_measurement_read(ctx, options->measurement, &report.measurement);
+    status = dea_measured_read(ctx, options->measurement, &measured);
+    report.measurement = measured != NULL ? measured->points : NULL;
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = dea_report_run_open(ctx, runs[i], (int)i + 1, &opened[i]);
@@ -185,7 +188,7 @@ dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], s
     status = dea_file_write(ctx, path, report.text.data, report.text.length);
   }
   dea_text_free(&report.text);
-  dea_measurement_destroy(ctx, report.measurement);
+  dea_measured_destroy(ctx, measured);
   for (size_t i = 0; i < count; i++) {
     dea_report_run_close(ctx, &opened[i]);
   }

@@ -26,7 +26,7 @@ struct dea_report {
   const struct dea_report_options *options;
   struct dea_report_run *runs; // [count]
   size_t count;
-  struct dea_measurement *measurement; // NULL: none
+  const struct dea_measurement *measurement; // lent; NULL: none
   struct dea_text text;
   int level;   // of the headings of a run's sections
   int figures; // so far

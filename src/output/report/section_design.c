@@ -110,6 +110,22 @@ static void add_law(struct dea_text *out, const struct dea_law_set *set)
   }
 }
 
+/* A row a branch: its share of the shear modulus, or its modulus, and how long it lasts. */
+static void add_viscosity(struct dea_text *out, const struct dea_viscosity_set *set)
+{
+  for (size_t i = 0; i < set->branch_count; i++) {
+    const struct dea_branch_data *branch = &set->branches[i];
+    bool share = !isnan(branch->ratio.si);
+    dea_text_add(out, "<tr><th scope=\"row\">viscosity%s: branch %zu</th><td class=\"n\">",
+                 set->assumed.value == 1 ? " (assumed)" : "", i + 1);
+    dea_html_number(out, share ? 100.0 * branch->ratio.si : 1e-3 * branch->modulus_Pa.si, 6);
+    dea_text_add(out, "%s", share ? " % of the shear modulus, " : " kPa, ");
+    dea_html_number(out, branch->time_s.si, 6);
+    dea_text_add(out, " s</td>");
+    add_notes(out, &set->notes);
+  }
+}
+
 /* Index of the set of that id, the first for "". */
 #define FIND_SET(sets, count, wanted, found)                                                       \
   size_t found = 0;                                                                                \
@@ -143,6 +159,10 @@ static void add_material(struct dea_report *report, const struct dea_material_da
     FIND_SET(data->breakdown, data->breakdown_count, breakdown, set)
     add_row(out, "breakdown field", 1e-6 * data->breakdown[set].at_rest_V_per_m.si, "V/\302\265m");
     add_notes(out, &data->breakdown[set].notes);
+  }
+  if (used->viscosity_id[0] != '\0' && data->viscosity_count > 0) { // "" for none
+    FIND_SET(data->viscosity, data->viscosity_count, used->viscosity_id, set)
+    add_viscosity(out, &data->viscosity[set]);
   }
   if (data->has_elastic) {
     add_pressure(out, "Young's modulus", data->elastic.young_modulus_Pa.si);
