@@ -64,7 +64,9 @@ struct dea_instrument_type {
   /* Starts the clock. */
   dea_status (*start)(struct dea_context *ctx, struct dea_instrument *instrument);
   /* Queues control voltages [V] for the output, in the order played, one a sample of the protocol's
-   * rate; waits while the queue is full. NULL when it plays nothing. */
+   * rate; waits while the queue is full. Before the start it may fill the queue (a fraction of a
+   * second); a DAQ whose queue is empty at the start begins with the first sample put afterwards.
+   * When all is played the last value stays. NULL when it plays nothing. */
   dea_status (*put)(struct dea_context *ctx, struct dea_instrument *instrument, const double *volts,
                     size_t count);
   /* Hands over what has arrived; waits up to timeout_s for something. A lost connection is

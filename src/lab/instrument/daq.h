@@ -1,0 +1,34 @@
+/* What DAQs have in common: a queue for the output whose playing starts with its first sample, and
+ * room for what the inputs give. */
+#ifndef DEA_LAB_INSTRUMENT_DAQ_H
+#define DEA_LAB_INSTRUMENT_DAQ_H
+
+#include "lab/protocol/protocol.h"
+
+/* Longest time that a driver may take for what should be done at once. */
+#define DEA_DAQ_PATIENCE_S 2.0
+
+struct dea_daq {
+  size_t room;       // of the queue, samples
+  size_t input_room; // that the driver holds for each input
+  size_t scans_room; // of scans, samples of each input
+  double *scans;     // [scans_room][inputs]; owned
+  size_t queued;     // samples given to the driver
+  bool asked_to_start, running;
+  bool ran_dry; // the output had nothing left to play
+};
+
+/* DEA_E_MEMORY. */
+dea_status dea_daq_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
+                         double queue_s, struct dea_daq *out);
+void dea_daq_free(struct dea_context *ctx, struct dea_daq *daq);
+/* How many of `count` samples may be given to the driver at once. Before the start no more than the
+ * queue holds: DEA_E_ARGUMENT. DEA_E_INSTRUMENT when the output ran dry before. */
+dea_status dea_daq_part(struct dea_context *ctx, const struct dea_daq *daq, const char *device,
+                        size_t count, size_t *part);
+/* DEA_E_INSTRUMENT with the next rate that goes when a device's clock differs from what was asked.
+ */
+dea_status dea_daq_check_rate(struct dea_context *ctx, const char *device, double asked_Hz,
+                              double actual_Hz);
+
+#endif

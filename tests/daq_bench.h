@@ -1,0 +1,80 @@
+/* A DAQ with a fake library: the same protocol for all of them. */
+#ifndef DEA_TESTS_DAQ_BENCH_H
+#define DEA_TESTS_DAQ_BENCH_H
+
+#include "emulator.h"
+#include "fake_daq.h"
+
+#include <dlfcn.h>
+
+struct daq_bench {
+  struct fake_daq *fake;
+  struct dea_protocol protocol;
+  struct dea_protocol_input inputs[2];
+  struct dea_instrument *instrument;
+  struct emulator_intake intake;
+  char text[1024];
+};
+
+/* The fake's state from its beginning, and a protocol of 1 kHz with two inputs. */
+static inline void daq_bench_begin(struct daq_bench *b, const char *library)
+{
+  memset(b, 0, sizeof *b);
+  void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL); // the one that the instrument gets
+  assert_non_null(handle);
+  fake_daq_get get;
+  void *symbol = dlsym(handle, "fake_daq");
+  assert_non_null(symbol);
+  memcpy(&get, &symbol, sizeof get);
+  b->fake = get();
+  memset(b->fake, 0, sizeof *b->fake);
+  b->fake->level_V = 3; // of whoever was here before
+  b->intake.channels = 2;
+  b->protocol.rate_Hz.si = 1000;
+  b->protocol.amplifier.control_V.si = 10;
+  strcpy(b->protocol.amplifier.terminal.text, "ao1");
+  b->protocol.inputs = b->inputs;
+  b->protocol.input_count = 2;
+  strcpy(b->inputs[0].terminal.text, "ai0");
+  strcpy(b->inputs[1].terminal.text, "ai5");
+  b->inputs[0].range_V.si = 10;
+  b->inputs[1].range_V.si = 5;
+}
+
+/* Plays a ramp of `count` samples in parts and compares what the inputs saw of it. */
+static inline void daq_bench_play(struct dea_context *context, struct daq_bench *b, size_t count,
+                                  double tolerance_V)
+{
+  const struct dea_instrument_type *type = b->instrument->type;
+  double volts[50];
+  for (size_t i = 0; i < count; i += 50) {
+    for (size_t k = 0; k < 50; k++) {
+      volts[k] = 1e-3 * (double)(i + k) - 0.5;
+    }
+    assert_int_equal(type->put(context, b->instrument, volts, 50), DEA_OK);
+    if (i == 100) {
+      assert_int_equal(type->start(context, b->instrument), DEA_OK);
+    }
+    assert_int_equal(emulator_get(context, b->instrument, &b->intake, 0, 0, i >= 100 ? i : 0),
+                     DEA_OK);
+  }
+  assert_int_equal(emulator_get(context, b->instrument, &b->intake, 0, 0, count), DEA_OK);
+  assert_int_equal(b->intake.samples, count);
+  for (size_t i = 0; i < count; i++) {
+    double wanted = 1e-3 * (double)i - 0.5;
+    assert_close(b->fake->played[i], wanted, 0, tolerance_V);
+    assert_close(b->intake.volts[2 * i], wanted, 0, 2 * tolerance_V);
+    assert_close(b->intake.volts[2 * i + 1], 2 * wanted, 0, 3 * tolerance_V);
+  }
+}
+
+static inline void daq_bench_end(struct dea_context *context, struct daq_bench *b)
+{
+  if (b->instrument != NULL) {
+    emulator_close(context, b->instrument);
+  }
+  free(b->intake.volts);
+  assert_int_equal(b->fake->tasks, 0); // everything was given back
+}
+
+#endif

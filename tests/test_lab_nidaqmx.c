@@ -1,0 +1,201 @@
+// DAQs of National Instruments, with a fake library in place of NI-DAQmx.
+#define _POSIX_C_SOURCE 200809L // sockets
+#include "daq_bench.h"
+#include "failing_allocator.h"
+
+#include "context_fixture.h"
+
+static const char library[] = DEA_FAKE_FOLDER "/fake_nidaqmx.so";
+
+static dea_status begin(struct daq_bench *b)
+{
+  dea_finding_clear(ctx);
+  snprintf(b->text, sizeof b->text,
+           "kind: nidaqmx\ndevice: Dev2\nwiring: differential\nlibrary: %s\n", library);
+  return emulator_open(ctx, &b->protocol, b->text, &b->instrument);
+}
+
+static void assert_message(dea_status status, dea_status wanted, const char *part)
+{
+  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
+    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
+             dea_context_message(ctx), part);
+  }
+}
+
+static void test_plays_and_measures(void **state)
+{
+  (void)state;
+  static struct daq_bench b;
+  daq_bench_begin(&b, library);
+  assert_int_equal(begin(&b), DEA_OK);
+  assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT | DEA_READS_INPUTS);
+  assert_close(b.fake->level_V, 0, 0, 0); // once it is open
+  // Output: at once 0 V, then on the clock and without repetition; inputs on its trigger.
+  assert_string_equal(b.fake->log, "CreateTask()\nAO(Dev2/ao1 -10 10 10348)\nWriteNow(1 0 1)\n"
+                                   "StopTask(output)\nClearTask()\n"
+                                   "CreateTask()\nAO(Dev2/ao1 -10 10 10348)\n"
+                                   "CfgSampClkTiming(1000 10280 10123)\nSetWriteRegenMode(10158)\n"
+                                   "CfgOutputBuffer(250)\n"
+                                   "CreateTask()\nAI(Dev2/ai0 10106 -10 10 10348)\n"
+                                   "AI(Dev2/ai5 10106 -5 5 10348)\n"
+                                   "CfgSampClkTiming(1000 10280 10123)\n"
+                                   "CfgDigEdgeStartTrig(/Dev2/ao/StartTrigger 10280)\n");
+  b.fake->log[0] = '\0';
+  daq_bench_play(ctx, &b, 1000, 1e-15);
+  const char *inputs = strstr(b.fake->log, "StartTask(inputs)");
+  assert_non_null(inputs); // armed before the output starts
+  assert_non_null(strstr(inputs, "StartTask(output)"));
+  assert_true(b.fake->level_V > 0.4);
+  b.instrument->type->stop(ctx, b.instrument);
+  assert_close(b.fake->level_V, 0, 0, 0);
+  assert_int_equal(b.fake->tasks, 0);
+  b.instrument->type->close(ctx, b.instrument);
+  b.instrument = NULL;
+  daq_bench_end(ctx, &b);
+}
+
+static void test_starts_with_first_sample(void **state)
+{
+  (void)state;
+  static struct daq_bench b;
+  static const double volts[300] = {1};
+  daq_bench_begin(&b, library);
+  assert_int_equal(begin(&b), DEA_OK);
+  assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
+  assert_int_equal(b.fake->running, 0);
+  assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_OK);
+  assert_int_equal(b.fake->running, 1);
+  assert_int_equal(b.fake->written, 300);
+  daq_bench_end(ctx, &b);
+  daq_bench_begin(&b, library); // and without start the queue is not endless
+  assert_int_equal(begin(&b), DEA_OK);
+  assert_message(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_E_ARGUMENT,
+                 "more than 250 samples before the start");
+  daq_bench_end(ctx, &b);
+}
+
+static void test_runs_dry(void **state)
+{
+  (void)state;
+  static struct daq_bench b;
+  double volts[100] = {0};
+  daq_bench_begin(&b, library);
+  assert_int_equal(begin(&b), DEA_OK);
+  b.fake->dry_after = 100;
+  assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
+  assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 100), DEA_OK);
+  // The end of a sequence: all inputs still come.
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 0, 100), DEA_OK);
+  assert_int_equal(b.intake.samples, 100);
+  const struct dea_intake to = {&b.intake, emulator_samples, NULL, NULL};
+  assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0, &to), DEA_OK);
+  // But one that was to go on has a gap.
+  assert_message(b.instrument->type->put(ctx, b.instrument, volts, 1), DEA_E_INSTRUMENT,
+                 "the computer was too slow");
+  daq_bench_end(ctx, &b);
+  assert_close(b.fake->level_V, 0, 0, 0);
+}
+
+static void test_errors(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *function, *message;
+    int code;
+  } cases[] = {
+      {"CreateTask", "cannot make its output (NI-DAQmx -200088)", -200088},
+      {"AO", "Dev2 cannot play on that output (NI-DAQmx -200220): The fake says no. Task: AO",
+       -200220},
+      {"AI", "cannot measure on that input", -200220},
+      {"WriteNow", "cannot put 0 V out", -200559},
+      {"CfgSampClkTiming", "cannot take that rate", -200077},
+      {"SetWriteRegenMode", "cannot play without repetition", -1},
+      {"CfgOutputBuffer", "cannot take a queue of that length", -1},
+      {"CfgDigEdgeStartTrig", "cannot start its inputs with its output", -1},
+  };
+  static struct daq_bench b;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    daq_bench_begin(&b, library);
+    strcpy(b.fake->fails, cases[i].function);
+    b.fake->code = cases[i].code;
+    assert_message(begin(&b), DEA_E_INSTRUMENT, cases[i].message);
+    daq_bench_end(ctx, &b);
+  }
+  static const char *const later[] = {"StartTask", "Write", "Avail", "Read"};
+  for (size_t i = 0; i < 4; i++) {
+    static const double volts[50] = {1};
+    const struct dea_intake to = {&b.intake, emulator_samples, NULL, NULL};
+    daq_bench_begin(&b, library);
+    assert_int_equal(begin(&b), DEA_OK);
+    strcpy(b.fake->fails, later[i]);
+    b.fake->code = -201003; // the device is gone
+    dea_status status = b.instrument->type->put(ctx, b.instrument, volts, 50);
+    status = status == DEA_OK ? b.instrument->type->start(ctx, b.instrument) : status;
+    status = status == DEA_OK ? b.instrument->type->get(ctx, b.instrument, 0.01, &to) : status;
+    assert_message(status, DEA_E_INSTRUMENT, "NI-DAQmx -201003");
+    daq_bench_end(ctx, &b);
+    assert_close(b.fake->level_V, 0, 0, 0); // stopped at 0 V all the same
+  }
+}
+
+static void test_rate(void **state)
+{
+  (void)state;
+  static struct daq_bench b;
+  daq_bench_begin(&b, library);
+  b.fake->rate_factor = 1.0001;
+  assert_message(begin(&b), DEA_E_INSTRUMENT,
+                 "Dev2 has no rate of 1000 Hz; write 'rate: 1000.1 Hz'");
+  daq_bench_end(ctx, &b);
+}
+
+static void test_no_library(void **state)
+{
+  (void)state;
+  struct dea_protocol protocol = {.rate_Hz.si = 1000};
+  struct dea_instrument *instrument;
+  assert_message(
+      emulator_open(ctx, &protocol, "kind: nidaqmx\nlibrary: no_such_library.so\n", &instrument),
+      DEA_E_UNSUPPORTED, "NI-DAQmx is not on this computer");
+  assert_non_null(strstr(dea_context_message(ctx), "dea drive --export"));
+  char text[1024]; // a library that is another one
+  snprintf(text, sizeof text, "kind: nidaqmx\nlibrary: %s/fake_comedi.so\n", DEA_FAKE_FOLDER);
+  assert_message(emulator_open(ctx, &protocol, text, &instrument), DEA_E_UNSUPPORTED,
+                 "NI-DAQmx has no function DAQmxCreateTask");
+}
+
+static struct daq_bench memory_bench;
+
+static void work(struct dea_context *context)
+{
+  struct daq_bench *b = &memory_bench;
+  dea_status status = emulator_open(context, &b->protocol, b->text, &b->instrument);
+  failing_check(context, status);
+  if (status == DEA_OK) {
+    emulator_close(context, b->instrument);
+  }
+  assert_int_equal(b->fake->tasks, 0);
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  daq_bench_begin(&memory_bench, library);
+  snprintf(memory_bench.text, sizeof memory_bench.text, "kind: nidaqmx\nlibrary: %s\n", library);
+  assert_true(failing_each(work) > 3);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_plays_and_measures),
+      cmocka_unit_test(test_starts_with_first_sample),
+      cmocka_unit_test(test_runs_dry),
+      cmocka_unit_test(test_errors),
+      cmocka_unit_test(test_rate),
+      cmocka_unit_test(test_no_library),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
