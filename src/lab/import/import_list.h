@@ -3,6 +3,10 @@
 #define DEA_LAB_IMPORT_IMPORT_LIST_H
 
 // X(name of the `const struct dea_importer`)
-#define DEA_IMPORTER_LIST(X) X(dea_import_csv)
+#define DEA_IMPORTER_LIST(X)                                                                       \
+  X(dea_import_tdms)                                                                               \
+  X(dea_import_lvm)                                                                                \
+  X(dea_import_comsol)                                                                             \
+  X(dea_import_csv)
 
 #endif

@@ -1,0 +1,182 @@
+/* Import of LabVIEW's text measurements, written line by line from NI's published layout. */
+#define _GNU_SOURCE
+#include "failing_allocator.h"
+#include "import_text.h"
+
+#define HEADER(x, headings, rest)                                                                  \
+  "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\n"                  \
+  "Decimal_Separator\t.\nMulti_Headings\t" headings "\nX_Columns\t" x                              \
+  "\nTime_Pref\tAbsolute\nOperator\tsomeone\nDate\t2023/05/01\nTime\t10:00:00.0\n" rest            \
+  "***End_of_Header***\t\n\t\n"
+#define SEGMENT(samples, time, x0, delta)                                                          \
+  "Channels\t2\t\nSamples\t" samples "\nDate\t2023/05/01\t2023/05/01\nTime\t" time "\t" time       \
+  "\nY_Unit_Label\tkV\tuA\nX_Dimension\tTime\tTime\nX0\t" x0 "\t" x0 "\nDelta_X\t" delta           \
+  "\t" delta "\n***End_of_Header***\t\t\n"
+#define TITLES "X_Value\tHV\tMonitor\tComment\n"
+
+static const double hv[] = {0, 1.5, 3}, monitor[] = {-1, 2e-3, 4};
+
+static void check_clock(const struct dea_table *table, const char *name, double start,
+                        double interval)
+{
+  const struct dea_table_column *column = column_of(table, name);
+  assert_close(column->start, start, 1e-12, 0);
+  assert_close(column->interval, interval, 1e-12, 0);
+}
+
+static void test_no_times(void **state)
+{
+  (void)state;
+  struct dea_table *table =
+      read_text("no.lvm", HEADER("No", "No", "") SEGMENT("3\t3", "10:00:00.5", "0.25", "0.001")
+                              TITLES "\t0.0\t-1\tstart\n\t1.5\t2E-3\n\t3.0\t4\n");
+  assert_string_equal(table->format, "lvm");
+  assert_int_equal(table->column_count, 2);
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_column(table, "Monitor", "uA", monitor, 3);
+  check_clock(table, "HV", 0.25, 0.001);
+  dea_table_destroy(ctx, table);
+  // the other way of writing it: no field for the times at all
+  table = read_text("bare.lvm",
+                    HEADER("No", "No", "")
+                        SEGMENT("3\t3", "10:00:00", "0",
+                                "0.5") "HV\tMonitor\tComment\n0.0\t-1\tstart\n1.5\t2E-3\n3.0\t4\n");
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_column(table, "Monitor", "uA", monitor, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_one_column_of_times(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 0.1, 0.35};
+  struct dea_table *table =
+      read_text("one.lvm", HEADER("One", "No", "") SEGMENT("3\t3", "10:00:00", "0", "1.0") TITLES
+                "0.0\t0.0\t-1\n0.1\t1.5\t0.002\n0.35\t3.0\t4\n");
+  assert_column(table, "X_Value", "s", t, 3);
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_int_equal(column_of(table, "Monitor")->clock, 1);
+  assert_true(isnan(column_of(table, "Monitor")->interval));
+  dea_table_destroy(ctx, table);
+}
+
+static void test_times_for_each(void **state)
+{
+  (void)state;
+  static const double t2[] = {5, 6};
+  struct dea_table *table =
+      read_text("multi.lvm",
+                HEADER("Multi", "Yes", "") SEGMENT("3\t2", "10:00:00", "0",
+                                                   "1") "X_Value\tHV\tX_Value\tMonitor\tComment\n"
+                                                        "0\t0\t5\t-1\n1\t1.5\t6\t2e-3\n2\t3\t\t\n");
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_column(table, "Monitor", "uA", monitor, 2);
+  assert_column(table, "X_Value 2", "s", t2, 2);
+  assert_int_equal(column_of(table, "Monitor")->clock, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_commas(void **state)
+{
+  (void)state;
+  struct dea_table *table = read_text(
+      "comma.lvm",
+      "LabVIEW Measurement\t\r\nSeparator\tTab\r\nDecimal_Separator\t,\r\nMulti_Headings\tNo\r\n"
+      "X_Columns\tNo\r\n***End_of_Header***\t\r\nChannels\t1\r\nSamples\t3\r\nDelta_X\t0,001\r\n"
+      "X0\t0,0E+0\r\n***End_of_Header***\r\nX_Value\tHV\tComment\r\n\t0,0\r\n\t1,5\r\n\t3,0\r\n");
+  assert_column(table, "HV", "", hv, 3);
+  check_clock(table, "HV", 0, 0.001);
+  dea_table_destroy(ctx, table);
+  table = read_text("separator.lvm",
+                    "LabVIEW Measurement,\nSeparator,Comma\nX_Columns,No\n***End_of_Header***,\n"
+                    "Channels,1\nDelta_X,0.5\n***End_of_Header***\nX_Value,HV\n,0\n,1.5\n,3\n");
+  assert_column(table, "HV", "", hv, 3);
+  check_clock(table, "HV", 0, 0.5);
+  dea_table_destroy(ctx, table);
+}
+
+/* Segments that follow one another are one measurement; a gap gives every sample its time. */
+static void test_segments(void **state)
+{
+  (void)state;
+  static const double both[] = {0, 1.5, 3, 0, 1.5}, t[] = {0, 0.5, 1, 9.5, 10};
+  struct dea_table *table =
+      read_text("follow.lvm", HEADER("No", "Yes", "") SEGMENT("3\t3", "10:00:00", "0", "0.5") TITLES
+                "\t0\t1\n\t1.5\t2\n\t3\t3\n\n" SEGMENT("2\t2", "10:00:01.5", "0", "0.5") TITLES
+                "\t0\t1\n\t1.5\t2\n");
+  assert_column(table, "HV", "kV", both, 5);
+  check_clock(table, "HV", 0, 0.5);
+  assert_int_equal(table->column_count, 2);
+  dea_table_destroy(ctx, table);
+  table =
+      read_text("gap.lvm", HEADER("No", "Yes", "") SEGMENT("3\t3", "23:59:59.5", "0", "0.5") TITLES
+                "\t0\t1\n\t1.5\t2\n\t3\t3\n\n" SEGMENT("2\t2", "00:00:09.0", "0", "0.5") TITLES
+                "\t0\t1\n\t1.5\t2\n");
+  assert_column(table, "HV", "kV", both, 5);
+  assert_column(table, "X_Value", "s", t, 5); // over midnight
+  assert_true(is_said(DEA_NOTE, "without a gap"));
+  dea_table_destroy(ctx, table);
+}
+
+static void test_special_blocks_and_missing(void **state)
+{
+  (void)state;
+  static const double v[] = {0, NAN, 3};
+  struct dea_table *table = read_text(
+      "special.lvm",
+      HEADER("No", "No", "***Start_Special***\nNI Something\t1\nChannels\t9\n***End_Special***\n")
+          SEGMENT("3\t3", "10:00:00", "0", "1") TITLES
+      "\t0\t1\n***Start_Special***\nodd\n***End_Special***\n\t\t2\n\t3\t3\n");
+  assert_column(table, "HV", "kV", v, 3);
+  assert_int_equal(column_of(table, "Monitor")->count, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    size_t line;
+    const char *part;
+  } cases[] = {
+      {"LabVIEW Measurement\nSeparator\tTab\n", 0, "no line ***End_of_Header***"},
+      {"LabVIEW Measurement\n***End_of_Header***\n", 0, "no segment"},
+      {"LabVIEW Measurement\n***End_of_Header***\nChannels\t0\n", 0, "line 3"},
+      {"LabVIEW Measurement\n***End_of_Header***\nChannels\t1e9\n", 0, "number of channels"},
+      {"LabVIEW Measurement\n***End_of_Header***\nChannels\t1\nX0\t0\n", 0, "does not end"},
+      {"LabVIEW Measurement\n***End_of_Header***\nSamples\t1\n***End_of_Header***\n", 0,
+       "how many channels"},
+      {"LabVIEW "
+       "Measurement\n***End_of_Header***\nChannels\t1\n***End_of_Header***\nX_Value\tA\n0\t1\n"
+       "1\ttwo\n",
+       7, "'two' is not a number"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    assert_refused("bad.lvm", cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].part);
+  }
+}
+
+static void read_once(struct dea_context *own)
+{
+  struct dea_table *table;
+  failing_check(own, dea_table_read(own, in_folder("gap.lvm"), NULL, &table));
+  dea_table_destroy(own, table);
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  assert_true(failing_each(read_once) > 5);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_no_times),       cmocka_unit_test(test_one_column_of_times),
+      cmocka_unit_test(test_times_for_each), cmocka_unit_test(test_commas),
+      cmocka_unit_test(test_segments),       cmocka_unit_test(test_special_blocks_and_missing),
+      cmocka_unit_test(test_refused),        cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,365 @@
+/* Import of LabVIEW's binary measurements, built byte by byte from NI's published layout. */
+#define _GNU_SOURCE
+#include "failing_allocator.h"
+#include "import_text.h"
+
+#include <stdint.h>
+
+enum { METADATA = 2, NEW_LIST = 4, RAW = 8, INTERLEAVED = 32, BIG = 64, DAQMX = 128 };
+enum { NONE = -1, AS_BEFORE = 0 };
+
+/* A file in the making. */
+static unsigned char bytes[1 << 16];
+static size_t length, segment, raw_at;
+static bool big;
+
+static void put(uint64_t value, size_t size)
+{
+  for (size_t i = 0; i < size; i++) {
+    bytes[length++] = (unsigned char)(value >> 8 * (big ? size - 1 - i : i));
+  }
+}
+
+static void put_text(const char *text)
+{
+  put(strlen(text), 4);
+  memcpy(bytes + length, text, strlen(text));
+  length += strlen(text);
+}
+
+static void put_double(double value)
+{
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  put(bits, 8);
+}
+
+static void begin_file(void)
+{
+  length = 0;
+}
+
+/* A lead-in whose lengths end_segment fills in. */
+static void begin_segment(unsigned contents)
+{
+  segment = length;
+  memcpy(bytes + length, "TDSm", 4);
+  length += 4;
+  big = false;
+  put(contents, 4);
+  big = (contents & BIG) != 0;
+  put(4713, 4);
+  put(0, 8);
+  put(0, 8);
+  raw_at = length;
+}
+
+static void begin_raw(void)
+{
+  raw_at = length;
+}
+
+static void end_segment(void)
+{
+  size_t end = length;
+  length = segment + 12;
+  put(end - segment - 28, 8);
+  put(raw_at - segment - 28, 8);
+  length = end;
+}
+
+/* A channel with `count` values of a type in this segment, or NONE, or AS_BEFORE. */
+static void put_object(const char *name, unsigned type, int count, unsigned properties)
+{
+  put_text(name);
+  if (count == NONE) {
+    put(0xffffffff, 4);
+  } else if (count == AS_BEFORE) {
+    put(0, 4);
+  } else {
+    put(20, 4);
+    put(type, 4);
+    put(1, 4);
+    put((uint64_t)count, 8);
+  }
+  put(properties, 4);
+}
+
+static void put_real_property(const char *name, double value)
+{
+  put_text(name);
+  put(10, 4);
+  put_double(value);
+}
+
+static void put_text_property(const char *name, const char *value)
+{
+  put_text(name);
+  put(0x20, 4);
+  put_text(value);
+}
+
+/* "/", "/'bench'" and two channels of two values. */
+static void put_bench(unsigned contents)
+{
+  begin_segment(contents);
+  put(4, 4);
+  put_object("/", 0, NONE, 1);
+  put_text_property("name", "a run");
+  put_object("/'bench'", 0, NONE, 0);
+  put_object("/'bench'/'HV'", 10, 2, 3);
+  put_real_property("wf_increment", 0.001);
+  put_real_property("wf_start_offset", 0.5);
+  put_text_property("unit_string", "kV");
+  put_object("/'bench'/'Dev1/ai0'", 2, 2, 0); // int16
+  begin_raw();
+}
+
+static void test_segments(void **state)
+{
+  (void)state;
+  static const double hv[] = {1.5, -2.25, 3, 4, 5, 6, 7, 8}, ai[] = {-1, 300, 7, 8};
+  for (unsigned endian = 0; endian <= BIG; endian += BIG) {
+    begin_file();
+    put_bench(METADATA | NEW_LIST | RAW | endian);
+    put_double(1.5);
+    put_double(-2.25);
+    put((uint64_t)-1, 2);
+    put(300, 2);
+    end_segment();
+    // no metadata: as before, and two chunks of it, the second cut
+    begin_segment(RAW | endian);
+    put_double(3);
+    put_double(4);
+    put(7, 2);
+    put(8, 2);
+    put_double(5);
+    end_segment();
+    // one channel goes on with another number of values, the other one has none
+    begin_segment(METADATA | RAW | endian);
+    put(2, 4);
+    put_object("/'bench'/'HV'", 10, 3, 0);
+    put_object("/'bench'/'Dev1/ai0'", 0, NONE, 0);
+    begin_raw();
+    put_double(6);
+    put_double(7);
+    put_double(8);
+    end_segment();
+    struct dea_table *table = read_bytes("run.tdms", bytes, length);
+    assert_string_equal(table->format, "tdms");
+    assert_int_equal(table->column_count, 2);
+    assert_column(table, "HV", "kV", hv, 8);
+    assert_column(table, "Dev1/ai0", "", ai, 4);
+    assert_true(table->columns[0].interval == 0.001 && table->columns[0].start == 0.5);
+    assert_true(isnan(table->columns[1].interval));
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void test_interleaved(void **state)
+{
+  (void)state;
+  static const double hv[] = {1, 2, 3}, ai[] = {10, 20, 30};
+  begin_file();
+  put_bench(METADATA | NEW_LIST | RAW | INTERLEAVED);
+  for (int i = 1; i <= 3; i++) {
+    put_double(i);
+    put((uint64_t)(10 * i), 2);
+  }
+  end_segment();
+  struct dea_table *table = read_bytes("run.tdms", bytes, length);
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_column(table, "Dev1/ai0", "", ai, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_types(void **state)
+{
+  (void)state;
+  static const struct {
+    unsigned type, size;
+    uint64_t bits;
+    double value;
+  } types[] = {
+      {1, 1, 0x80, -128},
+      {2, 2, 0xfffe, -2},
+      {3, 4, 0x80000000, -2147483648.0},
+      {4, 8, UINT64_MAX, -1},
+      {5, 1, 200, 200},
+      {6, 2, 65535, 65535},
+      {7, 4, 4294967295, 4294967295.0},
+      {8, 8, 1ull << 63, 9223372036854775808.0},
+      {9, 4, 0x3fc00000, 1.5},
+      {0x19, 4, 0xbfc00000, -1.5},
+      {0x1a, 8, 0x4000000000000000, 2},
+      {0x21, 1, 1, 1},
+  };
+  for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+    begin_file();
+    begin_segment(METADATA | NEW_LIST | RAW | (i % 2 ? BIG : 0));
+    put(1, 4);
+    put_object("/'g'/'it''s'", types[i].type, 1, 0);
+    begin_raw();
+    put(types[i].bits, types[i].size);
+    end_segment();
+    struct dea_table *table = read_bytes("type.tdms", bytes, length);
+    assert_column(table, "it's", "", &types[i].value, 1);
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void test_times_and_texts(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 0.25}, v[] = {5, 6};
+  begin_file();
+  begin_segment(METADATA | NEW_LIST | RAW);
+  put(3, 4);
+  put_object("/'g'/'when'", 0x44, 2, 0);
+  put_text("/'g'/'words'"); // texts: offsets, then letters; 4 + 4 + 3 bytes
+  put(28, 4);
+  put(0x20, 4);
+  put(1, 4);
+  put(2, 8);
+  put(11, 8);
+  put(0, 4);
+  put_object("/'h'/'V'", 10, 2, 0);
+  begin_raw();
+  put(0, 8);
+  put(3765000000u, 8);
+  put(1ull << 62, 8);
+  put(3765000000u, 8);
+  put(1, 4);
+  put(3, 4);
+  memcpy(bytes + length, "abc", 3);
+  length += 3;
+  put_double(5);
+  put_double(6);
+  end_segment();
+  struct dea_table *table = read_bytes("time.tdms", bytes, length);
+  assert_int_equal(table->column_count, 2 + 0);
+  assert_column(table, "g/when", "s", t, 2);
+  assert_column(table, "h/V", "", v, 2);
+  dea_table_destroy(ctx, table);
+}
+
+/* A program that crashed leaves -1 as the length of its last segment. */
+static void test_crashed(void **state)
+{
+  (void)state;
+  static const double hv[] = {1, 2, 3};
+  begin_file();
+  put_bench(METADATA | NEW_LIST | RAW);
+  put_double(1);
+  put_double(2);
+  put(1, 2);
+  put(2, 2);
+  put_double(3);
+  put(7, 4); // half a value
+  size_t end = length;
+  end_segment();
+  length = segment + 12;
+  put(UINT64_MAX, 8);
+  length = end;
+  struct dea_table *table = read_bytes("crash.tdms", bytes, length);
+  assert_column(table, "HV", "kV", hv, 3);
+  assert_true(is_said(DEA_WARNING, "was not closed"));
+  dea_table_destroy(ctx, table);
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  begin_file();
+  put_bench(METADATA | NEW_LIST | RAW | DAQMX);
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "DAQmx raw data");
+  begin_file();
+  begin_segment(METADATA | NEW_LIST);
+  put(1, 4);
+  put_text("/'g'/'c'");
+  put(0x1269, 4);
+  begin_raw();
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "DAQmx raw data");
+  begin_file();
+  begin_segment(METADATA | NEW_LIST | RAW);
+  put(1, 4);
+  put_object("/'g'/'c'", 10, 0x7fffffff, 0);
+  begin_raw();
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "more values than the file has bytes");
+  begin_file();
+  begin_segment(METADATA | NEW_LIST | RAW);
+  put(1, 4);
+  put_object("/'g'/'c'", 0x10000d, 1, 0);
+  begin_raw();
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "type 0x10000d");
+  begin_file();
+  begin_segment(METADATA | NEW_LIST | RAW);
+  put(1, 4);
+  put_object("/'g'/'c'", 10, AS_BEFORE, 0);
+  begin_raw();
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "as before");
+  begin_file();
+  begin_segment(METADATA | NEW_LIST);
+  put(0xffffffff, 4);
+  begin_raw();
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "end early");
+  begin_file();
+  begin_segment(0);
+  end_segment();
+  assert_refused("bad.tdms", bytes, length, 0, "no column");
+  memcpy(bytes + length, "rubbish, twenty-eight bytes..", 28);
+  assert_refused("bad.tdms", bytes, length + 28, 0, "byte 28: no segment");
+}
+
+/* Every cut of a file is read as far as it goes, or refused; never beyond its end. */
+static void test_cuts(void **state)
+{
+  (void)state;
+  begin_file();
+  put_bench(METADATA | NEW_LIST | RAW);
+  put_double(1);
+  put_double(2);
+  put(1, 2);
+  put(2, 2);
+  end_segment();
+  for (size_t n = 4; n < length; n++) {
+    struct dea_table *table;
+    write_bytes("cut.tdms", bytes, n);
+    dea_finding_clear(ctx);
+    dea_status status = dea_table_read(ctx, in_folder("cut.tdms"), NULL, &table);
+    assert_true(status == DEA_OK || status == DEA_E_IO);
+    assert_int_equal(status == DEA_OK, table != NULL);
+    assert_true(status != DEA_OK || table->columns[0].count <= 2);
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void read_once(struct dea_context *own)
+{
+  struct dea_table *table;
+  failing_check(own, dea_table_read(own, in_folder("run.tdms"), NULL, &table));
+  dea_table_destroy(own, table);
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  assert_true(failing_each(read_once) > 5);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_segments), cmocka_unit_test(test_interleaved),
+      cmocka_unit_test(test_types),    cmocka_unit_test(test_times_and_texts),
+      cmocka_unit_test(test_crashed),  cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
