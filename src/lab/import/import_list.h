@@ -6,6 +6,7 @@
 #define DEA_IMPORTER_LIST(X)                                                                       \
   X(dea_import_tdms)                                                                               \
   X(dea_import_lvm)                                                                                \
+  X(dea_import_mat)                                                                                \
   X(dea_import_comsol)                                                                             \
   X(dea_import_csv)
 

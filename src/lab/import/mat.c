@@ -81,3 +81,10 @@ dea_status dea_mat_write(struct dea_context *ctx, const char *file,
   dea_free(ctx, partial);
   return status;
 }
+
+dea_status dea_mat_read(struct dea_context *ctx, const char *file, struct dea_table *out)
+{
+  const struct dea_mat_type *type = NULL;
+  DEA_TRY(ctx, open_module(ctx, &type));
+  return type->read(ctx, file, out);
+}

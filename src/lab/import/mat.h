@@ -27,6 +27,13 @@ dea_status dea_mat_write(struct dea_context *ctx, const char *file,
                          const struct dea_mat_variable *variables, size_t count,
                          enum dea_mat_version version);
 
+/* Reads the variables of a file of version 4, 5 or 7.3 into the columns of a table: real numbers of
+ * any class; a vector is a column, a matrix a column each, "z(1)", "z(2)", ..., at most
+ * DEA_MAT_COLUMNS_MAX of them; fields of a struct "data.time". Texts go to the table's note. What
+ * cannot be read (tables and other objects, cells, complex numbers) is said as a note. */
+enum { DEA_MAT_COLUMNS_MAX = 4096 };
+dea_status dea_mat_read(struct dea_context *ctx, const char *file, struct dea_table *out);
+
 /* Path of the module into out[size]; false when it is not here. */
 bool dea_mat_find(char *out, size_t size);
 
@@ -35,6 +42,7 @@ struct dea_mat_type {
   dea_status (*write)(struct dea_context *ctx, const char *file,
                       const struct dea_mat_variable *variables, size_t count,
                       enum dea_mat_version version);
+  dea_status (*read)(struct dea_context *ctx, const char *file, struct dea_table *out);
 };
 
 #endif

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { MATRIX_CHANNELS = 8 }; // more columns of one matrix are hardly channels
+
 struct work {
   struct dea_context *ctx;
   const struct dea_table *table;
@@ -207,6 +209,17 @@ static void guess_times(struct work *work)
   }
 }
 
+/* Whether a column is one of many of a matrix, "z(17)". */
+static bool is_of_matrix(const struct work *work, size_t i)
+{
+  const char *name = work->table->columns[i].name, *open = strrchr(name, '(');
+  size_t family = 0;
+  for (size_t k = 0; open != NULL && k < work->table->column_count; k++) {
+    family += strncmp(work->table->columns[k].name, name, (size_t)(open - name) + 1) == 0;
+  }
+  return family > MATRIX_CHANNELS;
+}
+
 static void guess_channel(struct work *work, size_t i)
 {
   const struct dea_table_column *column = &work->table->columns[i];
@@ -215,6 +228,10 @@ static void guess_channel(struct work *work, size_t i)
   const char *si = dea_title_unit(work->ctx, column->unit, &factor);
   int kind = dea_guess_by_name(column->name);
   if (role->use != DEA_USE_LEFT || column->count < 2) {
+    return;
+  }
+  if (is_of_matrix(work, i)) {
+    role->why = "a profile? say so in a mapping";
     return;
   }
   bool named = kind >= 0;

@@ -14,5 +14,6 @@ const char *dea_matio_reason(int error);
 dea_status dea_matio_write(struct dea_context *ctx, const char *file,
                            const struct dea_mat_variable *variables, size_t count,
                            enum dea_mat_version version);
+dea_status dea_matio_read(struct dea_context *ctx, const char *file, struct dea_table *out);
 
 #endif

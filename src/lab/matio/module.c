@@ -3,4 +3,4 @@
 
 extern const struct dea_mat_type dea_matio_module;
 
-const struct dea_mat_type dea_matio_module = {.write = dea_matio_write};
+const struct dea_mat_type dea_matio_module = {.write = dea_matio_write, .read = dea_matio_read};

@@ -1,0 +1,85 @@
+/* MATLAB's .mat files. */
+#include "lab/import/mat.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { HEADER_SIZE = 128, TAG_SIZE = 8, MATRIX = 14, COMPRESSED = 15 };
+
+/* Version 5 and 7.3 begin with 116 bytes of text that say so, and a version and the mark "IM" or
+ * "MI" at byte 124. Version 4 has no mark: its name decides. */
+static bool recognise(const char *file, const unsigned char *head, size_t length)
+{
+  bool marked =
+      length >= 128 && (memcmp(head + 126, "IM", 2) == 0 || memcmp(head + 126, "MI", 2) == 0);
+  return (marked && memcmp(head, "MATLAB ", 7) == 0) || dea_name_ends(file, ".mat");
+}
+
+static uint32_t integer(const unsigned char *at, bool big)
+{
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; i++) {
+    value = value << 8 | at[big ? i : 3 - i];
+  }
+  return value;
+}
+
+/* Version 5 is a row of variables, each with its length: libmatio takes one that is cut off for the
+ * end of the file, and what is damaged as it comes. */
+static dea_status check_variables(struct dea_context *ctx, const char *file, FILE *stream, bool big)
+{
+  unsigned char tag[TAG_SIZE];
+  uint64_t at = HEADER_SIZE, size = 0;
+  if (fseek(stream, 0, SEEK_END) == 0) {
+    size = (uint64_t)ftell(stream);
+  }
+  while (at < size) {
+    bool good = size - at >= TAG_SIZE && fseek(stream, (long)at, SEEK_SET) == 0 &&
+                fread(tag, 1, TAG_SIZE, stream) == TAG_SIZE;
+    uint32_t type = good ? integer(tag, big) : 0, length = good ? integer(tag + 4, big) : 0;
+    if (!good || (type != MATRIX && type != COMPRESSED) || length > size - at - TAG_SIZE) {
+      return dea_fail(ctx, DEA_E_IO, "'%s' is cut off or damaged: the variable at byte %llu %s",
+                      file, (unsigned long long)at,
+                      good && length > size - at - TAG_SIZE ? "is longer than the file"
+                                                            : "is none");
+    }
+    at += TAG_SIZE + length;
+  }
+  return DEA_OK;
+}
+
+static dea_status check_file(struct dea_context *ctx, const char *file)
+{
+  unsigned char head[HEADER_SIZE];
+  FILE *stream = fopen(file, "rb");
+  if (stream == NULL) {
+    return dea_fail(ctx, DEA_E_IO, "cannot open '%s'", file);
+  }
+  dea_status status = DEA_OK;
+  size_t n = fread(head, 1, HEADER_SIZE, stream);
+  bool big = n == HEADER_SIZE && memcmp(head + 126, "MI", 2) == 0;
+  bool marked = big || (n == HEADER_SIZE && memcmp(head + 126, "IM", 2) == 0);
+  if (marked && head[big ? 124 : 125] == 1) {
+    status = check_variables(ctx, file, stream, big);
+  }
+  fclose(stream);
+  return status;
+}
+
+static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
+                       size_t length, struct dea_table *out)
+{
+  (void)bytes;
+  (void)length;
+  DEA_TRY(ctx, check_file(ctx, file));
+  return dea_mat_read(ctx, file, out);
+}
+
+const struct dea_importer dea_import_mat = {
+    .name = "mat",
+    .formats = "MATLAB's .mat files",
+    .recognise = recognise,
+    .whole = false,
+    .read = read,
+};
