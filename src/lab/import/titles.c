@@ -195,10 +195,31 @@ static size_t part_blanks(struct dea_slice line, size_t blanks, size_t room, str
   return count;
 }
 
+/* Each ends with a unit in brackets: "V0 (kV) Line integration (N)". */
+static size_t part_units(struct dea_slice line, size_t room, struct dea_slice *out)
+{
+  size_t count = 0;
+  line = dea_slice_trim(line);
+  while (line.length > 0) {
+    size_t n = 0;
+    while (n < line.length && line.text[n] != ')' && line.text[n] != ']') {
+      n++;
+    }
+    n += n < line.length;
+    if (count < room) {
+      out[count] = dea_slice_trim((struct dea_slice){line.text, n});
+    }
+    count++;
+    line = dea_slice_trim((struct dea_slice){line.text + n, line.length - n});
+  }
+  return count;
+}
+
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out)
 {
   if (separator == ' ') {
-    return part_blanks(line, 2, count, out) == count || part_blanks(line, 1, count, out) == count;
+    return part_blanks(line, 2, count, out) == count || part_blanks(line, 1, count, out) == count ||
+           part_units(line, count, out) == count;
   }
   struct dea_slice field;
   size_t n = 0;

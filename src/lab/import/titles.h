@@ -16,7 +16,7 @@ bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit);
 void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea_slice *name,
                      struct dea_slice *unit);
 /* A line of titles into exactly `count` of them; separator ' ': parted by two blanks, or by one
- * where no bracket is open. false when there are more or less. */
+ * where no bracket is open, or by the end of a bracket. false when there are more or less. */
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out);
 
 /* What a single number of that name says of the clock: 1 a rate [Hz], -1 an interval [s], 0

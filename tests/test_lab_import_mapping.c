@@ -1,0 +1,358 @@
+/* From tables to recordings: guesses, mappings and their errors, clocks, profiles; COMSOL's export.
+ */
+#define _GNU_SOURCE
+#include "failing_allocator.h"
+#include "import_text.h"
+
+static struct dea_mapping *map_text(const char *text)
+{
+  struct dea_mapping *mapping;
+  dea_finding_clear(ctx);
+  if (dea_mapping_read_memory(ctx, "map.yaml", text, strlen(text), &mapping) != DEA_OK) {
+    size_t count;
+    fail_msg("%s", dea_finding_get(ctx, &count)[0].text);
+  }
+  return mapping;
+}
+
+/* A recording of a text file; mapping: NULL guesses. */
+static struct dea_recording *record_text(const char *text, const char *map)
+{
+  struct dea_table *table = read_text("table.csv", text);
+  struct dea_mapping *mapping = map != NULL ? map_text(map) : NULL;
+  struct dea_recording *recording;
+  if (dea_table_record(ctx, table, mapping, &recording) != DEA_OK) {
+    size_t count;
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
+  }
+  dea_mapping_destroy(ctx, mapping);
+  dea_table_destroy(ctx, table);
+  return recording;
+}
+
+static void assert_channel(const struct dea_recording *recording, const char *name,
+                           enum dea_channel_kind kind, const double *values, size_t count)
+{
+  const struct dea_channel *channel = dea_recording_channel(recording, name);
+  if (channel == NULL) {
+    fail_msg("no channel '%s'", name);
+    return;
+  }
+  assert_int_equal(channel->kind, kind);
+  assert_int_equal(channel->count, count);
+  for (size_t i = 0; i < count; i++) {
+    assert_close(channel->values[i], values[i], 1e-14, 0);
+  }
+}
+
+static void test_guesses(void **state)
+{
+  (void)state;
+  static const double v[] = {0, 500, 1000}, i[] = {1e-6, 2e-6, 3e-6}, z[] = {0, 1e-5, 2e-5},
+                      f[] = {0.001, 0.002, 0.003}, c[] = {0, 510, 1020};
+  struct dea_recording *recording =
+      record_text("Zeit (ms);HV Monitor (kV);Strom (\xc2\xb5"
+                  "A);Laser (\xc2\xb5m);Kraft (mN);Setpoint (V);Temperature (K);Ch 7\n"
+                  "0;0;1;0;1;0;293;1\n0,1;0,5;2;10;2;510;293;2\n0,2;1;3;20;3;1020;294;3\n",
+                  NULL);
+  assert_channel(recording, "HV Monitor", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel(recording, "Strom", DEA_CHANNEL_CURRENT, i, 3);
+  assert_channel(recording, "Laser", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel(recording, "Kraft", DEA_CHANNEL_FORCE, f, 3);
+  assert_channel(recording, "Setpoint", DEA_CHANNEL_COMMAND, c, 3);
+  assert_int_equal(recording->channel_count, 5);
+  assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
+  assert_true(is_said(DEA_NOTE, "'Laser' in \xc2\xb5m is taken as displacement"));
+  assert_true(is_said(DEA_NOTE, "left out: 'Temperature', 'Ch 7'"));
+  dea_recording_destroy(ctx, recording);
+  // without units, and a monitor that nobody scaled
+  recording = record_text("t,voltage\n0,1\n1,2\n2,3\n", NULL);
+  assert_true(is_said(DEA_WARNING, "'voltage' has no unit"));
+  assert_true(is_said(DEA_WARNING, "never exceeds 3 V"));
+  dea_recording_destroy(ctx, recording);
+  // a rate in the preamble; a sensor in volts is not taken for a length
+  recording = record_text("Sample rate: 2 kHz\nHV (kV),laser (V)\n0,1\n1,2\n2,3\n", NULL);
+  assert_close(recording->channels[0].interval_s, 5e-4, 1e-12, 0);
+  assert_int_equal(recording->channel_count, 1);
+  assert_true(is_said(DEA_NOTE, "say per_unit"));
+  dea_recording_destroy(ctx, recording);
+}
+
+static void test_mapping(void **state)
+{
+  (void)state;
+  static const double v[] = {100, 1100, -900}, z[] = {-0.0025, -0.0015, -0.0005}, x[] = {5, 6, 7};
+  struct dea_recording *recording = record_text(
+      "Dev1/ai0,Dev1/ai1,k,junk\n0,0,5,1\n1,1,6,1\n-1,2,7,1\n",
+      "dea-import: 1\ntitle: A run\nrate: 10 kHz\ncolumns:\n"
+      "  - {column: dev1/AI0, as: voltage, unit: V, per_unit: 1 kV, at_zero: 100 V, name: high}\n"
+      "  - {column: Dev1/ai1, as: displacement, per_unit: 1 mm, at_zero: -2.5 mm, filter: 50 Hz}\n"
+      "  - {column: k, as: other, unit: counts}\nignore: [ju*]\n");
+  assert_channel(recording, "high", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel(recording, "Dev1/ai1", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel(recording, "k", DEA_CHANNEL_OTHER, x, 3);
+  assert_string_equal(recording->channels[2].unit, "counts");
+  assert_string_equal(recording->title, "A run");
+  assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
+  assert_close(recording->channels[1].filter_Hz, 50, 1e-12, 0);
+  assert_false(is_said(DEA_NOTE, "left out"));
+  dea_recording_destroy(ctx, recording);
+  // a clock of its own, and one that is not uniform
+  recording = record_text("t1 (ms),V (kV),t2 (s),F (mN)\n0,1,5,1\n1,2,5.1,2\n2,3,7,3\n",
+                          "dea-import: 1\ntime: t1\ncolumns:\n  - {column: V, as: voltage}\n"
+                          "  - {column: F, as: force, per_unit: -2, time: t2}\n");
+  const struct dea_channel *force = dea_recording_kind(recording, DEA_CHANNEL_FORCE);
+  assert_true(force->interval_s == 0);
+  assert_close(force->time_s[1], 5.1, 1e-15, 0);
+  assert_close(force->values[2], -0.006, 1e-14, 0);
+  assert_close(recording->channels[0].interval_s, 1e-3, 1e-12, 0);
+  dea_recording_destroy(ctx, recording);
+}
+
+static void test_profile(void **state)
+{
+  (void)state;
+  const char *text = "t (s),z1,z2,z3,zero\n0,1,2,3,9\n0.5,4,5,6,9\n";
+  for (int turned = 0; turned < 2; turned++) {
+    struct dea_recording *recording = record_text(
+        turned ? "t (s),z1,z2,z3,zero\n0,,2,3,9\n0.5,4,5,6,9\n" : text,
+        turned ? "dea-import: 1\nprofile: {columns: 'z*', unit: mm, x_from: 15 mm, x_to: -15 mm}\n"
+                 "columns: [{column: zero, as: other}]\n"
+               : "dea-import: 1\nprofile: {columns: 'z*', unit: mm, per_unit: -1, at_zero: 7 mm, "
+                 "x_from: -1 mm, x_to: 1 mm}\ncolumns: [{column: zero, as: other}]\n");
+    const struct dea_profiles *p = &recording->profiles;
+    assert_int_equal(p->points, 3);
+    assert_int_equal(p->count, 2);
+    assert_close(p->time_s[1], 0.5, 1e-15, 0);
+    assert_close(p->x_m[0], turned ? -0.015 : -0.001, 1e-14, 0);
+    assert_close(p->x_m[2], turned ? 0.015 : 0.001, 1e-14, 0);
+    if (turned) { // places that fall are turned round
+      assert_close(p->z_m[0], 3e-3, 1e-14, 0);
+      assert_true(isnan(p->z_m[2]));
+    } else {
+      assert_close(p->z_m[0], 6e-3, 1e-14, 0);
+      assert_close(p->z_m[5], 1e-3, 1e-14, 0);
+    }
+    dea_recording_destroy(ctx, recording);
+  }
+}
+
+/* What is wrong in a mapping, with its place; table NULL: already when it is read. */
+static void test_mapping_errors(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *table, *map;
+    size_t line;
+    const char *part;
+  } cases[] = {
+      {NULL, "columns: []\n", 1, "dea-import"},
+      {NULL, "dea-import: 2\n", 1, "dea-import"},
+      {NULL, "dea-import: 1\nrate: 10 kHz\ntime: t\n", 3, "rate"},
+      {NULL, "dea-import: 1\nrate: 10 ms\n", 2, "frequency"},
+      {NULL, "dea-import: 1\ncolums: []\n", 2, "columns"},
+      {NULL, "dea-import: 1\ncolumns:\n  - {column: a, as: volts}\n", 3, "volt"},
+      {NULL, "dea-import: 1\ncolumns:\n  - {column: a, as: force}\n  - {column: A, as: force}\n", 4,
+       "taken in line 3"},
+      {NULL, "dea-import: 1\nprofile: {columns: z*}\n", 2, "x_from"},
+      {"t,Voltage\n0,1\n1,2\n", "dea-import: 1\ncolumns:\n  - {column: Voltag, as: voltage}\n", 3,
+       "did you mean 'Voltage'"},
+      {"t,V (kV)\n0,1\n1,2\n", "dea-import: 1\ncolumns:\n  - {column: V, as: force}\n", 3,
+       "is in 'kV', not in N"},
+      {"t,V\n0,1\n1,2\n", "dea-import: 1\ncolumns:\n  - {column: V, as: voltage, unit: mm}\n", 3,
+       "'mm' is no unit that becomes V"},
+      {"t,V\n0,1\n1,2\n", "dea-import: 1\ncolumns:\n  - {column: V, as: voltage, per_unit: 1 mm}\n",
+       3, "per_unit"},
+      {"t,V\n0,1\n1,2\n", "dea-import: 1\ncolumns:\n  - {column: V, as: voltage, per_unit: 0}\n", 3,
+       "must not be 0"},
+      {"t,V\n0,1\n1,2\n", "dea-import: 1\ntime: V\ncolumns:\n  - {column: V, as: voltage}\n", 4,
+       "taken as time already"},
+      {"t,V\n0,1\n1,2\n", "dea-import: 1\nprofile: {columns: q*, x_from: 0 mm, x_to: 1 mm}\n", 2,
+       "names 0 columns"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_mapping *mapping = NULL;
+    struct dea_recording *recording = NULL;
+    struct dea_table *table = cases[i].table != NULL ? read_text("t.csv", cases[i].table) : NULL;
+    dea_finding_clear(ctx);
+    dea_status status =
+        dea_mapping_read_memory(ctx, "map.yaml", cases[i].map, strlen(cases[i].map), &mapping);
+    if (table != NULL) {
+      assert_int_equal(status, DEA_OK);
+      status = dea_table_record(ctx, table, mapping, &recording);
+    }
+    assert_int_equal(status, DEA_E_DESIGN);
+    size_t count, found = 0;
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    for (size_t k = 0; k < count; k++) {
+      found += findings[k].severity == DEA_ERROR && findings[k].place.line == cases[i].line &&
+               strstr(findings[k].text, cases[i].part) != NULL;
+    }
+    if (found == 0) {
+      fail_msg("case %zu: '%s' at line %zu is not said; %s", i, cases[i].part, cases[i].line,
+               count > 0 ? findings[0].text : "nothing");
+    }
+    dea_mapping_destroy(ctx, mapping);
+    dea_table_destroy(ctx, table);
+  }
+}
+
+static void test_clock_errors(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text, *part;
+  } cases[] = {
+      {"t (s),V (kV)\n0,1\n1,2\n1,3\n2,4\n", "repeats 1 in row 3"},
+      {"t (s),V (kV)\n0,1\n1,2\n2,3\n0,4\n1,5\n", "starts again in row 4"},
+      {"t (s),V (kV)\n0,1\n1,2\n2,3\n1.5,4\n", "falls in row 4"},
+      {"t (s),V (kV)\n0,1\n,2\n2,3\n", "no time in row 2"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_recording *recording;
+    struct dea_table *table = read_text("t.csv", cases[i].text);
+    assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+    assert_true(is_said(DEA_ERROR, cases[i].part));
+    dea_table_destroy(ctx, table);
+  }
+  struct dea_recording *recording;
+  struct dea_table *table = read_text("t.csv", "V (kV),F (N)\n1,2\n2,3\n");
+  assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "rate: 10 kHz"));
+  dea_table_destroy(ctx, table);
+  table = read_text("t.csv", "a,b\n1,2\n2,3\n");
+  assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "could be taken for anything"));
+  dea_table_destroy(ctx, table);
+}
+
+/* Times written with few digits are uniform; a lost sample is not. Since 1970 becomes since 0. */
+static void test_jitter(void **state)
+{
+  (void)state;
+  struct dea_recording *recording =
+      record_text("t (s),V (kV)\n0.000000,1\n0.000333,2\n0.000667,3\n0.001000,4\n", NULL);
+  assert_close(recording->channels[0].interval_s, 1.0 / 3000, 1e-6, 0);
+  dea_recording_destroy(ctx, recording);
+  recording = record_text("t (s),V (kV)\n0,1\n1,2\n3,3\n4,4\n", NULL);
+  assert_true(recording->channels[0].interval_s == 0);
+  dea_recording_destroy(ctx, recording);
+  recording = record_text("t (s),V (kV)\n1700000000,1\n1700000001,2\n1700000002,3\n", NULL);
+  assert_true(recording->channels[0].start_s == 0);
+  assert_true(is_said(DEA_NOTE, "the first one becomes 0"));
+  dea_recording_destroy(ctx, recording);
+}
+
+static void test_join(void **state)
+{
+  (void)state;
+  struct dea_table *a = read_text("a.csv", "t (s),V (kV)\n0,1\n1,2\n2,3\n");
+  struct dea_table *b = read_text("b.csv", "time (ms),F (mN)\n0,4\n1000,5\n2000,6\n");
+  assert_int_equal(dea_table_join(ctx, a, b), DEA_OK);
+  assert_int_equal(a->column_count, 3);
+  static const double f[] = {4, 5, 6};
+  assert_column(a, "F", "mN", f, 3);
+  dea_table_destroy(ctx, b);
+  b = read_text("b.csv", "time (ms),F (mN)\n0,4\n1000,5\n2500,6\n");
+  assert_int_equal(dea_table_join(ctx, a, b), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "different clocks"));
+  dea_table_destroy(ctx, b);
+  dea_table_destroy(ctx, a);
+}
+
+// COMSOL -----------------------------------------------------------------------------------------
+
+#define COMSOL                                                                                     \
+  "% Model:              disc.mph\n% Version:            COMSOL 5.6.0.280\n"                       \
+  "% Date:               May 3 2023, 10:00\n% Dimension:          1\n% Nodes:              3\n"
+
+static void test_comsol(void **state)
+{
+  (void)state;
+  static const double x[] = {0, 0.5, 1}, w[] = {1e-3, -2.5e-2, NAN}, w2[] = {5, 6, 7};
+  struct dea_table *table = read_text(
+      "comsol.txt", COMSOL "% Expressions:        2\n% Description:        Displacement field\n"
+                           "% Length unit:        mm\n"
+                           "% X                       w (um) @ t=0.1           w (um) @ t=0.2\n"
+                           "0                         0.001                    5\n"
+                           "0.5                       -2.5E-2                  6\n"
+                           "1                         NaN                      7\n");
+  assert_string_equal(table->format, "comsol");
+  assert_column(table, "X", "mm", x, 3);
+  assert_column(table, "w (um) @ t=0.1", "um", w, 3);
+  assert_column(table, "w (um) @ t=0.2", "um", w2, 3);
+  assert_non_null(strstr(table->note, "disc.mph"));
+  dea_table_destroy(ctx, table);
+  table =
+      read_text("table.csv", COMSOL "% Table:              Table 1 - Point (pt1)\n"
+                                    "% V0 (kV),\"w, centre (mm)\"\n0,0.001\n0.5,-0.025\n1,NaN\n");
+  assert_column(table, "V0", "kV", x, 3);
+  assert_column(table, "w, centre", "mm", w, 3);
+  dea_table_destroy(ctx, table);
+  table = read_text("blanks.txt", COMSOL "% Time (s) V0 (kV) Line integration (N)\n"
+                                         "0 5 0\n0.5 6 0.5\n1 7 1\n");
+  assert_column(table, "Time", "s", x, 3);
+  assert_column(table, "V0", "kV", w2, 3);
+  assert_column(table, "Line integration", "N", x, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_comsol_sections(void **state)
+{
+  (void)state;
+  static const double x[] = {0, 0.5, 1}, w[] = {5, 6, 7};
+  struct dea_table *table =
+      read_text("sections.txt",
+                COMSOL "% Length unit:        m\n% Coordinates\n0\n0.5\n1\n% Elements (edges)\n"
+                       "1 2\n2 3\n% Data (w (um))\n5\n6\n7\n");
+  assert_int_equal(table->column_count, 2);
+  assert_column(table, "x", "m", x, 3);
+  assert_column(table, "w", "um", w, 3);
+  dea_table_destroy(ctx, table);
+}
+
+static void record_once(struct dea_context *own)
+{
+  struct dea_table *table;
+  struct dea_mapping *mapping = NULL;
+  struct dea_recording *recording = NULL;
+  const char *map = "dea-import: 1\ncolumns: [{column: V, as: voltage}]\n"
+                    "profile: {columns: 'z*', unit: mm, x_from: 0 mm, x_to: 1 mm}\n";
+  dea_status status = dea_mapping_read_memory(own, "m", map, strlen(map), &mapping);
+  if (status == DEA_OK) {
+    status = dea_table_read(own, in_folder("memory.csv"), NULL, &table);
+  }
+  if (status == DEA_OK) {
+    status = dea_table_record(own, table, mapping, &recording);
+    dea_table_destroy(own, table);
+  }
+  failing_check(own, status);
+  dea_recording_destroy(own, recording);
+  dea_mapping_destroy(own, mapping);
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  const char *text = "t (s),V (kV),z1,z2\n0,1,1,1\n1,2,1,2\n3,3,1,2\n";
+  write_bytes("memory.csv", text, strlen(text));
+  assert_true(failing_each(record_once) > 20);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_guesses),
+      cmocka_unit_test(test_mapping),
+      cmocka_unit_test(test_profile),
+      cmocka_unit_test(test_mapping_errors),
+      cmocka_unit_test(test_clock_errors),
+      cmocka_unit_test(test_jitter),
+      cmocka_unit_test(test_join),
+      cmocka_unit_test(test_comsol),
+      cmocka_unit_test(test_comsol_sections),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
