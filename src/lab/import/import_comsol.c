@@ -136,8 +136,9 @@ static dea_status find_titles(struct dea_context *ctx, const struct dea_table *o
   if (!good) {
     const struct dea_place place = {.file = out->file};
     return dea_finding_add(ctx, DEA_WARNING, place,
-                           "the line '%% %.60s' does not name the %zu columns below: they are "
+                           "the line '%% %.*s' does not name the %zu columns below: they are "
                            "called 'column 1' and so on",
+                           (int)(header->titles.length < 60 ? header->titles.length : 60),
                            header->titles.text, count);
   }
   return DEA_OK;

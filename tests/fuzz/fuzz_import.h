@@ -1,0 +1,58 @@
+/* One importer on hostile bytes: reads a table and makes what it can of it. */
+#ifndef DEA_TESTS_FUZZ_IMPORT_H
+#define DEA_TESTS_FUZZ_IMPORT_H
+
+#include "lab/import/import.h"
+
+#include <stdint.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static inline const struct dea_importer *fuzz_importer(const char *name)
+{
+  size_t count;
+  const struct dea_importer *const *all = dea_importer_all(&count);
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(all[i]->name, name) == 0) {
+      return all[i];
+    }
+  }
+  __builtin_trap();
+}
+
+/* A table of `file`, from the bytes when the importer takes them. */
+static inline void fuzz_table(struct dea_context *ctx, const char *name, const char *file,
+                              const uint8_t *data, size_t size)
+{
+  struct dea_recording *recording = NULL;
+  struct dea_table *table = dea_alloc(ctx, 1, sizeof *table);
+  if (table == NULL) {
+    return;
+  }
+  table->file = "fuzz";
+  table->format = name;
+  dea_status status = fuzz_importer(name)->read(ctx, file, data, size, table);
+  if (status == DEA_OK && table->column_count > 0) {
+    status = dea_table_record(ctx, table, NULL, &recording);
+  }
+  if (status != DEA_OK && dea_context_message(ctx)[0] == '\0') {
+    __builtin_trap(); // an error that nobody is told about
+  }
+  dea_recording_destroy(ctx, recording);
+  dea_table_destroy(ctx, table);
+  dea_finding_clear(ctx);
+  dea_context_clear(ctx);
+}
+
+/* One context for all inputs: reading the unit table takes longer than reading a file. */
+static inline int fuzz_bytes(const char *name, const uint8_t *data, size_t size)
+{
+  static struct dea_context *ctx;
+  if (ctx != NULL || dea_context_create(NULL, &ctx) == DEA_OK) {
+    fuzz_table(ctx, name, "fuzz", data, size);
+  }
+  return 0;
+}
+
+#endif

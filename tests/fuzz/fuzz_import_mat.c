@@ -1,0 +1,25 @@
+/* Fuzz target: the importer of .mat files, which reads from a file, by the module with libmatio. */
+#define _GNU_SOURCE // memfd_create
+#include "fuzz_import.h"
+
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+  static struct dea_context *ctx;
+  static char name[64];
+  static int file = -1;
+  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
+    return 0;
+  }
+  if (file < 0) {
+    file = memfd_create("fuzz.mat", 0);
+    snprintf(name, sizeof name, "/proc/self/fd/%d", file);
+  }
+  if (ftruncate(file, 0) == 0 && pwrite(file, data, size, 0) == (ssize_t)size) {
+    fuzz_table(ctx, "mat", name, NULL, 0);
+  }
+  return 0;
+}
