@@ -18,6 +18,19 @@ static void pass(const struct dea_channel *channel, double tau_s, bool backward,
   }
 }
 
+/* Time constant of each way. Both ways together: 1 / (1 + (f / f1)^2) = 1 / sqrt(2) at the cutoff.
+ */
+static double time_constant(double cutoff_Hz)
+{
+  double f1_Hz = cutoff_Hz / sqrt(sqrt(2.0) - 1.0);
+  return 1.0 / (2.0 * acos(-1.0) * f1_Hz);
+}
+
+double dea_filter_reach(double cutoff_Hz)
+{
+  return cutoff_Hz > 0.0 ? 15.0 * time_constant(cutoff_Hz) : 0.0; // exp(-15) = 3e-7
+}
+
 void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, double *values)
 {
   for (size_t i = 0; i < channel->count; i++) {
@@ -26,9 +39,7 @@ void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, doubl
   if (!(cutoff_Hz > 0.0)) {
     return;
   }
-  // Both ways together: 1 / (1 + (f / f1)^2) = 1 / sqrt(2) at f = cutoff.
-  double f1_Hz = cutoff_Hz / sqrt(sqrt(2.0) - 1.0);
-  double tau_s = 1.0 / (2.0 * acos(-1.0) * f1_Hz);
+  double tau_s = time_constant(cutoff_Hz);
   pass(channel, tau_s, false, values);
   pass(channel, tau_s, true, values);
 }

@@ -91,7 +91,7 @@ static dea_status find_levelling(struct dea_context *ctx, const struct dea_profi
   double half = 0.5 * (levelling->edges_m[1] - levelling->edges_m[0]);
   double pitch =
       (profiles->x_m[profiles->points - 1] - profiles->x_m[0]) / (double)(profiles->points - 1);
-  levelling->width_m = fmax(0.01 * half, 3.0 * pitch);
+  levelling->width_m = fmax(0.03 * half, 8.0 * pitch); // four points a side: one may be missing
   return DEA_OK;
 }
 

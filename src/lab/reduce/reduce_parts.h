@@ -29,6 +29,9 @@ void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t si
  * NAN stays NAN. values: [channel->count], may be those of the channel. */
 void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, double *values);
 
+/* How long before an edge it is seen [s]: no way back in time is without that. 0 for NAN. */
+double dea_filter_reach(double cutoff_Hz);
+
 // plateau.c: what the voltage does ---------------------------------------------------------------
 
 struct dea_voltage_scale {
@@ -154,8 +157,9 @@ double dea_levelling_offset(const struct dea_levelling *levelling, const double 
  * [2 points]. Adds to the counts of the levelling. */
 void dea_points_clean(struct dea_levelling *levelling, const double *x_m, const double *z_m,
                       size_t points, double offset_m, double *work, double *out);
-/* Height at x, by a straight line through the points within half a width of it (the points do not
- * lie evenly about x); their mean where fewer than 3 are valid. NAN when fewer than half are. */
+/* Height at x: mean of what two straight lines say there, through the points within half a width on
+ * each side, so that a kink at x is where it is. With fewer than 3 valid points on one side, one
+ * line through all of them, or their mean. NAN when fewer than half of those are valid. */
 double dea_points_value(const double *x_m, const double *z_m, size_t points, double x,
                         double width_m);
 

@@ -7,8 +7,19 @@ struct values {
   const struct dea_channel *series;
   struct dea_noise rest, active;
   double settle;
+  double reach_s; // of the edge behind a part into it, by the series' filter
   double *scratch;
 };
+
+/* Settled end of a part, short of where the filter sees the edge behind it; at most half of the
+ * part is given up for that. */
+static struct dea_span settled_of(struct dea_span part, double reach_s, double settle, bool held)
+{
+  if (held) {
+    part.end_s -= fmin(reach_s, 0.5 * (part.end_s - part.begin_s));
+  }
+  return dea_span_settled(part, settle, held);
+}
 
 /* Rest at the time of the active part, by a straight line between the rests before and behind, so
  * that a linear drift does not count; or the one there is. *weight: of the
@@ -51,12 +62,12 @@ static double later_half(struct dea_span part, struct dea_span next)
 static struct dea_cycle_value value_of(const struct values *v, const struct dea_cycle_parts *parts)
 {
   struct dea_cycle_value value = {.rise_s = NAN, .fall_s = NAN, .creep = NAN};
-  struct dea_span settled = dea_span_settled(parts->active, v->settle, parts->held);
+  struct dea_span settled = settled_of(parts->active, v->reach_s, v->settle, parts->held);
   struct dea_window active = dea_window_mean(v->series, settled, v->scratch);
-  struct dea_window rest =
-      dea_window_mean(v->series, dea_span_settled(parts->rest, v->settle, parts->held), v->scratch);
+  struct dea_window rest = dea_window_mean(
+      v->series, settled_of(parts->rest, v->reach_s, v->settle, parts->held), v->scratch);
   struct dea_window after = dea_window_mean(
-      v->series, dea_span_settled(parts->after, v->settle, parts->held), v->scratch);
+      v->series, settled_of(parts->after, v->reach_s, v->settle, parts->held), v->scratch);
   double weight, unused;
   value.rest_before = rest.mean;
   value.rest = rest_at(rest, after, active.time_s, &weight);
@@ -87,20 +98,20 @@ static struct dea_cycle_value value_of(const struct values *v, const struct dea_
 
 /* Later halves of the parts, where noise is looked at. */
 static size_t noise_spans(const struct dea_cycle_parts *parts, size_t count, bool active,
-                          double settle, struct dea_span *out)
+                          double reach_s, double settle, struct dea_span *out)
 {
   size_t n = 0;
   double share = fmax(settle, 0.5);
   for (size_t i = 0; i < count; i++) {
     if (active) {
-      out[n++] = dea_span_settled(parts[i].active, share, parts[i].held);
+      out[n++] = settled_of(parts[i].active, reach_s, share, parts[i].held);
       continue;
     }
-    struct dea_span before = dea_span_settled(parts[i].rest, share, true);
+    struct dea_span before = settled_of(parts[i].rest, reach_s, share, true);
     if (n == 0 || before.end_s != out[n - 1].end_s) { // once each
       out[n++] = before;
     }
-    out[n++] = dea_span_settled(parts[i].after, share, true);
+    out[n++] = settled_of(parts[i].after, reach_s, share, true);
   }
   return n;
 }
@@ -110,7 +121,7 @@ static dea_status estimate(struct dea_context *ctx, const struct dea_channel *se
                            const struct dea_cycle_parts *parts, size_t count, bool active,
                            double settle, struct dea_span *spans, struct dea_noise *out)
 {
-  size_t n = noise_spans(parts, count, active, settle, spans);
+  size_t n = noise_spans(parts, count, active, dea_filter_reach(series->filter_Hz), settle, spans);
   return dea_noise_estimate(ctx, series, spans, n, out);
 }
 
@@ -134,7 +145,8 @@ dea_status dea_cycle_values(struct dea_context *ctx, const struct dea_channel *s
                             struct dea_reduced_cycle *cycles, enum dea_reduced_kind kind,
                             double *noise)
 {
-  struct values v = {.series = series, .settle = settle};
+  struct values v = {
+      .series = series, .settle = settle, .reach_s = dea_filter_reach(series->filter_Hz)};
   struct dea_span *spans = dea_alloc(ctx, 2 * count + 3, sizeof *spans);
   dea_status status = spans != NULL ? DEA_OK : DEA_E_MEMORY;
   *noise = NAN;
