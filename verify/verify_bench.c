@@ -19,7 +19,7 @@ static const char protocol_file[] = DEA_SOURCE_DIR "/examples/bench/cyclic.yaml"
 static const char channels[] =
     "[{name: amplifier voltage, quantity: voltage, input: ai0, per_volt: 1 kV}, "
     "{name: amplifier current, quantity: current, input: ai1, per_volt: 1 mA}, "
-    "{name: centre laser, quantity: displacement, input: ai2, per_volt: 0.5 mm, filter: 100 Hz}, "
+    "{name: centre laser, quantity: displacement, input: ai2, per_volt: 1 mm, filter: 100 Hz}, "
     "{name: force cell, quantity: force, input: ai3, per_volt: 24.5 mN, filter: 50 Hz}]";
 static const char design_file[] = DEA_SOURCE_DIR "/examples/frdea-4.yaml";
 
