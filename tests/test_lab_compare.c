@@ -193,7 +193,7 @@ static void test_tolerance_and_quantity(void **state)
   assert_contains(command_out, "out of tolerance");
   assert_int_equal(command_run("compare run red --tolerance 7% --quantity force_N"), 0);
   assert_null(strstr(command_out, "z centre"));
-  assert_null(strstr(command_out, "over the film"));
+  assert_null(strstr(command_out, "over film"));
   assert_int_equal(command_run("compare run red --quantity fibre_tip_z_m"), 2);
   assert_contains(command_err, "no curve has fibre_tip_z_m in common with red");
   assert_int_equal(command_run("compare red run"), 2);

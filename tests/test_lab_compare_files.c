@@ -78,7 +78,7 @@ static void test_bad_files_with_their_places(void **state)
   is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,,1\n", "profiles.csv:2:3: error: a row without");
   is_bad("profiles.csv", "# nothing\n", "no rows of numbers");
   is_bad("profiles.csv", "", "no rows of numbers");
-  is_bad("history.csv", "time (s),V (kV)\n0,1\n0,1\n", "history.csv:3:1: error: the time does not");
+  is_bad("history.csv", "time (s),V (kV)\n1,1\n0,1\n", "history.csv:3:1: error: the time falls");
   is_bad("history.csv", "V (kV)\n1\n", "history.csv:1:1: error: no column such as 'time (s)'");
   is_bad("history.csv", "time (s)\n1e999\n", "history.csv:2:1: error: '1e999' is not a number");
   command_write("bad/profiles.csv", "V (kV),x (mm),z (um),colour\n2,0,1,7\n");

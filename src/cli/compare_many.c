@@ -214,7 +214,7 @@ static bool print_profiles(const struct dea_compare_set *set)
     const struct dea_set_profile *p = &set->profiles[i];
     char text[2 * DEA_LABEL_SIZE];
     if (i == 0 || p->measured != set->profiles[i - 1].measured) {
-      snprintf(text, sizeof text, "z over the film, %.4g kV (um)",
+      snprintf(text, sizeof text, "z over film at %.4g kV (um)",
                1e-3 * set->measured->profiles[p->measured].voltage_V);
       print_head(text, "at mm", std);
     }

@@ -1,5 +1,5 @@
 /* The figures of several curves beside one reference (see compare_set.h). */
-#include "output/compare_set.h"
+#include "output/compare_set_parts.h"
 #include "output/figure.h"
 #include "output/file.h"
 #include "output/gnuplot.h"
@@ -8,47 +8,33 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAMES_MAX = DEA_LOAD_POINT_COLUMNS + DEA_MEASURED_COLUMNS + 1, NAME_SIZE = 64 };
-
 static const char band_title[] = "\302\261 1 std";
 
-/* What is drawn so far. */
-struct figures {
-  struct dea_context *ctx;
-  const struct dea_compare_set *set;
-  const struct dea_plot_format *format;
-  const char *directory;
-  char names[NAMES_MAX][NAME_SIZE];
-  size_t count;
-};
-
-/* A new plot of that name, to be filled and given to finish. */
-static dea_status begin(struct figures *f, const char *name, const char *what,
-                        struct dea_plot **plot)
+dea_status dea_set_figure_begin(struct dea_set_figures *f, const char *name, const char *what,
+                                struct dea_plot **plot)
 {
   char caption[2 * DEA_LABEL_SIZE];
   snprintf(caption, sizeof caption, "%s, beside %s", what, f->set->reference);
   return dea_plot_create(f->ctx, name, caption, plot);
 }
 
-static dea_status finish(struct figures *f, struct dea_plot *plot, dea_status status)
+dea_status dea_set_figure_finish(struct dea_set_figures *f, struct dea_plot *plot,
+                                 dea_status status)
 {
-  if (status == DEA_OK && dea_plot_shows(plot) && f->count < NAMES_MAX) {
-    snprintf(f->names[f->count++], NAME_SIZE, "%s", plot->name);
+  if (status == DEA_OK && dea_plot_shows(plot) && f->count < DEA_SET_FIGURES_MAX) {
+    snprintf(f->names[f->count++], DEA_SET_FIGURE_SIZE, "%s", plot->name);
     status = dea_plot_write(f->ctx, plot, f->format, f->directory);
   }
   dea_plot_destroy(f->ctx, plot);
   return status;
 }
 
-/* Look of a curve, the same in all figures. */
-static struct dea_series look_of(const struct dea_compare_set *set, size_t curve)
+struct dea_series dea_set_look(const struct dea_compare_set *set, size_t curve)
 {
   return dea_figure_look(set->curves[curve].name, curve);
 }
 
-/* Vertical range: that of the panel's series with their bands, and a little more. */
-static void set_range(struct dea_panel *panel)
+void dea_set_range(struct dea_panel *panel)
 {
   double low = INFINITY, high = -INFINITY;
   for (size_t s = 0; s < panel->series_count; s++) {
@@ -66,8 +52,7 @@ static void set_range(struct dea_panel *panel)
   }
 }
 
-/* Puts the key above the panel in as many columns as its titles leave room for. */
-static void place_key_above(const struct figures *f, struct dea_panel *panel)
+void dea_set_key_above(const struct dea_set_figures *f, struct dea_panel *panel)
 {
   static const char *const keys[] = {
 #define KEY_ROWS(rows) "above horizontal maxrows " #rows " samplen 1.5 width key_width"
@@ -162,7 +147,7 @@ static dea_status add_reference(struct dea_context *ctx, struct dea_panel *panel
   return DEA_OK;
 }
 
-static dea_status fill_quantity(struct figures *f, int column, struct dea_panel *panel)
+static dea_status fill_quantity(struct dea_set_figures *f, int column, struct dea_panel *panel)
 {
   const struct dea_compare_set *set = f->set;
   const struct dea_measurement *m = set->measured != NULL ? set->measured->points : NULL;
@@ -170,7 +155,7 @@ static dea_status fill_quantity(struct figures *f, int column, struct dea_panel 
     DEA_TRY(f->ctx, add_measured(f->ctx, panel, m, column, true));
   }
   for (size_t i = 0; i < set->curve_count; i++) {
-    struct dea_series look = look_of(set, i);
+    struct dea_series look = dea_set_look(set, i);
     DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, set->curves[i].curve, column,
                                    dea_point_columns[column].factor, 0.0, &look));
   }
@@ -179,7 +164,7 @@ static dea_status fill_quantity(struct figures *f, int column, struct dea_panel 
   dea_figure_label(&dea_point_columns[column], panel->y_label, sizeof panel->y_label);
   dea_figure_voltage_axis(panel);
   dea_figure_even_tics(panel, 7);
-  set_range(panel);
+  dea_set_range(panel);
   dea_figure_place_key(panel);
   return DEA_OK;
 }
@@ -198,15 +183,15 @@ static bool was_compared(const struct dea_compare_set *set, int column)
   return false;
 }
 
-static dea_status draw_quantities(struct figures *f)
+static dea_status draw_quantities(struct dea_set_figures *f)
 {
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     struct dea_plot *plot;
-    char name[NAME_SIZE];
+    char name[DEA_SET_FIGURE_SIZE];
     if (was_compared(f->set, c)) {
       snprintf(name, sizeof name, "compare_%s", dea_point_columns[c].key);
-      DEA_TRY(f->ctx, begin(f, name, dea_point_columns[c].header, &plot));
-      DEA_TRY(f->ctx, finish(f, plot, fill_quantity(f, c, &plot->panels[0])));
+      DEA_TRY(f->ctx, dea_set_figure_begin(f, name, dea_point_columns[c].header, &plot));
+      DEA_TRY(f->ctx, dea_set_figure_finish(f, plot, fill_quantity(f, c, &plot->panels[0])));
     }
   }
   return DEA_OK;
@@ -248,11 +233,11 @@ static dea_status add_profile(struct dea_context *ctx, struct dea_panel *panel,
 }
 
 /* A model's line on both sides of the centre. */
-static dea_status add_line(struct figures *f, struct dea_panel *panel,
+static dea_status add_line(struct dea_set_figures *f, struct dea_panel *panel,
                            const struct dea_set_profile *p)
 {
   const struct dea_film_line *line = &p->line;
-  struct dea_series *series, look = look_of(f->set, p->curve);
+  struct dea_series *series, look = dea_set_look(f->set, p->curve);
   size_t n = line->count;
   look.style = p->half == DEA_HALF_FIBRE ? DEA_LINE : DEA_DASHED;
   if (p->half == DEA_HALF_BETWEEN) {
@@ -268,7 +253,7 @@ static dea_status add_line(struct figures *f, struct dea_panel *panel,
 }
 
 /* Entries of the key: which line is which half. Their one point is the film's edge. */
-static dea_status add_halves(struct figures *f, struct dea_panel *panel, double film_m)
+static dea_status add_halves(struct dea_set_figures *f, struct dea_panel *panel, double film_m)
 {
   for (int half = 0; half < DEA_HALVES; half++) {
     struct dea_series *entry;
@@ -282,7 +267,7 @@ static dea_status add_halves(struct figures *f, struct dea_panel *panel, double 
   return DEA_OK;
 }
 
-static dea_status fill_profile(struct figures *f, const struct dea_measured_profile *m,
+static dea_status fill_profile(struct dea_set_figures *f, const struct dea_measured_profile *m,
                                size_t index, struct dea_panel *panel)
 {
   double film_m = 0.0;
@@ -307,13 +292,13 @@ static dea_status fill_profile(struct figures *f, const struct dea_measured_prof
   snprintf(panel->x_label, sizeof panel->x_label, "Place across the film {/:Italic x} (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic z} at %.4g kV (\302\265m)",
            1e-3 * m->voltage_V);
-  place_key_above(f, panel);
+  dea_set_key_above(f, panel);
   dea_figure_even_tics(panel, 7);
-  set_range(panel);
+  dea_set_range(panel);
   return DEA_OK;
 }
 
-static dea_status draw_profile(struct figures *f)
+static dea_status draw_profile(struct dea_set_figures *f)
 {
   struct dea_plot *plot;
   size_t index = 0;
@@ -321,168 +306,25 @@ static dea_status draw_profile(struct figures *f)
   if (m == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(f->ctx, begin(f, "compare_profile", "profile across the film", &plot));
-  return finish(f, plot, fill_profile(f, m, index, &plot->panels[0]));
+  DEA_TRY(f->ctx, dea_set_figure_begin(f, "compare_profile", "profile across the film", &plot));
+  return dea_set_figure_finish(f, plot, fill_profile(f, m, index, &plot->panels[0]));
 }
 
-// Histories ---------------------------------------------------------------------------------------
-
-enum { FEW = 800, DRAWN_MAX = 4000 };
-
-/* Adds values against time within [from, to]; of many the smallest and largest of each stretch, so
- * that no peak is lost and no file becomes large. */
-static dea_status add_track(struct dea_context *ctx, struct dea_panel *panel, const double *time,
-                            const double *values, size_t count, const double span[2],
-                            const struct dea_series *look)
-{
-  struct dea_series *series;
-  size_t first = 0, last = count;
-  while (first < count && !(time[first] >= span[0])) {
-    first++;
-  }
-  while (last > first && !(time[last - 1] <= span[1])) {
-    last--;
-  }
-  size_t stretch = (last - first) / (DRAWN_MAX / 2) + 1;
-  size_t room = stretch == 1 ? last - first : 2 * ((last - first) / stretch + 1), n = 0;
-  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, room, look, &series));
-  series->style = room > FEW && look->style == DEA_LINE ? DEA_THIN : look->style;
-  for (size_t i = first; i < last; i += stretch) {
-    size_t end = i + stretch < last ? i + stretch : last, low = i, high = i;
-    for (size_t k = i; k < end; k++) {
-      low = values[k] < values[low] || isnan(values[low]) ? k : low;
-      high = values[k] > values[high] || isnan(values[high]) ? k : high;
-    }
-    size_t shown[2] = {low < high ? low : high, low < high ? high : low};
-    for (size_t k = 0; k < (stretch == 1 ? 1U : 2U); k++) {
-      series->values[n] = time[shown[k]];
-      series->values[room + n++] = values[shown[k]];
-    }
-  }
-  return DEA_OK;
-}
-
-/* A column of a history computed, on the measured clock. */
-static dea_status add_computed(struct figures *f, struct dea_panel *panel,
-                               const struct dea_set_history *h, int column, const double span[2])
-{
-  struct dea_context *ctx = f->ctx;
-  size_t n = h->transient->count;
-  double *time = dea_alloc(ctx, n, sizeof *time), *values = dea_alloc(ctx, n, sizeof *values);
-  struct dea_series look = look_of(f->set, h->curve);
-  dea_status status = time != NULL && values != NULL ? DEA_OK : DEA_E_MEMORY;
-  for (size_t i = 0; status == DEA_OK && i < n; i++) {
-    time[i] = h->transient->points[i].time_s + h->clock.shift_s;
-    values[i] = dea_point_columns[column].factor * dea_point_get(&h->transient->points[i], column);
-  }
-  look.style = h->curve % 2 == 0 ? DEA_LINE : DEA_DASHED;
-  if (status == DEA_OK) {
-    status = add_track(ctx, panel, time, values, n, span, &look);
-  }
-  dea_free(ctx, time);
-  dea_free(ctx, values);
-  return status;
-}
-
-static dea_status add_recorded(struct figures *f, struct dea_panel *panel,
-                               enum dea_measured_column column, const double span[2])
-{
-  const struct dea_csv_columns *history = &f->set->measured->history;
-  struct dea_series look = {.style = DEA_LINE, .colour = DEA_BLACK, .title = "measured"};
-  double *values = dea_alloc(f->ctx, history->rows, sizeof *values);
-  if (values == NULL) {
-    return DEA_E_MEMORY;
-  }
-  for (size_t i = 0; i < history->rows; i++) {
-    values[i] =
-        dea_point_columns[dea_measured_point_column(column)].factor * history->values[column][i];
-  }
-  dea_status status = add_track(f->ctx, panel, history->values[DEA_MEASURED_TIME], values,
-                                history->rows, span, &look);
-  dea_free(f->ctx, values);
-  return status;
-}
-
-/* Times that both have, and a little more. */
-static void find_span(const struct dea_compare_set *set, enum dea_measured_column column,
-                      double span[2])
-{
-  span[0] = INFINITY;
-  span[1] = -INFINITY;
-  for (size_t i = 0; i < set->history_count; i++) {
-    const struct dea_misfit *m = &set->histories[i].misfit;
-    if (set->histories[i].column == column) {
-      span[0] = fmin(span[0], m->at[0]);
-      span[1] = fmax(span[1], m->at[m->count - 1]);
-    }
-  }
-  double more = 0.02 * (span[1] - span[0]);
-  span[0] -= more;
-  span[1] += more;
-}
-
-static dea_status fill_history(struct figures *f, enum dea_measured_column column,
-                               const double span[2], struct dea_plot *plot)
-{
-  const struct dea_compare_set *set = f->set;
-  bool has_voltage = set->measured->history.values[DEA_MEASURED_VOLTAGE] != NULL;
-  plot->panel_count = has_voltage ? 2 : 1;
-  plot->second_height = 1.0;
-  for (size_t p = 0; p < plot->panel_count; p++) {
-    struct dea_panel *panel = &plot->panels[p];
-    enum dea_measured_column shown = p + 1 < plot->panel_count ? DEA_MEASURED_VOLTAGE : column;
-    int of_point = dea_measured_point_column(shown);
-    DEA_TRY(f->ctx, add_recorded(f, panel, shown, span));
-    for (size_t i = 0; i < set->history_count; i++) {
-      if (set->histories[i].column == column) {
-        DEA_TRY(f->ctx, add_computed(f, panel, &set->histories[i], of_point, span));
-      }
-    }
-    for (size_t s = 0; s < panel->series_count && p > 0; s++) {
-      panel->series[s].title[0] = '\0'; // the key above holds for both
-    }
-    panel->x_min = span[0];
-    panel->x_max = span[1];
-    snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-    dea_figure_label(&dea_point_columns[of_point], panel->y_label, sizeof panel->y_label);
-    dea_figure_even_tics(panel, 5);
-    set_range(panel);
-    place_key_above(f, panel);
-  }
-  return DEA_OK;
-}
-
-static dea_status draw_histories(struct figures *f)
-{
-  for (int k = DEA_MEASURED_CENTRE; k < DEA_MEASURED_COLUMNS; k++) {
-    double span[2];
-    struct dea_plot *plot;
-    char name[NAME_SIZE];
-    find_span(f->set, (enum dea_measured_column)k, span);
-    if (span[1] > span[0]) {
-      const struct dea_column *c =
-          &dea_point_columns[dea_measured_point_column((enum dea_measured_column)k)];
-      snprintf(name, sizeof name, "compare_history_%s", c->key);
-      DEA_TRY(f->ctx, begin(f, name, "history", &plot));
-      DEA_TRY(f->ctx, finish(f, plot, fill_history(f, (enum dea_measured_column)k, span, plot)));
-    }
-  }
-  return DEA_OK;
-}
+// All --------------------------------------------------------------------------------------------
 
 dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compare_set *set,
                                 const struct dea_plot_format *format, const char *directory)
 {
-  struct figures *f = dea_alloc(ctx, 1, sizeof *f);
-  const char *names[NAMES_MAX];
+  struct dea_set_figures *f = dea_alloc(ctx, 1, sizeof *f);
+  const char *names[DEA_SET_FIGURES_MAX];
   if (f == NULL) {
     return DEA_E_MEMORY;
   }
-  *f = (struct figures){.ctx = ctx, .set = set, .format = format, .directory = directory};
+  *f = (struct dea_set_figures){.ctx = ctx, .set = set, .format = format, .directory = directory};
   dea_status status = dea_folder_make(ctx, directory);
   status = status == DEA_OK ? draw_quantities(f) : status;
   status = status == DEA_OK ? draw_profile(f) : status;
-  status = status == DEA_OK ? draw_histories(f) : status;
+  status = status == DEA_OK ? dea_set_draw_histories(f) : status;
   for (size_t i = 0; i < f->count; i++) {
     names[i] = f->names[i];
   }

@@ -46,12 +46,12 @@ bool dea_measured_is_folder(const char *path)
   return dea_path_is_folder(path) && holds(path, "measurement.csv") && !holds(path, "results.h5");
 }
 
-/* A value that has to rise within a run of rows does not: a finding at its row, and DEA_E_IO. */
-static dea_status does_not_rise(struct dea_context *ctx, const struct dea_csv_columns *rows,
-                                size_t row, const char *what)
+/* Rows are out of order: a finding at the one that is, and DEA_E_IO. */
+static dea_status out_of_order(struct dea_context *ctx, const struct dea_csv_columns *rows,
+                               size_t row, const char *what)
 {
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, (struct dea_place){rows->file, rows->line[row], 1},
-                               "%s does not rise from the row before to this one", what));
+                               "%s from the row before to this one", what));
   return dea_fail(ctx, DEA_E_IO, "%s cannot be used: its rows are out of order", rows->file);
 }
 
@@ -74,7 +74,7 @@ static dea_status count_profiles(struct dea_context *ctx, const struct dea_csv_c
       start = i;
       ++*count;
     } else if (!(rows->values[PROFILE_X][i] > rows->values[PROFILE_X][i - 1])) {
-      return does_not_rise(ctx, rows, i, "x");
+      return out_of_order(ctx, rows, i, "x does not rise");
     }
   }
   return DEA_OK;
@@ -109,8 +109,8 @@ static dea_status check_history(struct dea_context *ctx, const struct dea_csv_co
 {
   const double *time = history->values[DEA_MEASURED_TIME];
   for (size_t i = 1; i < history->rows; i++) {
-    if (!(time[i] > time[i - 1])) {
-      return does_not_rise(ctx, history, i, "the time");
+    if (!(time[i] >= time[i - 1])) {
+      return out_of_order(ctx, history, i, "the time falls");
     }
   }
   return DEA_OK;

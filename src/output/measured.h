@@ -30,7 +30,7 @@ struct dea_measured {
   struct dea_csv_columns profile_rows;   // of all profiles
   struct dea_measured_profile *profiles; // owned, in the order of the file
   size_t profile_count;
-  struct dea_csv_columns history; // times rise; rows 0: none
+  struct dea_csv_columns history; // times never fall; rows 0: none
 };
 
 /* True for a folder that holds measurement.csv and no results of a run. */
