@@ -96,6 +96,7 @@ static inline dea_status fake_get(struct dea_context *context, struct dea_instru
   const struct fake_script *s = &daq->script;
   double volts[64 * DEA_PROTOCOL_INPUTS_MAX];
   assert_true(timeout_s >= 0 && timeout_s < 1);
+  assert_false(dea_interrupted(context)); // one that waits would end
   assert_int_equal(daq->stops, 0);
   if ((long)daq->gets++ == s->fail_get) {
     return fake_fail(context, "get");

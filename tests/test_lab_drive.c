@@ -2,6 +2,7 @@
  * comes down to 0 V within the ramp, every instrument is stopped once, and the recording is
  * readable. */
 #define _GNU_SOURCE
+#include "failing_allocator.h"
 #include "fake_instruments.h"
 #include "protocol_text.h"
 
@@ -203,7 +204,6 @@ static void expect_ramp(const struct fake_script *script, bool sensor, long fail
   struct trial t;
   trial_open(&t, SQUARE CHANNELS, script);
   t.sensor.fail_frame = fail_frame;
-  t.stall_s = 0.3;
   trial_play(&t, sensor);
   if (t.status != wanted || strstr(t.report.ended, reason) == NULL) {
     fail_msg("%s: %s", dea_status_name(t.status), t.report.ended);
@@ -314,7 +314,7 @@ static void test_failed_daq_is_stopped(void **state)
   script.silent_from = 333;
   trial_open(&t, SQUARE CHANNELS, &script);
   t.stall_s = 0.2;
-  trial_play(&t, true);
+  trial_play(&t, false);
   assert_int_equal(t.status, DEA_E_INSTRUMENT);
   assert_non_null(strstr(t.report.ended, "no sample has come for 0.2 s"));
   trial_read(&t);
@@ -394,6 +394,32 @@ static void test_full_disk_ramps_down(void **state)
   signal(SIGXFSZ, handler);
 }
 
+static struct trial *memory_trial;
+
+static void play_without_memory(struct dea_context *context)
+{
+  struct trial *t = memory_trial;
+  struct dea_instrument *all[2] = {&t->daq->common, &t->sensor.common};
+  struct dea_drive_bench bench = {all, 2, 0.005, 3};
+  fake_daq_open(t->protocol, &fake_good, &t->flag, t->daq);
+  fake_sensor_open(t->daq, &t->sensor);
+  unlink(in_folder("memory.h5"));
+  t->status = dea_drive_play(context, t->protocol, &bench, in_folder("memory.h5"), &t->report);
+  failing_check(context, t->status);
+  assert_true(t->daq->stops == 1 && t->sensor.stops == 1);
+  check_ramp(t->daq);
+}
+
+static void test_out_of_memory(void **state)
+{
+  (void)state;
+  struct trial t;
+  trial_open(&t, SQUARE CHANNELS, &fake_good);
+  memory_trial = &t;
+  assert_true(failing_each(play_without_memory) > 10);
+  trial_close(&t);
+}
+
 static void test_frames_without_time_are_counted(void **state)
 {
   (void)state;
@@ -471,6 +497,7 @@ int main(void)
       cmocka_unit_test(test_failed_start),
       cmocka_unit_test(test_reader_apart_from_the_player),
       cmocka_unit_test(test_full_disk_ramps_down),
+      cmocka_unit_test(test_out_of_memory),
       cmocka_unit_test(test_frames_without_time_are_counted),
       cmocka_unit_test(test_benches_that_cannot_play),
       cmocka_unit_test(test_run_checks_first),

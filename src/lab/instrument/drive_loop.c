@@ -219,10 +219,10 @@ static void record_asked(struct loop *loop)
   }
 }
 
-/* From all; waits for the one that reads the inputs, or for the first. */
+/* From all; waits for the one that reads the inputs, or else for the one that plays. */
 static void get_all(struct loop *loop, double timeout_s)
 {
-  struct giver *waited = reads(loop) ? loop->reader : &loop->givers[0];
+  struct giver *waited = reads(loop) ? loop->reader : loop->player;
   double before_s = dea_clock_s();
   get_from(loop, waited, timeout_s);
   for (size_t i = 0; i < loop->count; i++) {
