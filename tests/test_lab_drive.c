@@ -464,23 +464,6 @@ static void test_benches_that_cannot_play(void **state)
   free(second);
 }
 
-static void test_run_checks_first(void **state)
-{
-  (void)state;
-  struct dea_drive_report report;
-  const struct dea_drive_options options = {false, in_folder("none.h5")};
-  struct dea_protocol *p =
-      good_protocol(ctx, "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
-                         "waveform: {kind: square, high: 16 kV, frequency: 1 Hz}\n");
-  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INTERLOCK);
-  dea_protocol_destroy(ctx, p);
-  p = good_protocol(ctx, SQUARE CHANNELS);
-  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INSTRUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "names no instruments"));
-  assert_false(there("none.h5"));
-  dea_protocol_destroy(ctx, p);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -500,7 +483,6 @@ int main(void)
       cmocka_unit_test(test_out_of_memory),
       cmocka_unit_test(test_frames_without_time_are_counted),
       cmocka_unit_test(test_benches_that_cannot_play),
-      cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

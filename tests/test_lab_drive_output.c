@@ -1,6 +1,7 @@
 /* lab/instrument/drive_output and drive_watch: what is asked of the amplifier, sample by sample,
  * and what of its answer ends a measurement. */
 #define _GNU_SOURCE
+#include "lab/instrument/drive.h"
 #include "lab/instrument/drive_output.h"
 #include "lab/instrument/drive_watch.h"
 #include "protocol_text.h"
@@ -117,12 +118,30 @@ static void test_what_ends_a_measurement(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
+static void test_run_checks_first(void **state)
+{
+  (void)state;
+  struct dea_drive_report report;
+  const struct dea_drive_options options = {false, in_folder("none.h5")};
+  struct dea_protocol *p =
+      good_protocol(ctx, "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
+                         "waveform: {kind: square, high: 16 kV, frequency: 1 Hz}\n");
+  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INTERLOCK);
+  dea_protocol_destroy(ctx, p);
+  p = good_protocol(ctx, WATCHED);
+  assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INSTRUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "names no instruments"));
+  assert_false(there("none.h5"));
+  dea_protocol_destroy(ctx, p);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_corners_fall_on_samples),
       cmocka_unit_test(test_ramp_from_any_sample),
       cmocka_unit_test(test_what_ends_a_measurement),
+      cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

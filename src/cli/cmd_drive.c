@@ -204,6 +204,7 @@ static dea_status play(struct dea_cli *cli, const struct request *request,
                     protocol->file);
   }
   DEA_TRY(cli->ctx, clear_output(cli, request, file));
+  cli_voltage_is_on();
   return dea_drive_run(cli->ctx, protocol, &options, report);
 }
 
