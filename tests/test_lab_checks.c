@@ -1,6 +1,7 @@
 /* What must not be played: refused at its place, with the numbers that say why. */
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
+#include "lab/protocol/export.h"
 #include "model/lumped/lumped.h"
 #include "protocol_text.h"
 
@@ -237,12 +238,36 @@ static void test_memory(void **state)
   assert_true(failing_ends(check_in_folder, DEA_E_INTERLOCK) > 10); // there was something to fail
 }
 
+static dea_status export_in_folder(struct dea_context *context)
+{
+  struct dea_protocol *p;
+  char to[800];
+  snprintf(to, sizeof to, "%s/export", folder);
+  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  if (status == DEA_OK) {
+    status = dea_protocol_export(context, p, to);
+  }
+  dea_protocol_destroy(context, p);
+  return status;
+}
+
+static void test_export_memory(void **state)
+{
+  (void)state;
+  dea_protocol_destroy(ctx, good_protocol(ctx, PROTOCOL_HEAD CHANNELS
+                                          "waveform: {kind: constant, voltage: 1 kV, "
+                                          "duration: 20 ms}\n"));
+  assert_true(failing_ends(export_in_folder, DEA_OK) > 10); // there was something to fail
+  assert_true(there("export/README.txt") && there("export/play_matlab.m"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_example_passes),  cmocka_unit_test(test_refusals),
       cmocka_unit_test(test_allowed_voltage), cmocka_unit_test(test_pull_in),
       cmocka_unit_test(test_warnings),        cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_export_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

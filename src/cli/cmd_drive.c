@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "lab/instrument/drive.h"
 #include "lab/instrument/instrument.h"
+#include "lab/protocol/export.h"
 #include "output/file.h"
 #include "output/json.h"
 
@@ -12,7 +13,7 @@
 #include <string.h>
 
 struct request {
-  const char *protocol, *output; // NULL: not given
+  const char *protocol, *output, *folder; // NULL: not given
   bool arm, simulate, json, force;
   struct dea_override overrides[CLI_OVERRIDES_MAX];
   size_t override_count;
@@ -23,13 +24,11 @@ struct request {
 /* -1, or the exit code after a usage error. */
 static int parse(struct dea_cli *cli, int argc, char **argv, struct request *out)
 {
-  static const struct option longs[] = {{"arm", no_argument, NULL, 'a'},
-                                        {"sim", no_argument, NULL, 'm'},
-                                        {"output", required_argument, NULL, 'o'},
-                                        {"set", required_argument, NULL, 's'},
-                                        {"force", no_argument, NULL, 'f'},
-                                        {"json", no_argument, NULL, 'j'},
-                                        {NULL, 0, NULL, 0}};
+  static const struct option longs[] = {
+      {"arm", no_argument, NULL, 'a'},          {"sim", no_argument, NULL, 'm'},
+      {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, 's'},
+      {"force", no_argument, NULL, 'f'},        {"json", no_argument, NULL, 'j'},
+      {"export", required_argument, NULL, 'e'}, {NULL, 0, NULL, 0}};
   int option;
   *out = (struct request){0};
   opterr = 0;
@@ -49,6 +48,9 @@ static int parse(struct dea_cli *cli, int argc, char **argv, struct request *out
         return cli_usage_error(cli, &cmd_drive, "--set takes KEY=VALUE, not '%s'", optarg);
       }
       break;
+    case 'e':
+      out->folder = optarg;
+      break;
     case 'f':
       out->force = true;
       break;
@@ -63,8 +65,8 @@ static int parse(struct dea_cli *cli, int argc, char **argv, struct request *out
     return cli_usage_error(cli, &cmd_drive,
                            argc == optind ? "a protocol is needed" : "one protocol at a time");
   }
-  if (out->arm && out->simulate) {
-    return cli_usage_error(cli, &cmd_drive, "--arm and --sim exclude each other");
+  if ((out->arm && out->simulate) || (out->folder != NULL && (out->arm || out->simulate))) {
+    return cli_usage_error(cli, &cmd_drive, "--arm, --sim and --export exclude each other");
   }
   out->protocol = argv[optind];
   return -1;
@@ -151,7 +153,7 @@ static void print_plan(const struct dea_protocol *protocol, const struct dea_pro
     printf("  %zu  %-16s  %s\n", i + 1, type != NULL ? type->name : "?", roles);
   }
   if (protocol->instrument_count == 0) {
-    puts("  none: there is only --sim");
+    puts("  none: there are only --sim and --export");
   }
 }
 
@@ -206,6 +208,23 @@ static dea_status play(struct dea_cli *cli, const struct request *request,
   DEA_TRY(cli->ctx, clear_output(cli, request, file));
   cli_voltage_is_on();
   return dea_drive_run(cli->ctx, protocol, &options, report);
+}
+
+/* Files for another computer. */
+static dea_status export(struct dea_cli *cli, const struct request *request,
+                         const struct dea_protocol *protocol)
+{
+  char *csv = dea_path_join(cli->ctx, request->folder, "waveform.csv");
+  if (csv == NULL) {
+    return DEA_E_MEMORY;
+  }
+  bool there = dea_path_exists(csv);
+  dea_free(cli->ctx, csv);
+  if (there && !request->force) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' has a waveform.csv already; --force replaces it",
+                    request->folder);
+  }
+  return dea_protocol_export(cli->ctx, protocol, request->folder);
 }
 
 static json_t *report_json(const struct dea_drive_report *report, const char *file)
@@ -296,6 +315,9 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     status = play(cli, &request, protocol, file, &report);
     played = dea_path_exists(file) && (status == DEA_OK || report.played_s > 0);
   }
+  if (status == DEA_OK && request.folder != NULL) {
+    status = export(cli, &request, protocol);
+  }
   if (request.json) {
     json_t *json = whole_json(cli, &request, status, protocol, planned ? &plan : NULL);
     if (played) {
@@ -304,6 +326,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     cli_print_json(json);
   } else if (played) {
     print_report(&report, file);
+  } else if (status == DEA_OK && request.folder != NULL) {
+    printf("\nFiles\n  %s\n\nNext:  read %s/README.txt\n", request.folder, request.folder);
   } else if (status == DEA_OK) {
     printf("\nNothing was played. Next:  dea drive %s --sim\n", request.protocol);
   }
@@ -318,15 +342,19 @@ const struct dea_command cmd_drive = {
     .name = "drive",
     .summary = "Play a protocol to a high-voltage amplifier and record what the film does",
     .usage =
-        "dea drive PROTOCOL [--arm | --sim] [-o FILE] [--set KEY=VALUE]... [options]\n\n"
+        "dea drive PROTOCOL [--arm | --sim | --export DIR] [-o FILE] [--set KEY=VALUE]...\n"
+        "          [--force] [--json]\n\n"
         "Without --arm or --sim nothing is played: the plan is printed, and what is wrong with "
         "it.\n"
         "\n"
         "  --arm              play on the instruments of the protocol: HIGH VOLTAGE\n"
         "  --sim              play on a simulated bench, a model of the design with noise\n"
+        "  --export DIR       write the waveform, and scripts for MATLAB and Python that play it "
+        "and\n"
+        "                     record on a computer with NI-DAQmx, into DIR\n"
         "  -o, --output FILE  name of the recording; by default that of the protocol with .h5, in\n"
         "                     the current folder\n"
-        "  -f, --force        replace a recording of that name\n"
+        "  -f, --force        replace a recording or files of that name\n"
         "  --set KEY=VALUE    take VALUE in place of the file's, for example --set rate=2kHz\n"
         "  --json             plan, findings and what was recorded as JSON\n\n"
         "Ctrl-C brings the voltage to 0 V along the protocol's ramp. Exit code 6: a limit of the\n"

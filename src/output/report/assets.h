@@ -1,4 +1,5 @@
-/* The files of web/ that go into a page, embedded by CMake (cmake/embed.cmake). */
+/* Files that are embedded by CMake (cmake/embed.cmake): those of web/ that go into a page, and what
+ * the scripts of `dea drive --export` end with. */
 #ifndef DEA_OUTPUT_REPORT_ASSETS_H
 #define DEA_OUTPUT_REPORT_ASSETS_H
 
@@ -10,5 +11,9 @@ extern const char dea_asset_script[]; // the scripts, one after the other
 extern const size_t dea_asset_script_length;
 extern const char dea_asset_core[]; // web/explorer.c as WebAssembly; length 0: not built
 extern const size_t dea_asset_core_length;
+extern const char dea_asset_play_python[]; // lab/protocol/play_nidaqmx.py
+extern const size_t dea_asset_play_python_length;
+extern const char dea_asset_play_matlab[]; // lab/protocol/play_matlab.m
+extern const size_t dea_asset_play_matlab_length;
 
 #endif

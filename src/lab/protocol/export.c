@@ -1,0 +1,328 @@
+#include "lab/protocol/export.h"
+
+#include "lab/import/guess.h"
+#include "lab/import/mat.h"
+#include "output/file.h"
+#include "output/report/assets.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { TITLE_SIZE = 2 * DEA_CHANNEL_NAME_SIZE + 32 };
+
+// Names ------------------------------------------------------------------------------------------
+
+/* What a channel's column is called: its name, what it is when the name does not say so, its unit.
+ * Signs that would end a column or a text are left out. */
+static void column_title(const struct dea_protocol_input *input, bool si, char out[TITLE_SIZE])
+{
+  const struct dea_channel_meaning *meaning = &dea_channel_meanings[input->kind.value];
+  bool other = input->kind.value == DEA_CHANNEL_OTHER;
+  const char *unit = other ? input->unit.text : si ? meaning->si_unit : meaning->display_unit;
+  bool says = other || dea_guess_by_name(input->name.text) == input->kind.value;
+  snprintf(out, TITLE_SIZE, "%.63s%s%s%s%.63s%s", input->name.text, says ? "" : " ",
+           says ? "" : meaning->name, unit[0] != '\0' ? " (" : "", unit,
+           unit[0] != '\0' ? ")" : "");
+  for (char *c = out; *c != '\0'; c++) {
+    if (strchr(",;\"'\\%", *c) != NULL || (unsigned char)*c < ' ') {
+      *c = ' ';
+    }
+  }
+}
+
+/* The title as a name of a variable. */
+static void variable_name(const char *title, char out[TITLE_SIZE])
+{
+  size_t used = 0;
+  if (!isalpha((unsigned char)title[0])) {
+    out[used++] = 'x';
+  }
+  for (const char *c = title; *c != '\0' && used < 62; c++) {
+    bool good = isalnum((unsigned char)*c) && (unsigned char)*c < 0x80;
+    if (good) {
+      out[used++] = *c;
+    } else if (used > 0 && out[used - 1] != '_') {
+      out[used++] = '_';
+    }
+  }
+  while (used > 1 && out[used - 1] == '_') {
+    used--;
+  }
+  out[used] = '\0';
+}
+
+/* Text within single quotes of both languages. */
+static void add_quoted(struct dea_text *out, const char *text)
+{
+  dea_text_add(out, "'");
+  for (const char *c = text; *c != '\0'; c++) {
+    bool good = strchr("'\\", *c) == NULL && (unsigned char)*c >= ' ';
+    dea_text_add(out, "%c", good ? *c : ' ');
+  }
+  dea_text_add(out, "'");
+}
+
+/* A comment's line ends where the text does. */
+static void add_comment(struct dea_text *out, const char *sign, const char *text)
+{
+  dea_text_add(out, "%s ", sign);
+  for (const char *c = text; *c != '\0'; c++) {
+    dea_text_add(out, "%c", (unsigned char)*c >= ' ' ? *c : ' ');
+  }
+  dea_text_add(out, "\n");
+}
+
+/* The factor of a channel's display unit. */
+static double display_factor(const struct dea_protocol_input *input)
+{
+  return dea_channel_meanings[input->kind.value].factor;
+}
+
+static double trip_samples(const struct dea_protocol *protocol)
+{
+  return ceil(protocol->safety.trip_time_s.si * protocol->rate_Hz.si * (1 - 1e-12));
+}
+
+// Scripts ----------------------------------------------------------------------------------------
+
+static void write_python(const struct dea_protocol *protocol, struct dea_text *out)
+{
+  char title[TITLE_SIZE];
+  dea_text_add(
+      out, "#!/usr/bin/env python3\n"
+           "# Plays waveform.csv to the amplifier through NI-DAQmx and records all channels as\n"
+           "# recording.csv. HIGH VOLTAGE. Needs the package nidaqmx. Made by dea for\n");
+  add_comment(out, "#", protocol->title.text[0] != '\0' ? protocol->title.text : protocol->file);
+  dea_text_add(out, "#   python play_nidaqmx.py [DEVICE]     by default Dev1\n\n");
+  dea_text_add(out, "RATE_HZ = %.17g\nGAIN = %.17g  # of the amplifier\n", protocol->rate_Hz.si,
+               protocol->amplifier.gain.si);
+  dea_text_add(out, "CONTROL_V = %.17g  # largest control voltage\nOUTPUT = ",
+               protocol->amplifier.control_V.si);
+  add_quoted(out, protocol->amplifier.terminal.text);
+  dea_text_add(out, "\nRAMP_V_PER_S = %.17g  # of the amplifier's output, when it ends early\n",
+               protocol->safety.ramp_V_per_s.si);
+  dea_text_add(out, "TRIP_SAMPLES = %.0f  # above the limit `trip` of a current\n",
+               trip_samples(protocol));
+  dea_text_add(out, "# value in the unit of the title = volts * scale + offset\nCHANNELS = [\n");
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &protocol->inputs[i];
+    double factor = display_factor(input);
+    column_title(input, false, title);
+    dea_text_add(out, "    {\n        \"title\": ");
+    add_quoted(out, title);
+    dea_text_add(out, ",\n        \"terminal\": ");
+    add_quoted(out, input->terminal.text);
+    dea_text_add(out,
+                 ",\n        \"range\": %.17g,\n        \"scale\": %.17g,\n        \"offset\": "
+                 "%.17g,\n        \"trip\": ",
+                 input->range_V.si, factor * input->per_volt, factor * input->at_zero);
+    if (input->kind.value == DEA_CHANNEL_CURRENT) {
+      dea_text_add(out, "%.17g,\n    },\n", factor * protocol->safety.trip_current_A.si);
+    } else {
+      dea_text_add(out, "None,\n    },\n");
+    }
+  }
+  dea_text_add(out, "]\n\n%s", dea_asset_play_python);
+}
+
+static void write_matlab(const struct dea_protocol *protocol, struct dea_text *out)
+{
+  char title[TITLE_SIZE], variable[TITLE_SIZE];
+  dea_text_add(
+      out, "function play_matlab(device)\n"
+           "%% Plays waveform.csv to the amplifier through the Data Acquisition Toolbox (R2020a\n"
+           "%% or later) and records all channels as recording.csv and recording.mat. HIGH\n"
+           "%% VOLTAGE. Made by dea for\n");
+  add_comment(out, "%", protocol->title.text[0] != '\0' ? protocol->title.text : protocol->file);
+  dea_text_add(out, "%%   play_matlab            on device Dev1\n"
+                    "%%   play_matlab('Dev2')    on another one\n\n");
+  dea_text_add(out, "%s", dea_asset_play_matlab);
+  dea_text_add(out, "function p = numbers()\np.rate_Hz = %.17g;\n", protocol->rate_Hz.si);
+  dea_text_add(out, "p.gain = %.17g; %% of the amplifier\n", protocol->amplifier.gain.si);
+  dea_text_add(out, "p.control_V = %.17g; %% largest control voltage\np.output = ",
+               protocol->amplifier.control_V.si);
+  add_quoted(out, protocol->amplifier.terminal.text);
+  dea_text_add(out, ";\np.ramp_V_per_s = %.17g; %% of the amplifier's output, when it ends early\n",
+               protocol->safety.ramp_V_per_s.si);
+  dea_text_add(out, "p.trip_samples = %.0f; %% above the limit `trip` of a current\n",
+               trip_samples(protocol));
+  dea_text_add(
+      out,
+      "%% value in the unit of the title = volts * scale + offset; `unit`: SI value of that unit\n"
+      "p.channels = struct('title', {}, 'variable', {}, 'terminal', {}, 'range', {}, "
+      "'scale', {}, ...\n    'offset', {}, 'trip', {}, 'unit', {});\n");
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &protocol->inputs[i];
+    double factor = display_factor(input);
+    column_title(input, true, title);
+    variable_name(title, variable);
+    column_title(input, false, title);
+    dea_text_add(out, "p.channels(end + 1) = struct('title', ");
+    add_quoted(out, title);
+    dea_text_add(out, ", 'variable', '%s', 'terminal', ", variable);
+    add_quoted(out, input->terminal.text);
+    dea_text_add(out, ", ...\n    'range', %.17g, 'scale', %.17g, 'offset', %.17g, 'trip', ",
+                 input->range_V.si, factor * input->per_volt, factor * input->at_zero);
+    if (input->kind.value == DEA_CHANNEL_CURRENT) {
+      dea_text_add(out, "%.17g", factor * protocol->safety.trip_current_A.si);
+    } else {
+      dea_text_add(out, "inf");
+    }
+    dea_text_add(out, ", 'unit', %.17g);\n", 1 / factor);
+  }
+  dea_text_add(out, "end\n");
+}
+
+static void write_readme(const struct dea_protocol *protocol, struct dea_text *out)
+{
+  dea_text_add(out, "%s\n\n",
+               protocol->title.text[0] != '\0' ? protocol->title.text : protocol->file);
+  dea_text_add(out,
+               "HIGH VOLTAGE: %g kV to %g kV at most were checked against the amplifier and the "
+               "film when these files\nwere made. Nobody has tried the scripts on your "
+               "instruments.\n\n",
+               1e-3 * protocol->amplifier.lowest_V.si, 1e-3 * protocol->amplifier.highest_V.si);
+  dea_text_add(
+      out,
+      "waveform.csv      time (s), asked voltage (kV), control voltage of the amplifier (V)\n"
+      "waveform.mat      the same for MATLAB\n"
+      "play_matlab.m     plays and records: Data Acquisition Toolbox, R2020a or later\n"
+      "play_nidaqmx.py   plays and records: Python 3 with `pip install nidaqmx`, NI-DAQmx driver\n"
+      "\n"
+      "1. Copy this folder to the computer of the DAQ. Compare inputs, ranges and factors in the\n"
+      "   script (CHANNELS, or numbers() at its end) with your wiring.\n"
+      "2. First with the amplifier's high voltage off, and its control input on an oscilloscope:\n"
+      "       play_matlab('Dev1')        or      python play_nidaqmx.py Dev1\n"
+      "   Press Ctrl-C on the way: the control voltage has to go to 0 V along a ramp.\n"
+      "3. Rename recording.csv. Set the amplifier's own voltage and current limits, then play "
+      "with\n"
+      "   high voltage.\n"
+      "4. Back on the computer with dea:\n"
+      "       dea import recording.csv --design DESIGN && dea reduce recording.h5\n"
+      "\n"
+      "Both scripts end with the output at 0 V, also after Ctrl-C and after an error, and end "
+      "early\n"
+      "when a current stays above trip_current. They do not compare the measured voltage with the\n"
+      "asked one. A process that is killed, or a computer that fails, leaves the output where it\n"
+      "was: use the amplifier's own limits and the watchdog of the DAQ.\n"
+      "Output and inputs have one clock; what an input reads is what is there just before the\n"
+      "output changes.\n");
+}
+
+// Waveform ---------------------------------------------------------------------------------------
+
+struct waveform {
+  double *time_s, *voltage_V, *control_V; // [count]
+  size_t count;
+};
+
+/* All samples, and one of 0 V at the end. */
+static dea_status sample(struct dea_context *ctx, const struct dea_protocol *protocol,
+                         struct waveform *out)
+{
+  double rate_Hz = protocol->rate_Hz.si;
+  double samples = ceil(dea_protocol_duration_s(protocol) * rate_Hz * (1 - 1e-12));
+  if (samples >= DEA_EXPORT_SAMPLES_MAX) {
+    return dea_fail(
+        ctx, DEA_E_ARGUMENT,
+        "%.3g samples are too many for the scripts, which take %d; choose a lower `rate`", samples,
+        DEA_EXPORT_SAMPLES_MAX);
+  }
+  out->count = (size_t)samples + 1;
+  out->time_s = dea_alloc(ctx, out->count, sizeof *out->time_s);
+  out->voltage_V = dea_alloc(ctx, out->count, sizeof *out->voltage_V);
+  out->control_V = dea_alloc(ctx, out->count, sizeof *out->control_V);
+  if (out->time_s == NULL || out->voltage_V == NULL || out->control_V == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < out->count; i++) {
+    out->time_s[i] = (double)i / rate_Hz;
+    out->voltage_V[i] = i + 1 < out->count ? dea_protocol_value(protocol, out->time_s[i]) : 0;
+    out->control_V[i] = out->voltage_V[i] / protocol->amplifier.gain.si;
+  }
+  return DEA_OK;
+}
+
+static dea_status write_csv(struct dea_context *ctx, const struct waveform *wave,
+                            const char *directory)
+{
+  struct dea_text out = {.ctx = ctx};
+  dea_text_add(&out, "time (s),V (kV),control (V)\n");
+  for (size_t i = 0; i < wave->count && !out.failed; i++) {
+    dea_text_add(&out, "%.12g,%.12g,%.12g\n", wave->time_s[i], 1e-3 * wave->voltage_V[i],
+                 wave->control_V[i]);
+  }
+  dea_status status = dea_text_write(ctx, &out, directory, "waveform.csv");
+  dea_text_free(&out);
+  return status;
+}
+
+static dea_status write_mat(struct dea_context *ctx, const struct dea_protocol *protocol,
+                            const struct waveform *wave, const char *directory)
+{
+  const struct dea_mat_variable variables[] = {
+      {.name = "title", .text = protocol->title.text},
+      {.name = "rate_Hz", .values = &protocol->rate_Hz.si, .count = 1},
+      {.name = "gain", .values = &protocol->amplifier.gain.si, .count = 1},
+      {.name = "time_s", .values = wave->time_s, .count = wave->count},
+      {.name = "voltage_V", .values = wave->voltage_V, .count = wave->count},
+      {.name = "control_V", .values = wave->control_V, .count = wave->count},
+  };
+  char *file = dea_path_join(ctx, directory, "waveform.mat");
+  if (file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status =
+      dea_mat_write(ctx, file, variables, sizeof variables / sizeof variables[0], DEA_MAT_5);
+  dea_free(ctx, file);
+  if (status == DEA_E_UNSUPPORTED) {
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0}, "waveform.mat is left out: %s",
+                             dea_context_message(ctx));
+    dea_context_clear(ctx);
+  }
+  return status;
+}
+
+// All of it --------------------------------------------------------------------------------------
+
+static dea_status write_texts(struct dea_context *ctx, const struct dea_protocol *protocol,
+                              const char *directory)
+{
+  static const struct {
+    const char *name;
+    void (*write)(const struct dea_protocol *protocol, struct dea_text *out);
+  } texts[] = {{"play_nidaqmx.py", write_python},
+               {"play_matlab.m", write_matlab},
+               {"README.txt", write_readme}};
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    struct dea_text out = {.ctx = ctx};
+    texts[i].write(protocol, &out);
+    dea_status status = dea_text_write(ctx, &out, directory, texts[i].name);
+    dea_text_free(&out);
+    DEA_TRY(ctx, status);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_protocol_export(struct dea_context *ctx, const struct dea_protocol *protocol,
+                               const char *directory)
+{
+  struct waveform wave = {0};
+  if (protocol->input_count == 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no `channels`: there is nothing to be recorded",
+                    protocol->file);
+  }
+  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  void *before = dea_c_locale_enter();
+  dea_status status = sample(ctx, protocol, &wave);
+  status = status == DEA_OK ? write_csv(ctx, &wave, directory) : status;
+  status = status == DEA_OK ? write_mat(ctx, protocol, &wave, directory) : status;
+  status = status == DEA_OK ? write_texts(ctx, protocol, directory) : status;
+  dea_c_locale_leave(before);
+  dea_free(ctx, wave.time_s);
+  dea_free(ctx, wave.voltage_V);
+  dea_free(ctx, wave.control_V);
+  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

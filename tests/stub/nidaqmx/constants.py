@@ -1,0 +1,2 @@
+class AcquisitionType:
+    FINITE = "finite"

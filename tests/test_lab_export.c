@@ -1,0 +1,203 @@
+/* dea drive --export: the waveform, and the scripts, run with stand-ins for NI-DAQmx and for
+ * MATLAB's toolbox: what they write, that they end at 0 V, and that dea reads what they record. */
+#define _GNU_SOURCE // mkdtemp
+#include "command.h"
+
+#include <stdbool.h>
+
+enum { LOG_MAX = 1 << 16 };
+static char log_text[LOG_MAX];
+
+/* 4 kV twice for 0.3 s, and the ramp down by 20 kV/s. */
+#define SETS                                                                                       \
+  " --set 'sequence=[{waveform: {kind: square, high: 4 kV, frequency: 2 Hz, duty: 60 %, "          \
+  "cycles: 2}}]'"                                                                                  \
+  " --set safety.ramp=20kV/s --set safety.trip_time=20ms "
+#define EXPORT "drive @/examples/bench/cyclic.yaml --force --export ex" SETS
+
+static void make_files(void)
+{
+  assert_int_equal(command_run(EXPORT), 0);
+  assert_contains(command_out, "Next:  read ex/README.txt");
+}
+
+/* Runs a program within the folder; its log of the stand-in is in log_text. */
+static int run_script(const char *environment, const char *program)
+{
+  char text[2048];
+  snprintf(text, sizeof text,
+           "cd '%s/ex' && rm -f log recording.csv recording.mat && touch log && STUB_LOG=log "
+           "STUB_FAIL=999999 STUB_TRIP=999999 %s timeout 60 %s >../out.txt 2>../err.txt </dev/null",
+           command_folder, environment, program);
+  int status = system(text);
+  command_read("out.txt", command_out);
+  command_read("err.txt", command_err);
+  snprintf(text, sizeof text, "%s/ex/log", command_folder);
+  FILE *file = fopen(text, "rb");
+  assert_non_null(file);
+  log_text[fread(log_text, 1, sizeof log_text - 1, file)] = '\0';
+  fclose(file);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+#define PYTHON                                                                                     \
+  "env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" DEA_SOURCE_DIR                                      \
+  "/tests/stub' /usr/bin/python3 play_nidaqmx.py Dev7"
+#define OCTAVE                                                                                     \
+  "octave-cli --no-gui --norc --path '" DEA_SOURCE_DIR                                             \
+  "/tests/stub/matlab' --eval \"play_matlab('Dev7')\""
+
+/* Control voltages after the first that the log tells of single ones: they go down to 0 V. */
+static void check_ramp(double from)
+{
+  double last = from, value = NAN;
+  size_t count = 0;
+  for (const char *at = strstr(log_text, "\nwrite "); at != NULL; at = strstr(at + 1, "\nwrite ")) {
+    value = strtod(at + 7, NULL);
+    assert_true(value <= last);
+    last = value;
+    count++;
+  }
+  assert_true(value == 0);
+  assert_true(from == 0 ? count >= 1 : count > 2);
+}
+
+/* Lines of a recording, without the titles. */
+static size_t recorded(void)
+{
+  size_t lines = 0;
+  command_read("ex/recording.csv", command_out);
+  assert_contains(command_out, "time (s),command (kV),amplifier voltage (kV),"
+                               "amplifier current (uA),centre laser (um)");
+  for (const char *c = command_out; *c != '\0'; c++) {
+    lines += *c == '\n' ? 1U : 0U;
+  }
+  return lines - 1;
+}
+
+static void test_waveform(void **state)
+{
+  (void)state;
+  make_files();
+  command_read("ex/waveform.csv", command_out);
+  const char *at = command_out;
+  assert_contains(at, "time (s),V (kV),control (V)\n0,4,4\n0.001,4,4\n");
+  for (size_t i = 0; i <= 1000; i++) {
+    at = strchr(at, '\n') + 1;
+    double time_s, voltage_kV, control_V, due = i % 500 < 300 && i < 1000 ? 4 : 0;
+    assert_int_equal(sscanf(at, "%lf,%lf,%lf", &time_s, &voltage_kV, &control_V), 3);
+    assert_close(time_s, 1e-3 * (double)i, 0, 1e-12);
+    assert_true(voltage_kV == due && control_V == due);
+  }
+  assert_string_equal(strchr(at, '\n'), "\n");
+  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --export ex" SETS), 5);
+  assert_contains(command_err, "--force replaces it");
+  assert_int_equal(
+      command_run("drive @/examples/bench/cyclic.yaml --export no --set channels=null"), 2);
+  assert_contains(command_err, "nothing to be recorded");
+}
+
+static void check_reading_back(void)
+{
+  assert_int_equal(command_run("import ex/recording.csv --force -o r.h5"), 0);
+  assert_int_equal(command_run("recording r.h5"), 0);
+  assert_contains(command_out, "channels       4");
+  assert_contains(command_out, "command                command ");
+  assert_contains(command_out, "amplifier voltage      voltage       1000 Hz");
+  assert_contains(command_out, "0 to 4 kV");
+  assert_contains(command_out, "10 to 10 uA");
+  assert_contains(command_out, "centre laser           displacement ");
+  assert_contains(command_out, "0 to 800 um"); // 0.05 x 4 V^2 x 1 mm/V
+}
+
+static void test_python(void **state)
+{
+  (void)state;
+  make_files();
+  assert_int_equal(run_script("", PYTHON), 0);
+  assert_contains(log_text, "output Dev7/ao0 -10 10\ninput Dev7/ai0 -10 10\ninput Dev7/ai1");
+  assert_contains(log_text, "clock 1000 own 1001\nclock 1000 /Dev7/ai/SampleClock 1001\n");
+  assert_contains(log_text, "queued 1001 2400 0\n"); // 600 samples of 4 V
+  check_ramp(0);
+  assert_int_equal(recorded(), 1001);
+  check_reading_back();
+}
+
+static void test_python_ends_at_zero(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *environment, *part;
+  } ways[] = {{"STUB_FAIL=60", "the device was taken away"},
+              {"STUB_FAIL=650", "the device was taken away"},
+              {"STUB_SIGNAL=610", "signal 2; the output is at 0 V"},
+              {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
+  make_files();
+  for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    assert_int_equal(run_script(ways[i].environment, PYTHON), 1);
+    assert_contains(command_err, ways[i].part);
+    check_ramp(i == 0 ? 0 : 4);
+    assert_true(recorded() < 1001);
+  }
+  assert_int_equal(run_script("", "touch recording.csv; " PYTHON), 1);
+  assert_contains(command_err, "rename it first");
+}
+
+static bool no_octave(void)
+{
+  return system("octave-cli --version >/dev/null 2>&1") != 0;
+}
+
+static void test_matlab(void **state)
+{
+  (void)state;
+  if (no_octave()) {
+    skip();
+  }
+  make_files();
+  if (run_script("", OCTAVE) != 0) {
+    fail_msg("%s", command_err);
+  }
+  assert_contains(log_text, "daq ni\noutput Dev7/ao0 Voltage\ninput Dev7/ai0 Voltage");
+  assert_contains(log_text, "queued 1001 2400 0\nstart 1000\n");
+  assert_contains(log_text, "stop\ndelete\ndaq ni\noutput Dev7/ao0 Voltage\nwrite 0\n");
+  assert_int_equal(recorded(), 1001);
+  check_reading_back();
+  assert_int_equal(command_run("import ex/recording.mat --force -o r.h5"), 0);
+  assert_int_equal(command_run("recording r.h5"), 0);
+  assert_contains(command_out, "amplifier_voltage_V    voltage       1000 Hz");
+  assert_contains(command_out, "0 to 4 kV");
+  assert_contains(command_out, "10 to 10 uA");
+  assert_contains(command_out, "0 to 800 um");
+}
+
+static void test_matlab_ends_at_zero(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *environment, *part;
+  } ways[] = {{"STUB_FAIL=660", "the device was taken away"},
+              {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
+  if (no_octave()) {
+    skip();
+  }
+  make_files();
+  for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    assert_int_equal(run_script(ways[i].environment, OCTAVE), 1);
+    assert_contains(command_err, ways[i].part);
+    check_ramp(4);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_waveform),
+      cmocka_unit_test(test_python),
+      cmocka_unit_test(test_python_ends_at_zero),
+      cmocka_unit_test(test_matlab),
+      cmocka_unit_test(test_matlab_ends_at_zero),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
