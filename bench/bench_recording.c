@@ -28,8 +28,10 @@ static struct dea_recorder *create(struct dea_context *ctx, const char *file, si
   static const char *const names[] = {"a", "b", "c", "d"};
   struct dea_recorder_channel channel[4];
   for (size_t c = 0; c < channels; c++) {
-    channel[c] = (struct dea_recorder_channel){names[c], DEA_CHANNEL_VOLTAGE,     NULL,
-                                               0,        (double)channels / RATE, NAN};
+    channel[c] = (struct dea_recorder_channel){.name = names[c],
+                                               .kind = DEA_CHANNEL_VOLTAGE,
+                                               .interval_s = (double)channels / RATE,
+                                               .filter_Hz = NAN};
   }
   struct dea_recorder_options options = {.channels = channel, .channel_count = channels};
   struct dea_recorder *recorder;

@@ -29,9 +29,9 @@ static inline dea_status sample_create(struct dea_context *context, const char *
                                        double flush_s, struct dea_recorder **out)
 {
   static const struct dea_recorder_channel channels[SAMPLE_CHANNELS] = {
-      {"voltage", DEA_CHANNEL_VOLTAGE, NULL, 0.25, 1e-4, NAN},
-      {"centre/laser", DEA_CHANNEL_DISPLACEMENT, NULL, 0.25, 1e-4, 250.0},
-      {"temperature", DEA_CHANNEL_OTHER, "K", 0, 0, NAN},
+      {"voltage", DEA_CHANNEL_VOLTAGE, NULL, 0.25, 1e-4, NAN, 0, 0},
+      {"centre/laser", DEA_CHANNEL_DISPLACEMENT, NULL, 0.25, 1e-4, 250.0, -1e-3, 2e-3},
+      {"temperature", DEA_CHANNEL_OTHER, "K", 0, 0, NAN, 0, 0},
   };
   static const double x_m[SAMPLE_POINTS] = {-0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03};
   const struct dea_recorder_options options = {
@@ -112,6 +112,8 @@ static inline void sample_check(const struct dea_recording *r, size_t samples, s
   assert_string_equal(r->channels[0].unit, "V");
   assert_string_equal(r->channels[2].unit, "K");
   assert_true(isnan(r->channels[0].filter_Hz) && r->channels[1].filter_Hz == 250.0);
+  assert_true(r->channels[0].lowest == r->channels[0].highest); // not known
+  assert_true(r->channels[1].lowest == -1e-3 && r->channels[1].highest == 2e-3);
   assert_true(r->channels[0].interval_s == 1e-4 && r->channels[0].start_s == 0.25);
   for (size_t c = 0; c < 3; c++) {
     const struct dea_channel *channel = &r->channels[c];

@@ -119,13 +119,13 @@ static void test_wrong_calls_are_refused_and_harm_nothing(void **state)
 static void test_names_and_options(void **state)
 {
   (void)state;
-  struct dea_recorder_channel channels[] = {{"a/b", DEA_CHANNEL_OTHER, "", 0, 1, NAN},
-                                            {"a_b", DEA_CHANNEL_OTHER, "1/s", 0, 1, NAN},
-                                            {".", DEA_CHANNEL_OTHER, NULL, 0, 1, NAN},
-                                            {"..", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN},
-                                            {"Kraft Ä µ", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN},
-                                            {"/", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN},
-                                            {"a_b (2)", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN}};
+  struct dea_recorder_channel channels[] = {{"a/b", DEA_CHANNEL_OTHER, "", 0, 1, NAN, 0, 0},
+                                            {"a_b", DEA_CHANNEL_OTHER, "1/s", 0, 1, NAN, 0, 0},
+                                            {".", DEA_CHANNEL_OTHER, NULL, 0, 1, NAN, 0, 0},
+                                            {"..", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN, 0, 0},
+                                            {"Kraft Ä µ", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN, 0, 0},
+                                            {"/", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN, 0, 0},
+                                            {"a_b (2)", DEA_CHANNEL_FORCE, NULL, 0, 1, NAN, 0, 0}};
   enum { COUNT = sizeof channels / sizeof channels[0] };
   struct dea_recorder_options options = {.channels = channels, .channel_count = COUNT};
   struct dea_recorder *recorder;

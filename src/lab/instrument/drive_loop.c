@@ -39,6 +39,7 @@ struct loop {
   struct dea_recorder *recorder;
   struct dea_drive_output output;
   struct dea_drive_watch watch;
+  size_t at_end[DEA_PROTOCOL_INPUTS_MAX]; // samples at the end of an input's range
   size_t put, got, recorded; // samples of the output, of the inputs, of the command's channel
   size_t block, ahead;       // samples
   double *asked, *volts;     // [room] of the samples on their way, by number; [block]
@@ -129,6 +130,7 @@ static void take_sample(struct loop *loop, const double *volts)
   for (size_t i = 0; i < loop->protocol->input_count; i++) {
     const struct dea_protocol_input *input = &loop->protocol->inputs[i];
     values[i] = volts[i] * input->per_volt + input->at_zero;
+    loop->at_end[i] += fabs(volts[i]) >= (1 - DEA_CHANNEL_END) * input->range_V.si;
   }
   double asked_V = record_sample(loop, values);
   loop->got++;
@@ -417,6 +419,23 @@ static dea_status set_rooms(struct loop *loop)
   return good ? DEA_OK : DEA_E_MEMORY;
 }
 
+/* Names the inputs whose range was too small. */
+static dea_status note_ranges(const struct loop *loop)
+{
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &loop->protocol->inputs[i];
+    double share = (double)loop->at_end[i] / (double)loop->got;
+    if (loop->at_end[i] > 0) {
+      DEA_TRY(loop->ctx, dea_finding_add(
+                             loop->ctx, DEA_WARNING, input->name.place,
+                             "channel '%s' was at the end of its range of +-%g V in %.2g %% of its "
+                             "samples: what was measured there was cut off",
+                             input->name.text, input->range_V.si, 100 * share));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status finish(struct loop *loop)
 {
   struct dea_drive_report *report = loop->report;
@@ -425,6 +444,8 @@ static dea_status finish(struct loop *loop)
   report->reached_zero = !loop->player->failed || loop->output.played == 0;
   report->largest_current_A = loop->watch.largest_current_A;
   dea_status finished = dea_recorder_finish(loop->recorder, report->ended);
+  dea_status noted = note_ranges(loop);
+  finished = finished == DEA_OK ? noted : finished;
   if (loop->status != DEA_OK) {
     return dea_fail(loop->ctx, loop->status, "the measurement ended after %.4g s: %s%s",
                     report->played_s, report->ended,

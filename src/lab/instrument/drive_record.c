@@ -4,6 +4,7 @@
 #include "output/json.h"
 #include "result/provenance.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -86,14 +87,20 @@ static size_t list_channels(const struct dea_protocol *protocol,
 {
   double interval_s = 1 / protocol->rate_Hz.si;
   size_t count = 0;
-  channels[count++] =
-      (struct dea_recorder_channel){"command", DEA_CHANNEL_COMMAND, NULL, 0, interval_s, NAN};
+  channels[count++] = (struct dea_recorder_channel){
+      .name = "command", .kind = DEA_CHANNEL_COMMAND, .interval_s = interval_s, .filter_Hz = NAN};
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_protocol_input *input = &protocol->inputs[i];
     const char *unit = input->kind.value == DEA_CHANNEL_OTHER ? input->unit.text : NULL;
-    channels[count++] = (struct dea_recorder_channel){
-        input->name.text,   (enum dea_channel_kind)input->kind.value, unit, 0, interval_s,
-        input->filter_Hz.si};
+    double reach = fabs(input->range_V.si * input->per_volt);
+    channels[count++] =
+        (struct dea_recorder_channel){.name = input->name.text,
+                                      .kind = (enum dea_channel_kind)input->kind.value,
+                                      .unit = unit,
+                                      .interval_s = interval_s,
+                                      .filter_Hz = input->filter_Hz.si,
+                                      .lowest = input->at_zero - reach,
+                                      .highest = input->at_zero + reach};
   }
   for (size_t i = 0; i < bench->count; i++) {
     for (size_t k = 0; k < bench->instruments[i]->reading_count; k++) {
@@ -102,8 +109,8 @@ static size_t list_channels(const struct dea_protocol *protocol,
         return DEA_CHANNELS_MAX + 1;
       }
       const char *unit = reading->unit[0] != '\0' ? reading->unit : NULL;
-      channels[count++] =
-          (struct dea_recorder_channel){reading->name, reading->kind, unit, 0, 0, NAN};
+      channels[count++] = (struct dea_recorder_channel){
+          .name = reading->name, .kind = reading->kind, .unit = unit, .filter_Hz = NAN};
     }
   }
   return count;

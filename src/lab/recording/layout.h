@@ -3,7 +3,8 @@
  *   attributes format, version
  *   title, protocol, design, design_name, provenance   whole texts, where there are any
  *   state               text of STATE_SIZE bytes, overwritten in place at the end
- *   channels/KEY        attributes name, quantity, unit, index, start_s, interval_s, filter_Hz
+ *   channels/KEY        attributes name, quantity, unit, index, start_s, interval_s, filter_Hz, and
+ *                       lowest, highest where the range is known
  *     values [n]        and, where interval_s is 0, time [n]
  *   profiles            x_m [points], time_s [n], z_m [n][points]
  *   cycles [n][5]       step, number, start_s, end_s, level_V */

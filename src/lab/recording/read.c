@@ -81,6 +81,10 @@ static void get_channel(struct h5 *h, hid_t group, struct dea_recording *recordi
   channel->start_s = dea_h5_get_real(h, group, "start_s");
   channel->interval_s = dea_h5_get_real(h, group, "interval_s");
   channel->filter_Hz = dea_h5_get_real(h, group, "filter_Hz");
+  if (dea_h5_has_attribute(h, group, "lowest")) {
+    channel->lowest = dea_h5_get_real(h, group, "lowest");
+    channel->highest = dea_h5_get_real(h, group, "highest");
+  }
   if (h->status == DEA_OK &&
       (channel->name[0] == '\0' || !find_kind(quantity, &channel->kind) ||
        !isfinite(channel->start_s) || !isfinite(channel->interval_s) || channel->interval_s < 0)) {

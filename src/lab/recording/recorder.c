@@ -125,6 +125,10 @@ static void make_channel(struct h5 *h, hid_t channels, size_t index,
   dea_h5_put_real(h, group, "start_s", channel->start_s);
   dea_h5_put_real(h, group, "interval_s", channel->interval_s);
   dea_h5_put_real(h, group, "filter_Hz", channel->filter_Hz);
+  if (channel->lowest < channel->highest) {
+    dea_h5_put_real(h, group, "lowest", channel->lowest);
+    dea_h5_put_real(h, group, "highest", channel->highest);
+  }
   size_t rows = chunk_rows(channel->interval_s);
   dea_series_make(h, group, "values", 1, rows, unit, meaning->meaning);
   if (channel->interval_s == 0) {

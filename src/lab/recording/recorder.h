@@ -16,6 +16,7 @@ struct dea_recorder_channel {
   const char *unit;           // NULL: the kind's
   double start_s, interval_s; // interval 0: every sample comes with its time
   double filter_Hz;           // NAN: none
+  double lowest, highest;     // as of a channel
 };
 
 struct dea_recorder_options {

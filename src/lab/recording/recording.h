@@ -42,9 +42,10 @@ struct dea_channel {
   enum dea_channel_kind kind;
   char unit[DEA_CHANNEL_NAME_SIZE]; // SI unit of the kind; of DEA_CHANNEL_OTHER as the file says
   double start_s, interval_s;
-  double filter_Hz; // low-pass that reductions apply; NAN: none
-  double *time_s;   // [count], owned; NULL with an interval
-  double *values;   // [count], owned
+  double filter_Hz;       // low-pass that reductions apply; NAN: none
+  double lowest, highest; // values that it can show: what is there may be beyond; equal: not known
+  double *time_s;         // [count], owned; NULL with an interval
+  double *values;         // [count], owned
   size_t count;
 };
 
@@ -90,6 +91,10 @@ dea_status dea_recording_read(struct dea_context *ctx, const char *file,
  * needs h5clear for that). */
 dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recording *recording,
                                const char *file);
+
+/* A value closer to the end of its channel's range than this share of half of it is taken to be
+ * beyond. */
+#define DEA_CHANNEL_END 1e-4
 
 /* First channel of a kind, or the one of that name; NULL when there is none. Lent. */
 const struct dea_channel *dea_recording_kind(const struct dea_recording *recording,

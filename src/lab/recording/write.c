@@ -43,9 +43,9 @@ dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recordi
   };
   for (size_t c = 0; c < recording->channel_count; c++) {
     const struct dea_channel *channel = &recording->channels[c];
-    channels[c] =
-        (struct dea_recorder_channel){channel->name,    channel->kind,       channel->unit,
-                                      channel->start_s, channel->interval_s, channel->filter_Hz};
+    channels[c] = (struct dea_recorder_channel){
+        channel->name,       channel->kind,      channel->unit,   channel->start_s,
+        channel->interval_s, channel->filter_Hz, channel->lowest, channel->highest};
   }
   struct dea_recorder *recorder;
   DEA_TRY(ctx, dea_recorder_create(ctx, file, &options, &recorder));

@@ -271,6 +271,25 @@ static dea_status reduce_channels(struct job *job, const struct dea_reduce_optio
   return DEA_OK;
 }
 
+/* Without the cycles in which a channel was at its end. */
+static dea_status drop_saturated(struct job *job, enum dea_reduced_kind kind)
+{
+  bool force = kind == DEA_REDUCED_FORCE;
+  const struct dea_channel *channel =
+      dea_recording_kind(job->recording, force ? DEA_CHANNEL_FORCE : DEA_CHANNEL_DISPLACEMENT);
+  if ((!force && kind != DEA_REDUCED_DISPLACEMENT) || channel == NULL) {
+    return DEA_OK;
+  }
+  size_t dropped =
+      dea_saturation_drop(channel, job->list.parts, job->out->cycle_count, kind, job->out->cycles);
+  if (dropped > 0) {
+    NOTE(job->ctx,
+         "channel '%s' is at the end of its range in %zu of %zu cycles, which are left out of it",
+         channel->name, dropped, job->out->cycle_count);
+  }
+  return DEA_OK;
+}
+
 static dea_status reduce_cycles(struct job *job)
 {
   struct dea_reduction *r = job->out;
@@ -281,6 +300,7 @@ static dea_status reduce_cycles(struct job *job)
               dea_cycle_values(job->ctx, &r->series[kind], job->list.parts, r->cycle_count,
                                r->settle, r->cycles, (enum dea_reduced_kind)kind, &r->noise[kind]));
       unknown = unknown || isnan(r->noise[kind]);
+      DEA_TRY(job->ctx, drop_saturated(job, (enum dea_reduced_kind)kind));
     }
   }
   if (unknown) {

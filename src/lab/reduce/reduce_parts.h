@@ -134,6 +134,14 @@ dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cyc
                            size_t count, double tolerance_V, struct dea_reduced_level **out,
                            size_t *level_count, size_t *level_of);
 
+// saturation.c -----------------------------------------------------------------------------------
+
+/* Takes the values back of cycles in one of whose parts the channel is at the end of its range for
+ * more than 1 % of the samples; how many cycles. */
+size_t dea_saturation_drop(const struct dea_channel *channel, const struct dea_cycle_parts *parts,
+                           size_t count, enum dea_reduced_kind kind,
+                           struct dea_reduced_cycle *cycles);
+
 // edges.c, level.c: the frame in the picture -----------------------------------------------------
 
 /* Finds the frame's inner edges in a profile: a step up on both sides. radius_m: of the frame, NAN
