@@ -177,8 +177,9 @@ static void test_reads(void **state)
 static void test_plays(void **state)
 {
   (void)state;
-  static const char plays[] = "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 1 s\n"
-                              "output: \"SOUR:VOLT %%g\"\noutput_interval: 4 ms\nqueue: 20 ms\n";
+  static const char plays[] =
+      "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 1 s\n"
+      "output: \"SOUR:VOLT %%g\"\noutput_factor: 2\noutput_interval: 4 ms\nqueue: 20 ms\n";
   static struct bench b;
   double volts[60];
   b.protocol.rate_Hz.si = 1000;
@@ -189,15 +190,15 @@ static void test_plays(void **state)
   }
   // 60 ms do not fit into a queue of 20 ms: this waits until the first 40 have been played.
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 60), DEA_OK);
-  for (int i = 0; i < 20 && strstr(b.emulator.log, "-1.5") == NULL; i++) {
+  for (int i = 0; i < 20 && strstr(b.emulator.log, "-3") == NULL; i++) {
     const struct dea_intake nothing = {0};
     assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0.01, &nothing), DEA_OK);
   }
   end(&b);
   const char *log = strstr(b.emulator.log, "SOUR:VOLT 0\n");
   assert_non_null(log);
-  assert_string_equal(log, "SOUR:VOLT 0\nSYST:ERR?\nSOUR:VOLT 0.125\nSOUR:VOLT 0.25\n"
-                           "SOUR:VOLT -1.5\nSOUR:VOLT 0\n");
+  assert_string_equal(log, "SOUR:VOLT 0\nSYST:ERR?\nSOUR:VOLT 0.25\nSOUR:VOLT 0.5\n"
+                           "SOUR:VOLT -3\nSOUR:VOLT 0\n");
 }
 
 static void test_makes_no_sense(void **state)

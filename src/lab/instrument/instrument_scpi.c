@@ -21,7 +21,7 @@ struct raw_reading {
 
 struct raw {
   struct dea_label kind, address, identity, output;
-  struct dea_quantity port, timeout_s, interval_s, output_interval_s, queue_s;
+  struct dea_quantity port, timeout_s, interval_s, output_factor, output_interval_s, queue_s;
   struct dea_label setup[COMMANDS_MAX], at_stop[COMMANDS_MAX];
   size_t setup_count, at_stop_count;
   struct raw_reading readings[DEA_INSTRUMENT_READINGS_MAX];
@@ -82,9 +82,18 @@ static const struct dea_field fields[] = {
      .doc = "what it is asked for",
      .example = "[{name: leakage, query: \"MEAS:CURR?\", quantity: current}]"},
     DEA_INSTRUMENT_LABEL(struct raw, output, "output",
-                         "command that sets the control voltage, %g stands for it in V; timed by "
+                         "command that sets the control voltage, with %g for the number; timed by "
                          "software",
                          "SOUR:VOLT %g", .absent_text = "it plays nothing"),
+    {.key = "output_factor",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct raw, output_factor),
+     .unit = "1",
+     .default_text = "1",
+     .doc =
+         "what is sent for 1 V of control voltage; of a high-voltage supply that is set in V, the "
+         "amplifier's gain",
+     .example = "1000"},
     DEA_INSTRUMENT_TIME(struct raw, output_interval_s, "output_interval",
                         "shortest time between two commands of the output", "20 ms", 60),
     DEA_INSTRUMENT_TIME(struct raw, queue_s, "queue", "of the output that is held ready", "0.25 s",
@@ -141,7 +150,7 @@ static void output_command(const struct raw *raw, double volts, char out[COMMAND
 {
   char number[32];
   const char *hole = strchr(raw->output.text, '%');
-  snprintf(number, sizeof number, "%.9g", volts);
+  snprintf(number, sizeof number, "%.9g", volts * raw->output_factor.si);
   char *comma = strchr(number, ',');
   if (comma != NULL) {
     *comma = '.';

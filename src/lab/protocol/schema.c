@@ -323,13 +323,15 @@ static const struct dea_field protocol_fields[] = {
      .count_offset = AT(instrument_count),
      .kinds = dea_instrument_records,
      .absent_text = "none: only --sim and --export",
-     .doc = "what plays and measures; each with its kind and the keys of that"},
+     .doc = "what plays and measures; each with its kind and the keys of that",
+     .example = "[{kind: comedi}, {kind: gocator, address: 192.168.1.10}]"},
     {.key = "sim",
      .kind = DEA_FIELD_SECTION,
      .offset = AT(sim),
      .kinds = sim_records,
      .absent_text = "its defaults",
-     .doc = "the simulated bench of --sim"},
+     .doc = "the simulated bench of --sim",
+     .example = "{seed: 2}"},
 };
 
 const struct dea_record dea_protocol_record = {"protocol", "protocol of a measurement on the bench",
