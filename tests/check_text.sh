@@ -10,7 +10,7 @@ files() {
     find . \( -name .git -o -path './build*' -o -path ./runs -o -name '*.run' \) -prune -o -type f -print
   fi
 }
-texts=$(files | grep -vE '\.(png|pdf|h5|mat|tdms)$|(^|/)corpus/' | while read -r file; do
+texts=$(files | grep -vE '\.(png|pdf|h5|mat|tdms|gdp)$|(^|/)corpus/' | while read -r file; do
   [ ! -f "$file" ] || echo "$file"
 done)
 [ -n "$texts" ] || { echo "no file found: the check is broken"; exit 1; }

@@ -3,7 +3,7 @@
 #include "daq_bench.h"
 #include "failing_allocator.h"
 
-#include "context_fixture.h"
+#include "message_fixture.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -16,14 +16,6 @@ static dea_status begin(struct daq_bench *b)
   dea_finding_clear(ctx);
   snprintf(b->text, sizeof b->text, "kind: comedi\ndevice: /dev/fake7\nlibrary: %s\n", library);
   return emulator_open(ctx, &b->protocol, b->text, &b->instrument);
-}
-
-static void assert_message(dea_status status, dea_status wanted, const char *part)
-{
-  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
-    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
-             dea_context_message(ctx), part);
-  }
 }
 
 static void test_plays_and_measures(void **state)

@@ -5,7 +5,7 @@
 #include "gocator_bytes.h"
 #include "lab/instrument/clock.h"
 
-#include "context_fixture.h"
+#include "message_fixture.h"
 
 /* What the emulated sensor sends on its data connection: `head`, then frames until it is enough. */
 struct sensor {
@@ -96,14 +96,6 @@ static void end(struct bench *b)
   emulator_stop(&b->control);
   memset(b, 0, sizeof *b);
   b->sensor.status = 1;
-}
-
-static void assert_message(dea_status status, dea_status wanted, const char *part)
-{
-  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
-    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
-             dea_context_message(ctx), part);
-  }
 }
 
 static void test_frames(void **state)

@@ -5,7 +5,7 @@
 #include "lab/instrument/line_reader.h"
 #include "lab/instrument/scpi_parse.h"
 
-#include "context_fixture.h"
+#include "message_fixture.h"
 
 /* How the emulated instrument behaves. */
 struct behaviour {
@@ -91,14 +91,6 @@ static void end(struct bench *b)
     emulator_close(ctx, b->instrument);
   }
   emulator_stop(&b->emulator);
-}
-
-static void assert_message(dea_status status, dea_status wanted, const char *part)
-{
-  if (status != wanted || strstr(dea_context_message(ctx), part) == NULL) {
-    fail_msg("%s, not %s: '%s' should hold '%s'", dea_status_name(status), dea_status_name(wanted),
-             dea_context_message(ctx), part);
-  }
 }
 
 static void test_numbers(void **state)
