@@ -2,6 +2,7 @@
 #ifndef DEA_TESTS_IMPORT_TEXT_H
 #define DEA_TESTS_IMPORT_TEXT_H
 
+#include "failing_allocator.h"
 #include "lab/import/import.h"
 #include "own_folder.h"
 #include "testing.h"
@@ -82,6 +83,27 @@ static inline void assert_refused(const char *name, const void *bytes, size_t le
     fail_msg("'%s' (line %zu) is not said: %s; %s", part, line, dea_context_message(ctx),
              count > 0 ? findings[0].text : "");
   }
+}
+
+struct refused {
+  const char *text;
+  size_t line; // 0: of no line
+  const char *part;
+};
+
+static inline void assert_all_refused(const char *name, const struct refused *cases, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    assert_refused(name, cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].part);
+  }
+}
+
+/* For failing_each: reads a file that is there. */
+static inline void read_again(struct dea_context *own, const char *name)
+{
+  struct dea_table *table;
+  failing_check(own, dea_table_read(own, in_folder(name), NULL, &table));
+  dea_table_destroy(own, table);
 }
 
 /* Whether a finding of at least that severity holds a text. */

@@ -1,6 +1,5 @@
 /* Import of text: CSV in the dialects of instruments and spreadsheets. */
 #define _GNU_SOURCE
-#include "failing_allocator.h"
 #include "import_text.h"
 
 static const double t3[] = {0, 0.001, 0.002}, v3[] = {0, 0.5, -1.25e3};
@@ -157,11 +156,7 @@ static void test_text_columns_and_rates(void **state)
 static void test_refused(void **state)
 {
   (void)state;
-  static const struct {
-    const char *text;
-    size_t line;
-    const char *part;
-  } cases[] = {
+  static const struct refused cases[] = {
       {"t;V\n0;1,234.5\n1;2,345.6\n", 3, "a comma and a point"},
       {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 3, "a comma and a point"},
       {"t,V\n0,1\n1,oops\n2,3\n", 3, "'oops' stands in a line of numbers"},
@@ -169,12 +164,9 @@ static void test_refused(void **state)
       {"t,V\n0,1\n1,2\n2,3,4\n3,4,5\n4,5,6\n", 2, "from line 4 on"},
       {"t,V\n0,1\n1,2\nend\n", 4, "1 field where 2 are due"},
       {"just words\nand more\n", 0, "no lines of numbers"},
-      {"a\0b", 0, "no format that is known"},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    size_t length = i == 7 ? 3 : strlen(cases[i].text);
-    assert_refused("bad.csv", cases[i].text, length, cases[i].line, cases[i].part);
-  }
+  assert_all_refused("bad.csv", cases, sizeof cases / sizeof cases[0]);
+  assert_refused("bad.csv", "a\0b", 3, 0, "no format that is known");
   write_bytes("empty.csv", "", 0);
   struct dea_table *table;
   assert_int_equal(dea_table_read(ctx, in_folder("empty.csv"), NULL, &table), DEA_E_IO);
@@ -208,10 +200,7 @@ static void test_late_errors(void **state)
 
 static void read_once(struct dea_context *own)
 {
-  struct dea_table *table;
-  dea_status status = dea_table_read(own, in_folder("memory.csv"), NULL, &table);
-  failing_check(own, status);
-  dea_table_destroy(own, table);
+  read_again(own, "memory.csv");
 }
 
 static void test_memory(void **state)

@@ -1,6 +1,5 @@
 /* Import of LabVIEW's text measurements, written line by line from NI's published layout. */
 #define _GNU_SOURCE
-#include "failing_allocator.h"
 #include "import_text.h"
 
 #define HEADER(x, headings, rest)                                                                  \
@@ -135,11 +134,7 @@ static void test_special_blocks_and_missing(void **state)
 static void test_refused(void **state)
 {
   (void)state;
-  static const struct {
-    const char *text;
-    size_t line;
-    const char *part;
-  } cases[] = {
+  static const struct refused cases[] = {
       {"LabVIEW Measurement\nSeparator\tTab\n", 0, "no line ***End_of_Header***"},
       {"LabVIEW Measurement\n***End_of_Header***\n", 0, "no segment"},
       {"LabVIEW Measurement\n***End_of_Header***\nChannels\t0\n", 0, "line 3"},
@@ -152,16 +147,12 @@ static void test_refused(void **state)
        "1\ttwo\n",
        7, "'two' is not a number"},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    assert_refused("bad.lvm", cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].part);
-  }
+  assert_all_refused("bad.lvm", cases, sizeof cases / sizeof cases[0]);
 }
 
 static void read_once(struct dea_context *own)
 {
-  struct dea_table *table;
-  failing_check(own, dea_table_read(own, in_folder("gap.lvm"), NULL, &table));
-  dea_table_destroy(own, table);
+  read_again(own, "gap.lvm");
 }
 
 static void test_memory(void **state)

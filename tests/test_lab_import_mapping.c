@@ -1,7 +1,6 @@
 /* From tables to recordings: guesses, mappings and their errors, clocks, profiles; COMSOL's export.
  */
 #define _GNU_SOURCE
-#include "failing_allocator.h"
 #include "import_text.h"
 
 static struct dea_mapping *map_text(const char *text)

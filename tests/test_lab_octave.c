@@ -136,7 +136,7 @@ static void test_damaged_mat(void **state)
   write_bytes("short.mat", bytes, n / 2);
   assert_int_equal(dea_table_read(ctx, in_folder("short.mat"), NULL, &table), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "longer than the file"));
-  assert_refused("no.mat", "not a .mat file at all", 22, 0, "no .mat file");
+  assert_refused("no.mat", "not a .mat file at all", 22, 0, "the variable at byte 0 is none");
   // a length that the file cannot have: the number of rows of the first variable
   bytes[128 + 32 + 3] = 0x7f;
   write_bytes("claims.mat", bytes, n);

@@ -192,14 +192,8 @@ static dea_status read_text(struct dea_context *ctx, struct dea_slice text, stru
 static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                        size_t length, struct dea_table *out)
 {
-  char *copy;
-  struct dea_slice text;
-  dea_status status = dea_text_file_open(ctx, file, bytes, length, &copy, &text);
-  if (status == DEA_OK) {
-    status = read_text(ctx, text, out);
-  }
-  dea_free(ctx, copy);
-  return status;
+  (void)file;
+  return dea_text_file_read(ctx, bytes, length, read_text, out);
 }
 
 const struct dea_importer dea_import_csv = {

@@ -309,7 +309,7 @@ static dea_status read_segments(struct dea_lvm *lvm, struct dea_lines start)
                            : dea_fail(lvm->ctx, DEA_E_IO, "'%s' holds no segment", lvm->file);
 }
 
-static dea_status read_text(struct dea_lvm *lvm, struct dea_slice text)
+static dea_status read_measurement(struct dea_lvm *lvm, struct dea_slice text)
 {
   lvm->lines = (struct dea_lines){text.text, text.text + text.length, 0};
   DEA_TRY(lvm->ctx, read_header(lvm));
@@ -319,24 +319,25 @@ static dea_status read_text(struct dea_lvm *lvm, struct dea_slice text)
   return read_segments(lvm, start);
 }
 
+static dea_status read_text(struct dea_context *ctx, struct dea_slice text, struct dea_table *out)
+{
+  struct dea_lvm *lvm = dea_alloc(ctx, 1, sizeof *lvm);
+  if (lvm == NULL) {
+    return DEA_E_MEMORY;
+  }
+  lvm->ctx = ctx;
+  lvm->file = out->file;
+  lvm->table = out;
+  dea_status status = read_measurement(lvm, text);
+  dea_free(ctx, lvm);
+  return status;
+}
+
 static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                        size_t length, struct dea_table *out)
 {
-  char *copy;
-  struct dea_slice text;
-  dea_status status = dea_text_file_open(ctx, file, bytes, length, &copy, &text);
-  struct dea_lvm *lvm = status == DEA_OK ? dea_alloc(ctx, 1, sizeof *lvm) : NULL;
-  if (lvm != NULL) {
-    lvm->ctx = ctx;
-    lvm->file = out->file;
-    lvm->table = out;
-    status = read_text(lvm, text);
-  } else if (status == DEA_OK) {
-    status = DEA_E_MEMORY;
-  }
-  dea_free(ctx, lvm);
-  dea_free(ctx, copy);
-  return status;
+  (void)file;
+  return dea_text_file_read(ctx, bytes, length, read_text, out);
 }
 
 const struct dea_importer dea_import_lvm = {

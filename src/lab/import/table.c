@@ -31,6 +31,7 @@ const struct dea_importer *const *dea_importer_all(size_t *count)
 /* Text of a file as UTF-8: what is none is taken for Latin-1. Control characters become blanks. */
 static char *copy_text(struct dea_context *ctx, const char *text, size_t length)
 {
+  text = length > 0 ? text : "";
   const char *zero = memchr(text, 0, length);
   length = zero != NULL ? (size_t)(zero - text) : length;
   char *whole = dea_copy_text(ctx, text, length);

@@ -86,3 +86,18 @@ dea_status dea_text_file_open(struct dea_context *ctx, const char *file, const u
   }
   return DEA_OK;
 }
+
+dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
+                              dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
+                                                 struct dea_table *out),
+                              struct dea_table *out)
+{
+  char *copy;
+  struct dea_slice text;
+  dea_status status = dea_text_file_open(ctx, out->file, bytes, length, &copy, &text);
+  if (status == DEA_OK) {
+    status = read(ctx, text, out);
+  }
+  dea_free(ctx, copy);
+  return status;
+}

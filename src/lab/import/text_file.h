@@ -2,7 +2,7 @@
 #ifndef DEA_LAB_IMPORT_TEXT_FILE_H
 #define DEA_LAB_IMPORT_TEXT_FILE_H
 
-#include "base/context.h"
+#include "lab/import/import.h"
 #include "lab/import/slices.h"
 
 /* Takes off a byte order mark; UTF-16 with one becomes UTF-8 in *copy (the caller's, NULL when the
@@ -11,6 +11,11 @@
  * text. */
 dea_status dea_text_file_open(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                               size_t length, char **copy, struct dea_slice *text);
+/* Opens the bytes and hands the text to a reader. */
+dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
+                              dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
+                                                 struct dea_table *out),
+                              struct dea_table *out);
 /* Whether the first bytes are text. */
 bool dea_text_file_is(const unsigned char *head, size_t length);
 
