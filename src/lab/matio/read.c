@@ -323,6 +323,7 @@ dea_status dea_matio_read(struct dea_context *ctx, const char *file, struct dea_
     return dea_fail(ctx, DEA_E_IO, "cannot read '%s'", file);
   }
   reader.bytes_max = (uint64_t)info.st_size * RATIO_MAX;
+  DEA_TRY(ctx, dea_matio_check(ctx, file));
   dea_matio_quiet();
   mat_t *mat = Mat_Open(file, MAT_ACC_RDONLY);
   if (mat == NULL) {
