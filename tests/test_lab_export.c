@@ -164,7 +164,12 @@ static void test_matlab(void **state)
   assert_contains(log_text, "stop\ndelete\ndaq ni\noutput Dev7/ao0 Voltage\nwrite 0\n");
   assert_int_equal(recorded(), 1001);
   check_reading_back();
-  assert_int_equal(command_run("import ex/recording.mat --force -o r.h5"), 0);
+  int code = command_run("import ex/recording.mat --force -o r.h5");
+  if (code == 2) { // a build without it
+    assert_contains(command_err, "libmatio");
+    return;
+  }
+  assert_int_equal(code, 0);
   assert_int_equal(command_run("recording r.h5"), 0);
   assert_contains(command_out, "amplifier_voltage_V    voltage       1000 Hz");
   assert_contains(command_out, "0 to 4 kV");

@@ -102,7 +102,6 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
 static struct dea_protocol *bench_protocol(const char *text)
 {
   struct dea_protocol *p;
-  good_protocol(ctx, HEAD IDEAL "waveform: " WAVE "\n"); // leaves a design there
   write_in_folder("design.yaml", VISCOUS_DESIGN);
   write_in_folder("protocol.yaml", text);
   dea_finding_clear(ctx);

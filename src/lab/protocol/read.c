@@ -254,7 +254,7 @@ static dea_status take_design(struct dea_context *ctx, struct dea_protocol *prot
 static dea_status take_instruments(struct dea_context *ctx, struct dea_protocol *protocol)
 {
   for (size_t i = 0; i < protocol->instrument_count; i++) {
-    char path[32];
+    char path[48];
     snprintf(path, sizeof path, "instruments[%zu]", i);
     protocol->instruments[i].path = dea_intern(ctx, path);
     if (protocol->instruments[i].path == NULL) {
