@@ -328,7 +328,7 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
   double duration_s = dea_protocol_duration_s(loop->protocol), shown_s = -1;
   bool played = false;
   while (!played && !loop->player->failed) {
-    if (interrupt != NULL && *interrupt != 0) {
+    if (interrupt != NULL && *interrupt != 0 && !loop->output.over) { // else there is all of it
       end_early(loop, DEA_E_INTERRUPTED, "interrupted");
     }
     bool more = has_room(loop);

@@ -46,6 +46,5 @@ size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, doubl
 
 void dea_drive_output_ramp(struct dea_drive_output *output)
 {
-  output->ramping = true;
-  output->over = false; // the last one is 0 V in any case
+  output->ramping = true; // one that is over has ended with 0 V
 }
