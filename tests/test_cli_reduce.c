@@ -16,6 +16,7 @@ static struct dea_recording bench(void)
 {
   struct signal_bench b = signal_bench_plain();
   b.points = 200;
+  b.rate_Hz = 1000.0;
   b.frame_Hz = 50.0;
   b.cycles = 4;
   b.level_count = 3;
@@ -101,6 +102,14 @@ static void test_tables(void **state)
   }
   command_read("tables/history.csv", command_out);
   assert_contains(command_out, "time (s),V (kV),z centre (um),z fibre tip (um),force (mN)\n");
+  double before_s = -1.0; // and times rise, also where the samples of two clocks meet
+  for (const char *line = strstr(command_out, "(mN)\n") + 5; *line != '\0';
+       line = strchr(line, '\n') + 1) {
+    double time_s = strtod(line, NULL);
+    assert_true(time_s > before_s);
+    before_s = time_s;
+  }
+  assert_close(before_s, 25.0, 0.0, 0.01);
   command_read("tables/profiles.csv", command_out);
   assert_contains(command_out, "V (kV),x (mm),z (um),z std (um)\n");
   command_read("tables/discharges.csv", command_out);

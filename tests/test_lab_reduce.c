@@ -376,6 +376,53 @@ static void test_creep_and_fast_rise(void **state)
   signal_free(&r);
 }
 
+static void test_clipped_sensor_is_said(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.displacement = true;
+  b.sigma = 1e-6;
+  for (int k = 0; k < 2; k++) {
+    struct dea_recording r = signal_record(&b, 1);
+    for (size_t i = 0; i < r.channels[1].count && k == 1; i++) {
+      r.channels[1].values[i] = fmin(r.channels[1].values[i], 250e-6);
+    }
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(noted("250 um, the end of its range"), k == 1);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+/* Few frames in a part, and an outlier in one of them that no neighbour shows. */
+static void test_outlier_among_few_frames(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.frame_Hz = 20.0; // four are averaged
+  b.cycles = 6;
+  b.outliers = b.lost = 0.0;
+  b.point_sigma = 2e-6;
+  b.m_per_V2 = 4e-3 / 36e6; // steep: 0.36 mm/mm, up to an apex that is no outlier
+  b.cone = 1.0;
+  struct dea_recording r = signal_record(&b, 4);
+  size_t frame = (size_t)((b.lead_s + 2.0 * b.cycle_s + 0.5 * b.cycle_s - 0.08) * b.frame_Hz);
+  for (size_t i = 0; i < b.points; i++) { // the whole frame
+    r.profiles.z_m[frame * b.points + i] +=
+        fabs(r.profiles.x_m[i] - b.centre_m) < b.film_m ? 700e-6 : 0.0;
+  }
+  for (size_t f = 0; f < r.profiles.count; f++) { // and a point on the slope of each
+    r.profiles.z_m[f * b.points + 60] -= 300e-6;
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  double apex = 4e-3 * signal_shape(&b, 0.0), low = out->levelling.width_m * 0.36 / 4.0;
+  assert_close(out->cycles[2].values[DEA_REDUCED_CENTRE].amplitude, apex - low, 0.0, 20e-6);
+  assert_true(out->levelling.outliers >= r.profiles.count);
+  assert_true(out->levelling.outliers < r.profiles.count + r.profiles.count / 4);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 // Little or nothing ------------------------------------------------------------------------------
 
 static void test_without_voltage(void **state)
@@ -481,6 +528,8 @@ int main(void)
       cmocka_unit_test(test_cycles_at_rest),
       cmocka_unit_test(test_other_waveforms),
       cmocka_unit_test(test_creep_and_fast_rise),
+      cmocka_unit_test(test_clipped_sensor_is_said),
+      cmocka_unit_test(test_outlier_among_few_frames),
       cmocka_unit_test(test_without_voltage),
       cmocka_unit_test(test_little),
       cmocka_unit_test(test_empty_profiles),

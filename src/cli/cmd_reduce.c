@@ -187,7 +187,7 @@ static void print_value(double value, double uncertainty)
 
 static void print_table(const struct dea_reduction *r)
 {
-  enum dea_reduced_kind of = dea_reduced_main(r);
+  enum dea_reduced_kind of = dea_reduced_timed(r);
   if (of == DEA_REDUCED_KINDS) {
     return;
   }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 enum { LAGS_MAX = 4000, BASE_BLOCKS = 1024 };
-static const double resolution = 1e-5; // of a converter of 16 bit: no noise is taken for less
+static const double resolution = 1e-5; // of a converter of 16 bit: no step is taken for less
 
 struct search {
   struct dea_context *ctx;
@@ -14,7 +14,7 @@ struct search {
   size_t plateau_count;
   double *residual; // [current->count]: without leakage; NAN where not looked at
   double *work;     // [current->count]
-  double least_noise;
+  double step;      // of the converter
   struct dea_current_limits limits;
   struct dea_discharge *found;
   size_t count, room;
@@ -103,9 +103,8 @@ static void take_base_off(struct search *s, size_t begin, size_t end)
   }
 }
 
-/* Smallest step between neighbours that is none: half of it is the least noise of a coarse
- * converter, whose samples are mostly equal. At least that of 16 bit. */
-static double least_noise(const struct dea_channel *current)
+/* Smallest step between neighbours that is none: that of a coarse converter. */
+static double smallest_step(const struct dea_channel *current)
 {
   double step = INFINITY, largest = 0.0;
   for (size_t i = 0; i < current->count; i++) {
@@ -113,15 +112,15 @@ static double least_noise(const struct dea_channel *current)
     step = off > 0.0 && off < step ? off : step;
     largest = fmax(largest, fabs(current->values[i])); // not NAN
   }
-  return fmax(isinf(step) ? 0.0 : 0.5 * step, resolution * largest);
+  return fmax(isinf(step) ? 0.0 : step, resolution * largest);
 }
 
 /* Of n residuals in s->work: by their median, and by their ninth tenth, which is not 0 where half
- * of them are. */
+ * of them are. Coarse residuals say both to half a step. */
 static double noise_of(struct search *s, size_t n)
 {
   double noise = dea_spread(s->work, n, 0.0); // leaves their sizes
-  return fmax(fmax(noise, dea_quantile(s->work, n, 0.9) / 1.645), s->least_noise);
+  return fmax(noise, (dea_quantile(s->work, n, 0.9) + 0.5 * s->step) / 1.645);
 }
 
 static double settled_noise(struct search *s)
@@ -325,7 +324,7 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
                      .asked = asked,
                      .measured = measured,
                      .scale = scale,
-                     .least_noise = least_noise(current),
+                     .step = smallest_step(current),
                      .limits = {.noise_A = NAN, .factor = NAN}};
   size_t room = current->count > 0 ? current->count : 1;
   *out = NULL;

@@ -230,9 +230,12 @@ static dea_status build_amplitude(const struct drawing *d, struct dea_plot *plot
   }
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_figure_voltage_axis(&plot->panels[p]);
-    if (d->reduction->level_count > 0 && d->reduction->levels[0].voltage_V < 0.0) {
+    if (d->reduction->level_count > 0 && d->reduction->levels[0].voltage_V < -50.0) {
       plot->panels[p].x_min = NAN;
+    } else {
+      plot->panels[p].x_min = 0.0;
     }
+    begin_at_zero(&plot->panels[p]);
     plot->panels[p].x_max *= 1.03; // room for the last sign
     dea_figure_even_tics(&plot->panels[p], 7);
     dea_figure_place_key(&plot->panels[p]);
@@ -283,6 +286,7 @@ static dea_status build_cycles(const struct drawing *d, struct dea_plot *plot)
   for (size_t k = 0; k < count && most > 1; k++) { // one cycle shows nothing
     DEA_TRY(d->ctx, add_cycles(d, panel, levels[k], kind, colour_of(k, count)));
   }
+  begin_at_zero(panel);
   panel->x_min = 0.5;
   panel->x_max = (double)most + 0.5;
   panel->key = "above horizontal maxrows 2 samplen 1 width key_width";

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { PER_WINDOW = 32 };
+enum { PER_WINDOW = 32, OWN_SPREAD = 8 };
 
 static bool is_empty(struct dea_span span)
 {
@@ -24,8 +24,10 @@ static size_t samples_in(const struct dea_channel *series, struct dea_span span,
   return end > *first ? end - *first : 0;
 }
 
-/* Copies the samples of a span, outliers as NAN; scratch: [2 x samples]. */
-static size_t take(const struct dea_channel *series, struct dea_span span, double *scratch)
+/* Copies the samples of a span, outliers as NAN: beyond 6 of their own spreads, or, where they are
+ * too few to tell that, beyond a given limit. scratch: [2 x samples]. */
+static size_t take(const struct dea_channel *series, struct dea_span span, double limit,
+                   double *scratch)
 {
   size_t first, n = samples_in(series, span, &first), numbers = 0;
   double *sorted = scratch + n;
@@ -35,12 +37,13 @@ static size_t take(const struct dea_channel *series, struct dea_span span, doubl
       sorted[numbers++] = scratch[i];
     }
   }
-  if (numbers < 8) {
+  if (numbers < 3) {
     return n;
   }
   double median = dea_median(sorted, numbers);
-  double limit = 6.0 * dea_spread(sorted, numbers, median);
-  for (size_t i = 0; i < n && limit > 0.0; i++) {
+  double own = 6.0 * dea_spread(sorted, numbers, median);
+  limit = numbers < OWN_SPREAD ? limit : own > 0.0 ? own : INFINITY;
+  for (size_t i = 0; i < n; i++) {
     scratch[i] = fabs(scratch[i] - median) > limit ? NAN : scratch[i];
   }
   return n;
@@ -58,13 +61,13 @@ size_t dea_window_longest(const struct dea_channel *series, const struct dea_spa
 }
 
 struct dea_window dea_window_mean(const struct dea_channel *series, struct dea_span span,
-                                  double *scratch)
+                                  double limit, double *scratch)
 {
   struct dea_window w = {.mean = NAN, .time_s = NAN};
   size_t first;
   double sum = 0.0, times = 0.0;
   samples_in(series, span, &first);
-  w.all = take(series, span, scratch);
+  w.all = take(series, span, limit, scratch);
   for (size_t i = 0; i < w.all; i++) {
     if (!isnan(scratch[i])) {
       sum += scratch[i];
@@ -229,22 +232,46 @@ static size_t blocks_of(const double *values, size_t n, size_t block, double *ou
   return m;
 }
 
+/* Eight times the usual spread of the samples of a span: what an outlier among few exceeds. */
+static double usual_limit(const struct dea_channel *series, const struct dea_span *spans,
+                          size_t count, double *scratch, double *spreads)
+{
+  size_t known = 0;
+  for (size_t w = 0; w < count; w++) {
+    size_t n = take(series, spans[w], INFINITY, scratch), numbers = 0;
+    for (size_t i = 0; i < n; i++) {
+      numbers += isnan(scratch[i]) ? 0U : 1U;
+    }
+    if (numbers > 2) {
+      double median = dea_median(scratch, n); // numbers first
+      spreads[known++] = dea_spread(scratch, numbers, median);
+    }
+  }
+  double limit = 8.0 * dea_median(spreads, known);
+  return limit > 0.0 ? limit : INFINITY;
+}
+
 dea_status dea_noise_estimate(struct dea_context *ctx, const struct dea_channel *series,
                               const struct dea_span *spans, size_t count, struct dea_noise *out)
 {
   struct sums sums = {0};
   size_t longest = dea_window_longest(series, spans, count);
   double squares = 0.0, freedom = 0.0;
-  *out = (struct dea_noise){.block = 1, .sample = NAN};
+  *out = (struct dea_noise){.block = 1, .sample = NAN, .limit = INFINITY};
   out->covariance[0] = NAN;
   double *scratch = dea_alloc(ctx, 2 * longest + 1, sizeof *scratch);
-  if (scratch == NULL) {
+  double *spreads = dea_alloc(ctx, count, sizeof *spreads);
+  if (scratch == NULL || spreads == NULL) {
+    dea_free(ctx, spreads);
+    dea_free(ctx, scratch);
     return DEA_E_MEMORY;
   }
+  out->limit = usual_limit(series, spans, count, scratch, spreads);
+  dea_free(ctx, spreads);
   out->block = 1 + (longest > 0 ? longest - 1 : 0) / PER_WINDOW;
   for (size_t w = 0; w < count; w++) {
     double blocks[DEA_NOISE_BLOCKS];
-    size_t n = take(series, spans[w], scratch);
+    size_t n = take(series, spans[w], out->limit, scratch);
     size_t m = blocks_of(scratch, n, out->block, blocks);
     if (m > 2 && take_line_off(blocks, m) > 2) {
       add_window(&sums, blocks, m);

@@ -23,6 +23,9 @@ bool dea_reduced_has(const struct dea_reduction *reduction, enum dea_reduced_kin
 /* The first kind of displacement that some level has, else force; DEA_REDUCED_KINDS: none. */
 enum dea_reduced_kind dea_reduced_main(const struct dea_reduction *reduction);
 
+/* The first of displacements and force of which rise times are known; else the main one. */
+enum dea_reduced_kind dea_reduced_timed(const struct dea_reduction *reduction);
+
 /* A row of measurement.csv: all levels of one voltage. std: the larger of the standard deviation
  * from cycle to cycle and the root mean square of the uncertainties that the noise gives a cycle.
  */

@@ -58,7 +58,7 @@ static dea_status set_voltages(struct job *job)
     const struct dea_cycle_parts *part = &job->list.parts[i];
     struct dea_reduced_cycle *cycle = &r->cycles[i];
     struct dea_span span = dea_span_settled(part->active, r->settle, part->held);
-    double measured = u != NULL ? dea_window_mean(&smooth, span, scratch).mean : NAN;
+    double measured = u != NULL ? dea_window_mean(&smooth, span, INFINITY, scratch).mean : NAN;
     cycle->cycle = part->cycle;
     cycle->voltage_V = isnan(measured) ? part->cycle.level_V : measured;
     cycle->shape = NAN;
@@ -203,7 +203,8 @@ static void against_rest(struct dea_channel *series, const struct dea_cycle_part
 {
   double rest = NAN;
   if (first != NULL) {
-    rest = dea_window_mean(series, dea_span_settled(first->rest, settle, true), scratch).mean;
+    rest = dea_window_mean(series, dea_span_settled(first->rest, settle, true), INFINITY, scratch)
+               .mean;
   }
   for (size_t i = 0; i < series->count && isnan(rest); i++) {
     rest = series->values[i];
@@ -229,13 +230,42 @@ static dea_status reduce_force(struct job *job, double offset_N, double *scratch
   }
   if (first != NULL) {
     struct dea_span rest = dea_span_settled(first->rest, r->settle, true);
-    r->preload_N = dea_window_mean(force, rest, scratch).mean;
+    r->preload_N = dea_window_mean(force, rest, INFINITY, scratch).mean;
   }
   if (!given) {
     NOTE(job->ctx,
          "the force cell's offset is the mean of its first readings, %.4g mN: a preload "
          "that was there from the start cannot be told (give --force-offset)",
          1e3 * r->force_offset_N);
+  }
+  return DEA_OK;
+}
+
+/* A sensor at the end of its range repeats its last value, which noise never does. */
+static dea_status note_clipped(struct dea_context *ctx, const struct dea_channel *channel)
+{
+  double ends[2] = {INFINITY, -INFINITY};
+  size_t at[2] = {0, 0}, steps = 0;
+  for (size_t i = 0; i < channel->count; i++) {
+    ends[0] = fmin(ends[0], channel->values[i]);
+    ends[1] = fmax(ends[1], channel->values[i]);
+  }
+  for (size_t i = 1; i < channel->count; i++) {
+    double a = channel->values[i - 1], b = channel->values[i];
+    steps += a != b ? 1U : 0U;
+    for (int e = 0; e < 2; e++) {
+      at[e] += a == ends[e] && b == ends[e] ? 1U : 0U;
+    }
+  }
+  for (int e = 0; e < 2; e++) {
+    if (2 * steps > channel->count - at[0] - at[1] && 100 * at[e] > channel->count) {
+      const struct dea_channel_meaning *m = &dea_channel_meanings[channel->kind];
+      NOTE(ctx,
+           "'%s' is at %.6g %s, the end of its range, in %.2g %% of its samples: what is "
+           "beyond was not measured",
+           channel->name, m->factor * ends[e], m->display_unit,
+           100.0 * (double)at[e] / (double)channel->count);
+    }
   }
   return DEA_OK;
 }
@@ -254,6 +284,7 @@ static dea_status reduce_channels(struct job *job, const struct dea_reduce_optio
     if (channel == NULL || channel->count == 0) {
       continue;
     }
+    DEA_TRY(job->ctx, note_clipped(job->ctx, channel));
     DEA_TRY(job->ctx, copy_filtered(job->ctx, channel, series));
     double *scratch = dea_alloc(job->ctx, channel->count, 2 * sizeof *scratch);
     if (scratch == NULL) {

@@ -90,8 +90,10 @@ struct dea_noise {
   size_t lags; // that are not 0, beside lag 0
   double covariance[DEA_NOISE_LAGS + 1];
   double sample; // standard deviation of a sample; NAN: not known, as all the rest then
+  double limit;  // beyond it from their median one of few samples is an outlier
 };
-/* Mean of the samples of a span without its outliers (beyond 6 spreads of the median). */
+/* Mean of the samples of a span without its outliers: beyond 6 spreads of the median, or beyond
+ * `limit` (INFINITY: none) where there are fewer than 8. */
 struct dea_window {
   double mean, time_s; // NAN without samples; mean time of the valid samples
   size_t count, all;   // valid samples, all samples
@@ -99,7 +101,7 @@ struct dea_window {
 
 /* scratch: room for 2 x the samples of the span. */
 struct dea_window dea_window_mean(const struct dea_channel *series, struct dea_span span,
-                                  double *scratch);
+                                  double limit, double *scratch);
 /* Samples of the longest of the spans. */
 size_t dea_window_longest(const struct dea_channel *series, const struct dea_span *spans,
                           size_t count);

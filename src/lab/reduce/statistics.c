@@ -21,6 +21,12 @@ static struct dea_span settled_of(struct dea_span part, double reach_s, double s
   return dea_span_settled(part, settle, held);
 }
 
+static struct dea_window mean_in(const struct values *v, struct dea_span span,
+                                 const struct dea_noise *noise)
+{
+  return dea_window_mean(v->series, span, noise->limit, v->scratch);
+}
+
 /* Rest at the time of the active part, by a straight line between the rests before and behind, so
  * that a linear drift does not count; or the one there is. *weight: of the
  * one behind. */
@@ -49,7 +55,7 @@ static double creep_of(const struct values *v, const struct dea_cycle_parts *par
   if (isnan(reached_s) || !(early.end_s <= settled.begin_s)) {
     return NAN;
   }
-  return settled_mean - dea_window_mean(v->series, early, v->scratch).mean;
+  return settled_mean - mean_in(v, early, &v->active).mean;
 }
 
 /* Middle of a part, from where its end is looked for: the last sample before an edge may lie far
@@ -63,11 +69,11 @@ static struct dea_cycle_value value_of(const struct values *v, const struct dea_
 {
   struct dea_cycle_value value = {.rise_s = NAN, .fall_s = NAN, .creep = NAN};
   struct dea_span settled = settled_of(parts->active, v->reach_s, v->settle, parts->held);
-  struct dea_window active = dea_window_mean(v->series, settled, v->scratch);
-  struct dea_window rest = dea_window_mean(
-      v->series, settled_of(parts->rest, v->reach_s, v->settle, parts->held), v->scratch);
-  struct dea_window after = dea_window_mean(
-      v->series, settled_of(parts->after, v->reach_s, v->settle, parts->held), v->scratch);
+  struct dea_window active = mean_in(v, settled, &v->active);
+  struct dea_window rest =
+      mean_in(v, settled_of(parts->rest, v->reach_s, v->settle, parts->held), &v->rest);
+  struct dea_window after =
+      mean_in(v, settled_of(parts->after, v->reach_s, v->settle, parts->held), &v->rest);
   double weight, unused;
   value.rest_before = rest.mean;
   value.rest = rest_at(rest, after, active.time_s, &weight);

@@ -21,16 +21,30 @@ bool dea_reduced_has(const struct dea_reduction *reduction, enum dea_reduced_kin
   return false;
 }
 
+static const enum dea_reduced_kind in_order[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_DISPLACEMENT,
+                                                 DEA_REDUCED_FORCE};
+enum { IN_ORDER = sizeof in_order / sizeof in_order[0] };
+
 enum dea_reduced_kind dea_reduced_main(const struct dea_reduction *reduction)
 {
-  static const enum dea_reduced_kind order[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_DISPLACEMENT,
-                                                DEA_REDUCED_FORCE};
-  for (size_t k = 0; k < sizeof order / sizeof order[0]; k++) {
-    if (dea_reduced_has(reduction, order[k])) {
-      return order[k];
+  for (size_t k = 0; k < IN_ORDER; k++) {
+    if (dea_reduced_has(reduction, in_order[k])) {
+      return in_order[k];
     }
   }
   return DEA_REDUCED_KINDS;
+}
+
+enum dea_reduced_kind dea_reduced_timed(const struct dea_reduction *reduction)
+{
+  for (size_t k = 0; k < IN_ORDER; k++) {
+    for (size_t l = 0; l < reduction->level_count; l++) {
+      if (!isnan(reduction->levels[l].rise_s[in_order[k]])) {
+        return in_order[k];
+      }
+    }
+  }
+  return dea_reduced_main(reduction);
 }
 
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level)
@@ -306,7 +320,7 @@ static dea_status write_history(struct dea_context *ctx, const struct dea_record
     }
   }
   for (size_t i = 0; i < table.rows; i++) {
-    dea_text_add(&text, "\n%.10g", table.time_s[i]);
+    dea_text_add(&text, "\n%.12g", table.time_s[i]);
     add(&text, 1e-3 * table.voltage_V[i]);
     for (size_t k = 0; k < 3; k++) {
       if (columns[k] != NULL) {
