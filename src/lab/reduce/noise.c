@@ -75,7 +75,7 @@ struct dea_window dea_window_mean(const struct dea_channel *series, struct dea_s
       w.count++;
     }
   }
-  if (w.count > 0) {
+  if (w.count > 0 && 2 * w.count >= w.all) {
     w.mean = sum / (double)w.count;
     w.time_s = span.begin_s + times / (double)w.count;
   }

@@ -18,9 +18,8 @@ struct job {
 #define NOTE(ctx, ...)                                                                             \
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0}, __VA_ARGS__))
 
-/* A copy with the channel's filter, values only as many as wanted later. */
-static dea_status copy_filtered(struct dea_context *ctx, const struct dea_channel *channel,
-                                struct dea_channel *out)
+static dea_status copy_channel(struct dea_context *ctx, const struct dea_channel *channel,
+                               struct dea_channel *out)
 {
   *out = *channel;
   out->values = dea_alloc(ctx, channel->count, sizeof *out->values);
@@ -36,7 +35,7 @@ static dea_status copy_filtered(struct dea_context *ctx, const struct dea_channe
     }
     memcpy(out->time_s, channel->time_s, channel->count * sizeof *out->time_s);
   }
-  dea_filter_apply(channel, channel->filter_Hz, out->values);
+  memcpy(out->values, channel->values, channel->count * sizeof *out->values);
   return DEA_OK;
 }
 
@@ -52,7 +51,10 @@ static dea_status set_voltages(struct job *job)
   dea_status status = DEA_OK;
   if (u != NULL) {
     scratch = dea_alloc(job->ctx, u->count, 2 * sizeof *scratch);
-    status = scratch != NULL ? copy_filtered(job->ctx, u, &smooth) : DEA_E_MEMORY;
+    status = scratch != NULL ? copy_channel(job->ctx, u, &smooth) : DEA_E_MEMORY;
+  }
+  if (u != NULL && status == DEA_OK) {
+    dea_filter_apply(&smooth, smooth.filter_Hz, smooth.values);
   }
   for (size_t i = 0; i < job->list.count && status == DEA_OK; i++) {
     const struct dea_cycle_parts *part = &job->list.parts[i];
@@ -241,31 +243,52 @@ static dea_status reduce_force(struct job *job, double offset_N, double *scratch
   return DEA_OK;
 }
 
-/* A sensor at the end of its range repeats its last value, which noise never does. */
-static dea_status note_clipped(struct dea_context *ctx, const struct dea_channel *channel)
+/* True when noise that the converter resolves stops at an end: there are runs of one value there.
+ * scratch: [count]. */
+static bool is_clipped(const struct dea_channel *series, double end, double range, double *scratch)
+{
+  const double *z = series->values;
+  double step = INFINITY;
+  size_t at = 0, n = 0;
+  for (size_t i = 1; i + 1 < series->count; i++) {
+    double off = fabs(z[i] - z[i - 1]), bend = z[i - 1] - 2.0 * z[i] + z[i + 1];
+    at += z[i - 1] == end && z[i] == end ? 1U : 0U;
+    step = off > 0.0 && off < step ? off : step;
+    if (!isnan(bend) && z[i - 1] != end && z[i] != end && z[i + 1] != end) {
+      scratch[n++] = bend;
+    }
+  }
+  double noise = dea_spread(scratch, n, 0.0) / sqrt(6.0);
+  return 100 * at > series->count && noise > fmax(3.0 * step, 1e-6 * range);
+}
+
+/* Samples of a series (a copy) at the end of their sensor's range become NAN: what is beyond was
+ * not measured. scratch: [count]. */
+static dea_status take_clipped_out(struct dea_context *ctx, struct dea_channel *series,
+                                   double *scratch)
 {
   double ends[2] = {INFINITY, -INFINITY};
-  size_t at[2] = {0, 0}, steps = 0;
-  for (size_t i = 0; i < channel->count; i++) {
-    ends[0] = fmin(ends[0], channel->values[i]);
-    ends[1] = fmax(ends[1], channel->values[i]);
-  }
-  for (size_t i = 1; i < channel->count; i++) {
-    double a = channel->values[i - 1], b = channel->values[i];
-    steps += a != b ? 1U : 0U;
-    for (int e = 0; e < 2; e++) {
-      at[e] += a == ends[e] && b == ends[e] ? 1U : 0U;
-    }
+  for (size_t i = 0; i < series->count; i++) {
+    ends[0] = fmin(ends[0], series->values[i]); // not NAN
+    ends[1] = fmax(ends[1], series->values[i]);
   }
   for (int e = 0; e < 2; e++) {
-    if (2 * steps > channel->count - at[0] - at[1] && 100 * at[e] > channel->count) {
-      const struct dea_channel_meaning *m = &dea_channel_meanings[channel->kind];
-      NOTE(ctx,
-           "'%s' is at %.6g %s, the end of its range, in %.2g %% of its samples: what is "
-           "beyond was not measured",
-           channel->name, m->factor * ends[e], m->display_unit,
-           100.0 * (double)at[e] / (double)channel->count);
+    if (!is_clipped(series, ends[e], ends[1] - ends[0], scratch)) {
+      continue;
     }
+    size_t out = 0;
+    for (size_t i = 0; i < series->count; i++) {
+      if (series->values[i] == ends[e]) {
+        series->values[i] = NAN;
+        out++;
+      }
+    }
+    const struct dea_channel_meaning *m = &dea_channel_meanings[series->kind];
+    NOTE(ctx,
+         "'%s' is at %.6g %s, the end of its range, in %.2g %% of its samples: these are left "
+         "out, what is beyond was not measured",
+         series->name, m->factor * ends[e], m->display_unit,
+         100.0 * (double)out / (double)series->count);
   }
   return DEA_OK;
 }
@@ -284,16 +307,16 @@ static dea_status reduce_channels(struct job *job, const struct dea_reduce_optio
     if (channel == NULL || channel->count == 0) {
       continue;
     }
-    DEA_TRY(job->ctx, note_clipped(job->ctx, channel));
-    DEA_TRY(job->ctx, copy_filtered(job->ctx, channel, series));
+    DEA_TRY(job->ctx, copy_channel(job->ctx, channel, series));
     double *scratch = dea_alloc(job->ctx, channel->count, 2 * sizeof *scratch);
     if (scratch == NULL) {
       return DEA_E_MEMORY;
     }
-    dea_status status = DEA_OK;
-    if (taken[k].kind == DEA_REDUCED_FORCE) {
+    dea_status status = take_clipped_out(job->ctx, series, scratch);
+    dea_filter_apply(series, series->filter_Hz, series->values);
+    if (status == DEA_OK && taken[k].kind == DEA_REDUCED_FORCE) {
       status = reduce_force(job, options->force_offset_N, scratch);
-    } else {
+    } else if (status == DEA_OK) {
       against_rest(series, job->list.count > 0 ? &job->list.parts[0] : NULL, r->settle, scratch);
     }
     dea_free(job->ctx, scratch);

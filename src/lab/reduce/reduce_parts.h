@@ -95,7 +95,7 @@ struct dea_noise {
 /* Mean of the samples of a span without its outliers: beyond 6 spreads of the median, or beyond
  * `limit` (INFINITY: none) where there are fewer than 8. */
 struct dea_window {
-  double mean, time_s; // NAN without samples; mean time of the valid samples
+  double mean, time_s; // mean time of the valid samples; NAN when fewer than half are
   size_t count, all;   // valid samples, all samples
 };
 

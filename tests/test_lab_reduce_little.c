@@ -1,0 +1,156 @@
+/* The reduction where there is little, or something is wrong with it. */
+#include "failing_allocator.h"
+
+#include "lab_reduced.h"
+
+static void test_clipped_sensor_is_said(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.displacement = true;
+  b.sigma = 1e-6;
+  for (int k = 0; k < 2; k++) {
+    struct dea_recording r = signal_record(&b, 1);
+    for (size_t i = 0; i < r.channels[1].count && k == 1; i++) {
+      r.channels[1].values[i] = fmin(r.channels[1].values[i], 250e-6);
+    }
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(noted("250 um, the end of its range"), k == 1);
+    assert_int_equal(isnan(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT]), k == 1);
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+/* Few frames in a part, and an outlier in one of them that no neighbour shows. */
+static void test_outlier_among_few_frames(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.frame_Hz = 20.0; // four are averaged
+  b.cycles = 6;
+  b.outliers = b.lost = 0.0;
+  b.point_sigma = 2e-6;
+  b.m_per_V2 = 4e-3 / 36e6; // steep: 0.36 mm/mm, up to an apex that is no outlier
+  b.cone = 1.0;
+  struct dea_recording r = signal_record(&b, 4);
+  size_t frame = (size_t)((b.lead_s + 2.0 * b.cycle_s + 0.5 * b.cycle_s - 0.08) * b.frame_Hz);
+  for (size_t i = 0; i < b.points; i++) { // the whole frame
+    r.profiles.z_m[frame * b.points + i] +=
+        fabs(r.profiles.x_m[i] - b.centre_m) < b.film_m ? 700e-6 : 0.0;
+  }
+  for (size_t f = 0; f < r.profiles.count; f++) { // and a point on the slope of each
+    r.profiles.z_m[f * b.points + 60] -= 300e-6;
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  double apex = 4e-3 * signal_shape(&b, 0.0);
+  assert_close(out->cycles[2].values[DEA_REDUCED_CENTRE].amplitude, apex, 0.0, 20e-6);
+  assert_true(out->levelling.outliers >= r.profiles.count);
+  assert_true(out->levelling.outliers < r.profiles.count + r.profiles.count / 4);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
+// Little or nothing ------------------------------------------------------------------------------
+
+static void test_without_voltage(void **state)
+{
+  (void)state;
+  struct dea_recording r = {.file = "", .title = ""};
+  struct dea_reduction *out;
+  assert_int_equal(dea_reduce(ctx, &r, NULL, NULL, &out), DEA_E_IO);
+  assert_null(out);
+  assert_non_null(strstr(dea_context_message(ctx), "no voltage"));
+}
+
+static void test_little(void **state)
+{
+  (void)state;
+  const size_t counts[] = {1, 2, 3, 9, 50};
+  for (size_t k = 0; k < 5; k++) {
+    for (int what = 0; what < 4; what++) {
+      struct dea_recording r = two_channels(100.0, counts[k]);
+      signal_channel(&r, "current", DEA_CHANNEL_CURRENT, 100.0, counts[k]);
+      signal_channel(&r, "force", DEA_CHANNEL_FORCE, 100.0, counts[k]);
+      for (size_t c = 0; c < r.channel_count; c++) {
+        for (size_t i = 0; i < counts[k]; i++) {
+          r.channels[c].values[i] = what == 0   ? 0.0
+                                    : what == 1 ? 5000.0
+                                    : what == 2 ? NAN
+                                                : (double)(i % 2) * 4000.0;
+        }
+      }
+      struct dea_reduction *out = reduced(&r, &plain);
+      assert_true(what == 3 || out->cycle_count == 0);
+      assert_true(out->cycle_count > 0 || noted("there are no cycles"));
+      assert_int_equal(out->discharge_count, 0);
+      dea_reduction_destroy(ctx, out);
+      signal_free(&r);
+    }
+  }
+}
+
+static void test_empty_profiles(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    struct signal_bench b = line_laser();
+    b.points = k == 1 ? 8 : 100;
+    struct dea_recording r = signal_record(&b, 1);
+    size_t all = r.profiles.points * r.profiles.count;
+    for (size_t i = 0; i < all && k == 0; i++) {
+      r.profiles.z_m[i] = NAN;
+    }
+    if (k == 2) {
+      r.profiles.x_m[4] = r.profiles.x_m[3];
+    }
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(out->cycle_count, 3);
+    assert_true(isnan(out->levels[0].mean[DEA_REDUCED_CENTRE]));
+    assert_true(noted(k == 0 ? "no frame" : "16 points or more"));
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
+static struct dea_recording whole;
+
+static dea_status reduce_whole(struct dea_context *own)
+{
+  struct dea_reduction *out;
+  const struct dea_reduce_options options = {3e-3, 15e-3, 3.75e-3, 0.0, NAN};
+  dea_status status = dea_reduce(own, &whole, NULL, &options, &out);
+  dea_reduction_destroy(own, out);
+  return status;
+}
+
+static void test_memory(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.points = 100;
+  b.frame_Hz = 10.0;
+  b.rate_Hz = 50.0;
+  b.voltage = b.displacement = b.force = true;
+  whole = signal_record(&b, 1);
+  size_t n = whole.channels[0].count;
+  struct dea_channel *current = signal_channel(&whole, "current", DEA_CHANNEL_CURRENT, 50.0, n);
+  for (size_t i = 0; i < n; i++) {
+    current->values[i] = i == n / 4 ? 1e-3 : 1e-7 * sin(7.0 * (double)i);
+  }
+  assert_true(failing_ends(reduce_whole, DEA_OK) > 30);
+  signal_free(&whole);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_clipped_sensor_is_said),
+      cmocka_unit_test(test_outlier_among_few_frames),
+      cmocka_unit_test(test_without_voltage),
+      cmocka_unit_test(test_little),
+      cmocka_unit_test(test_empty_profiles),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
