@@ -263,11 +263,14 @@ static bool is_clipped(const struct dea_channel *series, double end, double rang
 }
 
 /* Samples of a series (a copy) at the end of their sensor's range become NAN: what is beyond was
- * not measured. scratch: [count]. */
+ * not measured. Only where the range is not known (saturation.c). scratch: [count]. */
 static dea_status take_clipped_out(struct dea_context *ctx, struct dea_channel *series,
                                    double *scratch)
 {
   double ends[2] = {INFINITY, -INFINITY};
+  if (series->lowest < series->highest) {
+    return DEA_OK;
+  }
   for (size_t i = 0; i < series->count; i++) {
     ends[0] = fmin(ends[0], series->values[i]); // not NAN
     ends[1] = fmax(ends[1], series->values[i]);
