@@ -120,13 +120,7 @@ static void test_headers(void **state)
                                "C)\n1,2,3,4,5,6\n7,8,9,1,2,3\n");
   static const char *const names[] = {"Dev1/ai0", "Force (filtered)", "channel_A", "laser_in", "I",
                                       "T"};
-  static const char *const units[] = {"",
-                                      "",
-                                      "",
-                                      "",
-                                      "A",
-                                      "\xc2\xb0"
-                                      "C"};
+  static const char *const units[] = {"", "", "", "", "A", "\302\260C"};
   for (size_t i = 0; i < 6; i++) {
     assert_string_equal(table->columns[i].name, names[i]);
     assert_string_equal(table->columns[i].unit, units[i]);
