@@ -59,7 +59,8 @@ static const struct behaviour usual = {
 // A short timeout only where it is to pass: the machine may be busy.
 #define READS(timeout)                                                                             \
   "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: " timeout "\ninterval: 5 ms\n"               \
-  "setup: [\"FUNC 'CURR'\", \"ZCOR ON\"]\nat_stop: [OUTP OFF]\nidentity: Electrometer\n"           \
+  "setup: [\"FUNC 'CURR'\", \"ZCOR ON\"]\nat_stop: [OUTP OFF, \"SYST:LOC\"]\nidentity: "           \
+  "Electrometer\n"                                                                                 \
   "readings:\n"                                                                                    \
   "  - {name: leakage, query: \"MEAS:CURR?\", quantity: current}\n"                                \
   "  - {name: load, query: \"MEAS:FORC?\", quantity: force, factor: 1e-3, offset: 1}\n"
@@ -165,7 +166,7 @@ static void test_reads(void **state)
     assert_int_equal(b.instrument->lost, 0);
     end(&b);
     assert_true(strncmp(b.emulator.log, "*IDN?\n*CLS\nFUNC 'CURR'\nZCOR ON\nSYST:ERR?\n", 40) == 0);
-    assert_string_equal(strstr(b.emulator.log, "OUTP OFF"), "OUTP OFF\n");
+    assert_string_equal(strstr(b.emulator.log, "OUTP OFF"), "OUTP OFF\nSYST:LOC\n");
   }
 }
 
@@ -261,7 +262,7 @@ static void test_hangs_up(void **state)
     dea_status status = emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0);
     assert_message(status, DEA_E_INSTRUMENT, "the connection to the instrument at 127.0.0.1");
     assert_int_equal(b.intake.readings, 0); // half a number is none
-    end(&b);                                // writes to it without SIGPIPE
+    end(&b);                                // writes to it twice, without SIGPIPE
   }
 }
 
