@@ -321,6 +321,9 @@ static dea_status find_clock(struct dea_context *ctx, const struct dea_measured 
                            volts == NULL ? "no voltage was recorded"
                                          : "no pulse of the one is as high as one of the other");
   }
+  if (out->shift_s == 0) {
+    return DEA_OK;
+  }
   return dea_finding_add(ctx, DEA_NOTE, nowhere,
                          "the times of %s are moved by %.6g s, which lays %zu of its pulses on "
                          "measured ones",
@@ -346,9 +349,9 @@ static dea_status add_histories(struct dea_context *ctx, struct dea_compare_set 
     struct dea_set_history *h = &set->histories[set->history_count++];
     *h = (struct dea_set_history){.curve = curve, .transient = transient, .clock = clock};
     h->column = (enum dea_measured_column)k;
-    DEA_TRY(ctx, dea_compare_history(ctx, transient, column, clock.shift_s,
-                                     history->values[DEA_MEASURED_TIME], history->values[k],
-                                     history->rows, &h->misfit));
+    DEA_TRY(ctx,
+            dea_compare_history(ctx, transient, column, &clock, history->values[DEA_MEASURED_TIME],
+                                history->values[k], history->rows, &h->misfit));
     if (h->misfit.count == 0) {
       dea_misfit_free(ctx, &h->misfit);
       set->history_count--;

@@ -223,14 +223,25 @@ static struct pairing pair(const struct dea_curve *a, const struct dea_curve *b,
   return p;
 }
 
+/* A measured voltage that is beyond the table's ends by the noise of its meter only is at the end.
+ */
+static double within(double v, const double *x, size_t n)
+{
+  static const double noise = 0.005; // of the table's range
+  double margin = n > 1 ? noise * fabs(x[n - 1] - x[0]) : 0.0;
+  double low = n > 0 ? fmin(x[0], x[n - 1]) : v, high = n > 0 ? fmax(x[0], x[n - 1]) : v;
+  return v < low && v >= low - margin ? low : v > high && v <= high + margin ? high : v;
+}
+
 static void fill(const struct pairing *p, double *x, double *y, struct dea_misfit *m)
 {
   const struct dea_curve *table = p->at_b ? p->a : p->b, *points = p->at_b ? p->b : p->a;
   size_t n = p->point_by_point ? 0 : tabulate(table, p->leg, m->column, x, y);
   for (size_t i = 0; i < points->count; i++) {
     double v = points->points[i].voltage_V, own = dea_point_get(&points->points[i], m->column);
-    double other = p->point_by_point ? dea_point_get(&table->points[i], m->column)
-                                     : dea_interpolate(x, y, n, v);
+    double other = p->point_by_point
+                       ? dea_point_get(&table->points[i], m->column)
+                       : dea_interpolate(x, y, n, p->b_std != NULL ? within(v, x, n) : v);
     double std = p->b_std != NULL && p->at_b ? dea_point_get(&p->b_std[i], m->column) : NAN;
     dea_misfit_add(m, v, p->at_b ? other : own, p->at_b ? own : other, std);
   }

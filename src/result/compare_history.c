@@ -9,6 +9,7 @@ static const double rounding_s = 1e-6;
 
 struct edge {
   double time_s, height_V;
+  double width_s; // between the samples that it lies between
 };
 
 struct edges {
@@ -18,13 +19,14 @@ struct edges {
 
 /* Where |V| first reaches half of the height of the pulse of the samples [from, to). */
 static double half_way(const struct dea_voltage_track *track, size_t from, size_t to,
-                       double height_V)
+                       double height_V, double *width_s)
 {
   const double *v = track->voltage_V, *t = track->time_s;
   size_t i = from;
   while (i < to && !(fabs(v[i]) >= 0.5 * height_V)) {
     i++;
   }
+  *width_s = i > 0 && i < track->count ? t[i] - t[i - 1] : 0.0;
   if (i == 0 || i == to || isnan(v[i - 1])) {
     return t[i < to ? i : from];
   }
@@ -37,7 +39,9 @@ static void add_pulse(const struct dea_voltage_track *track, size_t from, size_t
                       double height_V, struct edges *out)
 {
   if (out->count < DEA_CLOCK_EDGES_MAX) {
-    out->edge[out->count++] = (struct edge){half_way(track, from, to, height_V), height_V};
+    struct edge *edge = &out->edge[out->count++];
+    edge->height_V = height_V;
+    edge->time_s = half_way(track, from, to, height_V, &edge->width_s);
   }
 }
 
@@ -74,6 +78,16 @@ static double shortest_between(const struct edges *edges)
     shortest = fmin(shortest, edges->edge[i].time_s - edges->edge[i - 1].time_s);
   }
   return shortest;
+}
+
+/* How far an edge may be from where it was seen, on average. */
+static double mean_width(const struct edges *edges)
+{
+  double sum = 0.0;
+  for (size_t i = 0; i < edges->count; i++) {
+    sum += edges->edge[i].width_s;
+  }
+  return edges->count > 0 ? sum / (double)edges->count : 0.0;
 }
 
 /* Edges that lie on each other when those of a are moved by shift_s, and the shift that leaves no
@@ -120,25 +134,52 @@ void dea_clock_shift_find(const struct dea_voltage_track *a, const struct dea_vo
       }
     }
   }
+  out->resolution_s = mean_width(&of_a) + mean_width(&of_b);
+  if (fabs(out->shift_s) <= out->resolution_s) { // one clock, as far as is seen
+    out->shift_s = 0;
+  }
+}
+
+/* Whether two points of one time lie within near_s of a time; x: [count], rising. */
+static bool is_near_jump(const double *x, size_t count, double time_s, double near_s)
+{
+  size_t low = 0, high = count;
+  while (low < high) { // first point that is not too early
+    size_t middle = low + (high - low) / 2;
+    if (x[middle] < time_s - near_s) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  for (size_t i = low; i + 1 < count && x[i + 1] <= time_s + near_s; i++) {
+    if (x[i] == x[i + 1]) {
+      return true;
+    }
+  }
+  return false;
 }
 
 dea_status dea_compare_history(struct dea_context *ctx, const struct dea_curve *curve, int column,
-                               double shift_s, const double *time_s, const double *values,
-                               size_t count, struct dea_misfit *out)
+                               const struct dea_clock_shift *clock, const double *time_s,
+                               const double *values, size_t count, struct dea_misfit *out)
 {
   DEA_TRY(ctx, dea_misfit_make(ctx, column, count, out));
   double *x = dea_alloc(ctx, curve->count, sizeof *x), *y = dea_alloc(ctx, curve->count, sizeof *y);
   bool good = x != NULL && y != NULL;
   size_t n = 0;
   for (size_t i = 0; good && i < curve->count; i++) {
-    double t = curve->points[i].time_s + shift_s, value = dea_point_get(&curve->points[i], column);
+    double t = curve->points[i].time_s + clock->shift_s,
+           value = dea_point_get(&curve->points[i], column);
     if (isfinite(t) && isfinite(value) && (n == 0 || t >= x[n - 1])) {
       x[n] = t;
       y[n++] = value;
     }
   }
   for (size_t i = 0; good && i < count; i++) {
-    dea_misfit_add(out, time_s[i], dea_interpolate_linear(x, y, n, time_s[i]), values[i], NAN);
+    if (!is_near_jump(x, n, time_s[i], clock->resolution_s)) {
+      dea_misfit_add(out, time_s[i], dea_interpolate_linear(x, y, n, time_s[i]), values[i], NAN);
+    }
   }
   if (out->count > 0) {
     dea_misfit_summarise(out);
