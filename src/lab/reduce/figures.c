@@ -21,16 +21,21 @@ struct drawing {
   size_t count;
 };
 
-/* Rows (one a voltage) that are shown: the highest, and evenly of the others. Their first levels
- * into levels; how many. */
+/* Rows (one a voltage) that are shown: the highest, and evenly of the others; where there are too
+ * many, that of no voltage is the first to go. Their first levels into levels; how many. */
 static size_t shown_levels(const struct dea_reduction *r, size_t levels[SHOWN_MAX])
 {
-  size_t rows = 0, n = 0, row = 0;
+  size_t rows = 0, n = 0, row = 0, first = 0;
   for (size_t l = 0; l < r->level_count; l += dea_reduced_row_at(r, l).levels) {
     rows++;
   }
+  double highest_V = r->level_count > 0 ? fabs(r->levels[r->level_count - 1].voltage_V) : 0.0;
+  if (rows > SHOWN_MAX && fabs(r->levels[0].voltage_V) < 0.01 * highest_V) {
+    first = dea_reduced_row_at(r, 0).levels;
+    rows--;
+  }
   size_t most = rows < SHOWN_MAX ? rows : SHOWN_MAX;
-  for (size_t l = 0; l < r->level_count; l += dea_reduced_row_at(r, l).levels, row++) {
+  for (size_t l = first; l < r->level_count; l += dea_reduced_row_at(r, l).levels, row++) {
     if (n < most && row == (n + 1) * rows / most - 1) {
       levels[n++] = l;
     }

@@ -153,18 +153,29 @@ static dea_status fill_series(struct dea_context *ctx, const struct dea_profiles
                                      "the displacement there is that of the other side");
 }
 
-/* Makes the values a series of the reduction (takes them), against their median at rest. */
+/* Median of the values in the first rest that has enough frames, as long as a film that creeps is
+ * still where it began. work: [profiles->count]. */
+static double first_rest(const struct dea_profiles *profiles, const unsigned char *marks,
+                         const double *values, double *work)
+{
+  enum { ENOUGH = 3 };
+  size_t n = 0;
+  for (size_t f = 0; f < profiles->count; f++) {
+    if (marks[f] == AT_REST && !isnan(values[f])) {
+      work[n++] = values[f];
+    } else if (marks[f] != AT_REST && n >= ENOUGH) {
+      break;
+    }
+  }
+  return dea_median(work, n);
+}
+
+/* Makes the values a series of the reduction (takes them), against the first rest. */
 static dea_status keep_series(struct dea_context *ctx, const struct dea_profiles *profiles,
                               const unsigned char *marks, const char *name, double *values,
                               double *work, struct dea_channel *out)
 {
-  size_t n = 0;
-  for (size_t f = 0; f < profiles->count; f++) {
-    if (marks[f] == AT_REST) {
-      work[n++] = values[f];
-    }
-  }
-  double rest = dea_median(work, n);
+  double rest = first_rest(profiles, marks, values, work);
   bool any = !isnan(rest);
   for (size_t f = 0; f < profiles->count; f++) {
     any = any || !isnan(values[f]);

@@ -96,7 +96,7 @@ struct dea_reduction {
   double force_offset_N, preload_N; // unloaded cell, force at rest above it; NAN
   double noise[DEA_REDUCED_KINDS];  // 1 sigma of a sample at rest; NAN: not measured
   struct dea_current_limits current;
-  struct dea_channel series[DEA_REDUCED_KINDS]; // in time, filtered, against rest; owned; count 0
+  struct dea_channel series[DEA_REDUCED_KINDS]; // in time, filtered, against the first rest; owned
   double settle;                                // that was used
 };
 

@@ -9,7 +9,14 @@ struct columns {
   const struct dea_channel *list[COLUMNS_MAX];
   size_t count, samples;
   double begin_s, end_s;
+  double finest_s; // usual time between the samples of the fastest of them
 };
+
+static double spacing_of(const struct dea_channel *channel)
+{
+  double length_s = dea_channel_time(channel, channel->count - 1) - dea_channel_time(channel, 0);
+  return channel->count > 1 ? length_s / (double)(channel->count - 1) : 0.0;
+}
 
 static void add_column(struct columns *columns, const struct dea_channel *channel)
 {
@@ -17,6 +24,8 @@ static void add_column(struct columns *columns, const struct dea_channel *channe
   double end_s = dea_channel_time(channel, channel->count - 1);
   columns->begin_s = columns->count == 0 ? begin_s : fmin(columns->begin_s, begin_s);
   columns->end_s = columns->count == 0 ? end_s : fmax(columns->end_s, end_s);
+  columns->finest_s =
+      columns->count == 0 ? spacing_of(channel) : fmin(columns->finest_s, spacing_of(channel));
   columns->samples += channel->count;
   columns->list[columns->count++] = channel;
 }
@@ -70,32 +79,35 @@ static int by_size(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* By a straight line between two neighbours that are no farther apart than usual; else NAN. */
-static double value_at(const struct dea_channel *channel, double time_s)
+/* The sample there, but for the rounding of two clocks; of fast channels also a straight line
+ * between two neighbours. Else NAN: between the frames of a sensor nothing was measured. */
+static double value_at(const struct dea_channel *channel, double time_s, double finest_s)
 {
-  size_t i = dea_channel_index(channel, time_s), last = channel->count - 1;
-  if (i < channel->count && !(dea_channel_time(channel, i) > time_s)) {
+  double same_s = 1e-6 * finest_s;
+  size_t i = dea_channel_index(channel, time_s - same_s);
+  if (i < channel->count && dea_channel_time(channel, i) <= time_s + same_s) {
     return channel->values[i];
   }
-  if (i == 0 || i > last) {
+  if (i == 0 || i == channel->count) {
     return NAN;
   }
   double a = dea_channel_time(channel, i - 1), b = dea_channel_time(channel, i);
-  double usual = (dea_channel_time(channel, last) - dea_channel_time(channel, 0)) / (double)last;
   double share = (time_s - a) / (b - a);
-  return b - a <= 2.5 * usual ? (1.0 - share) * channel->values[i - 1] + share * channel->values[i]
-                              : NAN;
+  return b - a <= 2.5 * finest_s
+             ? (1.0 - share) * channel->values[i - 1] + share * channel->values[i]
+             : NAN;
 }
 
 static dea_status fill_values(struct dea_context *ctx, const struct dea_channel *channel,
-                              const struct dea_history_table *table, double **values)
+                              const struct dea_history_table *table, double finest_s,
+                              double **values)
 {
   *values = dea_alloc(ctx, table->rows, sizeof **values);
   if (*values == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < table->rows; i++) {
-    (*values)[i] = value_at(channel, table->time_s[i]);
+    (*values)[i] = value_at(channel, table->time_s[i], finest_s);
   }
   return DEA_OK;
 }
@@ -138,10 +150,11 @@ dea_status dea_history_table_fill(struct dea_context *ctx, const struct dea_reco
       out->time_s[out->rows++] = out->time_s[i];
     }
   }
-  dea_status status = fill_values(ctx, voltage, out, &out->voltage_V);
+  dea_status status = fill_values(ctx, voltage, out, columns.finest_s, &out->voltage_V);
   for (int kind = 0; kind < DEA_REDUCED_KINDS && status == DEA_OK; kind++) {
     if (reduction->series[kind].count > 0) {
-      status = fill_values(ctx, &reduction->series[kind], out, &out->values[kind]);
+      status =
+          fill_values(ctx, &reduction->series[kind], out, columns.finest_s, &out->values[kind]);
     }
   }
   if (status != DEA_OK) {
