@@ -5,6 +5,7 @@
 
 #include "lab/recording/recording.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <time.h>
 
@@ -15,15 +16,22 @@ static void wait_s(double seconds)
   nanosleep(&wait, NULL);
 }
 
+static pid_t start_with(const char *file, const char *err);
+
 /* 5 kV for a minute on the simulated bench, as slow as a real one. */
 static pid_t start(const char *file)
+{
+  return start_with(file, "drive.err");
+}
+
+static pid_t start_with(const char *file, const char *err)
 {
   fflush(NULL);
   pid_t child = fork();
   assert_true(child >= 0);
   if (child == 0) {
     if (chdir(command_folder) != 0 || freopen("drive.txt", "w", stdout) == NULL ||
-        freopen("drive.err", "w", stderr) == NULL) {
+        freopen(err, "w", stderr) == NULL) {
       _exit(99);
     }
     execl(DEA_COMMAND, "dea", "drive", DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", "--sim", "-o",
@@ -119,11 +127,97 @@ static void test_killed_drive(void **state)
   dea_context_destroy(ctx);
 }
 
+/* None of these may end or stop the program: they bring the voltage down too, or change nothing. */
+static void test_other_signals(void **state)
+{
+  (void)state;
+  static const struct {
+    int number;
+    bool ends;
+  } signals[] = {{SIGHUP, true},   {SIGQUIT, true},  {SIGUSR1, true},  {SIGALRM, true},
+                 {SIGXCPU, true},  {SIGXFSZ, false}, {SIGTTOU, false}, {SIGTTIN, false},
+                 {SIGTSTP, false}, {SIGPIPE, false}};
+  enum { COUNT = sizeof signals / sizeof signals[0] };
+  struct dea_context *ctx;
+  pid_t children[COUNT];
+  char names[COUNT][32];
+  int status;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  for (size_t i = 0; i < COUNT; i++) {
+    snprintf(names[i], sizeof names[i], "signal-%zu.h5", i);
+    children[i] = start(names[i]);
+  }
+  for (size_t i = 0; i < COUNT; i++) {
+    wait_for_recording(names[i]);
+    assert_int_equal(kill(children[i], signals[i].number), 0);
+  }
+  wait_s(0.1);
+  for (size_t i = 0; i < COUNT; i++) {
+    if (!signals[i].ends) {
+      assert_int_equal(waitpid(children[i], &status, WNOHANG | WUNTRACED), 0);
+      assert_int_equal(kill(children[i], SIGTERM), 0);
+    }
+    assert_int_equal(waitpid(children[i], &status, 0), children[i]);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 130);
+    struct dea_recording *recording = read_recording(ctx, names[i]);
+    const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
+    assert_true(asked->count > 250 && asked->values[asked->count - 1] == 0);
+    dea_recording_destroy(ctx, recording);
+  }
+  dea_context_destroy(ctx);
+}
+
+/* A terminal that takes no more (held by Ctrl-S, its connection gone) gets no progress; the voltage
+ * comes down nevertheless. */
+static void test_held_terminal(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  int status, master = posix_openpt(O_RDWR | O_NOCTTY);
+  char taken[4096];
+  double last = NAN;
+  assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+  int slave = open(ptsname(master), O_RDWR | O_NOCTTY | O_NONBLOCK);
+  assert_true(slave >= 0);
+  memset(taken, '.', sizeof taken);
+  for (int i = 0; i < 8; i++) { // what went in makes room once it has gone on
+    for (size_t n = sizeof taken; n > 0; n /= 2) {
+      while (write(slave, taken, n) > 0) {
+      }
+    }
+    wait_s(0.05);
+  }
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  pid_t child = start_with("held.h5", ptsname(master));
+  wait_for_recording("held.h5");
+  assert_int_equal(kill(child, SIGINT), 0);
+  for (int i = 0; i < 100 && last != 0; i++) {
+    wait_s(0.05);
+    struct dea_recording *recording = read_recording(ctx, "held.h5");
+    const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
+    last = asked->count > 0 ? asked->values[asked->count - 1] : (double)NAN;
+    dea_recording_destroy(ctx, recording);
+  }
+  fcntl(master, F_SETFL, O_NONBLOCK); // now it is read, so that it can say why it ended
+  do {
+    wait_s(0.02);
+    (void)!read(master, taken, sizeof taken);
+  } while (waitpid(child, &status, WNOHANG) == 0);
+  assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+  assert_true(last == 0);
+  close(slave);
+  close(master);
+  dea_context_destroy(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_signals_ramp_down),
       cmocka_unit_test(test_killed_drive),
+      cmocka_unit_test(test_other_signals),
+      cmocka_unit_test(test_held_terminal),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -94,7 +94,8 @@ void cli_progress(void *cli, const char *what, size_t done, size_t total);
 /* True after SIGINT or SIGTERM. */
 bool cli_interrupted(void);
 /* From here on no signal ends or stops the program at once, not a second one either, because the
- * voltage has to come down first: hang-up and quit count as an interruption too. */
+ * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
+ * not under nohup). Progress is left out while stderr does not take it. */
 void cli_voltage_is_on(void);
 
 #endif

@@ -1,9 +1,11 @@
-#define _POSIX_C_SOURCE 200809L // sigaction, isatty
+#define _XOPEN_SOURCE 700 // sigaction, isatty, SIGVTALRM
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/cli.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +29,14 @@ static void on_signal(int number)
   interrupt_flag = 1;
 }
 
+/* Whether a line can be written to stderr without waiting: a terminal that is held (Ctrl-S, a
+ * connection that is gone) would keep the loop from playing, and the output at its voltage. */
+static bool has_room(void)
+{
+  struct pollfd entry = {.fd = STDERR_FILENO, .events = POLLOUT};
+  return poll(&entry, 1, 0) > 0 && (entry.revents & POLLOUT) != 0;
+}
+
 bool cli_interrupted(void)
 {
   return interrupt_flag != 0;
@@ -35,7 +45,7 @@ bool cli_interrupted(void)
 void cli_progress(void *user, const char *what, size_t done, size_t total)
 {
   const struct dea_cli *cli = user;
-  if (cli->quiet) {
+  if (cli->quiet || (voltage_flag != 0 && !has_room())) {
     return;
   }
   if (cli->terminal) {
@@ -172,12 +182,24 @@ static void watch_signals(void)
 
 void cli_voltage_is_on(void)
 {
-  struct sigaction action = {.sa_handler = on_signal};
+  // The terminal is closed, limits of time, what batch systems and timers send: all would end the
+  // program at once.
+  static const int ending[] = {SIGHUP,  SIGQUIT, SIGALRM,   SIGUSR1,
+                               SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
+  // A stopped program leaves the voltage where it is; a file that is too long is an error to write.
+  static const int ignored[] = {SIGTSTP, SIGTTOU, SIGTTIN, SIGXFSZ};
+  struct sigaction action = {.sa_handler = on_signal}, before;
   sigemptyset(&action.sa_mask);
   voltage_flag = 1;
-  sigaction(SIGHUP, &action, NULL); // the terminal is closed
-  sigaction(SIGQUIT, &action, NULL);
-  signal(SIGTSTP, SIG_IGN); // a stopped program leaves the voltage where it is
+  for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++) {
+    // what was ignored before stays so: `nohup` asks for it
+    if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+      sigaction(ending[i], &action, NULL);
+    }
+  }
+  for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++) {
+    signal(ignored[i], SIG_IGN);
+  }
 }
 
 static int run_command(struct dea_cli *cli, int argc, char **argv)
