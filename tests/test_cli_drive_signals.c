@@ -191,6 +191,9 @@ static void test_held_terminal(void **state)
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start_with("held.h5", ptsname(master));
   wait_for_recording("held.h5");
+  struct dea_recording *running = read_recording(ctx, "held.h5");
+  assert_true(dea_recording_kind(running, DEA_CHANNEL_COMMAND)->count > 200); // it plays on
+  dea_recording_destroy(ctx, running);
   assert_int_equal(kill(child, SIGINT), 0);
   for (int i = 0; i < 100 && last != 0; i++) {
     wait_s(0.05);

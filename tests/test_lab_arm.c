@@ -31,7 +31,7 @@ static void check(const char *kind, double step_V)
   struct dea_context *ctx;
   struct dea_recording *recording;
   char file[sizeof command_folder + 16];
-  if (drive(kind, "9 mA") != 0) {
+  if (drive(kind, "9 uA") != 0) {
     fail_msg("%s%s", command_out, command_err);
   }
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);

@@ -124,6 +124,20 @@ static void test_refusals(void **state)
        "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "waveform: {kind: constant, voltage: 1 kV, duration: 1000 day}\n",
        "refused: 8.64e+07 s are 8.64e+13 samples of every channel", 2, 7},
+      {PROTOCOL_HEAD "channels:\n"
+                     "  - {name: I, quantity: current, input: ai1, per_volt: -100 uA, range: 5 V}\n"
+                     "waveform: {kind: constant, voltage: 1 kV}\n",
+       "refused: the input of 'I' shows 0.5 mA at most, so that safety.trip_current of 1 mA", 6,
+       72},
+      {PROTOCOL_HEAD
+       "channels:\n"
+       "  - {name: I, quantity: current, input: ai1, per_volt: 1 mA, range: 5 V, at_zero: -4 mA}\n"
+       "waveform: {kind: constant, voltage: 1 kV}\n",
+       "refused: the input of 'I' shows 0.9995 mA at most", 6, 69},
+      {"dea-protocol: 1\nsafety: {ramp: 50 V/s}\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: -6 kV}\n",
+       "refused: the ramp from 6 kV to 0 V takes 120 s by 50 V/s", 2, 16},
   };
   for (size_t i = 0; i < sizeof refusals / sizeof refusals[0]; i++) {
     const struct refusal *r = &refusals[i];
@@ -207,6 +221,10 @@ static void test_warnings(void **state)
        "sequence:\n  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n"
        "  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n",
        "step 1 has the label 'a' too", 10, 13},
+      {"dea-protocol: 1\nsafety: {ramp: 500 V/s}\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: 6 kV}\n",
+       "the ramp from 6 kV to 0 V takes 12 s by 500 V/s", 2, 16},
   };
   for (size_t i = 0; i < sizeof warnings / sizeof warnings[0]; i++) {
     const struct refusal *r = &warnings[i];

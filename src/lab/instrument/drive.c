@@ -46,6 +46,10 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
                                     settle_s + (isfinite(plan.rise_s) ? 2 * plan.rise_s : 0),
                                     stall_s};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
+  } else { // what is set up already must not stay as it is: a supply's output may be on
+    for (size_t i = 0; i < opened.count; i++) {
+      opened.instruments[i]->type->stop(ctx, opened.instruments[i]);
+    }
   }
   for (size_t i = opened.count; i-- > 0;) {
     opened.instruments[i]->type->close(ctx, opened.instruments[i]);

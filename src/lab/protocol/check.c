@@ -197,6 +197,21 @@ static dea_status check_range(struct dea_context *ctx, const struct dea_protocol
       input->name.text, input->range_V.si);
 }
 
+/* A current that the input cannot show never ends the measurement. */
+static dea_status check_trip(struct dea_context *ctx, const struct dea_protocol *protocol,
+                             const struct dea_protocol_input *input)
+{
+  double reach_A = (1 - DEA_CHANNEL_END) * fabs(input->range_V.si * input->per_volt);
+  double seen_A = fmax(reach_A - fabs(input->at_zero), 0); // in both signs
+  if (seen_A > protocol->safety.trip_current_A.si) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, input->range_V.place,
+                         "refused: the input of '%s' shows %.4g mA at most, so that "
+                         "safety.trip_current of %.4g mA is never exceeded",
+                         input->name.text, 1e3 * seen_A, 1e3 * protocol->safety.trip_current_A.si);
+}
+
 static dea_status check_inputs(struct dea_context *ctx, const struct dea_protocol *protocol,
                                const struct dea_protocol_plan *plan)
 {
@@ -206,6 +221,8 @@ static dea_status check_inputs(struct dea_context *ctx, const struct dea_protoco
     counts[input->kind.value]++;
     if (input->kind.value == DEA_CHANNEL_VOLTAGE) {
       DEA_TRY(ctx, check_range(ctx, plan, input));
+    } else if (input->kind.value == DEA_CHANNEL_CURRENT) {
+      DEA_TRY(ctx, check_trip(ctx, protocol, input));
     }
     if (input->filter_Hz.si >= 0.5 * protocol->rate_Hz.si) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, input->filter_Hz.place,
@@ -242,6 +259,24 @@ static dea_status check_rate(struct dea_context *ctx, const struct dea_protocol 
                          "a second give it %g",
                          refused ? "refused: " : "", step, samples, protocol->rate_Hz.si,
                          few_samples / slopes->cycle_s, few_samples);
+}
+
+/* Nothing shortens the ramp, neither a breakdown nor a second Ctrl-C. */
+static dea_status check_ramp(struct dea_context *ctx, const struct dea_protocol *protocol,
+                             const struct dea_protocol_plan *plan)
+{
+  static const double long_s = 5, too_long_s = 60;
+  const struct dea_quantity *ramp = &protocol->safety.ramp_V_per_s;
+  double highest_V = fmax(-plan->lowest_V, plan->highest_V), time_s = highest_V / ramp->si;
+  if (!(time_s > long_s)) {
+    return DEA_OK;
+  }
+  bool refused = time_s > too_long_s;
+  return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, ramp->place,
+                         "%sthe ramp from %g kV to 0 V takes %.3g s by %g V/s, also after a "
+                         "breakdown, and nothing shortens it; at most %g s are allowed",
+                         refused ? "refused: " : "", 1e-3 * highest_V, time_s, ramp->si,
+                         too_long_s);
 }
 
 /* Two steps of one name cannot be told apart later. */
@@ -305,6 +340,7 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
   DEA_TRY(ctx, check_rise(ctx, protocol, &slopes, plan));
   DEA_TRY(ctx, check_slopes(ctx, protocol, &slopes, plan));
   DEA_TRY(ctx, check_inputs(ctx, protocol, plan));
+  DEA_TRY(ctx, check_ramp(ctx, protocol, plan));
   DEA_TRY(ctx, check_rate(ctx, protocol, &slopes));
   DEA_TRY(ctx, check_labels(ctx, protocol));
   DEA_TRY(ctx, check_size(ctx, protocol, plan));
