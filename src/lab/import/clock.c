@@ -66,6 +66,33 @@ dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table
   return DEA_OK;
 }
 
+dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_table *table,
+                                   size_t column)
+{
+  // 2000 to 2050 in days since 1900, with steps below a quarter of an hour
+  static const double first_day = 36526, last_day = 54788, step_days = 0.01;
+  const struct dea_place place = {table->file, 0, 0};
+  const struct dea_table_column *c = &table->columns[column];
+  double first = c->count > 0 ? c->values[0] : 0;
+  double span = c->count > 1 ? c->values[c->count - 1] - first : 0;
+  // 1e11 s are 3000 years
+  const char *unit = first > 1e17 ? "ns" : first > 1e14 ? "us" : first > 1e11 ? "ms" : NULL;
+  if (first >= first_day && first < last_day && span > 0 &&
+      span < step_days * (double)(c->count - 1) && (floor(first) != first || span < 1)) {
+    unit = "day";
+  }
+  if (unit == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx,
+          dea_finding_add(ctx, DEA_ERROR, place,
+                          "the time column '%.60s' has no unit, and %.12g looks like %s%s: say "
+                          "which it is in a mapping (time_unit: %s, or time_unit: s)",
+                          c->name, first, unit,
+                          unit[0] == 'd' ? "s of a spreadsheet" : " since 1970", unit));
+  return dea_fail(ctx, DEA_E_IO, "'%s' has times of an unknown unit", table->file);
+}
+
 bool dea_clock_same(const struct dea_clock *a, const struct dea_clock *b)
 {
   if (a->count != b->count || (a->time_s == NULL) != (b->time_s == NULL)) {

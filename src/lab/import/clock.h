@@ -14,6 +14,10 @@ struct dea_clock {
  * are findings with their row, DEA_E_IO then. */
 dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table, size_t column,
                           double factor, struct dea_clock *out);
+/* Whether the times of a column without a unit can be seconds: those since 1970 in ms, us or ns and
+ * the days of spreadsheets are findings that ask for time_unit, DEA_E_IO then. */
+dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_table *table,
+                                   size_t column);
 /* Whether two of them are the same to a thousandth of a step. */
 bool dea_clock_same(const struct dea_clock *a, const struct dea_clock *b);
 

@@ -178,17 +178,49 @@ static void choose(const struct sample *sample, bool *text, bool *other, struct 
   }
 }
 
-/* Numbers further up would be lost: two tables in one file, or a line between them that is none. */
-static dea_status check_above(const struct sample *sample, const struct candidate *best,
-                              bool *flags)
+static bool is_digit_first(struct dea_slice field)
 {
+  return field.length > 0 && isdigit((unsigned char)field.text[0]);
+}
+
+/* Whether a line is of the form of a line of the numbers some columns of which hold text: dates
+ * where there are dates, or the same words. */
+static bool is_like(struct dea_slice line, struct dea_slice model, const struct candidate *best,
+                    const bool *text)
+{
+  struct dea_slice a, b;
+  double value;
+  size_t numeric = 0;
+  if (dea_slice_count(line, best->separator) != best->count) {
+    return false;
+  }
+  for (size_t i = 0;
+       dea_slice_field(&line, best->separator, &a) && dea_slice_field(&model, best->separator, &b);
+       i++) {
+    bool number = dea_slice_number(a, best->decimal, &value);
+    bool same = a.length == b.length && memcmp(a.text, b.text, a.length) == 0;
+    if (text[i] ? !same && !(is_digit_first(a) && is_digit_first(b)) : !number) {
+      return false;
+    }
+    numeric += !text[i] && value == value;
+  }
+  return numeric > 0;
+}
+
+/* Numbers further up would be lost: two tables in one file, or a line between them that is none.
+ * text: columns of text. */
+static dea_status check_above(const struct sample *sample, const struct candidate *best,
+                              const bool *text, bool *flags)
+{
+  const struct dea_slice model = sample->lines[best->first];
   size_t alone = 0;
   for (size_t i = 0; i < best->first; i++) {
     size_t count, numeric = look(sample->lines[i], best, flags, &count);
     bool numbers =
         numeric > 0 && count <= DEA_TABLE_COLUMNS_MAX && memchr(flags, true, count) == NULL;
     alone = numbers && count == 1 ? alone + 1 : 0;
-    if ((numbers && count > 1) || alone > 1) {
+    if ((numbers && count > 1) || alone > 1 ||
+        (!best->all_numeric && is_like(sample->lines[i], model, best, text))) {
       const struct dea_place place = {sample->file, sample->numbers[i], 1};
       DEA_TRY(sample->ctx,
               dea_finding_add(sample->ctx, DEA_ERROR, place,
@@ -317,7 +349,7 @@ static dea_status find(struct sample *sample, struct dea_slice text, bool *flags
   }
   DEA_TRY(sample->ctx, fill(sample, text, &best, out));
   DEA_TRY(sample->ctx, check_last_title(sample->ctx, sample->file, out));
-  return check_above(sample, &best, flags);
+  return check_above(sample, &best, out->text, flags);
 }
 
 dea_status dea_csv_dialect_find(struct dea_context *ctx, const char *file, struct dea_slice text,

@@ -196,6 +196,27 @@ static dea_status read_segment_header(struct dea_lvm *lvm, struct dea_slice line
                   known ? "does not end" : "does not say how many channels it has");
 }
 
+/* Channels of a later segment that have other names would be joined to those of the first. */
+static dea_status check_titles(const struct dea_lvm *lvm, struct dea_slice rest)
+{
+  struct dea_slice field;
+  for (size_t n = 0; dea_slice_field(&rest, lvm->separator, &field); n++) {
+    size_t i;
+    if (find_field(lvm, n, &i) || i >= lvm->count) {
+      continue;
+    }
+    const struct dea_slice first = lvm->channels[i].name;
+    if (field.length != first.length || memcmp(field.text, first.text, field.length) != 0) {
+      return dea_fail(lvm->ctx, DEA_E_IO,
+                      "'%s', line %zu: a segment has the channel '%.*s' where the first one has "
+                      "'%.*s'; write them to files of their own",
+                      lvm->file, lvm->lines.line, (int)(field.length < 40 ? field.length : 40),
+                      field.text, (int)(first.length < 40 ? first.length : 40), first.text);
+    }
+  }
+  return DEA_OK;
+}
+
 /* The titles of the columns: of the first segment they name the channels. */
 static dea_status read_titles(struct dea_lvm *lvm)
 {
@@ -209,10 +230,10 @@ static dea_status read_titles(struct dea_lvm *lvm)
     first_empty = field.length == 0 || dea_slice_starts(field, "X_Value");
   }
   lvm->first_empty = first_empty;
-  if (lvm->segments > 0) {
-    return DEA_OK;
-  }
   rest = line;
+  if (lvm->segments > 0) {
+    return check_titles(lvm, line);
+  }
   for (size_t n = 0; dea_slice_field(&rest, lvm->separator, &field); n++) {
     size_t i;
     if (!find_field(lvm, n, &i) && i < lvm->count) {

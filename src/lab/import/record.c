@@ -26,6 +26,22 @@ static struct dea_place file_place(const struct work *work)
 
 // Clocks -----------------------------------------------------------------------------------------
 
+/* Times without a unit are taken in seconds, which is said, and not done when it cannot be. */
+static dea_status check_time_unit(struct work *work, size_t column)
+{
+  const struct dea_table_column *c = &work->table->columns[column];
+  if (c->unit[0] != '\0' || (work->mapping != NULL && work->mapping->time_unit.text[0] != '\0')) {
+    return DEA_OK;
+  }
+  DEA_TRY(work->ctx, dea_clock_check_seconds(work->ctx, work->table, column));
+  return work->mapping != NULL
+             ? DEA_OK
+             : dea_finding_add(work->ctx, DEA_WARNING, file_place(work),
+                               "the time '%.60s' has no unit and is taken in s: say it in a "
+                               "mapping (time_unit: ms)",
+                               c->name);
+}
+
 /* Clock of a column; columns with the same times share it. */
 static dea_status clock_get(struct work *work, size_t column, struct dea_clock *out)
 {
@@ -50,6 +66,7 @@ static dea_status clock_get(struct work *work, size_t column, struct dea_clock *
                     work->table->columns[at].count);
   }
   if (work->clocks[at].count == 0) {
+    DEA_TRY(work->ctx, check_time_unit(work, at));
     DEA_TRY(work->ctx,
             dea_clock_read(work->ctx, work->table, at, work->roles[at].factor, &work->clocks[at]));
     const struct dea_clock *clock = &work->clocks[at];

@@ -186,6 +186,13 @@ static struct digits read_digits(struct dea_slice slice, char decimal)
   return d;
 }
 
+/* SCPI's infinity (9.9e37) and "not a number" (9.91e37), which oscilloscopes write into files. */
+static double or_missing(double value)
+{
+  double size = fabs(value);
+  return isfinite(value) && !(size > 9.89e37 && size < 1e38) ? value : NAN;
+}
+
 bool dea_slice_number(struct dea_slice slice, char decimal, double *value)
 {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -200,7 +207,7 @@ bool dea_slice_number(struct dea_slice slice, char decimal, double *value)
   if (d.exact && d.mantissa <= (uint64_t)1 << 53 && d.exponent >= -22 && d.exponent <= 22) {
     double m = (double)d.mantissa;
     m = d.exponent < 0 ? m / tens[-d.exponent] : m * tens[d.exponent];
-    *value = d.negative ? -m : m;
+    *value = or_missing(d.negative ? -m : m);
     return true;
   }
   char copy[400];
@@ -214,6 +221,6 @@ bool dea_slice_number(struct dea_slice slice, char decimal, double *value)
   copy[slice.length] = '\0';
   const char *end;
   *value = dea_text_to_double(copy, &end);
-  *value = isfinite(*value) ? *value : NAN;
+  *value = or_missing(*value);
   return *end == '\0';
 }

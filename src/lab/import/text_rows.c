@@ -8,14 +8,23 @@
 
 enum { ERRORS_MAX = 20, NONE = -1 };
 
+/* How the numbers of a column are written, to tell marks between thousands from decimal ones. */
+struct marks {
+  size_t thousands; // "12.345": three digits behind the mark, no 0 first
+  size_t others;    // with a mark that can only be the decimal one
+  size_t plain;     // without a mark
+  size_t line;      // first one of the first kind
+};
+
 struct rows {
   struct dea_context *ctx;
   const struct dea_csv_dialect *dialect;
   struct dea_table *table;
-  int *column;  // [dialect->count] of the table, or NONE: text
-  double *row;  // [dialect->count]
-  size_t count; // of rows so far
-  size_t blank; // lines of separators only since the last row
+  int *column;         // [dialect->count] of the table, or NONE: text
+  double *row;         // [dialect->count]
+  struct marks *marks; // [dialect->count]
+  size_t count;        // of rows so far
+  size_t blank;        // lines of separators only since the last row
   size_t errors;
 };
 
@@ -100,11 +109,65 @@ static void keep_row(struct rows *rows)
   rows->count++;
 }
 
+/* Digits from `i` on. */
+static size_t digits(struct dea_slice field, size_t i)
+{
+  size_t n = 0;
+  while (i + n < field.length && field.text[i + n] >= '0' && field.text[i + n] <= '9') {
+    n++;
+  }
+  return n;
+}
+
+static void count_marks(struct marks *marks, struct dea_slice field, char decimal, size_t line)
+{
+  size_t sign = field.length > 0 && (field.text[0] == '-' || field.text[0] == '+');
+  size_t before = digits(field, sign), mark = sign + before;
+  if (mark == field.length) {
+    marks->plain += before > 0;
+  } else if (field.text[mark] == decimal) {
+    bool like = before >= 1 && before <= 3 && field.text[sign] != '0' &&
+                digits(field, mark + 1) == 3 && mark + 4 == field.length;
+    marks->line = like && marks->thousands == 0 ? line : marks->line;
+    marks->thousands += like;
+    marks->others += !like;
+  }
+}
+
+/* "980, 1.020": a mark that comes with four digits parts thousands, also when it could be read as
+ * the decimal one. So does a comma within quotes where commas part the fields. Points part
+ * thousands where semicolons or tabs part the fields. */
+static dea_status refuse_thousands(struct rows *rows)
+{
+  for (size_t i = 0; i < rows->dialect->count; i++) {
+    const struct marks *m = &rows->marks[i];
+    char separator = rows->dialect->separator;
+    bool comma = rows->dialect->decimal == ',';
+    bool may = comma || separator == ';' || separator == '\t';
+    if (rows->column[i] == NONE || !may || m->others > 0 || m->thousands < 2 ||
+        !(m->plain > 0 || (comma && separator == ','))) {
+      continue;
+    }
+    const struct dea_place place = {rows->table->file, m->line, 1};
+    rows->errors++;
+    DEA_TRY(rows->ctx,
+            dea_finding_add(rows->ctx, DEA_ERROR, place,
+                            "the '%c' in '%.60s' seems to stand between thousands, since three "
+                            "digits always follow it: export numbers without such marks, or with "
+                            "the same number of decimals throughout",
+                            rows->dialect->decimal, rows->table->columns[rows->column[i]].name));
+  }
+  return DEA_OK;
+}
+
 static dea_status read_field(struct rows *rows, size_t line, struct dea_slice whole, size_t index,
                              struct dea_slice field)
 {
-  if (index >= rows->dialect->count || rows->column[index] == NONE ||
-      dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
+  if (index >= rows->dialect->count || rows->column[index] == NONE) {
+    return DEA_OK;
+  }
+  if (dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
+    count_marks(&rows->marks[index], field, rows->dialect->decimal, line);
     return DEA_OK;
   }
   const struct dea_place place = {rows->table->file, line, (size_t)(field.text - whole.text) + 1};
@@ -173,6 +236,9 @@ static dea_status read_lines(struct rows *rows, struct dea_slice text)
   for (size_t k = 0; k < rows->table->column_count; k++) {
     rows->table->columns[k].count = rows->count;
   }
+  if (rows->errors == 0) {
+    DEA_TRY(rows->ctx, refuse_thousands(rows));
+  }
   return rows->errors == 0 ? DEA_OK
                            : dea_fail(rows->ctx, DEA_E_IO, "'%s' has lines that cannot be read",
                                       rows->table->file);
@@ -185,11 +251,13 @@ dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
   struct rows rows = {.ctx = ctx, .dialect = dialect, .table = out};
   rows.column = dea_alloc(ctx, dialect->count, sizeof *rows.column);
   rows.row = rows.column != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.row) : NULL;
-  dea_status status = rows.row != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
+  rows.marks = rows.row != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.marks) : NULL;
+  dea_status status = rows.marks != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = read_lines(&rows, text);
   }
   dea_free(ctx, rows.column);
   dea_free(ctx, rows.row);
+  dea_free(ctx, rows.marks);
   return status;
 }

@@ -40,6 +40,9 @@ const char *dea_title_unit(struct dea_context *ctx, const char *unit, double *fa
   if (n == 0 || n >= UNIT_SIZE) {
     return NULL;
   }
+  if (n == 2 && unit[0] == 'K' && strchr("VN", unit[1]) != NULL) { // "KV" is no kelvin
+    unit = unit[1] == 'V' ? "kV" : "kN";
+  }
   if (read_unit(ctx, unit, &si, factor) != 1 && n > 2) { // "Volts", but not "MV" as "mv"
     for (size_t i = 0; i <= n; i++) {
       lower[i] = (char)tolower((unsigned char)unit[i]);
@@ -84,11 +87,53 @@ bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
  * the end of names that mean something else. */
 static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
 {
-  // \xc2\xb5 is the micro sign
-  static const char *const units[] = {
-      "s",  "ms", "us",        "\xc2\xb5s", "ns",  "min", "V",         "kV", "mV",
-      "mA", "uA", "nA",        "m",         "mm",  "um",  "\xc2\xb5m", "nm", "cm",
-      "N",  "mN", "\xc2\xb5N", "uN",        "kHz", "Hz",  "MV",        "MHz"};
+  // the micro sign in UTF-8 and in Latin-1, the Greek letter mu
+  static const char *const units[] = {"\xb5s",
+                                      "\xb5m",
+                                      "\xb5N",
+                                      "\xb5V",
+                                      "\xc2\xb5V",
+                                      "uV",
+                                      "KV",
+                                      "\xce\xbcs",
+                                      "\xce\xbcm",
+                                      "\xce\xbcN",
+                                      "\xce\xbcV",
+                                      "\xce\xbc"
+                                      "A",
+                                      "\xc2\xb5"
+                                      "A",
+                                      "\xb5"
+                                      "A",
+                                      "msec",
+                                      "usec",
+                                      "sec",
+                                      "s",
+                                      "ms",
+                                      "us",
+                                      "\xc2\xb5s",
+                                      "ns",
+                                      "min",
+                                      "V",
+                                      "kV",
+                                      "mV",
+                                      "mA",
+                                      "uA",
+                                      "nA",
+                                      "m",
+                                      "mm",
+                                      "um",
+                                      "\xc2\xb5m",
+                                      "nm",
+                                      "cm",
+                                      "N",
+                                      "mN",
+                                      "\xc2\xb5N",
+                                      "uN",
+                                      "kHz",
+                                      "Hz",
+                                      "MV",
+                                      "MHz"};
   for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
     if (unit.length == strlen(units[i]) && memcmp(unit.text, units[i], unit.length) == 0) {
       return true;
@@ -99,20 +144,31 @@ static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
          (dea_slice_is(name, "i") || dea_slice_is(name, "current") || dea_slice_is(name, "strom"));
 }
 
-/* Unit behind the last '/', '_' or " in ". */
-static bool split_bare(struct dea_slice title, struct dea_slice *name, struct dea_slice *unit)
+/* How many letters part name and unit there: '/', '_' or " in "; weak: ':', ',', and a blank before
+ * a unit of several letters. */
+static size_t bare_mark(struct dea_slice title, size_t i, bool weak)
+{
+  char c = title.text[i];
+  if (weak) {
+    return c == ':' || c == ',' || (c == ' ' && i + 2 < title.length);
+  }
+  bool in = i + 4 < title.length && memcmp(title.text + i, " in ", 4) == 0;
+  return in ? 4 : c == '/' || c == '_';
+}
+
+/* Unit behind the last of such marks. */
+static bool split_bare(struct dea_slice title, bool weak, struct dea_slice *name,
+                       struct dea_slice *unit)
 {
   for (size_t i = title.length; i-- > 1;) {
-    size_t skip = title.text[i] == '/' || title.text[i] == '_' ? 1 : 0;
-    if (skip == 0 && i + 4 < title.length && memcmp(title.text + i, " in ", 4) == 0) {
-      skip = 4;
-    }
+    size_t skip = bare_mark(title, i, weak);
     if (skip > 0) {
       struct dea_slice before = dea_slice_trim((struct dea_slice){title.text, i});
       struct dea_slice after =
           dea_slice_trim((struct dea_slice){title.text + i + skip, title.length - i - skip});
       if (is_bare_unit(before, after)) {
-        *name = before;
+        bool mark = before.length > 1 && strchr(":,", before.text[before.length - 1]) != NULL;
+        *name = dea_slice_trim((struct dea_slice){before.text, before.length - mark});
         *unit = after;
         return true;
       }
@@ -129,10 +185,12 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
   *unit = (struct dea_slice){"", 0};
   // the last pair of brackets that holds a unit
   for (size_t close = title.length; close-- > 0;) {
-    char end = title.text[close], start = end == ')' ? '(' : '[';
-    if (end != ')' && end != ']') {
+    static const char ends[] = ")]}>", starts[] = "([{<";
+    const char *end = title.text[close] != '\0' ? strchr(ends, title.text[close]) : NULL;
+    if (end == NULL) {
       continue;
     }
+    char start = starts[end - ends];
     size_t open = close;
     while (open > 0 && title.text[open] != start) {
       open--;
@@ -150,7 +208,9 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
       return;
     }
   }
-  split_bare(title, name, unit);
+  if (!split_bare(title, false, name, unit)) {
+    split_bare(title, true, name, unit);
+  }
 }
 
 /* Where the next title of a line parted by blanks ends: at `blanks` of them outside of brackets; a
