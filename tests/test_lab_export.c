@@ -124,6 +124,29 @@ static void test_python(void **state)
   check_reading_back();
 }
 
+/* A waveform that somebody changed is played only within what was checked. */
+static void check_edited(const char *program)
+{
+  static const struct {
+    const char *edit, *part;
+  } edits[] = {
+      {"s/^0.003,4,4$/0.003,4.001,4.001/", "beyond the 0 V to 4 V"},
+      {"s/^0.003,4,4$/0.003,-0.01,-0.01/", "beyond the 0 V to 4 V"},
+      {"s/^0.003,4,4$/0.003,nan,nan/", "beyond the 0 V to 4 V"},
+      {"s/^0.003,4,4$/0.003,2,4/", "not its control voltages times the gain"},
+      {"s/^1,0,0$/1,1,1/", "does not end at 0 V"},
+  };
+  for (size_t i = 0; i < sizeof edits / sizeof edits[0]; i++) {
+    char line[1024];
+    make_files();
+    snprintf(line, sizeof line, "sed -i '%s' waveform.csv && STUB_LOG=log %s", edits[i].edit,
+             program);
+    assert_int_not_equal(run_script("", line), 0);
+    assert_contains(command_err, edits[i].part);
+    assert_null(strstr(log_text, "queued"));
+  }
+}
+
 static void test_python_ends_at_zero(void **state)
 {
   (void)state;
@@ -132,6 +155,8 @@ static void test_python_ends_at_zero(void **state)
   } ways[] = {{"STUB_FAIL=60", "the device was taken away"},
               {"STUB_FAIL=650", "the device was taken away"},
               {"STUB_SIGNAL=610", "signal 2; the output is at 0 V"},
+              {"STUB_NAME=SIGHUP STUB_SIGNAL=610", "signal 1; the output is at 0 V"},
+              {"STUB_NAME=SIGTERM STUB_SIGNAL=610", "signal 15; the output is at 0 V"},
               {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
   make_files();
   for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
@@ -142,6 +167,7 @@ static void test_python_ends_at_zero(void **state)
   }
   assert_int_equal(run_script("", "touch recording.csv; " PYTHON), 1);
   assert_contains(command_err, "rename it first");
+  check_edited(PYTHON);
 }
 
 static bool no_octave(void)
@@ -193,6 +219,7 @@ static void test_matlab_ends_at_zero(void **state)
     assert_contains(command_err, ways[i].part);
     check_ramp(4);
   }
+  check_edited(OCTAVE);
 }
 
 int main(void)

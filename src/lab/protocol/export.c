@@ -87,9 +87,22 @@ static double trip_samples(const struct dea_protocol *protocol)
 
 // Scripts ----------------------------------------------------------------------------------------
 
+/* The control voltages that were checked: of the sequence, and not of the amplifier, because the
+ * film may stand less. What was rounded in the file is within. */
+static void find_control(const struct dea_protocol *protocol, double *low_V, double *high_V)
+{
+  *low_V = *high_V = 0;
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    *low_V = fmin(*low_V, protocol->steps[i].lowest_V / protocol->amplifier.gain.si);
+    *high_V = fmax(*high_V, protocol->steps[i].highest_V / protocol->amplifier.gain.si);
+  }
+}
+
 static void write_python(const struct dea_protocol *protocol, struct dea_text *out)
 {
   char title[TITLE_SIZE];
+  double low_V, high_V;
+  find_control(protocol, &low_V, &high_V);
   dea_text_add(
       out, "#!/usr/bin/env python3\n"
            "# Plays waveform.csv to the amplifier through NI-DAQmx and records all channels as\n"
@@ -98,8 +111,11 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
   dea_text_add(out, "#   python play_nidaqmx.py [DEVICE]     by default Dev1\n\n");
   dea_text_add(out, "RATE_HZ = %.17g\nGAIN = %.17g  # of the amplifier\n", protocol->rate_Hz.si,
                protocol->amplifier.gain.si);
-  dea_text_add(out, "CONTROL_V = %.17g  # largest control voltage\nOUTPUT = ",
-               protocol->amplifier.control_V.si);
+  dea_text_add(out,
+               "CONTROL_V = %.17g  # largest control voltage of the amplifier\n"
+               "LOWEST_V = %.17g  # control voltages that were checked against the film\n"
+               "HIGHEST_V = %.17g\nOUTPUT = ",
+               protocol->amplifier.control_V.si, low_V, high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
   dea_text_add(out, "\nRAMP_V_PER_S = %.17g  # of the amplifier's output, when it ends early\n",
                protocol->safety.ramp_V_per_s.si);
@@ -130,6 +146,8 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
 static void write_matlab(const struct dea_protocol *protocol, struct dea_text *out)
 {
   char title[TITLE_SIZE], variable[TITLE_SIZE];
+  double low_V, high_V;
+  find_control(protocol, &low_V, &high_V);
   dea_text_add(
       out, "function play_matlab(device)\n"
            "%% Plays waveform.csv to the amplifier through the Data Acquisition Toolbox (R2020a\n"
@@ -141,8 +159,10 @@ static void write_matlab(const struct dea_protocol *protocol, struct dea_text *o
   dea_text_add(out, "%s", dea_asset_play_matlab);
   dea_text_add(out, "function p = numbers()\np.rate_Hz = %.17g;\n", protocol->rate_Hz.si);
   dea_text_add(out, "p.gain = %.17g; %% of the amplifier\n", protocol->amplifier.gain.si);
-  dea_text_add(out, "p.control_V = %.17g; %% largest control voltage\np.output = ",
-               protocol->amplifier.control_V.si);
+  dea_text_add(out,
+               "p.lowest_V = %.17g; %% control voltages that were checked against the film\n"
+               "p.highest_V = %.17g;\np.output = ",
+               low_V, high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
   dea_text_add(out, ";\np.ramp_V_per_s = %.17g; %% of the amplifier's output, when it ends early\n",
                protocol->safety.ramp_V_per_s.si);
@@ -179,11 +199,14 @@ static void write_readme(const struct dea_protocol *protocol, struct dea_text *o
 {
   dea_text_add(out, "%s\n\n",
                protocol->title.text[0] != '\0' ? protocol->title.text : protocol->file);
+  double low_V, high_V;
+  find_control(protocol, &low_V, &high_V);
+  double gain = protocol->amplifier.gain.si;
   dea_text_add(out,
-               "HIGH VOLTAGE: %g kV to %g kV at most were checked against the amplifier and the "
-               "film when these files\nwere made. Nobody has tried the scripts on your "
-               "instruments.\n\n",
-               1e-3 * protocol->amplifier.lowest_V.si, 1e-3 * protocol->amplifier.highest_V.si);
+               "HIGH VOLTAGE: %g kV to %g kV were checked against the amplifier and the film when "
+               "these files\nwere made; the scripts refuse a waveform.csv that goes beyond. Nobody "
+               "has tried the scripts on your\ninstruments.\n\n",
+               1e-3 * gain * low_V, 1e-3 * gain * high_V);
   dea_text_add(
       out,
       "waveform.csv      time (s), asked voltage (kV), control voltage of the amplifier (V)\n"

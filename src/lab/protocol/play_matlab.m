@@ -6,8 +6,13 @@ p = numbers();
 folder = fileparts(mfilename('fullpath'));
 wave = dlmread(fullfile(folder, 'waveform.csv'), ',', 1, 0); % time (s), V (kV), control (V)
 control = wave(:, 3);
-if max(abs(control)) > p.control_V * (1 + 1e-9)
-  error('waveform.csv goes beyond the control voltage of the amplifier, %g V', p.control_V);
+rounded = 1e-9 * (p.highest_V - p.lowest_V);
+if ~all(control >= p.lowest_V - rounded & control <= p.highest_V + rounded) % NaN is not
+  error('waveform.csv goes beyond the %g V to %g V of control voltage that were checked', ...
+        p.lowest_V, p.highest_V);
+end
+if ~all(abs(wave(:, 2) - p.gain / 1000 * control) <= 1e-6 * max(abs(wave(:, 2))))
+  error('the voltages in waveform.csv are not its control voltages times the gain');
 end
 if control(end) ~= 0
   error('waveform.csv does not end at 0 V');

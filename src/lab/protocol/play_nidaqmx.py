@@ -30,8 +30,15 @@ def read_waveform():
         rows = list(csv.reader(file))[1:]
     voltage = [float(row[1]) for row in rows]
     control = [float(row[2]) for row in rows]
-    if max(abs(value) for value in control) > CONTROL_V * (1 + 1e-9):
-        sys.exit("waveform.csv goes beyond the amplifier's control voltage of %g V" % CONTROL_V)
+    rounded = 1e-9 * (HIGHEST_V - LOWEST_V)
+    if not all(LOWEST_V - rounded <= value <= HIGHEST_V + rounded for value in control):  # or NaN
+        sys.exit(
+            "waveform.csv goes beyond the %g V to %g V of control voltage that were checked"
+            % (LOWEST_V, HIGHEST_V)
+        )
+    largest = max(abs(value) for value in voltage)
+    if not all(abs(v - GAIN / 1000 * c) <= 1e-6 * largest for v, c in zip(voltage, control)):
+        sys.exit("the voltages in waveform.csv are not its control voltages times the gain")
     if control[-1] != 0:
         sys.exit("waveform.csv does not end at 0 V")
     return voltage, control
@@ -91,7 +98,7 @@ def prepare(device, output, inputs, control):
 
 def read_rows(inputs, count):
     """Values of all channels, a row a sample, in the units of their titles."""
-    columns = inputs.read(number_of_samples_per_channel=count, timeout=10.0 + count / RATE_HZ)
+    columns = inputs.read(number_of_samples_per_channel=count, timeout=3.0 + count / RATE_HZ)
     if len(CHANNELS) == 1:
         columns = [columns]
     scaled = [
@@ -136,16 +143,17 @@ def still_there(output, state, control):
 
 def play(device):
     voltage, control = read_waveform()
-    name = os.path.join(FOLDER, "recording.csv")
-    if os.path.exists(name):
+    recording = os.path.join(FOLDER, "recording.csv")
+    if os.path.exists(recording):
         sys.exit("recording.csv is there already; rename it first")
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, on_signal)
+    for name in ("SIGINT", "SIGTERM", "SIGBREAK", "SIGHUP", "SIGQUIT"):  # as the system has them
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), on_signal)
     state = {"read": 0}
     last = 0.0  # control voltage that the output may still have
     why = "an error"
     try:
-        with open(name, "w", newline="") as file, nidaqmx.Task() as output, nidaqmx.Task() as inputs:
+        with open(recording, "w", newline="") as file, nidaqmx.Task() as output, nidaqmx.Task() as inputs:
             writer = csv.writer(file)
             writer.writerow(["time (s)", "command (kV)"] + [c["title"] for c in CHANNELS])
             prepare(device, output, inputs, control)

@@ -72,7 +72,7 @@ class Task:
         if last > number("STUB_FAIL"):
             raise RuntimeError("the device was taken away")
         if first <= number("STUB_SIGNAL") < last:
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), getattr(signal, os.environ.get("STUB_NAME", "SIGINT")))
         self.at = OutStream.generated = last
         before = [played[i - 1] if i > 0 else 0.0 for i in range(first, last)]
         current = [2.0 if i >= number("STUB_TRIP") else 0.01 for i in range(first, last)]
