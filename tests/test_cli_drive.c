@@ -73,6 +73,9 @@ static void test_simulated(void **state)
   json_decref(json);
   assert_int_equal(command_run("recording s.h5"), 0);
   assert_contains(command_out, "cycles         4 completed");
+  // the protocol inside is the file: what was played differs by what was set
+  assert_contains(command_out,
+                  "protocol_overrides sequence=[{waveform: {kind: staircase, values: ");
 }
 
 static void test_usage(void **state)

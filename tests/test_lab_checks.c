@@ -134,6 +134,10 @@ static void test_refusals(void **state)
        "  - {name: I, quantity: current, input: ai1, per_volt: 1 mA, range: 5 V, at_zero: -4 mA}\n"
        "waveform: {kind: constant, voltage: 1 kV}\n",
        "refused: the input of 'I' shows 0.9995 mA at most", 6, 69},
+      {"dea-protocol: 1\nrate: 0.5 Hz\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: 6 kV, duration: 1 hour}\n",
+       "refused: at 0.5 samples a second the way to 0 V would begin only 4 s after", 2, 7},
       {"dea-protocol: 1\nsafety: {ramp: 50 V/s}\n"
        "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "waveform: {kind: constant, voltage: -6 kV}\n",

@@ -72,6 +72,9 @@ static dea_status provenance_text(struct dea_context *ctx, const struct dea_prot
   dea_json_put_text(json, "libraries", p.libraries);
   dea_json_put_text(json, "protocol_file", protocol->file);
   dea_json_put_text(json, "protocol_sha256", p.input_sha256);
+  if (protocol->overrides != NULL) {
+    dea_json_put_text(json, "protocol_overrides", protocol->overrides);
+  }
   dea_json_put_text(json, "instruments", dea_text_get(&names));
   dea_status status = dea_json_text(ctx, json, out);
   dea_text_free(&names);

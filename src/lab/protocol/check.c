@@ -247,8 +247,15 @@ static dea_status check_inputs(struct dea_context *ctx, const struct dea_protoco
 static dea_status check_rate(struct dea_context *ctx, const struct dea_protocol *protocol,
                              const struct dea_protocol_slopes *slopes)
 {
+  static const double rate_least_Hz = 10;
   double samples = protocol->rate_Hz.si * slopes->cycle_s;
   char step[DEA_STEP_NAME_SIZE];
+  if (protocol->rate_Hz.si < rate_least_Hz) {
+    return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.place,
+                           "refused: at %g samples a second the way to 0 V would begin only %.2g s "
+                           "after its reason; at least %g samples a second are played",
+                           protocol->rate_Hz.si, 2 / protocol->rate_Hz.si, rate_least_Hz);
+  }
   if (samples >= few_samples * (1 - 1e-9)) {
     return DEA_OK;
   }

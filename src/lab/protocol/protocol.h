@@ -48,6 +48,7 @@ struct dea_protocol {
   struct dea_label design_file;
   struct dea_design *design; // owned; NULL: none named
   char *text, *design_text;  // whole files; owned; the second NULL without a design
+  char *overrides;           // of values in the file, "key=value; key=value"; owned; NULL: none
 
   struct dea_protocol_step *steps; // [step_count], owned
   size_t step_count;

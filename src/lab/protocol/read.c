@@ -1,6 +1,7 @@
 /* Reading protocols. */
 #include "base/file.h"
 #include "base/schema_value.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "lab/protocol/schema.h"
 
@@ -283,15 +284,19 @@ static dea_status take_amplifier(struct dea_context *ctx, struct dea_protocol *p
 static dea_status parse(struct dea_context *ctx, struct dea_protocol *protocol, size_t length,
                         const struct dea_override *overrides, size_t override_count)
 {
+  struct dea_text said = {.ctx = ctx};
   DEA_TRY(ctx, dea_yaml_parse(ctx, protocol->file, protocol->text, length, &protocol->document));
   for (size_t i = 0; i < override_count; i++) {
     dea_status status =
         dea_yaml_override(ctx, protocol->document, overrides[i].key, overrides[i].value);
     if (status != DEA_OK && status != DEA_E_DESIGN) {
+      dea_text_free(&said);
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
+    dea_text_add(&said, "%s%s=%s", i > 0 ? "; " : "", overrides[i].key, overrides[i].value);
   }
-  return DEA_OK;
+  protocol->overrides = said.data;
+  return said.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* The simulated bench is always there: what is not said of it has defaults. */
@@ -358,6 +363,7 @@ static void clear(struct dea_context *ctx, struct dea_protocol *protocol)
   dea_design_destroy(ctx, protocol->design);
   dea_free(ctx, protocol->text);
   dea_free(ctx, protocol->design_text);
+  dea_free(ctx, protocol->overrides);
   dea_free(ctx, protocol->steps);
   dea_free(ctx, protocol->inputs);
   dea_listing_free(ctx, &protocol->values);
