@@ -243,6 +243,42 @@ static void test_times_and_texts(void **state)
 }
 
 /* A program that crashed leaves -1 as the length of its last segment. */
+/* Raw values with a linear scale in their properties; one that was applied already; another one. */
+static void test_scales(void **state)
+{
+  (void)state;
+  static const double scaled[] = {0.5, 151}, raw[] = {-1, 300};
+  static const struct {
+    const char *type, *status;
+    const double *wanted;
+    enum dea_severity said;
+    const char *text;
+  } cases[] = {{"Linear", "unscaled", scaled, DEA_NOTE, "raw x 0.5 + 1"},
+               {"Linear", "scaled", raw, DEA_NOTE, NULL},
+               {"Polynomial", "unscaled", raw, DEA_WARNING, "not applied"}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    begin_file();
+    begin_segment(METADATA | NEW_LIST | RAW);
+    put(1, 4);
+    put_object("/'bench'/'ai0'", 2, 2, 5); // int16
+    put_text_property("NI_Scaling_Status", cases[i].status);
+    put_text("NI_Number_Of_Scales");
+    put(7, 4); // u32
+    put(1, 4);
+    put_text_property("NI_Scale[0]_Scale_Type", cases[i].type);
+    put_real_property("NI_Scale[0]_Linear_Slope", 0.5);
+    put_real_property("NI_Scale[0]_Linear_Y_Intercept", 1);
+    begin_raw();
+    put(0xffff, 2);
+    put(300, 2);
+    end_segment();
+    struct dea_table *table = read_bytes("scale.tdms", bytes, length);
+    assert_column(table, "ai0", "", cases[i].wanted, 2);
+    assert_true(cases[i].text == NULL || is_said(cases[i].said, cases[i].text));
+    dea_table_destroy(ctx, table);
+  }
+}
+
 static void test_crashed(void **state)
 {
   (void)state;
@@ -355,8 +391,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_segments), cmocka_unit_test(test_interleaved),
       cmocka_unit_test(test_types),    cmocka_unit_test(test_times_and_texts),
-      cmocka_unit_test(test_crashed),  cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_crashed),  cmocka_unit_test(test_scales),
+      cmocka_unit_test(test_refused),  cmocka_unit_test(test_cuts),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

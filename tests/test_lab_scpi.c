@@ -219,6 +219,34 @@ static void test_makes_no_sense(void **state)
   }
 }
 
+/* The range of a display changes, or it says that it is at its end. */
+static void test_changes_its_unit(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const char *const answers[][2] = {{"950 mN", "1.05 N"},
+                                           {"1E-9NADC,+3secs", "2E-3OADC,+4secs"}};
+  for (size_t i = 0; i < 2; i++) {
+    struct behaviour behaviour = usual;
+    memset(&b, 0, sizeof b);
+    behaviour.current = answers[i][0];
+    behaviour.then = answers[i][1];
+    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 3, 0, 0), DEA_OK);
+    assert_close(b.intake.reading[0].value, i == 0 ? 950 : 1e-9, 1e-12, 0);
+    assert_true(isnan(b.intake.reading[2].value));
+    assert_true(b.instrument->lost > 0);
+    end(&b);
+  }
+  char suffix[DEA_SCPI_SUFFIX_SIZE];
+  dea_scpi_suffix(" +1.5E-3 m N ,7 V", suffix);
+  assert_string_equal(suffix, "mN");
+  dea_scpi_suffix("OFF", suffix);
+  assert_string_equal(suffix, "");
+  dea_scpi_suffix("1 a unit that is longer than any unit that there is", suffix);
+  assert_int_equal(strlen(suffix), DEA_SCPI_SUFFIX_SIZE - 1);
+}
+
 static void test_speaks_unasked(void **state)
 {
   (void)state;
@@ -368,7 +396,7 @@ int main(void)
       cmocka_unit_test(test_speaks_unasked), cmocka_unit_test(test_goes_silent),
       cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_not_there),
       cmocka_unit_test(test_refuses),        cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_memory),         cmocka_unit_test(test_changes_its_unit),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

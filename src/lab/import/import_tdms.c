@@ -242,7 +242,13 @@ static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
     column->start = object->start_offset;
     column->interval = object->increment;
     const struct dea_place place = {.file = tdms->file};
-    if (object->scaled) {
+    if (dea_tdms_is_linear(object)) {
+      DEA_TRY(tdms->ctx,
+              dea_finding_add(tdms->ctx, DEA_NOTE, place,
+                              "'%.60s' has raw values, which become raw x %.9g + %.9g as "
+                              "the file says",
+                              name, object->slope, object->intercept));
+    } else if (object->scales > 0 && !object->applied) {
       DEA_TRY(tdms->ctx, dea_finding_add(tdms->ctx, DEA_WARNING, place,
                                          "'%.60s' has raw values with a scale that is not applied: "
                                          "say per_unit and at_zero in a mapping",
@@ -276,6 +282,20 @@ static void relate_times(struct dea_tdms *tdms, struct dea_table *table)
   }
 }
 
+/* Applies the scales that the file gives. */
+static void scale_values(const struct dea_tdms *tdms, struct dea_table *table)
+{
+  for (size_t i = 0; i < tdms->count; i++) {
+    const struct dea_tdms_object *object = &tdms->objects[i];
+    if (object->column != SIZE_MAX && dea_tdms_is_linear(object)) {
+      struct dea_table_column *column = &table->columns[object->column];
+      for (size_t k = 0; k < column->count; k++) {
+        column->values[k] = column->values[k] * object->slope + object->intercept;
+      }
+    }
+  }
+}
+
 static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                        size_t length, struct dea_table *out)
 {
@@ -289,6 +309,7 @@ static dea_status read(struct dea_context *ctx, const char *file, const unsigned
   }
   if (status == DEA_OK) {
     relate_times(&tdms, out);
+    scale_values(&tdms, out);
   }
   dea_free(ctx, tdms.objects);
   dea_free(ctx, tdms.order);

@@ -55,12 +55,15 @@ struct dea_tdms_text {
 struct dea_tdms_object {
   struct dea_tdms_text path, unit;
   double increment, start_offset; // of its waveform; NAN, 0
-  bool scaled;                    // values need a scale that is not applied
-  uint32_t type;                  // of its values, 0: none yet
-  uint64_t values, bytes;         // in a chunk of the segment
-  bool in_segment;                // has values in it
-  size_t total;                   // values of all segments
-  size_t column, filled;          // of the table
+  double scales;                  // that turn raw values into what is meant; 0: none
+  bool applied;                   // values are that already
+  bool linear;                    // the first one is value * slope + intercept
+  double slope, intercept;
+  uint32_t type;          // of its values, 0: none yet
+  uint64_t values, bytes; // in a chunk of the segment
+  bool in_segment;        // has values in it
+  size_t total;           // values of all segments
+  size_t column, filled;  // of the table
 };
 
 struct dea_tdms {
@@ -78,6 +81,8 @@ uint64_t dea_tdms_u64(struct dea_tdms_bytes *bytes);
 /* A value as double; time in seconds since 1904. */
 double dea_tdms_value(const unsigned char *at, uint32_t type, bool big);
 
+/* Whether an object's values are raw, and slope and intercept make of them what is meant. */
+bool dea_tdms_is_linear(const struct dea_tdms_object *object);
 /* Reads a segment's metadata: objects, where their values are, and properties. Errors are findings
  * with the byte, DEA_E_IO. */
 dea_status dea_tdms_metadata(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes, bool new_list);

@@ -148,8 +148,8 @@ static dea_status find_object(struct dea_tdms *tdms, struct dea_tdms_text path, 
     tdms->objects = moved;
     tdms->room = room;
   }
-  tdms->objects[tdms->count++] =
-      (struct dea_tdms_object){.path = path, .unit = {"", 0}, .increment = NAN};
+  tdms->objects[tdms->count++] = (struct dea_tdms_object){
+      .path = path, .unit = {"", 0}, .increment = NAN, .slope = NAN, .intercept = 0};
   return DEA_OK;
 }
 
@@ -234,6 +234,29 @@ static dea_status read_index(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes
   return add_to_order(tdms, index);
 }
 
+bool dea_tdms_is_linear(const struct dea_tdms_object *object)
+{
+  return !object->applied && object->scales == 1 && object->linear && isfinite(object->slope) &&
+         isfinite(object->intercept);
+}
+
+/* What NI writes of the scale of raw values. */
+static void take_scale(struct dea_tdms_object *object, struct dea_tdms_text name,
+                       struct dea_tdms_text text, double value)
+{
+  if (same(name, "NI_Number_Of_Scales") && value > 0) {
+    object->scales = value;
+  } else if (same(name, "NI_Scaling_Status")) {
+    object->applied = same(text, "scaled");
+  } else if (same(name, "NI_Scale[0]_Scale_Type")) {
+    object->linear = same(text, "Linear");
+  } else if (same(name, "NI_Scale[0]_Linear_Slope")) {
+    object->slope = value;
+  } else if (same(name, "NI_Scale[0]_Linear_Y_Intercept")) {
+    object->intercept = value;
+  }
+}
+
 static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *object)
 {
   struct dea_tdms_text name = take_text(bytes), text = {"", 0};
@@ -253,10 +276,8 @@ static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *
     object->start_offset = value;
   } else if ((same(name, "unit_string") || same(name, "NI_UnitDescription")) && text.length > 0) {
     object->unit = text;
-  } else if (same(name, "NI_Number_Of_Scales") && value > 0) {
-    object->scaled = true;
-  } else if (same(name, "NI_Scaling_Status") && same(text, "scaled")) {
-    object->scaled = false;
+  } else {
+    take_scale(object, name, text, value);
   }
 }
 

@@ -11,9 +11,11 @@
  * Type 10, measurement: count u32, reserved u16, id u16; each: value [1/1000 of its unit] i32,
  *   decision u8 (bits 1-7: 0 valid), reserved 3 x u8.
  * Source: "Gocator Line Profile Sensors: User Manual", chapters "Data Results" and "ASCII
- * Protocol". That -32768 is the missing point is in the sensor's published examples; that the x of
- * a point cloud has it too, and that several profiles of one message belong to as many stamps, is
- * concluded, not published. Not tried with a sensor.
+ * Protocol". Order and size of the fields, the types' numbers and INT32_MIN for no measurement are
+ * those of the manufacturer's GoSdk (Messages/GoDataTypes.c), too. That -32768 is the missing point
+ * is in the sensor's published examples; that the x of a point cloud has it too, and that several
+ * profiles of one message belong to as many stamps, is concluded, not published. Type 31
+ * (measurements of several parts) is passed over. Not tried with a sensor.
  *
  * Text: "OK,M00,00,V151290,D0,M01,01,V18520,D0": type (hexadecimal), id, value [1/1000 mm] or
  * INVALID, decision; without "OK," when it is sent unasked. "ERROR,reason". */

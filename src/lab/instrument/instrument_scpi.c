@@ -110,7 +110,10 @@ struct scpi {
   char name[DEA_SOCKET_NAME_SIZE + 8];
   double start_s;                            // computer's clock at start; NAN before
   double due_s[DEA_INSTRUMENT_READINGS_MAX]; // of the readings, on the computer's clock
-  size_t asked;                              // reading that is waited for; reading_count: none
+  /* What stood behind the first number of each: its unit, which must stay; valid when `known`. */
+  char suffix[DEA_INSTRUMENT_READINGS_MAX][DEA_SCPI_SUFFIX_SIZE];
+  bool known[DEA_INSTRUMENT_READINGS_MAX], noted_suffix;
+  size_t asked; // reading that is waited for; reading_count: none
   double asked_s;
   double rate_Hz; // of the output
   double *queue;  // [room], a ring; owned
@@ -376,8 +379,31 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   return play(ctx, s, &next_s);
 }
 
+/* Whether an answer's unit, or state, is that of the first one. One that changes its range from mN
+ * to N would be wrong by a thousand, one that says overflow by anything. */
+static dea_status check_suffix(struct dea_context *ctx, struct scpi *s, size_t reading,
+                               const char *answer, bool *same)
+{
+  char suffix[DEA_SCPI_SUFFIX_SIZE];
+  dea_scpi_suffix(answer, suffix);
+  if (!s->known[reading]) {
+    memcpy(s->suffix[reading], suffix, sizeof suffix);
+    s->known[reading] = true;
+  }
+  *same = strcmp(suffix, s->suffix[reading]) == 0;
+  if (*same || s->noted_suffix) {
+    return DEA_OK;
+  }
+  s->noted_suffix = true;
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+                         "%s answered '%.60s' to '%.60s', where '%s' stood behind the number "
+                         "before: such answers are left out; fix its range",
+                         s->name, answer, s->raw.readings[reading].query.text, s->suffix[reading]);
+}
+
 /* An answer: the value of the reading that was asked for. */
-static dea_status take_answer(struct scpi *s, const char *answer, const struct dea_intake *intake)
+static dea_status take_answer(struct dea_context *ctx, struct scpi *s, const char *answer,
+                              const struct dea_intake *intake)
 {
   size_t reading = s->asked;
   double value, now_s = dea_clock_s();
@@ -385,7 +411,11 @@ static dea_status take_answer(struct scpi *s, const char *answer, const struct d
     s->base.lost++; // nothing was asked
     return DEA_OK;
   }
-  if (!dea_scpi_number(answer, &value)) {
+  bool good = dea_scpi_number(answer, &value);
+  if (good && !isnan(value)) {
+    DEA_TRY(ctx, check_suffix(ctx, s, reading, answer, &good));
+  }
+  if (!good) {
     value = NAN;
     s->base.lost++;
   }
@@ -443,10 +473,10 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
             dea_socket_read(ctx, &s->socket, next_s - dea_clock_s(), bytes, sizeof bytes, &length));
     while ((answer = dea_line_next(&s->lines, &at, &length)) != NULL) {
       came = true;
-      DEA_TRY(ctx, take_answer(s, answer, intake));
+      DEA_TRY(ctx, take_answer(ctx, s, answer, intake));
     }
     if (s->lines.dropped > dropped) {
-      DEA_TRY(ctx, take_answer(s, "", intake)); // what came makes no sense
+      DEA_TRY(ctx, take_answer(ctx, s, "", intake)); // what came makes no sense
     }
     left_s = until_s - dea_clock_s();
   } while (!came && left_s > 0);

@@ -22,6 +22,21 @@ bool dea_scpi_number(const char *answer, double *value)
   return true;
 }
 
+void dea_scpi_suffix(const char *answer, char out[DEA_SCPI_SUFFIX_SIZE])
+{
+  double value;
+  const char *end = answer + strspn(answer, " \t");
+  size_t n = 0;
+  if (dea_scpi_number(answer, &value)) {
+    dea_text_to_double(end, &end);
+    for (; *end != '\0' && *end != ',' && *end != ';' && n + 1 < DEA_SCPI_SUFFIX_SIZE; end++) {
+      out[n] = *end;
+      n += *end != ' ' && *end != '\t';
+    }
+  }
+  out[n] = '\0';
+}
+
 bool dea_scpi_error(const char *answer, int *code, const char **text)
 {
   const char *end;
