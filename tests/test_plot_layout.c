@@ -40,6 +40,7 @@ static void test_room_for_the_tics(void **state)
   assert_true(left_mm(0, 0.05) > usual);
   assert_true(left_mm(-2.019, -2.010) > usual + 2.5);
   assert_true(left_mm(-120, -20) >= usual);
+  assert_true(left_mm(-1e300, 1e300) > usual);
 }
 
 int main(void)

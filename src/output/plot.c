@@ -303,10 +303,13 @@ struct layout {
       top_mm[DEA_PLOT_PANELS_MAX];
 };
 
-/* Digits before the point of a number of that size, and behind it of tics over such a span. */
+/* Digits before the point of a number of that size, which may be infinite, and behind it of tics
+ * over such a span. */
 static int digits_before(double size)
 {
-  return size >= 1.0 ? (int)floor(log10(1.2 * size)) + 1 : 1; // the last tic lies above
+  static const double most = 9.0; // longer ones are written with an exponent
+  double digits = size >= 1.0 ? floor(log10(1.2 * size)) + 1.0 : 1.0; // the last tic lies above
+  return (int)fmin(digits, most);
 }
 
 static int digits_behind(double span)
