@@ -3,6 +3,7 @@
 #define DEA_TESTS_DAQ_BENCH_H
 
 #include "emulator.h"
+#include "failing_allocator.h"
 #include "fake_daq.h"
 
 #include <dlfcn.h>
@@ -75,6 +76,28 @@ static inline void daq_bench_end(struct dea_context *context, struct daq_bench *
   }
   free(b->intake.volts);
   assert_int_equal(b->fake->tasks, 0); // everything was given back
+}
+
+static struct daq_bench daq_memory_bench;
+
+static inline void daq_bench_open_and_close(struct dea_context *context)
+{
+  struct daq_bench *b = &daq_memory_bench;
+  dea_status status = emulator_open(context, &b->protocol, b->text, &b->instrument);
+  failing_check(context, status);
+  if (status == DEA_OK) {
+    emulator_close(context, b->instrument);
+  }
+  assert_int_equal(b->fake->tasks, 0);
+}
+
+/* Opens an instrument of that kind with each allocation failed in turn. */
+static inline void daq_bench_check_memory(const char *kind, const char *library)
+{
+  struct daq_bench *b = &daq_memory_bench;
+  daq_bench_begin(b, library);
+  snprintf(b->text, sizeof b->text, "kind: %s\nlibrary: %s\n", kind, library);
+  assert_true(failing_each(daq_bench_open_and_close) > 3);
 }
 
 #endif

@@ -3,7 +3,27 @@
 #ifndef DEA_LAB_INSTRUMENT_DAQ_H
 #define DEA_LAB_INSTRUMENT_DAQ_H
 
-#include "lab/protocol/protocol.h"
+#include "lab/instrument/instrument_make.h"
+
+/* What a section of a DAQ is read into, and its table: kind, doc and default of the device,
+ * wirings and the usual one, file of the library. */
+struct dea_daq_raw {
+  struct dea_label kind, device, library;
+  struct dea_choice wiring;
+  struct dea_quantity queue_s;
+};
+#define DEA_DAQ_FIELDS(name, device_text, device_usual, wiring_names, wiring_usual, library_usual) \
+  DEA_INSTRUMENT_KIND(struct dea_daq_raw, name),                                                   \
+      DEA_INSTRUMENT_LABEL(struct dea_daq_raw, device, "device", device_text, device_usual,        \
+                           .default_text = device_usual),                                          \
+      DEA_INSTRUMENT_CHOICE(struct dea_daq_raw, wiring, "wiring", "of all inputs", wiring_names,   \
+                            wiring_usual),                                                         \
+      DEA_INSTRUMENT_TIME(                                                                         \
+          struct dea_daq_raw, queue_s, "queue",                                                    \
+          "of the output that is held ready; as long it takes until a stop is heard of", "0.25 s", \
+          60),                                                                                     \
+      DEA_INSTRUMENT_LABEL(struct dea_daq_raw, library, "library", "file of the library",          \
+                           library_usual, .default_text = library_usual)
 
 /* Longest time that a driver may take for what should be done at once. */
 #define DEA_DAQ_PATIENCE_S 2.0

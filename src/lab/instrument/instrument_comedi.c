@@ -23,23 +23,8 @@ static const double rate_least_Hz = 0.25; // a period is 32 bits of ns
 
 static const char *const wirings[] = {"referenced", "non_referenced", "differential", NULL};
 
-struct raw {
-  struct dea_label kind, device, library;
-  struct dea_choice wiring;
-  struct dea_quantity queue_s;
-};
-
 static const struct dea_field fields[] = {
-    DEA_INSTRUMENT_KIND(struct raw, "comedi"),
-    DEA_INSTRUMENT_LABEL(struct raw, device, "device", "its file", "/dev/comedi0",
-                         .default_text = "/dev/comedi0"),
-    DEA_INSTRUMENT_CHOICE(struct raw, wiring, "wiring", "of all inputs", wirings, "differential"),
-    DEA_INSTRUMENT_TIME(
-        struct raw, queue_s, "queue",
-        "of the output that is held ready; as long it takes until a stop is heard of", "0.25 s",
-        60),
-    DEA_INSTRUMENT_LABEL(struct raw, library, "library", "file of the library", "libcomedi.so.0",
-                         .default_text = "libcomedi.so.0"),
+    DEA_DAQ_FIELDS("comedi", "its file", "/dev/comedi0", wirings, "differential", "libcomedi.so.0"),
 };
 const struct dea_record dea_instrument_comedi_record = {
     "comedi", "plays and measures with a DAQ that Linux has a driver for", fields,
@@ -299,7 +284,7 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
 static dea_status open_it(struct dea_context *ctx, const void *data,
                           const struct dea_protocol *protocol, struct dea_instrument **out)
 {
-  const struct raw *raw = data;
+  const struct dea_daq_raw *raw = data;
   struct comedi *c = dea_alloc(ctx, 1, sizeof *c);
   if (c == NULL) {
     return DEA_E_MEMORY;
@@ -478,7 +463,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
 const struct dea_instrument_type dea_instrument_comedi = {
     .name = "comedi",
     .record = &dea_instrument_comedi_record,
-    .raw_size = sizeof(struct raw),
+    .raw_size = sizeof(struct dea_daq_raw),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
     .check = check,
     .open = open_it,

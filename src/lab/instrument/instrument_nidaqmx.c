@@ -70,23 +70,9 @@ static const char *const wirings[] = {"default",      "referenced",         "non
 static const int32_t wiring_values[] = {DEFAULT, REFERENCED, NON_REFERENCED, DIFFERENTIAL,
                                         PSEUDODIFFERENTIAL};
 
-struct raw {
-  struct dea_label kind, device, library;
-  struct dea_choice wiring;
-  struct dea_quantity queue_s;
-};
-
 static const struct dea_field fields[] = {
-    DEA_INSTRUMENT_KIND(struct raw, "nidaqmx"),
-    DEA_INSTRUMENT_LABEL(struct raw, device, "device", "its name in NI MAX or `nilsdev`", "Dev1",
-                         .default_text = "Dev1"),
-    DEA_INSTRUMENT_CHOICE(struct raw, wiring, "wiring", "of all inputs", wirings, "default"),
-    DEA_INSTRUMENT_TIME(
-        struct raw, queue_s, "queue",
-        "of the output that is held ready; as long it takes until a stop is heard of", "0.25 s",
-        60),
-    DEA_INSTRUMENT_LABEL(struct raw, library, "library", "file of the library", "libnidaqmx.so.1",
-                         .default_text = "libnidaqmx.so.1"),
+    DEA_DAQ_FIELDS("nidaqmx", "its name in NI MAX or `nilsdev`", "Dev1", wirings, "default",
+                   "libnidaqmx.so.1"),
 };
 const struct dea_record dea_instrument_nidaqmx_record = {
     "nidaqmx", "plays and measures with a DAQ of National Instruments", fields,
@@ -221,7 +207,7 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
 static dea_status open_it(struct dea_context *ctx, const void *data,
                           const struct dea_protocol *protocol, struct dea_instrument **out)
 {
-  const struct raw *raw = data;
+  const struct dea_daq_raw *raw = data;
   struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
   if (n == NULL) {
     return DEA_E_MEMORY;
@@ -333,7 +319,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
 const struct dea_instrument_type dea_instrument_nidaqmx = {
     .name = "nidaqmx",
     .record = &dea_instrument_nidaqmx_record,
-    .raw_size = sizeof(struct raw),
+    .raw_size = sizeof(struct dea_daq_raw),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
     .open = open_it,
     .start = start,
