@@ -72,6 +72,13 @@ static void test_simulated(void **state)
   assert_true(json_number_value(json_object_get(recording, "largest_current_A")) > 10e-6);
   json_decref(json);
   assert_int_equal(command_run("recording s.h5"), 0);
+  command_write("note.txt", "a text that is no recording");
+  snprintf(again, sizeof again, "%s --force -o note.txt", text);
+  assert_int_equal(command_run(again), 5);
+  assert_contains(command_err, "'note.txt' is no recording and is not replaced");
+  command_read("note.txt", command_out);
+  assert_string_equal(command_out, "a text that is no recording");
+  assert_int_equal(command_run("recording s.h5"), 0);
   assert_contains(command_out, "cycles         4 completed");
   // the protocol inside is the file: what was played differs by what was set
   assert_contains(command_out,

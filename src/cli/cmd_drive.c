@@ -178,6 +178,20 @@ static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_p
 
 // Playing ----------------------------------------------------------------------------------------
 
+/* A recording, or what is left of one that was just begun; not the protocol or somebody's text. */
+static bool may_be_replaced(const char *file)
+{
+  static const char signature[] = "\x89HDF\r\n\x1a\n";
+  char head[sizeof signature - 1];
+  FILE *stream = dea_path_is_folder(file) ? NULL : fopen(file, "rb");
+  if (stream == NULL) {
+    return false;
+  }
+  size_t length = fread(head, 1, sizeof head, stream);
+  fclose(stream);
+  return length == 0 || (length == sizeof head && memcmp(head, signature, length) == 0);
+}
+
 /* Makes room for the recording. */
 static dea_status clear_output(struct dea_cli *cli, const struct request *request, const char *file)
 {
@@ -189,7 +203,10 @@ static dea_status clear_output(struct dea_cli *cli, const struct request *reques
                     "'%s' is there already; -o names another file, --force replaces this one",
                     file);
   }
-  if (dea_path_is_folder(file) || remove(file) != 0) {
+  if (!may_be_replaced(file)) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' is no recording and is not replaced", file);
+  }
+  if (remove(file) != 0) {
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' cannot be replaced", file);
   }
   return DEA_OK;
