@@ -44,7 +44,7 @@ static void test_what_is_in_it(void **state)
   assert_contains(command_out, "complete       yes");
   assert_contains(command_out, "10000 Hz");
   assert_contains(command_out, "2100 values");
-  assert_contains(command_out, "3 completed in 1 steps");
+  assert_contains(command_out, "3 completed in 1 step");
   assert_int_equal(command_run("recording --json whole.h5"), 0);
   json_t *json = json_loads(command_out, 0, NULL);
   assert_non_null(json);

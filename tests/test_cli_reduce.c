@@ -77,7 +77,7 @@ static void test_tables(void **state)
   (void)state;
   assert_int_equal(command_run("reduce bench.h5 " RADII "-o tables --format svg"), 0);
   assert_contains(command_out, "6.000      4");
-  assert_contains(command_out, "1 discharge beyond");
+  assert_contains(command_out, "1 discharge: spikes above");
   struct dea_measurement *m;
   read_measurement("tables", &m);
   assert_int_equal(m->curve.count, 3);

@@ -211,8 +211,9 @@ static void test_channels(void **state)
   struct dea_protocol *p = good_protocol(
       ctx, PROTOCOL_HEAD SQUARE
       "channels:\n"
-      "  - {name: laser, quantity: displacement, input: ai0, per_volt: -0.2 mm, at_zero: 1 mm}\n"
-      "  - {name: room, quantity: other, unit: degC, input: ai1, per_volt: 10 degC, at_zero: -5}\n"
+      "  - {name: laser, quantity: displacement, input: ai0, per_volt: -0.2 mm/V, at_zero: 1 mm}\n"
+      "  - {name: room, quantity: other, unit: degC, input: ai1, per_volt: 10 degC/V, at_zero: "
+      "-5}\n"
       "instruments:\n  - {kind: x, key: 3}\n  - {kind: y}\n"
       "sim: {seed: 3}\n");
   assert_close(p->inputs[0].per_volt, -2e-4, 1e-14, 0);

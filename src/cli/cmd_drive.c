@@ -122,12 +122,23 @@ static void print_film(const struct dea_protocol_plan *plan)
     printf("  %-16s  %.4g kV\n", "pull-in", 1e-3 * plan->pull_in_V);
   }
   if (!isnan(plan->capacitance_F)) {
-    printf("  %-16s  %.3g pF, %.3g mJ stored\n", "film", 1e12 * plan->capacitance_F,
+    printf("  %-16s  %.4g pF, %.3g mJ stored\n", "film", 1e12 * plan->capacitance_F,
            1e3 * plan->stored_energy_J);
   }
   if (plan->rise_s > 0) {
     printf("  %-16s  %.3g us\n", "largest jump in", 1e6 * plan->rise_s);
   }
+}
+
+/* What an instrument of the protocol does: a slow supply plays only when its `output` is given. */
+static unsigned roles_of(const struct dea_instrument_type *type, const struct dea_node *section)
+{
+  if (type == NULL) {
+    return 0;
+  }
+  bool supply = (type->roles & DEA_READS_INPUTS) == 0;
+  bool idle = supply && dea_node_find(section, "output") == NULL;
+  return idle ? type->roles & ~(unsigned)DEA_PLAYS_OUTPUT : type->roles;
 }
 
 static void print_plan(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
@@ -149,7 +160,7 @@ static void print_plan(const struct dea_protocol *protocol, const struct dea_pro
     const struct dea_node *kind = dea_node_find(protocol->instruments[i].section, "kind");
     const struct dea_instrument_type *type = dea_instrument_find(kind != NULL ? kind->text : "");
     char roles[96] = "";
-    roles_text(type != NULL ? type->roles : 0, roles);
+    roles_text(roles_of(type, protocol->instruments[i].section), roles);
     printf("  %zu  %-16s  %s\n", i + 1, type != NULL ? type->name : "?", roles);
   }
   if (protocol->instrument_count == 0) {

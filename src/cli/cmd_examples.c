@@ -51,7 +51,9 @@ static int list_examples(struct dea_cli *cli, const struct cli_data_list *list)
     printf("%-18.*s %s\n", (int)cli_data_stem(list->files[i].name), list->files[i].name, title);
   }
   if (!cli->quiet) {
-    fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n");
+    fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n"
+                    "Those in bench are protocols and name a design:  dea examples --copy DIR && "
+                    "dea drive DIR/bench/cyclic.yaml\n");
   }
   return 0;
 }

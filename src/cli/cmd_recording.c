@@ -147,7 +147,9 @@ static void print_text(const struct dea_recording *recording)
       lowest = fmin(lowest, recording->cycles[i].level_V);
       highest = fmax(highest, recording->cycles[i].level_V);
     }
-    printf(" in %zu steps, %.4g to %.4g kV", steps_of(recording), 1e-3 * lowest, 1e-3 * highest);
+    size_t steps = steps_of(recording);
+    printf(" in %zu step%s, %.4g to %.4g kV", steps, steps == 1 ? "" : "s", 1e-3 * lowest,
+           1e-3 * highest);
   }
   printf("\n%-14s %s\n", "protocol", recording->protocol != NULL ? "inside" : "none");
   printf("%-14s %s\n", "design",

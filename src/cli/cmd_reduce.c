@@ -236,9 +236,9 @@ static void print_discharges(const struct dea_reduction *r)
   for (size_t i = 0; i < r->discharge_count; i++) {
     breakdowns += r->discharges[i].kind == DEA_BREAKDOWN ? 1U : 0U;
   }
-  printf("\n%zu discharge%s beyond %.2f of the current's noise, %.3g nA",
+  printf("\n%zu discharge%s: spikes above %.2f times the current's noise of %.3g uA",
          r->discharge_count - breakdowns, r->discharge_count - breakdowns == 1 ? "" : "s",
-         r->current.factor, 1e9 * r->current.noise_A);
+         r->current.factor, 1e6 * r->current.noise_A);
   if (breakdowns > 0) {
     const struct dea_discharge *first = r->discharges;
     while (first->kind != DEA_BREAKDOWN) {
@@ -256,9 +256,9 @@ static void print_text(const struct dea_recording *recording, const struct dea_r
          recording->title);
   print_levelling(&r->levelling);
   if (!isnan(r->force_offset_N)) {
-    printf("%-12s offset %.4g mN", "force", 1e3 * r->force_offset_N);
+    printf("%-12s offset %.3f mN", "force", 1e3 * r->force_offset_N);
     if (!isnan(r->preload_N)) {
-      printf(", preload %.4g mN", 1e3 * r->preload_N);
+      printf(", preload %.3f mN", 1e3 * r->preload_N);
     }
     putchar('\n');
   }

@@ -18,6 +18,12 @@ static const char *const examples[DEA_CHANNEL_KINDS] = {
     [DEA_CHANNEL_FORCE] = "0.05 N", [DEA_CHANNEL_OTHER] = "1",
 };
 
+static bool ends_with(const char *text, const char *end)
+{
+  size_t length = strlen(text), tail = strlen(end);
+  return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
 /* A number in the unit of an input's quantity; of others in the unit that it names. */
 static dea_status read_scale(const struct dea_reader *reader,
                              const struct dea_protocol_input *input, const char *key,
@@ -26,8 +32,12 @@ static dea_status read_scale(const struct dea_reader *reader,
   char number[DEA_TITLE_SIZE], why[DEA_WHY_SIZE];
   bool other = input->kind.value == DEA_CHANNEL_OTHER;
   size_t length = strlen(text->text), unit = strlen(input->unit.text);
+  if (strcmp(key, "per_volt") == 0 && ends_with(text->text, "/V") &&
+      !ends_with(input->unit.text, "/V")) {
+    length -= 2; // 'per volt' said twice: '2.5 mm/V'
+  }
   if (other && unit > 0 && length > unit &&
-      strcmp(text->text + length - unit, input->unit.text) == 0) {
+      strncmp(text->text + length - unit, input->unit.text, unit) == 0) {
     length -= unit;
     while (length > 0 && text->text[length - 1] == ' ') {
       length--;
@@ -242,7 +252,8 @@ static dea_status take_design(struct dea_context *ctx, struct dea_protocol *prot
   }
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &protocol->design_text, &length);
   if (status == DEA_E_IO) {
-    status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.place, "design: %s",
+    status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.place,
+                             "design: %s; a path counts from the protocol's folder",
                              dea_context_message(ctx));
   } else if (status == DEA_OK) {
     status = dea_design_read_memory(ctx, path, protocol->design_text, length, NULL, 0,

@@ -149,7 +149,8 @@ static const struct dea_field input_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = INPUT(per_volt_text),
      .required = true,
-     .doc = "what one volt at the input means, in a unit of the quantity; negative: reversed",
+     .doc = "what one volt at the input means, in a unit of the quantity ('1 mm' or '1 mm/V'); "
+            "negative: reversed",
      .example = "1 kV"},
     {.key = "at_zero",
      .kind = DEA_FIELD_LABEL,
