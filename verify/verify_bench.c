@@ -4,7 +4,8 @@
 #include "base/file.h"
 #include "lab/instrument/drive.h"
 #include "lab/protocol/protocol.h"
-#include "lab/reduce/reduce.h"
+#include "lab/reduce/output.h"
+#include "output/compare_set.h"
 #include "result/columns.h"
 #include "study/study.h"
 #include "verify.h"
@@ -45,6 +46,7 @@ struct measurement {
   double frequency_Hz, duty;
   size_t level_count, cycles;
   double tilt_degree, centre_mm;
+  bool drifts; // the film creeps, so that its sweep is not what it does in time
   const char *design;
 };
 
@@ -117,22 +119,82 @@ struct truth {
 
 static struct truth find_truth(struct dea_context *ctx, const struct measurement *m)
 {
-  static const char *const studies[] = {"transient"};
+  static const char *const studies[] = {"sweep", "transient"};
   const struct dea_override sets[] = {{"drive.waveform", m->sequence},
+                                      {"compute.voltage", "{from: 0 kV, to: 8 kV, step: 1 kV}"},
                                       {"compute.transient.interval", "5 ms"}};
   struct truth t;
-  verify_ok(ctx, dea_design_read(ctx, m->design, sets, 2, &t.design));
+  verify_ok(ctx, dea_design_read(ctx, m->design, sets, 3, &t.design));
   verify_ok(ctx, dea_device_build(ctx, t.design, &t.device));
   verify_ok(ctx, dea_result_create(ctx, t.design, t.device, &t.result));
-  verify_ok(ctx, dea_study_run_named(ctx, dea_model_find("lumped"), studies, 1, t.result));
+  verify_ok(ctx, dea_study_run_named(ctx, dea_model_find("lumped"), studies, 2, t.result));
   t.curve = dea_result_find(t.result, "lumped", "transient");
   return t;
 }
 
+/* Writes the tables of a reduction, reads them back and compares them with the model's result: what
+ * `dea compare` does. */
+static struct dea_compare_set *compare(struct dea_context *ctx, const struct truth *truth,
+                                       const struct dea_recording *recording,
+                                       const struct dea_reduction *reduction,
+                                       struct dea_measured **measured)
+{
+  static const char *const files[] = {"measurement.csv", "levels.csv",   "cycles.csv",
+                                      "discharges.csv",  "profiles.csv", "history.csv"};
+  char folder[] = "/tmp/dea-reduced-XXXXXX", path[64];
+  struct dea_compare_set *set;
+  if (mkdtemp(folder) == NULL) {
+    fprintf(stderr, "no folder for the tables\n");
+    exit(1);
+  }
+  verify_ok(ctx, dea_reduction_write_tables(ctx, recording, reduction, folder));
+  verify_ok(ctx, dea_measured_read(ctx, folder, measured));
+  verify_ok(ctx, dea_compare_set_create(ctx, "measured", *measured, NULL, &set));
+  verify_ok(ctx, dea_compare_set_add(ctx, set, "lumped", truth->result, "lumped", ""));
+  verify_ok(ctx, dea_compare_set_compute(ctx, set, NULL, 0));
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+    unlink(path);
+  }
+  rmdir(folder);
+  return set;
+}
+
+static void print_comparison(const struct measurement *m, const struct dea_compare_set *set)
+{
+  const struct dea_comparison *c = set->curves[0].comparison;
+  verify_absolute("comparisons with the sweep", c != NULL ? (double)c->misfit_count : 0, 3, 0);
+  verify_absolute("histories", (double)set->history_count, 3, 0);
+  printf(
+      "\nThe tables of the reduction, written, read back and set beside the model as `dea compare` "
+      "does. The force cell drifts, which\nstays in its history.\n");
+  printf("\n| compared with the model | points | root mean square | chi2/point "
+         "|\n|---|---|---|---|\n");
+  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
+    const struct dea_misfit *misfit = &c->misfits[i];
+    const struct dea_column *column = &dea_point_columns[misfit->column];
+    printf("| %s against voltage | %zu | %.3f %s | %.3f |\n", column->header, misfit->count,
+           column->factor * misfit->rms, column->display_unit, misfit->chi_square);
+    verify_absolute("chi2/point", misfit->chi_square, 0.5, 0.5); // of the scatter of one cycle
+  }
+  for (size_t i = 0; i < set->history_count; i++) {
+    const struct dea_set_history *h = &set->histories[i];
+    const struct dea_column *column = &dea_point_columns[h->misfit.column];
+    printf("| %s in time | %zu | %.3f %s | |\n", column->header, h->misfit.count,
+           column->factor * h->misfit.rms, column->display_unit);
+    verify_absolute("shift of the clocks [s]", h->clock.shift_s, 0, 0);
+    // of the frame's own height nothing drifts; of the force cell it does, and stays in a history
+    double length_s = (double)(m->level_count * m->cycles) / m->frequency_Hz;
+    verify_absolute("history's root mean square", column->factor * h->misfit.rms, 0,
+                    strcmp(column->display_unit, "um") == 0 ? 3 : 0.5 + 0.02 * length_s);
+  }
+}
+
 /* Plays, records, reads and reduces. */
 static struct dea_reduction *measure(struct dea_context *ctx, const struct measurement *m,
-                                     const struct dea_device *device,
-                                     const struct dea_override *sets, size_t set_count)
+                                     const struct truth *truth, const struct dea_override *sets,
+                                     size_t set_count, struct dea_compare_set **set,
+                                     struct dea_measured **measured)
 {
   char file[] = "/tmp/dea-bench-XXXXXX", sequence[512];
   struct dea_override all[SETS_MAX];
@@ -155,8 +217,11 @@ static struct dea_reduction *measure(struct dea_context *ctx, const struct measu
   verify_ok(ctx, dea_drive_run(ctx, protocol, &options, &report));
   verify_absolute("cycles", (double)report.cycles, (double)(m->level_count * m->cycles), 0);
   verify_ok(ctx, dea_recording_read(ctx, file, &recording));
-  verify_ok(ctx, dea_reduce(ctx, recording, device, NULL, &reduction));
+  verify_ok(ctx, dea_reduce(ctx, recording, truth->device, NULL, &reduction));
   verify_absolute("levels", (double)reduction->level_count, (double)m->level_count, 0);
+  if (set != NULL) {
+    *set = compare(ctx, truth, recording, reduction, measured);
+  }
   dea_recording_destroy(ctx, recording);
   dea_protocol_destroy(ctx, protocol);
   unlink(file);
@@ -206,7 +271,10 @@ static void check(struct dea_context *ctx, const struct measurement *m,
                   const struct dea_override *sets, size_t set_count, double least_rms)
 {
   struct truth truth = find_truth(ctx, m);
-  struct dea_reduction *r = measure(ctx, m, truth.device, sets, set_count);
+  struct dea_measured *measured = NULL;
+  struct dea_compare_set *set = NULL;
+  struct dea_reduction *r =
+      measure(ctx, m, &truth, sets, set_count, m->drifts ? NULL : &set, &measured);
   struct pulls pulls = {0};
   const struct dea_levelling *l = &r->levelling;
   print_sets(sets, set_count);
@@ -226,6 +294,11 @@ static void check(struct dea_context *ctx, const struct measurement *m,
          l->outliers);
   verify_absolute("tilt [degree]", 180 / pi * l->tilt_rad, m->tilt_degree, 2e-3);
   verify_absolute("centre [mm]", 1e3 * l->centre_m, m->centre_mm, 0.06); // half a point
+  if (set != NULL) {
+    print_comparison(m, set);
+  }
+  dea_compare_set_destroy(ctx, set);
+  dea_measured_destroy(ctx, measured);
   dea_reduction_destroy(ctx, r);
   dea_result_destroy(ctx, truth.result);
   dea_device_destroy(ctx, truth.device);
@@ -282,6 +355,7 @@ int main(int argc, char **argv)
       "smaller.\n");
   struct measurement viscous = m;
   viscous.design = design_file;
+  viscous.drifts = true;
   check(ctx, &viscous, sets, SETS, 0);
   unlink(elastic_file);
   dea_context_destroy(ctx);
