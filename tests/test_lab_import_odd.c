@@ -93,6 +93,38 @@ static void test_units_in_titles(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Units that are not known, and columns with a unit that hold no numbers. */
+static void test_odd_units(void **state)
+{
+  (void)state;
+  struct dea_recording *recording;
+  const char *odd = "its unit is not known";
+  static const char *const left[] = {"Current (ma)", "Voltage (kVpp)", "z (m/s)", "Voltage [mv]"};
+  for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) {
+    char text[100];
+    snprintf(text, sizeof text, "Time (s),F (N),%s\n0,1,2\n1,2,3\n", left[i]);
+    assert_int_equal(record("odd.csv", text, odd, &recording), DEA_OK);
+    assert_int_equal(recording->channel_count, 1);
+    dea_recording_destroy(ctx, recording);
+  }
+  refused("odd.csv", "Time (mS),F (N)\n0,1\n1,2\n", NULL);
+  assert_non_null(strstr(dea_context_message(ctx), "has no times"));
+  static const char *const taken[] = {"Voltage (mon)", "Voltage (raw)", "Voltage (max)",
+                                      "Voltage (set)", "Voltage (channel 2)"};
+  for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+    char text[100];
+    snprintf(text, sizeof text, "Time (s),F (N),%s\n0,1,2\n1,2,3\n", taken[i]);
+    assert_int_equal(record("even.csv", text, "taken in V", &recording), DEA_OK);
+    assert_int_equal(recording->channel_count, 2);
+    dea_recording_destroy(ctx, recording);
+  }
+  assert_int_equal(record("minus.csv", "Time (s),F (N),V (kV)\n0,1,(2)\n1,2,(3)\n",
+                          "'V (kV)' holds text", &recording),
+                   DEA_OK);
+  assert_true(is_said(DEA_WARNING, "'V (kV)' holds text"));
+  dea_recording_destroy(ctx, recording);
+}
+
 /* What oscilloscopes write where a sample is beyond the screen. */
 static void test_overflow(void **state)
 {
@@ -143,6 +175,7 @@ int main(void)
       cmocka_unit_test(test_times_of_unknown_unit),
       cmocka_unit_test(test_units_in_titles),
       cmocka_unit_test(test_overflow),
+      cmocka_unit_test(test_odd_units),
       cmocka_unit_test(test_dates_and_two_tables),
       cmocka_unit_test(test_lvm_segments_of_other_channels),
   };

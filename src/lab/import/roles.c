@@ -10,6 +10,8 @@
 
 enum { MATRIX_CHANNELS = 8 }; // more columns of one matrix are hardly channels
 
+static const char odd_unit[] = "its unit is not known: say it in a mapping";
+
 struct work {
   struct dea_context *ctx;
   const struct dea_table *table;
@@ -187,6 +189,10 @@ static void guess_times(struct work *work)
     if (role->use != DEA_USE_LEFT) {
       continue;
     }
+    if (column->unit[0] == '\0' && dea_title_has_odd_unit(column->name)) {
+      role->why = odd_unit;
+      continue;
+    }
     int clock = dea_title_clock(column->name);
     const char *si = dea_title_unit(work->ctx, column->unit, &factor);
     if (column->count == 1 && clock != 0) {
@@ -227,7 +233,7 @@ static void guess_channel(struct work *work, size_t i)
   double factor = 1;
   const char *si = dea_title_unit(work->ctx, column->unit, &factor);
   int kind = dea_guess_by_name(column->name);
-  if (role->use != DEA_USE_LEFT || column->count < 2) {
+  if (role->use != DEA_USE_LEFT || column->count < 2 || role->why == odd_unit) {
     return;
   }
   if (is_of_matrix(work, i)) {

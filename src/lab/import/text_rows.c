@@ -85,7 +85,9 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
     } else {
       const struct dea_place place = {rows->table->file, rows->dialect->line + 1, 1};
-      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, DEA_NOTE, place,
+      struct dea_slice name, unit = {"", 0};
+      dea_title_split(rows->ctx, titles[i], &name, &unit);
+      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE, place,
                                          "column %zu '%.*s' holds text and is left out", i + 1,
                                          shown(titles[i]), titles[i].text));
     }

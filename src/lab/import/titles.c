@@ -213,6 +213,40 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
   }
 }
 
+/* Whether nothing stands at `text[length]` but what people add to a unit. */
+static bool is_unit_end(const char *text, size_t length)
+{
+  static const char *const ends[] = {"pp", "p-p", "rms", "dc", "ac", "/", "^"};
+  for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+    size_t n = strlen(ends[i]);
+    if (length >= n && dea_slice_is((struct dea_slice){text, n}, ends[i])) {
+      return true;
+    }
+  }
+  return length == 0;
+}
+
+bool dea_title_has_odd_unit(const char *name)
+{
+  size_t length = strlen(name), open = length;
+  while (open > 0 && strchr("([{<", name[open - 1]) == NULL) {
+    open--;
+  }
+  if (open == 0 || length - open < 2 || length - open > 6 ||
+      strchr(")]}>", name[length - 1]) == NULL) {
+    return false;
+  }
+  // a unit, after a prefix or without one
+  for (size_t at = open; at < open + 2 && at + 1 < length; at++) {
+    bool prefixed = at == open || strchr("kmunpKMUNP", name[open]) != NULL;
+    if (prefixed && strchr("vVaAnNmMsS", name[at]) != NULL &&
+        is_unit_end(name + at + 1, length - at - 2)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /* Where the next title of a line parted by blanks ends: at `blanks` of them outside of brackets; a
  * bracket after blanks still belongs to it. */
 static size_t title_end(struct dea_slice line, size_t blanks)

@@ -15,6 +15,9 @@ bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit);
  * unit; the unit is empty when there is none that is known. */
 void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea_slice *name,
                      struct dea_slice *unit);
+/* Whether a name ends with brackets around what seems to be a unit, though none that is known:
+ * "Voltage (kVpp)", "Current (ma)", "z (m/s)", "Time (mS)". */
+bool dea_title_has_odd_unit(const char *name);
 /* A line of titles into exactly `count` of them; separator ' ': parted by two blanks, or by one
  * where no bracket is open, or by the end of a bracket. false when there are more or less. */
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out);
