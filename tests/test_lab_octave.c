@@ -55,6 +55,20 @@ static void test_mat(void **state)
   check("four.mat", "v", "z");
 }
 
+/* MATLAB's variables carry units in their names only. */
+static void test_mat_units(void **state)
+{
+  (void)state;
+  octave(NUMBERS
+         "data.voltage_kV = v; z_um = [z z]; save('-v6', 'units.mat', 't', 'data', 'z_um')");
+  numbers_back();
+  struct dea_table *table = read_file("units.mat");
+  assert_column(table, "t", "", time_s, COUNT);
+  assert_column(table, "data.voltage_kV", "kV", voltage, COUNT);
+  assert_column(table, "z_um(2)", "um", laser, COUNT);
+  dea_table_destroy(ctx, table);
+}
+
 static void test_mat_classes(void **state)
 {
   (void)state;
@@ -171,9 +185,9 @@ static void test_csv(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_mat),    cmocka_unit_test(test_mat_classes),
-      cmocka_unit_test(test_mat_73), cmocka_unit_test(test_damaged_mat),
-      cmocka_unit_test(test_csv),
+      cmocka_unit_test(test_mat),         cmocka_unit_test(test_mat_units),
+      cmocka_unit_test(test_mat_classes), cmocka_unit_test(test_mat_73),
+      cmocka_unit_test(test_damaged_mat), cmocka_unit_test(test_csv),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,5 +1,6 @@
 /* MATLAB's .mat files. */
 #include "lab/import/mat.h"
+#include "lab/import/titles.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -105,13 +106,34 @@ static dea_status check_file(struct dea_context *ctx, const char *file)
   return status;
 }
 
+/* Variables have no units but by their names: 'data.voltage_kV', 'z_um(3)'. Names stay whole. */
+static dea_status find_units(struct dea_context *ctx, struct dea_table *table)
+{
+  for (size_t i = 0; i < table->column_count; i++) {
+    struct dea_table_column *column = &table->columns[i];
+    struct dea_slice title = {column->name, strcspn(column->name, "(")}, name, unit = {"", 0};
+    dea_title_split(ctx, title, &name, &unit);
+    if (unit.length == 0 || column->unit[0] != '\0') {
+      continue;
+    }
+    char *copy = dea_copy_text(ctx, unit.text, unit.length);
+    if (copy == NULL) {
+      return DEA_E_MEMORY;
+    }
+    dea_free(ctx, column->unit);
+    column->unit = copy;
+  }
+  return DEA_OK;
+}
+
 static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                        size_t length, struct dea_table *out)
 {
   (void)bytes;
   (void)length;
   DEA_TRY(ctx, check_file(ctx, file));
-  return dea_mat_read(ctx, file, out);
+  DEA_TRY(ctx, dea_mat_read(ctx, file, out));
+  return find_units(ctx, out);
 }
 
 const struct dea_importer dea_import_mat = {
