@@ -229,6 +229,12 @@ static void test_warnings(void **state)
        "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "waveform: {kind: constant, voltage: 6 kV}\n",
        "the ramp from 6 kV to 0 V takes 12 s by 500 V/s", 2, 16},
+      {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 0.5 mA}\n"
+       "waveform: {kind: constant, voltage: 1 kV}\n",
+       "safety.trip_current of 1 mA is never exceeded", 2, 61},
+      {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
+       "safety: {voltage_error: 2 kV}\nwaveform: {kind: constant, voltage: 1 kV}\n",
+       "safety.voltage_error of 2000 V is not below the largest voltage, 1000 V", 3, 25},
   };
   for (size_t i = 0; i < sizeof warnings / sizeof warnings[0]; i++) {
     const struct refusal *r = &warnings[i];

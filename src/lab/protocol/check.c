@@ -321,6 +321,30 @@ static dea_status check_size(struct dea_context *ctx, const struct dea_protocol 
   return DEA_OK;
 }
 
+/* Limits that nothing can exceed protect nobody. */
+static dea_status check_safety(struct dea_context *ctx, const struct dea_protocol *protocol,
+                               const struct dea_protocol_plan *plan)
+{
+  const struct dea_quantity *trip = &protocol->safety.trip_current_A;
+  const struct dea_quantity *limit = &protocol->amplifier.current_A;
+  const struct dea_quantity *error = &protocol->safety.voltage_error_V;
+  double largest_V = fmax(-plan->lowest_V, plan->highest_V);
+  if (limit->origin != DEA_ABSENT && limit->si <= trip->si) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, limit->place,
+                                 "safety.trip_current of %g mA is never exceeded, as the amplifier "
+                                 "gives %g mA at most: set it lower",
+                                 1e3 * trip->si, 1e3 * limit->si));
+  }
+  if (error->si >= largest_V && largest_V > 0) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_WARNING, error->place,
+                            "safety.voltage_error of %g V is not below the largest voltage, %g "
+                            "V: an amplifier that gives nothing is not noticed",
+                            error->si, largest_V));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol *protocol,
                               struct dea_protocol_plan *plan)
 {
@@ -349,6 +373,7 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
   DEA_TRY(ctx, check_inputs(ctx, protocol, plan));
   DEA_TRY(ctx, check_ramp(ctx, protocol, plan));
   DEA_TRY(ctx, check_rate(ctx, protocol, &slopes));
+  DEA_TRY(ctx, check_safety(ctx, protocol, plan));
   DEA_TRY(ctx, check_labels(ctx, protocol));
   DEA_TRY(ctx, check_size(ctx, protocol, plan));
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
