@@ -231,7 +231,7 @@ static void test_warnings(void **state)
        "the ramp from 6 kV to 0 V takes 12 s by 500 V/s", 2, 16},
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 0.5 mA}\n"
        "waveform: {kind: constant, voltage: 1 kV}\n",
-       "safety.trip_current of 1 mA is never exceeded", 2, 61},
+       "safety.trip_current of 1 mA is never exceeded", 2, 60},
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "safety: {voltage_error: 2 kV}\nwaveform: {kind: constant, voltage: 1 kV}\n",
        "safety.voltage_error of 2000 V is not below the largest voltage, 1000 V", 3, 25},

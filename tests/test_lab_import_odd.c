@@ -168,6 +168,23 @@ static void test_lvm_segments_of_other_channels(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "'Force'"));
 }
 
+/* Each channel takes the times of its own struct, wherever they stand. */
+static void test_times_of_their_struct(void **state)
+{
+  (void)state;
+  struct dea_recording *r;
+  assert_int_equal(record("two.csv",
+                          "t (s),s.time (s),s.voltage (V),voltage (V)\n0,0,1,5\n1,0.5,2,6\n"
+                          "2,1,3,7\n3,1.5,4,8\n",
+                          NULL, &r),
+                   DEA_OK);
+  assert_int_equal(r->channel_count, 2);
+  for (size_t c = 0; c < 2; c++) {
+    assert_close(r->channels[c].interval_s, r->channels[c].values[0] == 1 ? 0.5 : 1, 1e-12, 0);
+  }
+  dea_recording_destroy(ctx, r);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -178,6 +195,7 @@ int main(void)
       cmocka_unit_test(test_odd_units),
       cmocka_unit_test(test_dates_and_two_tables),
       cmocka_unit_test(test_lvm_segments_of_other_channels),
+      cmocka_unit_test(test_times_of_their_struct),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

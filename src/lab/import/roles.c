@@ -264,18 +264,40 @@ static void guess_channel(struct work *work, size_t i)
 
 // Clocks -----------------------------------------------------------------------------------------
 
-/* The column of times that goes with column i: the last one before it of its length, else any. */
+/* Bytes of a name that say which struct or group it is of: "run.time", "Bench/ai0". */
+static size_t group_length(const char *name)
+{
+  size_t length = 0;
+  for (size_t i = 0; name[i] != '\0'; i++) {
+    length = name[i] == '.' || name[i] == '/' ? i + 1 : length;
+  }
+  return length;
+}
+
+static bool is_of_group(const char *name, const char *other)
+{
+  size_t length = group_length(name);
+  return length == group_length(other) && strncmp(name, other, length) == 0;
+}
+
+/* The column of times that goes with column i, of its length: the last one before it of its own
+ * group, else the last one before it, else any. */
 static size_t find_clock(const struct work *work, size_t i)
 {
   const struct dea_table *table = work->table;
-  size_t clock = 0;
+  const struct dea_table_column *column = &table->columns[i];
+  size_t clock = 0, own = 0;
   for (size_t k = 0; k < table->column_count; k++) {
-    if (work->roles[k].use == DEA_USE_TIME && table->columns[k].count == table->columns[i].count &&
-        (clock == 0 || k < i)) {
-      clock = k + 1;
+    const struct dea_table_column *times = &table->columns[k];
+    if (work->roles[k].use != DEA_USE_TIME || times->count != column->count) {
+      continue;
+    }
+    clock = clock == 0 || k < i ? k + 1 : clock;
+    if (is_of_group(times->name, column->name)) {
+      own = own == 0 || k < i ? k + 1 : own;
     }
   }
-  return clock;
+  return own > 0 ? own : clock;
 }
 
 /* Interval of a rate or interval that stands alone; NAN without one. */
