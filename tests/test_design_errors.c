@@ -46,6 +46,7 @@ static void test_one_error_each(void **state)
     const char *text;
     struct wanted wanted;
   } bad[] = {
+      {"title: x\ndea-protocol: 1\n", {2, 1, "this is a protocol, not a design"}},
       {"dea: 1\nfilm: {material: film, thickness: -100 um}\n" REST,
        {2, 35, "thickness must be above 0, not '-100 um'"}},
       {"dea: 1\nfilm: {material: film, thickness: 0 um}\n" REST, {2, 35, "must be above 0"}},

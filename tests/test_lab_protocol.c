@@ -136,6 +136,7 @@ static void test_errors_have_places(void **state)
     size_t line, column;
   } wrong[] = {
       {PROTOCOL_HEAD, "lacks what is to be played", 1, 1},
+      {"title: x\ndea: 1\nfilm: {thickness: 1 mm}\n", "this is a design, not a protocol", 2, 1},
       {PROTOCOL_HEAD SQUARE "rat: 2 kHz\n", "did you mean 'rate'?", 6, 1},
       {PROTOCOL_HEAD SQUARE "gain: 1000\n", "belongs into a section such as 'amplifier'", 6, 1},
       {PROTOCOL_HEAD SQUARE "rate: 1000\n", "has no unit", 6, 7},

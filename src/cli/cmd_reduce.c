@@ -218,7 +218,8 @@ static void print_table(const struct dea_reduction *r)
     print_number("%.3g", 11, dea_reduced_meanings[of].factor * level->creep[of]);
     char shape[48] = "-";
     if (!isnan(level->shape)) {
-      snprintf(shape, sizeof shape, "%.2f +- %.2f", level->shape, level->shape_uncertainty);
+      double rounded = fabs(level->shape) < 0.005 ? 0.0 : level->shape; // no "-0.00"
+      snprintf(shape, sizeof shape, "%.2f +- %.2f", rounded, level->shape_uncertainty);
     }
     printf(" %15s\n", shape);
   }

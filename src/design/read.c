@@ -284,6 +284,13 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
   }
   DEA_TRY(ctx, parse(ctx, source, changes, &design->document));
   struct dea_reader reader = {ctx, design->document, &design->values};
+  const struct dea_node *other = dea_node_find(dea_yaml_root(design->document), "dea-protocol");
+  if (other != NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, other->key_place,
+                                 "this is a protocol, not a design: it is for 'dea drive', and its "
+                                 "key 'design' names the design"));
+    return dea_fail(ctx, DEA_E_DESIGN, "'%s' is no design", design->file);
+  }
   DEA_TRY(ctx,
           dea_schema_read(&reader, &dea_design_record, dea_yaml_root(design->document), "", raw));
   if (dea_yaml_root(design->document)->kind == DEA_NODE_SECTION) {
