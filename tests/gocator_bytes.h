@@ -14,7 +14,7 @@ struct gocator_bytes {
 static inline void gocator_put(struct gocator_bytes *b, int64_t value, int bytes)
 {
   for (int i = 0; i < bytes; i++) {
-    b->bytes[b->length++] = i < 8 ? (unsigned char)((uint64_t)value >> (8 * i)) : 0;
+    b->bytes[b->length++] = (unsigned char)(i < 8 ? (uint64_t)value >> (8 * i) : 0);
   }
 }
 
