@@ -97,7 +97,7 @@ static void test_usage(void **state)
       {"drive a --arm --sim", "exclude each other", 2},
       {"drive a --armed", "there is no option '--armed'", 2},
       {"drive none.yaml", "none.yaml", 5},
-      {"drive @/examples/frdea-4.yaml", "unknown key", 3},
+      {"drive @/examples/frdea-4.yaml", "this is a design", 3},
       {"drive " EXAMPLE " --arm", "names no `instruments` to play it", 6},
       {"drive " EXAMPLE " --set 'instruments=[{kind: gocatr}]'", "did you mean 'gocator'", 3},
   };

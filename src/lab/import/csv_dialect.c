@@ -198,7 +198,7 @@ static bool is_like(struct dea_slice line, struct dea_slice model, const struct 
        dea_slice_field(&line, best->separator, &a) && dea_slice_field(&model, best->separator, &b);
        i++) {
     bool number = dea_slice_number(a, best->decimal, &value);
-    bool same = a.length == b.length && memcmp(a.text, b.text, a.length) == 0;
+    bool same = dea_slice_same(a, b);
     if (text[i] ? !same && !(is_digit_first(a) && is_digit_first(b)) : !number) {
       return false;
     }

@@ -206,7 +206,7 @@ static dea_status check_titles(const struct dea_lvm *lvm, struct dea_slice rest)
       continue;
     }
     const struct dea_slice first = lvm->channels[i].name;
-    if (field.length != first.length || memcmp(field.text, first.text, field.length) != 0) {
+    if (!dea_slice_same(field, first)) {
       return dea_fail(lvm->ctx, DEA_E_IO,
                       "'%s', line %zu: a segment has the channel '%.*s' where the first one has "
                       "'%.*s'; write them to files of their own",

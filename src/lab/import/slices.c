@@ -224,3 +224,8 @@ bool dea_slice_number(struct dea_slice slice, char decimal, double *value)
   *value = or_missing(*value);
   return *end == '\0';
 }
+
+bool dea_slice_same(struct dea_slice a, struct dea_slice b)
+{
+  return a.length == b.length && (a.length == 0 || memcmp(a.text, b.text, a.length) == 0);
+}

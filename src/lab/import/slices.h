@@ -36,4 +36,7 @@ size_t dea_slice_count(struct dea_slice line, char separator);
  */
 bool dea_slice_number(struct dea_slice slice, char decimal, double *value);
 
+/* True for the same bytes; of empty ones the text may be NULL. */
+bool dea_slice_same(struct dea_slice a, struct dea_slice b);
+
 #endif
