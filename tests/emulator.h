@@ -3,6 +3,7 @@
 #ifndef DEA_TESTS_EMULATOR_H
 #define DEA_TESTS_EMULATOR_H
 
+#include "lab/instrument/clock.h"
 #include "lab/instrument/instrument.h"
 #include "testing.h"
 
@@ -202,7 +203,8 @@ static inline dea_status emulator_get(struct dea_context *ctx, struct dea_instru
                                       size_t profiles, size_t samples)
 {
   const struct dea_intake to = {intake, emulator_samples, emulator_profile, emulator_reading};
-  for (int i = 0; i < 400; i++) {
+  // By time, not by calls: what comes byte by byte takes one for each.
+  for (double until_s = dea_clock_s() + 8; dea_clock_s() < until_s;) {
     if (intake->readings >= readings && intake->profiles >= profiles &&
         intake->samples >= samples) {
       return DEA_OK;
