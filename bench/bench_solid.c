@@ -1,20 +1,20 @@
 /* A hexahedron of 27 nodes, film with field, on one core: residual and tangent; and how much less
  * the energy alone takes, of which a line search needs many. */
 #include "bench.h"
-#include "model/solid/hex.h"
+#include "model/solid/element/hex.h"
 
 #include <string.h>
 
 enum { REPEATS = 500 };
 
 static struct dea_hex_shape shape;
-static struct dea_layer layer;
+static struct dea_constituent layer;
 static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], pressures[DEA_HEX_PRESSURES_MAX];
 static struct dea_element_result result;
 
 static void evaluate(void *user)
 {
-  enum dea_level level = *(enum dea_level *)user;
+  enum dea_eval_order level = *(enum dea_eval_order *)user;
   for (int i = 0; i < REPEATS; i++) {
     if (dea_hex_evaluate(&shape, &layer, X, u, pressures, 4e3, level, &result) != DEA_OK) {
       abort();
@@ -25,13 +25,13 @@ static void evaluate(void *user)
 int main(void)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  layer = (struct dea_layer){.law = dea_law_find("yeoh"),
-                             .param = yeoh,
-                             .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                             .kappa_Pa = 4e7,
-                             .permittivity_F_per_m = 2.5e-11,
-                             .thickness_m = 44e-6};
-  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_layer_relax(&layer) != DEA_OK) {
+  layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
+                                   .param = yeoh,
+                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                   .kappa_Pa = 4e7,
+                                   .permittivity_F_per_m = 2.5e-11,
+                                   .thickness_m = 44e-6};
+  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_constituent_relax(&layer) != DEA_OK) {
     return 1;
   }
   for (int n = 0; n < shape.nodes; n++) {
@@ -40,7 +40,7 @@ int main(void)
       u[3 * n + i] = (i == 2 ? 2e-6 : 1e-5) * (n % 5) * 0.1;
     }
   }
-  enum dea_level energy = DEA_ENERGY, force = DEA_FORCE, tangent = DEA_TANGENT;
+  enum dea_eval_order energy = DEA_ENERGY, force = DEA_FORCE, tangent = DEA_TANGENT;
   double time_s = bench_best_s(evaluate, &tangent, 20);
   bench_print("solid.hex27", REPEATS / time_s, "elements/s");
   bench_print("solid.hex27_energy", bench_best_s(evaluate, &energy, 20) / time_s, "of the tangent");

@@ -6,7 +6,7 @@
  * Each size is a process of its own, so that its memory is its own: the program runs itself as
  * "bench_solid_solve one UNKNOWNS", also under mpirun. DEA_BENCH_LARGE adds 300000. */
 #include "bench.h"
-#include "model/solid/solve/internal.h"
+#include "model/solid/assembly/internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -74,14 +74,14 @@ static int run_one(double unknowns)
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static double cuts[CUTS_MAX + 1];
   size_t count = (size_t)lround(0.5 * (sqrt(unknowns / 15) - 1)); // (2 count + 1)^2 columns of five
-  struct dea_layer layer = {.law = dea_law_find("yeoh"),
-                            .param = yeoh,
-                            .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                            .kappa_Pa = 4e7,
-                            .permittivity_F_per_m = 2.5e-11,
-                            .thickness_m = thickness_m};
+  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
+                                  .param = yeoh,
+                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                  .kappa_Pa = 4e7,
+                                  .permittivity_F_per_m = 2.5e-11,
+                                  .thickness_m = thickness_m};
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
-  const struct dea_sheet sheets[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
+  const struct dea_ply sheets[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .active = under_voltage, .held = edges};
   struct dea_context *ctx = NULL;
@@ -97,7 +97,7 @@ static int run_one(double unknowns)
   for (int i = 0; i < FIGURES; i++) {
     sample.of[i] = INFINITY;
   }
-  bench_need(dea_layer_relax(&layer), ctx);
+  bench_need(dea_constituent_relax(&layer), ctx);
   bench_need(dea_solid_start(ctx), ctx);
   double start = bench_now_s();
   bench_need(dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, 0, side_m, &grid), ctx);

@@ -60,8 +60,8 @@ static inline void print_findings(const struct dea_context *ctx)
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    print_message("%s:%zu:%zu: %s\n", findings[i].place.file, findings[i].place.line,
-                  findings[i].place.column, findings[i].text);
+    print_message("%s:%zu:%zu: %s\n", findings[i].location.file, findings[i].location.line,
+                  findings[i].location.column, findings[i].text);
   }
 }
 

@@ -75,7 +75,8 @@ static inline void assert_refused(const char *name, const void *bytes, size_t le
   assert_null(table);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    if (strstr(findings[i].text, part) != NULL && (line == 0 || findings[i].place.line == line)) {
+    if (strstr(findings[i].text, part) != NULL &&
+        (line == 0 || findings[i].location.line == line)) {
       return;
     }
   }

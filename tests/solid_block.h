@@ -2,7 +2,7 @@
 #ifndef DEA_TESTS_SOLID_BLOCK_H
 #define DEA_TESTS_SOLID_BLOCK_H
 
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 /* Size from the origin, elements along each edge, orders. */
@@ -30,7 +30,7 @@ static inline struct dea_grid *block_grid(struct dea_context *ctx, const struct 
   }
   const struct dea_block quad = {block_map,       block,           cuts[0], cuts[1],
                                  block->count[0], block->count[1], 0};
-  const struct dea_sheet sheet = {block->size[2], block->count[2], block->order_z};
+  const struct dea_ply sheet = {block->size[2], block->count[2], block->order_z};
   struct dea_grid *grid;
   assert_int_equal(dea_grid_create(ctx, block->order, &quad, 1, &sheet, 1, NULL, 0,
                                    fmax(block->size[0], block->size[1]), &grid),
@@ -39,7 +39,7 @@ static inline struct dea_grid *block_grid(struct dea_context *ctx, const struct 
 }
 
 static inline struct dea_solid *block_solid(struct dea_context *ctx, const struct dea_grid *grid,
-                                            int order_z, const struct dea_layer *layer,
+                                            int order_z, const struct dea_constituent *layer,
                                             int (*held)(const void *self, const double X[3]))
 {
   const struct dea_solid_options options = {

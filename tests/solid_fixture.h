@@ -3,7 +3,7 @@
 #ifndef DEA_TESTS_SOLID_FIXTURE_H
 #define DEA_TESTS_SOLID_FIXTURE_H
 
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the header above
 

@@ -2,7 +2,7 @@
 #ifndef DEA_TESTS_SOLID_NODE_H
 #define DEA_TESTS_SOLID_NODE_H
 
-#include "model/solid/grid.h"
+#include "model/solid/mesh/grid.h"
 #include "testing.h"
 
 #include <math.h>

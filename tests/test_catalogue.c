@@ -24,7 +24,7 @@ static int tear_down(void **state)
   "dea_material: 1\nname: " name "\nkind: plastic\n"                                               \
   "elastic: {young_modulus: " modulus ", poisson_ratio: 0.3, source: test}\n"
 
-static const struct dea_place nowhere = {"", 0, 0};
+static const struct dea_location nowhere = {"", 0, 0};
 
 static void test_all_read_and_have_sources(void **state)
 {
@@ -81,13 +81,13 @@ static void test_unknown_name_lists_all(void **state)
 {
   (void)state;
   struct dea_catalogue_entry *entry;
-  const struct dea_place place = {"x.yaml", 3, 4};
-  assert_int_equal(dea_catalogue_read(ctx, "elastosil-203", place, &entry), DEA_E_DESIGN);
+  const struct dea_location location = {"x.yaml", 3, 4};
+  assert_int_equal(dea_catalogue_read(ctx, "elastosil-203", location, &entry), DEA_E_DESIGN);
   assert_null(entry);
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   assert_int_equal(count, 1);
-  assert_int_equal(findings[0].place.line, 3);
+  assert_int_equal(findings[0].location.line, 3);
   assert_contains(findings[0].text, "did you mean 'elastosil-2030'?");
   assert_contains(findings[0].text, "vhb-4910");
 }
@@ -130,7 +130,7 @@ static void test_bad_files(void **state)
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     assert_int_equal(count, 1);
     assert_contains(findings[0].text, bad[i].part);
-    assert_int_equal(findings[0].place.line, bad[i].line);
+    assert_int_equal(findings[0].location.line, bad[i].line);
   }
 }
 

@@ -142,8 +142,8 @@ static void test_every_default_is_listed(void **state)
     assert_string_equal(value->text, wanted[i].text);
     assert_int_equal(value->origin, wanted[i].origin);
   }
-  assert_int_equal(listed("film.thickness")->place.line, 2);
-  assert_int_equal(listed("film.thickness")->place.column, 35);
+  assert_int_equal(listed("film.thickness")->location.line, 2);
+  assert_int_equal(listed("film.thickness")->location.column, 35);
 }
 
 static void test_default_sweep(void **state)
@@ -217,7 +217,7 @@ static void test_override_wins_over_the_other_way_to_say_it(void **state)
   assert_close(device->film_thickness_unstretched_m, 200e-6, 1e-14, 0);
   assert_close(device->coverage, 0.04, 1e-14, 0);
   assert_int_equal(listed("film.thickness")->origin, DEA_OVERRIDE);
-  assert_string_equal(listed("film.thickness")->place.file, "--set film.thickness");
+  assert_string_equal(listed("film.thickness")->location.file, "--set film.thickness");
 }
 
 static void test_null_takes_a_section_away(void **state)
@@ -272,7 +272,7 @@ static void test_taper_and_free_end(void **state)
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
   assert_int_equal(device->solid_domain, DEA_DOMAIN_DISC);
   assert_int_equal(device->solid_film, DEA_FILM_SOLID);
-  assert_int_equal(device->solid_side, DEA_SIDE_FIBRES);
+  assert_int_equal(device->solid_side, DEA_BRANCH_FIBRES);
   assert_close(device->solid_refinement, 2.5, 0, 0);
   assert_int_equal(device->solid_order, 3);
   assert_int_equal(device->solid_order_z, 1);

@@ -20,13 +20,13 @@ static void check_errors(const char *text, const struct wanted *wanted, size_t c
   dea_design_destroy(ctx, design);
   for (size_t i = 0; i < count; i++) {
     const struct dea_finding *finding = find_error(ctx, wanted[i].part);
-    if (finding == NULL || finding->place.line != wanted[i].line ||
-        finding->place.column != wanted[i].column) {
+    if (finding == NULL || finding->location.line != wanted[i].line ||
+        finding->location.column != wanted[i].column) {
       print_findings(ctx);
       fail_msg("no error at %zu:%zu with '%s' in:\n%s", wanted[i].line, wanted[i].column,
                wanted[i].part, text);
     }
-    assert_string_equal(finding->place.file, "t.yaml");
+    assert_string_equal(finding->location.file, "t.yaml");
   }
   if (dea_finding_count(ctx, DEA_ERROR) != count) {
     print_findings(ctx);
@@ -162,7 +162,7 @@ static void test_four_megabytes_of_brackets(void **state)
   free(text);
   const struct dea_finding *finding = find_error(ctx, "nested too deeply");
   assert_non_null(finding);
-  assert_int_equal(finding->place.column, DEA_YAML_DEPTH_MAX + 1);
+  assert_int_equal(finding->location.column, DEA_YAML_DEPTH_MAX + 1);
 }
 
 static void test_a_zero_byte_in_the_file(void **state)
@@ -327,8 +327,8 @@ static void check_override(const char *key, const char *value, const char *part)
     fail_msg("no error with '%s'", part);
   }
   snprintf(place, sizeof place, "--set %s", key);
-  assert_string_equal(finding->place.file, place);
-  assert_int_equal(finding->place.line, 0);
+  assert_string_equal(finding->location.file, place);
+  assert_int_equal(finding->location.line, 0);
 }
 
 static void test_bad_overrides(void **state)

@@ -35,7 +35,7 @@ static void test_contours(void **state)
 /* A disc of 10 mm radius with two holes. */
 static void expect_holes(double x0, double r0, double x1, double r1, const char *message)
 {
-  static const struct dea_place here = {"t.yaml", 3, 4};
+  static const struct dea_location here = {"t.yaml", 3, 4};
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_part part = {.ctx = ctx, .name = "plate"};
@@ -49,7 +49,7 @@ static void expect_holes(double x0, double r0, double x1, double r1, const char 
       print_findings(ctx);
       fail_msg("'%s' is not said", message);
     }
-    assert_int_equal(finding->place.line, 3);
+    assert_int_equal(finding->location.line, 3);
   } else {
     assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
   }

@@ -1,8 +1,8 @@
 /* What cannot be built is said at its place in the design, and nothing crashes or leaks. */
 #include "design_text.h"
 #include "fabricate/dxf.h"
+#include "fabricate/labels.h"
 #include "fabricate/svg.h"
-#include "fabricate/words.h"
 #include "failing_allocator.h"
 
 #define DESIGN                                                                                     \
@@ -67,9 +67,9 @@ static void expect(const char *from, const char *to, const char *message, size_t
   if (finding == NULL) {
     print_findings(ctx);
     fail_msg("'%s' is not said", message);
-  } else if (finding->place.line != line) {
+  } else if (finding->location.line != line) {
     print_findings(ctx);
-    fail_msg("'%s' is said at line %zu, wanted %zu", message, finding->place.line, line);
+    fail_msg("'%s' is said at line %zu, wanted %zu", message, finding->location.line, line);
   }
   dea_context_destroy(ctx);
 }

@@ -148,7 +148,7 @@ static void test_refusals(void **state)
     assert_int_equal(check(r->text), DEA_E_INTERLOCK);
     assert_int_equal(dea_status_exit_code(DEA_E_INTERLOCK), 6);
     const struct dea_finding *f = find_finding(ctx, DEA_ERROR, r->part);
-    if (f == NULL || f->place.line != r->line || f->place.column != r->column) {
+    if (f == NULL || f->location.line != r->line || f->location.column != r->column) {
       print_findings(ctx);
       fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
     }
@@ -193,7 +193,7 @@ static void test_pull_in(void **state)
   const struct dea_finding *f = find_finding(
       ctx, DEA_ERROR, "refused: the film pulls in at 3.915 kV on its way to 9 kV at step 1");
   assert_non_null(f);
-  assert_true(f->place.line == 7 && f->place.column == 28);
+  assert_true(f->location.line == 7 && f->location.column == 28);
   double stretch = 0, below_V = 0.99 * plan.pull_in_V, above_V = 1.01 * plan.pull_in_V;
   field_at(in_folder("soft.yaml"), below_V, 1.7, &stretch);
   assert_true(isfinite(stretch));
@@ -240,8 +240,8 @@ static void test_warnings(void **state)
     const struct refusal *r = &warnings[i];
     dea_status status = check(r->text);
     const struct dea_finding *f = find_finding(ctx, DEA_WARNING, r->part);
-    if (status != DEA_OK || f == NULL || f->place.line != r->line ||
-        (r->column > 1 && f->place.column != r->column)) {
+    if (status != DEA_OK || f == NULL || f->location.line != r->line ||
+        (r->column > 1 && f->location.column != r->column)) {
       print_findings(ctx);
       fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
     }

@@ -185,7 +185,7 @@ static void test_mapping_errors(void **state)
     size_t count, found = 0;
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     for (size_t k = 0; k < count; k++) {
-      found += findings[k].severity == DEA_ERROR && findings[k].place.line == cases[i].line &&
+      found += findings[k].severity == DEA_ERROR && findings[k].location.line == cases[i].line &&
                strstr(findings[k].text, cases[i].part) != NULL;
     }
     if (found == 0) {

@@ -2,10 +2,10 @@
  * write: it comes from our own writer, which is libmatio's, and from HDF5 itself for what MATLAB
  * adds. */
 #define _GNU_SOURCE
+#include "base/h5.h"
 #include "import_text.h"
 #include "lab/import/mat.h"
 #include "octave.h"
-#include "output/h5.h"
 
 enum { COUNT = 501 };
 

@@ -183,7 +183,7 @@ static void test_errors_have_places(void **state)
     assert_int_equal(protocol_of(ctx, wrong[i].text, &p), DEA_E_DESIGN);
     assert_null(p);
     const struct dea_finding *f = find_error(ctx, wrong[i].part);
-    if (f == NULL || f->place.line != wrong[i].line || f->place.column != wrong[i].column) {
+    if (f == NULL || f->location.line != wrong[i].line || f->location.column != wrong[i].column) {
       print_findings(ctx);
       fail_msg("no '%s' at %zu:%zu of:\n%s", wrong[i].part, wrong[i].line, wrong[i].column,
                wrong[i].text);
@@ -202,7 +202,7 @@ static void test_wrong_design(void **state)
   assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), NULL, 0, &p), DEA_E_DESIGN);
   const struct dea_finding *f = find_error(ctx, "lacks 'pre_stretch'");
   assert_non_null(f);
-  assert_non_null(strstr(f->place.file, "design.yaml"));
+  assert_non_null(strstr(f->location.file, "design.yaml"));
   assert_int_equal(dea_protocol_read(ctx, in_folder("no.yaml"), NULL, 0, &p), DEA_E_IO);
 }
 

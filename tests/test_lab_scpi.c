@@ -356,7 +356,7 @@ static void test_wrong_keys(void **state)
     assert_int_equal(emulator_open(ctx, &protocol, cases[i].text, &instrument), DEA_E_DESIGN);
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     assert_true(count >= 1);
-    if (strstr(findings[0].text, cases[i].finding) == NULL || findings[0].place.line == 0) {
+    if (strstr(findings[0].text, cases[i].finding) == NULL || findings[0].location.line == 0) {
       fail_msg("'%s' lacks '%s'", findings[0].text, cases[i].finding);
     }
   }

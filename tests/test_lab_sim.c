@@ -417,7 +417,7 @@ static void test_errors(void **state)
     assert_int_equal(dea_instrument_open(ctx, &p->sim, p, &bench), DEA_E_DESIGN);
     assert_null(bench);
     const struct dea_finding *f = find_error(ctx, wrong[i].part);
-    if (f == NULL || f->place.line != wrong[i].line) {
+    if (f == NULL || f->location.line != wrong[i].line) {
       print_findings(ctx);
       fail_msg("no '%s'", wrong[i].part);
     }

@@ -1,13 +1,13 @@
 /* output: what is written is read back; files are whole or absent; errors say what is wrong. */
 #define _GNU_SOURCE // mkdtemp, setenv, nftw
 #include "base/file.h"
+#include "base/write_file.h"
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "output/csv.h"
 #include "output/figure.h"
-#include "output/file.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
-#include "output/store.h"
 #include "output/summary.h"
 #include "result/columns.h"
 #include "testing.h"
@@ -109,7 +109,7 @@ static void test_store_reads_back_to_the_bit(void **state)
   strcpy(result->curves[0].stopped, "no equilibrium above 4.6 kV");
   result->curves[0].points[3].force_N = NAN; // a hole in a column
   result->provenance.wall_s = 0.1;
-  assert_int_equal(dea_store_write(ctx, result, in_folder("results.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
   assert_int_equal(dea_run_read(ctx, folder, &run), DEA_OK);
   const struct dea_result *back = run->result;
   assert_int_equal(back->curve_count, result->curve_count);
@@ -160,7 +160,7 @@ static void test_store_of_an_empty_result(void **state)
   struct dea_run *run;
   assert_int_equal(dea_result_create(ctx, NULL, NULL, &empty), DEA_OK);
   assert_int_equal(dea_result_add_curve(ctx, empty, "lumped", "sweep", &curve), DEA_OK);
-  assert_int_equal(dea_store_write(ctx, empty, in_folder("empty.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, empty, in_folder("empty.h5")), DEA_OK);
   assert_int_equal(dea_run_read(ctx, in_folder("empty.h5"), &run), DEA_OK);
   assert_int_equal(run->result->curve_count, 1);
   assert_int_equal(run->result->curves[0].count, 0);
@@ -175,7 +175,7 @@ static void test_store_that_is_cut_off_or_is_none(void **state)
   struct dea_run *run;
   char *bytes;
   size_t length;
-  assert_int_equal(dea_store_write(ctx, result, in_folder("results.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
   assert_int_equal(dea_file_read(ctx, in_folder("results.h5"), 100000000, &bytes, &length), DEA_OK);
   for (size_t part = 0; part < 8; part++) {
     assert_int_equal(dea_file_write(ctx, in_folder("cut.h5"), bytes, length * part / 8), DEA_OK);
@@ -196,7 +196,7 @@ static void test_store_with_damaged_bytes_never_crashes(void **state)
   (void)state;
   char *bytes;
   size_t length;
-  assert_int_equal(dea_store_write(ctx, result, in_folder("results.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
   assert_int_equal(dea_file_read(ctx, in_folder("results.h5"), 100000000, &bytes, &length), DEA_OK);
   for (size_t i = 0; i < 60; i++) {
     size_t at = length * i / 60;

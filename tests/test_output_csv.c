@@ -1,10 +1,10 @@
 /* output: CSV tables, written and read; tables of measurements and what is wrong with them. */
 #define _GNU_SOURCE // mkdtemp
 #include "base/file.h"
+#include "base/write_file.h"
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "output/csv.h"
-#include "output/file.h"
 #include "testing.h"
 
 #include <locale.h>
@@ -60,10 +60,10 @@ static void assert_error(const char *text, size_t line, size_t column, const cha
   assert_null(m);
   const struct dea_finding *found = dea_finding_get(ctx, &count);
   assert_int_equal(count, 1);
-  assert_string_equal(found[0].place.file, path);
-  if (found[0].place.line != line || found[0].place.column != column ||
+  assert_string_equal(found[0].location.file, path);
+  if (found[0].location.line != line || found[0].location.column != column ||
       strstr(found[0].text, part) == NULL) {
-    fail_msg("%zu:%zu: %s", found[0].place.line, found[0].place.column, found[0].text);
+    fail_msg("%zu:%zu: %s", found[0].location.line, found[0].location.column, found[0].text);
   }
 }
 

@@ -3,9 +3,9 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "fake_surface.h"
-#include "output/drawing.h"
 #include "output/figure.h"
-#include "output/store.h"
+#include "output/results_h5.h"
+#include "output/surface_lattice.h"
 
 #include "own_folder.h" // after: its context shadows no name of the headers above
 
@@ -17,8 +17,8 @@ static double length_of(const struct dea_outline *lines, size_t count, enum dea_
   double length = 0;
   for (size_t i = 0; i < count; i++) {
     for (int k = 1; k < lines[i].count && lines[i].kind == kind; k++) {
-      length += hypot(lines[i].at[k][DEA_DRAWING_X] - lines[i].at[k - 1][DEA_DRAWING_X],
-                      lines[i].at[k][DEA_DRAWING_Y] - lines[i].at[k - 1][DEA_DRAWING_Y]);
+      length += hypot(lines[i].at[k][DEA_LATTICE_X] - lines[i].at[k - 1][DEA_LATTICE_X],
+                      lines[i].at[k][DEA_LATTICE_Y] - lines[i].at[k - 1][DEA_LATTICE_Y]);
     }
   }
   return length;
@@ -31,7 +31,7 @@ static void test_outlines(void **state)
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
   struct dea_outline *lines;
   size_t count;
-  assert_int_equal(dea_drawing_outlines(ctx, mesh, &lines, &count), DEA_OK);
+  assert_int_equal(dea_surface_lattice_outlines(ctx, mesh, &lines, &count), DEA_OK);
   assert_close(length_of(lines, count, DEA_OUTLINE_FRAME), 2 * pi * fake_radius_m, 1e-3, 0);
   assert_close(length_of(lines, count, DEA_OUTLINE_ELECTRODE), 2 * pi * fake_electrode_m, 1e-3, 0);
   // the fibre's two sides each, from the electrode to the frame; not its middle, a plane of
@@ -48,8 +48,8 @@ static void test_patches(void **state)
   (void)state;
   const double pi = 3.14159265358979324;
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
-  struct dea_drawing drawing;
-  assert_int_equal(dea_drawing_create(ctx, mesh, 4000, &drawing), DEA_OK);
+  struct dea_surface_lattice drawing;
+  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 4000, &drawing), DEA_OK);
   assert_int_equal(drawing.patch_count, 2 * FAKE_FOLD * FAKE_RINGS * FAKE_TURNS);
   assert_true(drawing.piece_count > 3000 && drawing.piece_count < 12000);
   assert_close(drawing.radius_m, fake_radius_m, 1e-9, 0);
@@ -60,9 +60,9 @@ static void test_patches(void **state)
     int row = patch->n + 1;
     for (int k = 0; k < row * (patch->m + 1); k++) {
       const double *p = patch->at[k];
-      double height = fake_height_m(p[DEA_DRAWING_X], p[DEA_DRAWING_Y], 1e3);
-      assert_close(p[DEA_DRAWING_UZ], height, 0, 0.01e-6); // quadratic elements
-      assert_close(p[DEA_DRAWING_UX], 1e-3 * p[DEA_DRAWING_X], 0, 1e-15);
+      double height = fake_height_m(p[DEA_LATTICE_X], p[DEA_LATTICE_Y], 1e3);
+      assert_close(p[DEA_LATTICE_UZ], height, 0, 0.01e-6); // quadratic elements
+      assert_close(p[DEA_LATTICE_UX], 1e-3 * p[DEA_LATTICE_X], 0, 1e-15);
       if (k % row < patch->n && k / row < patch->m) {
         const double *q = patch->at[k + row + 1], *a = patch->at[k + 1], *b = patch->at[k + row];
         area += 0.5 * fabs((q[0] - p[0]) * (b[1] - a[1]) - (q[1] - p[1]) * (b[0] - a[0]));
@@ -70,7 +70,7 @@ static void test_patches(void **state)
     }
   }
   assert_close(area, pi * fake_radius_m * fake_radius_m, 2e-3, 0);
-  dea_drawing_free(ctx, &drawing);
+  dea_surface_lattice_free(ctx, &drawing);
   dea_field_mesh_destroy(ctx, mesh);
 }
 
@@ -78,12 +78,12 @@ static void test_section(void **state)
 {
   (void)state;
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
-  struct dea_drawing drawing;
-  assert_int_equal(dea_drawing_create(ctx, mesh, 20000, &drawing), DEA_OK);
+  struct dea_surface_lattice drawing;
+  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 20000, &drawing), DEA_OK);
   for (int way = 0; way < 3; way++) { // a plane of symmetry, another, none
     double angle = way == 0 ? 0 : way == 1 ? 1.04719755119659775 : 0.37, *found;
     size_t count;
-    assert_int_equal(dea_drawing_section(ctx, &drawing, angle, &found, &count), DEA_OK);
+    assert_int_equal(dea_surface_lattice_section(ctx, &drawing, angle, &found, &count), DEA_OK);
     assert_true(count > 50);
     assert_close(found[0], -fake_radius_m, 2e-3, 0);
     assert_close(found[count - 1], fake_radius_m, 2e-3, 0);
@@ -94,7 +94,7 @@ static void test_section(void **state)
     }
     dea_free(ctx, found);
   }
-  dea_drawing_free(ctx, &drawing);
+  dea_surface_lattice_free(ctx, &drawing);
   dea_field_mesh_destroy(ctx, mesh);
 }
 
@@ -102,14 +102,14 @@ static void test_what_cannot_be_drawn(void **state)
 {
   (void)state;
   struct dea_field_mesh *mesh;
-  struct dea_drawing drawing;
+  struct dea_surface_lattice drawing;
   struct dea_outline *lines;
   size_t count;
   int *nodes;
   assert_int_equal(dea_field_mesh_create(ctx, 8, &mesh), DEA_OK);
   assert_int_equal(dea_field_mesh_add_block(ctx, mesh, 1, 1, 1, &nodes), DEA_OK);
-  assert_int_equal(dea_drawing_create(ctx, mesh, 10, &drawing), DEA_E_ARGUMENT);
-  assert_int_equal(dea_drawing_outlines(ctx, mesh, &lines, &count), DEA_E_ARGUMENT);
+  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 10, &drawing), DEA_E_ARGUMENT);
+  assert_int_equal(dea_surface_lattice_outlines(ctx, mesh, &lines, &count), DEA_E_ARGUMENT);
   dea_field_mesh_destroy(ctx, mesh);
 }
 
@@ -195,7 +195,7 @@ static void test_store(void **state)
   struct dea_result *result;
   struct dea_run *run;
   assert_int_equal(make_result(ctx, &result), DEA_OK);
-  assert_int_equal(dea_store_write(ctx, result, in_folder("a.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("a.h5")), DEA_OK);
   assert_int_equal(dea_run_read(ctx, in_folder("a.h5"), &run), DEA_OK);
   assert_int_equal(run->result->surface_count, 3);
   for (size_t k = 0; k < 3; k++) {
@@ -261,7 +261,7 @@ static void store_and_read(struct dea_context *failing)
   struct dea_run *run = NULL;
   dea_status status = make_result(failing, &result);
   if (status == DEA_OK) {
-    status = dea_store_write(failing, result, in_folder("m.h5"));
+    status = dea_results_h5_write(failing, result, in_folder("m.h5"));
   }
   if (status == DEA_OK) {
     status = dea_run_read(failing, in_folder("m.h5"), &run);

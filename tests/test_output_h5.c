@@ -1,5 +1,5 @@
 /* output/h5: readers take what they have room for. */
-#include "output/h5.h"
+#include "base/h5.h"
 #include "testing.h"
 
 /* An attribute with many texts or numbers where one is due would write past its reader's room. */

@@ -4,10 +4,10 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "fake_surface.h"
-#include "output/keep.h"
+#include "output/checkpoint.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
 #include "output/state_file.h"
-#include "output/store.h"
 #include "study/study.h"
 
 #include "own_folder.h" // after: its context shadows no name of the headers above
@@ -104,7 +104,7 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
   }
   dea_status status = dea_result_create(c, &design, NULL, &result);
   if (status == DEA_OK && resume) {
-    status = dea_keep_restore(c, directory, result);
+    status = dea_checkpoint_restore(c, directory, result);
   }
   if (status == DEA_OK) {
     status = dea_run_folder_prepare(c, directory, true);
@@ -113,10 +113,10 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
     dea_run_folder_clear(c, directory);
   }
   if (status == DEA_OK) {
-    status = dea_keep_create(c, directory, &keep);
+    status = dea_checkpoint_create(c, directory, &keep);
   }
   if (status == DEA_OK) {
-    result->keeper = dea_keep_keeper(keep);
+    result->keeper = dea_checkpoint_get_sink(keep);
     status = dea_study_run(c, &fake_type, result);
     const struct dea_curve *sweep = dea_result_find(result, "fake", "sweep");
     *z = sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].centre_z_m : NAN;
@@ -126,7 +126,7 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
       assert_true(sweep->complete);
     }
   }
-  dea_keep_destroy(c, keep);
+  dea_checkpoint_destroy(c, keep);
   dea_result_destroy(c, result);
   return status;
 }

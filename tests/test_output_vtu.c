@@ -1,7 +1,7 @@
 /* VTU and PVD files, read by a small reader of their own. */
 #define _GNU_SOURCE // mkdtemp
+#include "base/bytes.h"
 #include "failing_allocator.h"
-#include "output/bytes.h"
 #include "output/vtu.h"
 #include "testing.h"
 

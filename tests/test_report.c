@@ -7,8 +7,8 @@
 #include "output/report/axis.h"
 #include "output/report/html.h"
 #include "output/report/report.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
-#include "output/store.h"
 
 #include <ctype.h>
 
@@ -341,7 +341,7 @@ static void write_made_up_run(void)
   const struct dea_design design = fake_design();
   struct dea_result *result;
   assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
-  assert_int_equal(dea_store_write(ctx, result, in_folder("made-up.h5")), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("made-up.h5")), DEA_OK);
   dea_result_destroy(ctx, result);
 }
 

@@ -6,7 +6,7 @@
 #include "command.h"
 #include "fake_result.h"
 #include "fake_surface.h"
-#include "output/store.h"
+#include "output/results_h5.h"
 
 static struct browser browser;
 static struct dea_context *ctx;
@@ -320,7 +320,7 @@ static void write_membrane(void)
         DEA_OK);
   }
   snprintf(path, sizeof path, "%s/film.h5", command_folder);
-  assert_int_equal(dea_store_write(ctx, result, path), DEA_OK);
+  assert_int_equal(dea_results_h5_write(ctx, result, path), DEA_OK);
   dea_result_destroy(ctx, result);
   assert_int_equal(command_run("report film.h5 -o film.html"), 0);
 }

@@ -1,6 +1,6 @@
 /* Hexahedra with a potential: derivatives, invariance, the plate capacitor, the thin-film energy.
  */
-#include "model/solid/hex_coupled.h"
+#include "model/solid/element/hex_coupled.h"
 #include "testing.h"
 
 static struct dea_hex_shape shape;
@@ -15,22 +15,22 @@ struct sample {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], psi[DEA_HEX_NODES_MAX];
 };
 
-static struct dea_layer film(double pre_stretch)
+static struct dea_constituent film(double pre_stretch)
 {
   double z = 1 / (pre_stretch * pre_stretch);
-  struct dea_layer layer = {.law = dea_law_find("yeoh"),
-                            .param = yeoh,
-                            .pre_stretch = {pre_stretch, pre_stretch, z},
-                            .kappa_Pa = 4e7,
-                            .permittivity_F_per_m = 2.5e-11,
-                            .thickness_m = 44e-6};
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
+                                  .param = yeoh,
+                                  .pre_stretch = {pre_stretch, pre_stretch, z},
+                                  .kappa_Pa = 4e7,
+                                  .permittivity_F_per_m = 2.5e-11,
+                                  .thickness_m = 44e-6};
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_layer plastic(void)
+static struct dea_constituent plastic(void)
 {
-  struct dea_layer layer = {
+  struct dea_constituent layer = {
       .lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5, .permittivity_F_per_m = 4e-11};
   return layer;
 }
@@ -53,8 +53,8 @@ static struct sample distorted(void)
   return s;
 }
 
-static dea_status evaluate(const struct dea_layer *layer, const struct sample *s,
-                           enum dea_level level, struct dea_element_result *out)
+static dea_status evaluate(const struct dea_constituent *layer, const struct sample *s,
+                           enum dea_eval_order level, struct dea_element_result *out)
 {
   return dea_hex_coupled_evaluate(&shape, layer, s->X, s->u, s->psi, pressures, scale, level, out);
 }
@@ -74,7 +74,7 @@ static double largest(const double *values, int count)
   return most;
 }
 
-static void check_derivatives(const struct dea_layer *layer)
+static void check_derivatives(const struct dea_constituent *layer)
 {
   int dofs = 4 * shape.nodes;
   const double d = 1e-10;
@@ -101,7 +101,7 @@ static void test_derivatives_of_all_orders(void **state)
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= (order < 3 ? 2 : 1); order_z++) {
-      const struct dea_layer soft = film(1.5), hard = plastic();
+      const struct dea_constituent soft = film(1.5), hard = plastic();
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
       check_derivatives(&hard);
@@ -116,7 +116,7 @@ static void test_capacity_is_the_electric_energy(void **state)
   (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   static const double none[DEA_HEX_NODES_MAX] = {0};
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
   int n = shape.nodes;
@@ -142,7 +142,7 @@ static void test_rigid_motion_and_added_potential(void **state)
 {
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted(), turned = s;
   for (int n = 0; n < shape.nodes; n++) {
@@ -176,7 +176,7 @@ static void test_rigid_motion_and_added_potential(void **state)
 static void test_linear_potential_is_the_thin_film(void **state)
 {
   (void)state;
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   const double V = 4e3;
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
@@ -204,7 +204,7 @@ static void test_plate_capacitor(void **state)
 {
   (void)state;
   static const double D[9] = {1.2, 0.1, 0.2, -0.1, 0.95, 0.1, 0.3, 0, 0.9};
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   const double a = 100e-6, h = 44e-6, V = 3e3;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     struct sample s;
@@ -258,7 +258,7 @@ static void test_inverted_element(void **state)
 {
   (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
   s.u[3 * 13 + 2] = 1e-4; // the middle node out through the top

@@ -1,7 +1,7 @@
 /* Layered hexahedra and their meshes: derivatives, invariance, patch test, areas. */
 #include "devices.h"
 #include "failing_allocator.h"
-#include "model/solid/grid.h"
+#include "model/solid/mesh/grid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -14,23 +14,23 @@ static struct dea_element_result at, up, down;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
 /* Pre-stretched film with a field (law), or a compressible solid. */
-static struct dea_layer film(double pre_stretch)
+static struct dea_constituent film(double pre_stretch)
 {
   double h = 100e-6 / (pre_stretch * pre_stretch);
-  struct dea_layer layer = {
+  struct dea_constituent layer = {
       .law = dea_law_find("yeoh"),
       .param = yeoh,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
       .thickness_m = h};
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_layer plastic(void)
+static struct dea_constituent plastic(void)
 {
-  struct dea_layer layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  struct dea_constituent layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
   return layer;
 }
 
@@ -52,7 +52,7 @@ static void sample(double size, double *X, double *u)
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 
-static void check_derivatives(const struct dea_layer *layer)
+static void check_derivatives(const struct dea_constituent *layer)
 {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], d = 1e-10, largest_g = 0, largest_K = 0;
   int dofs = 3 * shape.nodes;
@@ -86,8 +86,8 @@ static void test_derivatives_of_all_orders(void **state)
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
-      const struct dea_layer soft = film(1.5), hard = plastic();
-      struct dea_layer sloped = soft;
+      const struct dea_constituent soft = film(1.5), hard = plastic();
+      struct dea_constituent sloped = soft;
       sloped.permittivity_slope_F_per_m = -0.4 * soft.permittivity_F_per_m;
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
@@ -105,16 +105,16 @@ static void test_levels_agree(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_layer layers[] = {film(1.5), plastic()};
+  const struct dea_constituent layers[] = {film(1.5), plastic()};
   for (int k = 0; k < 2; k++) {
     assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
     sample(1, X, u);
     assert_int_equal(dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3, DEA_TANGENT, &at),
                      DEA_OK);
     for (int level = DEA_ENERGY; level <= DEA_FORCE; level++) {
-      assert_int_equal(
-          dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3, (enum dea_level)level, &up),
-          DEA_OK);
+      assert_int_equal(dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3,
+                                        (enum dea_eval_order)level, &up),
+                       DEA_OK);
       assert_true(up.energy_J == at.energy_J && up.volume_m3 == at.volume_m3);
       for (int i = 0; i < 3 * shape.nodes && level >= DEA_FORCE; i++) {
         assert_close(up.g[i], at.g[i], 1e-13, 1e-13 * fabs(at.g[0]));
@@ -129,7 +129,7 @@ static void test_rigid_motion(void **state)
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], turned[DEA_HEX_DOFS_MAX];
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
   for (int n = 0; n < shape.nodes; n++) {
@@ -167,7 +167,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   (void)state;
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   double X[DEA_HEX_DOFS_MAX];
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   const double a = 100e-6, h = 22e-6, voltages[] = {0, 5e3};
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   for (int n = 0; n < shape.nodes; n++) {
@@ -195,7 +195,7 @@ static void test_inverted_element_and_bad_order(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_layer soft = film(1.5);
+  const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
   assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_OK);
@@ -212,8 +212,8 @@ static void test_inverted_element_and_bad_order(void **state)
 /* ---- meshes ---- */
 
 /* Forces of all elements on the nodes under u = (D - 1) X. */
-static void forces(const struct dea_grid *grid, const struct dea_layer *layer, const double *D,
-                   double *g, double *volume)
+static void forces(const struct dea_grid *grid, const struct dea_constituent *layer,
+                   const double *D, double *g, double *volume)
 {
   static const double none[DEA_HEX_PRESSURES_MAX] = {0};
   *volume = 0;
@@ -245,7 +245,7 @@ static void test_patch_and_area(void **state)
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
     struct dea_grid *grid;
-    const struct dea_layer soft = film(1.5);
+    const struct dea_constituent soft = film(1.5);
     double volume, largest = 0;
     assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
     const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
@@ -288,7 +288,7 @@ static void check_joined(int fibres, double width)
   }
   assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
-  const struct dea_layer hard = plastic();
+  const struct dea_constituent hard = plastic();
   char *used = calloc(grid->node_count, 1);
   double volume = 0;
   assert_non_null(used);

@@ -1,5 +1,5 @@
 /* Loads on surfaces: derivatives against differences, resultants, distances to tips. */
-#include "model/solid/loads.h"
+#include "model/solid/load/loads.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -25,7 +25,7 @@ static void block_create(int order, int order_z, double amount)
 {
   static const double cuts[] = {0, 0.4, 1};
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 7};
-  const struct dea_sheet sheet = {size[2], 2, order_z};
+  const struct dea_ply sheet = {size[2], 2, order_z};
   assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, 0.3, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
@@ -52,7 +52,7 @@ static bool all(const void *self, int region, int sheet, const double middle[3])
   return sheet == 0;
 }
 
-static struct dea_surface *side_create(enum dea_side side)
+static struct dea_surface *side_create(enum dea_face side)
 {
   struct dea_surface *surface;
   assert_int_equal(dea_surface_create(ctx, grid, &shape, side, all, NULL, &surface), DEA_OK);
@@ -103,8 +103,8 @@ static void test_derivatives(void **state)
   static const double stiffness[3] = {2, 0, 5}, origin[3] = {0.1, -0.2, 0.3};
   for (int order = 1; order <= 3; order++) {
     block_create(order, order < 3 ? 2 : 1, 0.1);
-    for (int side = DEA_SIDE_FIRST_LOW; side <= DEA_SIDE_TOP; side++) {
-      struct dea_surface *surface = side_create((enum dea_side)side);
+    for (int side = DEA_FACE_FIRST_LOW; side <= DEA_FACE_TOP; side++) {
+      struct dea_surface *surface = side_create((enum dea_face)side);
       struct dea_foundation *springs;
       struct dea_pressure *pressure;
       assert_int_equal(dea_foundation_create(ctx, surface, stiffness, &springs), DEA_OK);
@@ -123,11 +123,14 @@ static void test_derivatives(void **state)
   }
 }
 
-static const struct dea_tip tips[] = {
-    {.shape = DEA_TIP_SPHERE, .radius_m = 1},
-    {.shape = DEA_TIP_FLAT, .radius_m = 0.9, .axis = {0.1, 0.2, 1}, .edge_radius_m = 0.4},
-    {.shape = DEA_TIP_CYLINDER, .radius_m = 0.7, .axis = {2, 1, 0.2}, .half_length_m = 0.6},
-    {.shape = DEA_TIP_CYLINDER, .radius_m = 0.7, .axis = {2, 1, 0.2}, .half_length_m = INFINITY},
+static const struct dea_indenter tips[] = {
+    {.shape = DEA_INDENTER_SPHERE, .radius_m = 1},
+    {.shape = DEA_INDENTER_FLAT, .radius_m = 0.9, .axis = {0.1, 0.2, 1}, .edge_radius_m = 0.4},
+    {.shape = DEA_INDENTER_CYLINDER, .radius_m = 0.7, .axis = {2, 1, 0.2}, .half_length_m = 0.6},
+    {.shape = DEA_INDENTER_CYLINDER,
+     .radius_m = 0.7,
+     .axis = {2, 1, 0.2},
+     .half_length_m = INFINITY},
 };
 
 /* Pressed about 0.2 into the top, with pressures there already. */
@@ -135,11 +138,11 @@ static void test_derivatives_of_contact(void **state)
 {
   (void)state;
   block_create(2, 2, 0.1);
-  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  struct dea_surface *surface = side_create(DEA_FACE_TOP);
   for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
     const struct dea_contact_options options = {
         .tip = tips[i],
-        .place_m = {1.4, 1, 1.7 + (tips[i].shape == DEA_TIP_FLAT ? 0 : tips[i].radius_m)},
+        .place_m = {1.4, 1, 1.7 + (tips[i].shape == DEA_INDENTER_FLAT ? 0 : tips[i].radius_m)},
         .stiffness_Pa_per_m = 40};
     struct dea_contact *contact;
     assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_OK);
@@ -160,7 +163,7 @@ static void test_force_by_place_of_tip(void **state)
   (void)state;
   static struct dea_piece piece;
   block_create(2, 2, 0.1);
-  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  struct dea_surface *surface = side_create(DEA_FACE_TOP);
   const struct dea_contact_options options = {
       .tip = tips[1], .place_m = {1.4, 1, 1.7}, .stiffness_Pa_per_m = 40};
   struct dea_contact *contact;
@@ -234,7 +237,7 @@ static void test_weight_and_traction(void **state)
   (void)state;
   static const double cuts[] = {0, 0.4, 1}, free_fall[3] = {1, -2, -9};
   const struct dea_block block = {straight, NULL, cuts, cuts, 2, 2, 7};
-  const struct dea_sheet sheet = {size[2], 2, 2};
+  const struct dea_ply sheet = {size[2], 2, 2};
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
@@ -250,7 +253,7 @@ static void test_weight_and_traction(void **state)
       dea_load_gravity(grid, &shape, density, NULL, free_fall, force);
     } else {
       struct dea_surface *top;
-      assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, upmost, NULL, &top),
+      assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, upmost, NULL, &top),
                        DEA_OK);
       assert_close(dea_surface_area(top), size[0] * size[1], 1e-12, 0);
       dea_load_traction(top, free_fall, force);
@@ -302,8 +305,8 @@ static void test_pressure_all_around(void **state)
     block_create(order, order < 3 ? order : 2, 0.1);
     double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], energy = 0, largest = 0;
     assert_non_null(force);
-    for (int side = DEA_SIDE_FIRST_LOW; side <= DEA_SIDE_TOP; side++) {
-      struct dea_surface *surface = side_create((enum dea_side)side);
+    for (int side = DEA_FACE_FIRST_LOW; side <= DEA_FACE_TOP; side++) {
+      struct dea_surface *surface = side_create((enum dea_face)side);
       struct dea_pressure *pressure;
       assert_int_equal(dea_pressure_create(ctx, surface, origin, &pressure), DEA_OK);
       dea_pressure_set(pressure, 3);
@@ -340,7 +343,7 @@ static void test_pressure_does_not_know_its_origin(void **state)
   static struct dea_piece piece;
   block_create(2, 2, 0.1);
   double *force[2];
-  struct dea_surface *top = side_create(DEA_SIDE_TOP);
+  struct dea_surface *top = side_create(DEA_FACE_TOP);
   for (int k = 0; k < 2; k++) {
     struct dea_pressure *pressure;
     force[k] = calloc(3 * grid->node_count, sizeof **force);
@@ -381,28 +384,29 @@ static void test_distances(void **state)
   (void)state;
   static const double place[3] = {1, 2, 3};
   static const struct {
-    struct dea_tip tip;
+    struct dea_indenter tip;
     double from_place[3], distance;
   } cases[] = {
-      {{.shape = DEA_TIP_SPHERE, .radius_m = 2}, {3, 0, 4}, 3},
-      {{.shape = DEA_TIP_SPHERE, .radius_m = 2}, {0, 0, -0.5}, -1.5},
-      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, -0.7}, 0.7},     // under the end
-      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, 0.2}, -0.2},     // in it
-      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 2.25, 7}, 0.25},    // beside
-      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 1.5, 0}, 0},        // where the edge begins
-      {{DEA_TIP_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 4.5, -3.5}, 4.5},   // off the edge: 3, 4
-      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 4, 4}, 4},        // beside
-      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 9, 0}, 4},        // beyond its end
-      {{DEA_TIP_CYLINDER, 1, {0, 2, 0}, 0, INFINITY}, {3, 9, 0}, 2}, // which this one lacks
+      {{.shape = DEA_INDENTER_SPHERE, .radius_m = 2}, {3, 0, 4}, 3},
+      {{.shape = DEA_INDENTER_SPHERE, .radius_m = 2}, {0, 0, -0.5}, -1.5},
+      {{DEA_INDENTER_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, -0.7}, 0.7},     // under the end
+      {{DEA_INDENTER_FLAT, 2, {0, 0, 3}, 0.5, 0}, {1, 1, 0.2}, -0.2},     // in it
+      {{DEA_INDENTER_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 2.25, 7}, 0.25},    // beside
+      {{DEA_INDENTER_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 1.5, 0}, 0},        // where the edge begins
+      {{DEA_INDENTER_FLAT, 2, {0, 0, 3}, 0.5, 0}, {0, 4.5, -3.5}, 4.5},   // off the edge: 3, 4
+      {{DEA_INDENTER_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 4, 4}, 4},        // beside
+      {{DEA_INDENTER_CYLINDER, 1, {0, 2, 0}, 0, 5}, {3, 9, 0}, 4},        // beyond its end
+      {{DEA_INDENTER_CYLINDER, 1, {0, 2, 0}, 0, INFINITY}, {3, 9, 0}, 2}, // which this one lacks
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    struct dea_tip tip = cases[i].tip;
+    struct dea_indenter tip = cases[i].tip;
     double x[3], normal[3];
-    assert_int_equal(dea_tip_check(ctx, &tip), DEA_OK);
+    assert_int_equal(dea_indenter_check(ctx, &tip), DEA_OK);
     for (int k = 0; k < 3; k++) {
       x[k] = place[k] + cases[i].from_place[k];
     }
-    assert_close(dea_tip_distance(&tip, place, x, normal, NULL), cases[i].distance, 1e-12, 1e-12);
+    assert_close(dea_indenter_distance(&tip, place, x, normal, NULL), cases[i].distance, 1e-12,
+                 1e-12);
   }
 }
 
@@ -413,15 +417,15 @@ static void test_slopes_of_distances(void **state)
   (void)state;
   static const double place[3] = {0.1, -0.2, 0.3};
   for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
-    struct dea_tip tip = tips[i];
+    struct dea_indenter tip = tips[i];
     int seams = 0, points = 0;
-    assert_int_equal(dea_tip_check(ctx, &tip), DEA_OK);
+    assert_int_equal(dea_indenter_check(ctx, &tip), DEA_OK);
     for (int k = 0; k < 2000; k++) {
       double x[3], n[3], H[9], up[3], down[3], foot[3], none[3], length = 0, d = 1e-6;
       for (int a = 0; a < 3; a++) {
         x[a] = place[a] + 2.5 * sin(1.7 * k + 2.1 * a + 0.37 * k * a); // all about
       }
-      double g = dea_tip_distance(&tip, place, x, n, H);
+      double g = dea_indenter_distance(&tip, place, x, n, H);
       if (g < -0.3) { // deeper the flat end has a ridge
         continue;
       }
@@ -431,9 +435,9 @@ static void test_slopes_of_distances(void **state)
         foot[a] = x[a] - g * n[a];
         length += n[a] * n[a];
         x[a] = keep + d;
-        double gu = dea_tip_distance(&tip, place, x, up, NULL);
+        double gu = dea_indenter_distance(&tip, place, x, up, NULL);
         x[a] = keep - d;
-        double gd = dea_tip_distance(&tip, place, x, down, NULL);
+        double gd = dea_indenter_distance(&tip, place, x, down, NULL);
         x[a] = keep;
         assert_close(n[a], (gu - gd) / (2 * d), 0, 1e-6);
         for (int b = 0; b < 3; b++) {
@@ -441,7 +445,7 @@ static void test_slopes_of_distances(void **state)
         }
       }
       assert_close(length, 1, 1e-12, 0);
-      assert_close(dea_tip_distance(&tip, place, foot, none, NULL), 0, 0, 1e-12);
+      assert_close(dea_indenter_distance(&tip, place, foot, none, NULL), 0, 0, 1e-12);
     }
     assert_true(seams <= 9 && points > 500);
   }
@@ -450,20 +454,20 @@ static void test_slopes_of_distances(void **state)
 static void test_arguments(void **state)
 {
   (void)state;
-  static const struct dea_tip bad[] = {
-      {.shape = DEA_TIP_SPHERE, .radius_m = 0},
-      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 0},
-      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 2},
-      {.shape = DEA_TIP_FLAT, .radius_m = 1, .axis = {0, 0, 0}, .edge_radius_m = 0.1},
-      {.shape = DEA_TIP_CYLINDER, .radius_m = 1, .axis = {0, 0, 1}, .half_length_m = -1},
+  static const struct dea_indenter bad[] = {
+      {.shape = DEA_INDENTER_SPHERE, .radius_m = 0},
+      {.shape = DEA_INDENTER_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 0},
+      {.shape = DEA_INDENTER_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 2},
+      {.shape = DEA_INDENTER_FLAT, .radius_m = 1, .axis = {0, 0, 0}, .edge_radius_m = 0.1},
+      {.shape = DEA_INDENTER_CYLINDER, .radius_m = 1, .axis = {0, 0, 1}, .half_length_m = -1},
   };
   static const double negative[3] = {1, -1, 1}, far[3] = {9, 9, 9}, origin[3] = {0, 0, 0};
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-    struct dea_tip tip = bad[i];
-    assert_int_equal(dea_tip_check(ctx, &tip), DEA_E_ARGUMENT);
+    struct dea_indenter tip = bad[i];
+    assert_int_equal(dea_indenter_check(ctx, &tip), DEA_E_ARGUMENT);
   }
   block_create(1, 1, 0);
-  struct dea_surface *surface = side_create(DEA_SIDE_TOP);
+  struct dea_surface *surface = side_create(DEA_FACE_TOP);
   struct dea_foundation *springs;
   struct dea_contact *contact;
   const struct dea_contact_options options = {.tip = tips[0]};

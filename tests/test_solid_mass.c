@@ -1,7 +1,7 @@
 /* Mass of elements: total, centre and moments of bodies whose integrals are known. */
 #include "devices.h"
-#include "model/solid/actuator.h"
-#include "model/solid/mass.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/element/mass.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -29,13 +29,13 @@ static void add_moments(int nodes, const double *X, const double *mass, double s
 }
 
 /* Those of all elements of a grid. */
-static void grid_moments(const struct dea_grid *grid, const struct dea_layer *layers,
+static void grid_moments(const struct dea_grid *grid, const struct dea_constituent *layers,
                          int (*layer_of)(const void *self, int region, int sheet), const void *self,
                          double sum[MOMENTS])
 {
   for (size_t e = 0; e < grid->element_count; e++) {
     double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-    const struct dea_layer *layer = &layers[layer_of(self, grid->region[e], grid->sheet[e])];
+    const struct dea_constituent *layer = &layers[layer_of(self, grid->region[e], grid->sheet[e])];
     int nodes = dea_grid_nodes_of(grid, e, shape.nodes);
     for (int n = 0; n < nodes; n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
@@ -75,11 +75,11 @@ static void test_mass_of_a_block(void **state)
   (void)state;
   static const double cuts[] = {0, 0.35, 1};
   const double rho = 970, h = 0.7, z0 = 0.2, area = 3 * 2 + 0.5 * 0.4;
-  const struct dea_layer layer = {.density_kg_per_m3 = rho, .thickness_m = h};
+  const struct dea_constituent layer = {.density_kg_per_m3 = rho, .thickness_m = h};
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 0};
   for (int order = 1; order <= 3; order++) {
     for (int kind = 0; kind < 4; kind++) { // a surface, then solids of each order
-      const struct dea_sheet sheet = {kind == 0 ? 0 : h, kind == 0 ? 1 : 2, kind == 0 ? 1 : kind};
+      const struct dea_ply sheet = {kind == 0 ? 0 : h, kind == 0 ? 1 : 2, kind == 0 ? 1 : kind};
       struct dea_grid *grid;
       double sum[MOMENTS] = {0};
       assert_int_equal(dea_hex_shape_create(order, sheet.order_z, &shape), DEA_OK);
@@ -104,7 +104,7 @@ static void test_an_inverted_element_has_no_mass(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_layer layer = {.density_kg_per_m3 = 1, .thickness_m = 1};
+  const struct dea_constituent layer = {.density_kg_per_m3 = 1, .thickness_m = 1};
   assert_int_equal(dea_hex_shape_create(1, 1, &shape), DEA_OK);
   assert_int_equal(dea_flat_shape_create(1, &flat), DEA_OK);
   for (int n = 0; n < shape.nodes; n++) {
@@ -163,7 +163,7 @@ static void test_mass_of_an_actuator(void **state)
     double sum[MOMENTS] = {0};
     assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
     assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_OK);
-    assert_int_equal(dea_plate_create(ctx, &actuator.plate, &grid), DEA_OK);
+    assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
     assert_int_equal(dea_hex_shape_create(grid->order, actuator.plate.order_z, &shape), DEA_OK);
     assert_int_equal(dea_flat_shape_create(grid->order, &flat), DEA_OK);
     grid_moments(grid, actuator.layers, dea_actuator_layer, &actuator, sum);
@@ -188,7 +188,7 @@ static void test_unknown_densities_are_said(void **state)
   struct dea_device d = star(false, true);
   d.electrode.density_kg_per_m3 = 0;
   assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
-  assert_close(actuator.layers[DEA_LAYER_ELECTRODE].density_kg_per_m3, rho_film, 0, 0);
+  assert_close(actuator.layers[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3, rho_film, 0, 0);
   size_t before = dea_finding_count(ctx, DEA_NOTE);
   assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), before + 1);

@@ -1,8 +1,8 @@
 /* Meshes of actuators: no folded element, no hanging node, exact areas, the right nodes held. */
 #include "failing_allocator.h"
-#include "model/solid/cuts.h"
-#include "model/solid/membrane.h"
-#include "model/solid/plate.h"
+#include "model/solid/element/membrane.h"
+#include "model/solid/mesh/cuts.h"
+#include "model/solid/mesh/fibre_disc.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -12,17 +12,17 @@
 
 static const double a = 3.75e-3, b = 15e-3, h = 44e-6;
 
-static struct dea_plate plate(int fibres, double overlap, double width)
+static struct dea_fibre_disc plate(int fibres, double overlap, double width)
 {
-  struct dea_plate p = {.order = 2,
-                        .order_z = 2,
-                        .fibres = fibres,
-                        .sectors = 1,
-                        .electrode_radius = a,
-                        .frame_radius = b,
-                        .film_thickness = h,
-                        .size = 0.2 * a,
-                        .edge = 0.05 * a};
+  struct dea_fibre_disc p = {.order = 2,
+                             .order_z = 2,
+                             .fibres = fibres,
+                             .sectors = 1,
+                             .electrode_radius = a,
+                             .frame_radius = b,
+                             .film_thickness = h,
+                             .size = 0.2 * a,
+                             .edge = 0.05 * a};
   if (fibres > 0) {
     p.tip_radius = a - overlap;
     p.outer_radius = b;
@@ -63,16 +63,16 @@ static int compare_faces(const void *x, const void *y)
 
 /* Every side face of the film that only one element has lies on the frame or on a mirror plane, and
  * none has three. With order 2 a face is shared as a whole when its corners are. */
-static void check_conforming(const struct dea_plate *p, const struct dea_grid *grid)
+static void check_conforming(const struct dea_fibre_disc *p, const struct dea_grid *grid)
 {
   static const int sides[4][2] = {{0, 2}, {2, 8}, {8, 6}, {6, 0}}; // corners of the lower face
   struct face *faces = calloc(4 * grid->element_count, sizeof *faces);
   size_t count = 0, open = 0;
-  double beta = dea_plate_angle(p);
+  double beta = dea_fibre_disc_angle(p);
   assert_non_null(faces);
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    for (int k = 0; k < 4 && grid->sheet[e] == DEA_PLATE_FILM; k++) {
+    for (int k = 0; k < 4 && grid->sheet[e] == DEA_FIBRE_DISC_FILM; k++) {
       int *corner = faces[count++].corner;
       for (int i = 0; i < 2; i++) {
         corner[i] = nodes[sides[k][i]];
@@ -96,7 +96,7 @@ static void check_conforming(const struct dea_plate *p, const struct dea_grid *g
       first = first && close(X[1], 0) && X[0] > -1e-9;
       last = last && close(-sin(beta) * X[0] + cos(beta) * X[1], 0);
     }
-    bool whole = p->sectors == dea_plate_sectors(p);
+    bool whole = p->sectors == dea_fibre_disc_sectors(p);
     assert_true(frame || (!whole && (first || last)));
     open++;
   }
@@ -116,8 +116,8 @@ static double volume(const struct dea_grid *grid, int sheet, int bits)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   static const double mu[DEA_LAW_PARAM_MAX] = {1e5};
-  const struct dea_layer hard = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
-  const struct dea_layer film = {
+  const struct dea_constituent hard = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  const struct dea_constituent film = {
       .law = dea_law_find("neo-hookean"), .param = mu, .pre_stretch = {1, 1, 1}, .thickness_m = h};
   double X[DEA_HEX_DOFS_MAX], sum = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
@@ -142,21 +142,23 @@ static double half_strip(double r1, double y1, double r2, double y2)
   return 0.5 * (r2 * r2 * asin(y2 / r2) + x2 * y1 - y2 * x1 - r1 * r1 * asin(y1 / r1));
 }
 
-static void check_areas(const struct dea_plate *p, const struct dea_grid *grid, double tolerance)
+static void check_areas(const struct dea_fibre_disc *p, const struct dea_grid *grid,
+                        double tolerance)
 {
-  double beta = dea_plate_angle(p), whole = 0.5 * beta * h;
+  double beta = dea_fibre_disc_angle(p), whole = 0.5 * beta * h;
   assert_int_equal(dea_hex_shape_create(p->order, p->order_z, &shape), DEA_OK);
   assert_int_equal(dea_flat_shape_create(p->order, &flat), DEA_OK);
-  assert_close(volume(grid, DEA_PLATE_FILM, 0), whole * b * b, tolerance, 0);
-  assert_close(volume(grid, DEA_PLATE_FILM, DEA_PLATE_ELECTRODE), whole * a * a, tolerance, 0);
+  assert_close(volume(grid, DEA_FIBRE_DISC_FILM, 0), whole * b * b, tolerance, 0);
+  assert_close(volume(grid, DEA_FIBRE_DISC_FILM, DEA_FIBRE_DISC_ELECTRODE), whole * a * a,
+               tolerance, 0);
   if (p->fibres > 0) {
     double half =
         half_strip(p->tip_radius, 0.5 * p->tip_width, p->outer_radius, 0.5 * p->outer_width);
     double thickness = p->fibre_thickness * p->sectors;
-    assert_close(volume(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE), thickness * half, tolerance,
-                 0);
-    assert_close(volume(grid, DEA_PLATE_GLUE, 0), p->glue_thickness * p->sectors * half, tolerance,
-                 0);
+    assert_close(volume(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE), thickness * half,
+                 tolerance, 0);
+    assert_close(volume(grid, DEA_FIBRE_DISC_GLUE, 0), p->glue_thickness * p->sectors * half,
+                 tolerance, 0);
   }
 }
 
@@ -164,16 +166,16 @@ static void check_areas(const struct dea_plate *p, const struct dea_grid *grid, 
 
 /* What is held follows from the place alone; each node that is held is on an edge, and each on an
  * edge is held across it. */
-static void check_held(const struct dea_plate *p, const struct dea_grid *grid)
+static void check_held(const struct dea_fibre_disc *p, const struct dea_grid *grid)
 {
-  double beta = dea_plate_angle(p);
-  bool whole = p->sectors == dea_plate_sectors(p);
+  double beta = dea_fibre_disc_angle(p);
+  bool whole = p->sectors == dea_fibre_disc_sectors(p);
   for (size_t n = 0; n < grid->node_count; n++) {
     const double *X = grid->X + 3 * n;
     double Q[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, r = hypot(X[0], X[1]);
-    int bits = dea_plate_held(p, X);
-    dea_plate_frame(p, X, Q);
-    bool frame = close(r, b) && (p->end == DEA_PLATE_CLAMPED || X[2] < 0.51 * h);
+    int bits = dea_fibre_disc_held(p, X);
+    dea_fibre_disc_frame(p, X, Q);
+    bool frame = close(r, b) && (p->end == DEA_FIBRE_DISC_CLAMPED || X[2] < 0.51 * h);
     assert_int_equal(frame, bits == 7);
     if (frame) {
       continue;
@@ -200,10 +202,10 @@ static void check_held(const struct dea_plate *p, const struct dea_grid *grid)
   }
 }
 
-static void check(const struct dea_plate *p, double tolerance)
+static void check(const struct dea_fibre_disc *p, double tolerance)
 {
   struct dea_grid *grid;
-  assert_int_equal(dea_plate_create(ctx, p, &grid), DEA_OK);
+  assert_int_equal(dea_fibre_disc_create(ctx, p, &grid), DEA_OK);
   assert_true(dea_grid_smallest_jacobian(grid) > 0.05);
   check_conforming(p, grid);
   check_areas(p, grid, tolerance);
@@ -218,7 +220,7 @@ static void test_sectors_of_all_counts(void **state)
   static const double overlap[] = {-1e-3, 0, 0.75e-3};
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
     for (size_t k = 0; k < (fibres[i] > 0 ? 3 : 1); k++) {
-      struct dea_plate p = plate(fibres[i], overlap[k], 1e-3);
+      struct dea_fibre_disc p = plate(fibres[i], overlap[k], 1e-3);
       check(&p, 1e-4);
       p.sectors = 2;
       check(&p, 1e-4);
@@ -231,8 +233,8 @@ static void test_whole_discs(void **state)
   (void)state;
   static const int fibres[] = {0, 1, 3, 4, 6};
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
-    struct dea_plate p = plate(fibres[i], 0.5e-3, 2e-3);
-    p.sectors = dea_plate_sectors(&p);
+    struct dea_fibre_disc p = plate(fibres[i], 0.5e-3, 2e-3);
+    p.sectors = dea_fibre_disc_sectors(&p);
     check(&p, 1e-4);
   }
 }
@@ -242,15 +244,15 @@ static void test_all_that_a_design_can_ask_for(void **state)
 {
   (void)state;
   for (int bits = 0; bits < 64; bits++) {
-    struct dea_plate p = plate(bits & 1 ? 4 : 3, bits & 2 ? 1e-3 : -0.5e-3, 2e-3);
+    struct dea_fibre_disc p = plate(bits & 1 ? 4 : 3, bits & 2 ? 1e-3 : -0.5e-3, 2e-3);
     p.tip_width = bits & 4 ? 0.6e-3 : 2e-3;
     p.glue_thickness = bits & 8 ? 50e-6 : 0;
     p.electrode_thickness = bits & 16 ? 5e-6 : 0;
     p.outer_radius = bits & 32 ? b - 1e-3 : b;
-    p.end = bits & 8 ? DEA_PLATE_HINGED : DEA_PLATE_CLAMPED;
+    p.end = bits & 8 ? DEA_FIBRE_DISC_HINGED : DEA_FIBRE_DISC_CLAMPED;
     check(&p, 1e-4);
   }
-  struct dea_plate p = plate(4, 1e-3, 2e-3);
+  struct dea_fibre_disc p = plate(4, 1e-3, 2e-3);
   p.size /= 4;
   p.edge /= 4;
   check(&p, 1e-6);
@@ -279,23 +281,23 @@ static void test_what_fibres_lie_on(void **state)
 {
   (void)state;
   for (int on = 0; on < 2; on++) {
-    struct dea_plate p = plate(4, on ? 1e-3 : 0, 2e-3);
+    struct dea_fibre_disc p = plate(4, on ? 1e-3 : 0, 2e-3);
     struct dea_grid *grid;
     double low, high, below = 0.5 * h + (on ? 5e-6 : 0);
     p.glue_thickness = 50e-6;
     p.electrode_thickness = 5e-6;
-    assert_int_equal(dea_plate_create(ctx, &p, &grid), DEA_OK);
-    heights(grid, DEA_PLATE_BOTTOM, DEA_PLATE_ELECTRODE, &low, &high);
+    assert_int_equal(dea_fibre_disc_create(ctx, &p, &grid), DEA_OK);
+    heights(grid, DEA_FIBRE_DISC_BOTTOM, DEA_FIBRE_DISC_ELECTRODE, &low, &high);
     assert_close(low, -0.5 * h - 5e-6, 0, 1e-12);
     assert_close(high, -0.5 * h, 0, 1e-12);
-    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_TOP, DEA_FIBRE_DISC_ELECTRODE, &low, &high);
     assert_close(low, 0.5 * h, 0, 1e-12);
     assert_close(high, 0.5 * h + 5e-6, 0, 1e-12);
-    heights(grid, DEA_PLATE_TOP, DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_TOP, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_true(on ? low < high : low > high); // the filler
-    heights(grid, DEA_PLATE_GLUE, DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_GLUE, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below, 0, 1e-12);
-    heights(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below + 50e-6, 0, 1e-12);
     assert_close(high, below + 150e-6, 0, 1e-12);
     dea_grid_destroy(ctx, grid);
@@ -307,10 +309,10 @@ static void check_bonds(const struct dea_grid *grid)
 {
   size_t bonds = 0, joined = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    bool bond = grid->sheet[e] == DEA_PLATE_BOND;
+    bool bond = grid->sheet[e] == DEA_FIBRE_DISC_BOND;
     bonds += bond;
     for (size_t f = 0; f < grid->element_count && bond; f++) {
-      joined += grid->sheet[f] == DEA_PLATE_FILM &&
+      joined += grid->sheet[f] == DEA_FIBRE_DISC_FILM &&
                 memcmp(grid->nodes + e * DEA_HEX_NODES_MAX, grid->nodes + f * DEA_HEX_NODES_MAX,
                        9 * sizeof(int)) == 0;
     }
@@ -325,28 +327,28 @@ static void test_membranes(void **state)
   for (int bits = 0; bits < 8; bits++) {
     bool on = bits & 1;
     double t = bits & 2 ? 5e-6 : 0, glue = bits & 4 ? 50e-6 : 0, low, high;
-    struct dea_plate p = plate(bits & 4 ? 3 : 4, on ? 1e-3 : -0.5e-3, 2e-3);
+    struct dea_fibre_disc p = plate(bits & 4 ? 3 : 4, on ? 1e-3 : -0.5e-3, 2e-3);
     struct dea_grid *grid;
     p.membrane = true;
     p.electrode_thickness = t;
     p.glue_thickness = glue;
     check(&p, 1e-4);
-    assert_int_equal(dea_plate_create(ctx, &p, &grid), DEA_OK);
+    assert_int_equal(dea_fibre_disc_create(ctx, &p, &grid), DEA_OK);
     check_bonds(grid);
-    double electrode = 0.5 * dea_plate_angle(&p) * a * a * h, below = 0.5 * h + (on ? t : 0);
-    assert_close(volume(grid, DEA_PLATE_BOTTOM, 0), t > 0 ? electrode : 0, 1e-4, 0);
-    heights(grid, DEA_PLATE_FILM, 0, &low, &high);
+    double electrode = 0.5 * dea_fibre_disc_angle(&p) * a * a * h, below = 0.5 * h + (on ? t : 0);
+    assert_close(volume(grid, DEA_FIBRE_DISC_BOTTOM, 0), t > 0 ? electrode : 0, 1e-4, 0);
+    heights(grid, DEA_FIBRE_DISC_FILM, 0, &low, &high);
     assert_true(low == 0 && high == 0);
-    heights(grid, DEA_PLATE_BOND, DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_BOND, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, 0, 0, 0);
     assert_close(high, 0.5 * h, 0, 1e-12);
-    heights(grid, DEA_PLATE_BOND, 0, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_BOND, 0, &low, &high);
     assert_true(low > high);
-    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_TOP, DEA_FIBRE_DISC_ELECTRODE, &low, &high);
     assert_true(low > high);
-    heights(grid, DEA_PLATE_TOP, DEA_PLATE_ELECTRODE | DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_TOP, DEA_FIBRE_DISC_ELECTRODE | DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_true(on && t > 0 ? fabs(high - low - t) < 1e-12 : low > high);
-    heights(grid, DEA_PLATE_FIBRE_SHEET, DEA_PLATE_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below + glue, 0, 1e-12);
     assert_close(high, below + glue + 100e-6, 0, 1e-12);
     dea_grid_destroy(ctx, grid);
@@ -358,8 +360,8 @@ static void test_membranes(void **state)
 static void test_plates_that_cannot_be(void **state)
 {
   (void)state;
-  const struct dea_plate good = plate(8, 0, 2e-3);
-  struct dea_plate bad[8];
+  const struct dea_fibre_disc good = plate(8, 0, 2e-3);
+  struct dea_fibre_disc bad[8];
   for (size_t i = 0; i < 8; i++) {
     bad[i] = good;
   }
@@ -373,17 +375,17 @@ static void test_plates_that_cannot_be(void **state)
   bad[7].outer_radius = 1.1 * b;
   for (size_t i = 0; i < 8; i++) {
     struct dea_grid *grid;
-    assert_int_equal(dea_plate_create(ctx, &bad[i], &grid), DEA_E_ARGUMENT);
+    assert_int_equal(dea_fibre_disc_create(ctx, &bad[i], &grid), DEA_E_ARGUMENT);
     assert_null(grid);
   }
 }
 
 static void make_plate(struct dea_context *failing)
 {
-  struct dea_plate p = plate(4, 0, 2e-3);
+  struct dea_fibre_disc p = plate(4, 0, 2e-3);
   struct dea_grid *grid = NULL;
   p.sectors = 8;
-  failing_check(failing, dea_plate_create(failing, &p, &grid));
+  failing_check(failing, dea_fibre_disc_create(failing, &p, &grid));
   dea_grid_destroy(failing, grid);
 }
 

@@ -1,7 +1,7 @@
 /* Stresses at the end of a linear step, the metric of the shift, and the barrier before inversion.
  */
 #include "devices.h"
-#include "model/solid/hex.h"
+#include "model/solid/element/hex.h"
 #include "testing.h"
 
 static struct dea_hex_shape shape;
@@ -11,19 +11,19 @@ static double predicted[DEA_HEX_PRESSURES_MAX + 6 * DEA_HEX_GAUSS_MAX];
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3, 5e2};
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
-static struct dea_layer film(void)
+static struct dea_constituent film(void)
 {
-  struct dea_layer layer = {.law = dea_law_find("yeoh"),
-                            .param = yeoh,
-                            .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                            .kappa_Pa = 4e7,
-                            .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                            .thickness_m = 44e-6};
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
+                                  .param = yeoh,
+                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                  .kappa_Pa = 4e7,
+                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                  .thickness_m = 44e-6};
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   return layer;
 }
 
-static const struct dea_layer plastic = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+static const struct dea_constituent plastic = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
 
 static void sample(void)
 {
@@ -51,7 +51,7 @@ static double distance(int dofs)
 }
 
 /* Apart from the plain tangent at u + share way. */
-static double apart_at(const struct dea_layer *layer, double share)
+static double apart_at(const struct dea_constituent *layer, double share)
 {
   double end[DEA_HEX_DOFS_MAX];
   assert_int_equal(
@@ -79,7 +79,7 @@ static double apart_at(const struct dea_layer *layer, double share)
 static void test_stresses_of_a_step(void **state)
 {
   (void)state;
-  const struct dea_layer layers[] = {film(), plastic};
+  const struct dea_constituent layers[] = {film(), plastic};
   sample();
   for (int k = 0; k < 2; k++) {
     assert_close(apart_at(&layers[k], 0), 0, 0, 1e-12);
@@ -95,7 +95,7 @@ static void test_metric(void **state)
 {
   (void)state;
   double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
-  const struct dea_layer layer = film();
+  const struct dea_constituent layer = film();
   sample();
   assert_int_equal(dea_hex_metric(&shape, X, L, volume), DEA_OK);
   assert_int_equal(dea_hex_evaluate(&shape, &layer, X, u, pressures, 0, DEA_ENERGY, &plain),
@@ -123,17 +123,17 @@ static void test_metric(void **state)
 static void test_barrier(void **state)
 {
   (void)state;
-  const struct dea_layer layer = film();
+  const struct dea_constituent layer = film();
   double slope, curvature, ahead, behind, ignored;
-  assert_close(dea_layer_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
+  assert_close(dea_constituent_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
   assert_close(slope, 0, 0, 1e-9);
   assert_close(curvature, layer.kappa_s_Pa, 1e-14, 0);
-  double far = dea_layer_pointwise(&layer, 0.3, &slope, &curvature), d = 1e-6;
-  double up = dea_layer_pointwise(&layer, 0.3 + d, &ahead, &ignored);
-  double down = dea_layer_pointwise(&layer, 0.3 - d, &behind, &ignored);
+  double far = dea_constituent_pointwise(&layer, 0.3, &slope, &curvature), d = 1e-6;
+  double up = dea_constituent_pointwise(&layer, 0.3 + d, &ahead, &ignored);
+  double down = dea_constituent_pointwise(&layer, 0.3 - d, &behind, &ignored);
   assert_close(slope, (up - down) / (2 * d), 1e-8, 0);
   assert_close(curvature, (ahead - behind) / (2 * d), 1e-8, 0);
-  assert_true(dea_layer_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
+  assert_true(dea_constituent_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
 }
 
 int main(void)

@@ -3,7 +3,7 @@
 #include "devices.h"
 #include "failing_allocator.h"
 #include "material/plane.h"
-#include "model/solid/recover.h"
+#include "model/solid/recovery/recover.h"
 #include "testing.h"
 
 #include <stdlib.h>
@@ -46,7 +46,7 @@ struct strip {
   struct dea_grid *grid;
   struct dea_hex_shape shape;
   struct dea_flat_shape flat;
-  struct dea_layer layers[2];
+  struct dea_constituent layers[2];
   int *layer;
   bool *active;
   double *u, *multiplier, *potential_V;
@@ -60,8 +60,8 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   static const double left = 0, right = 1, cuts[3] = {0, 0.4, 1};
   struct dea_block blocks[2] = {{map_strip, &left, cuts, cuts, 2, 2, 0},
                                 {map_strip, &right, cuts, cuts, 2, 2, 1}};
-  struct dea_sheet sheets[2] = {{kind == FLAT ? 0 : h_m, film_elements, order_z},
-                                {fibre_m, 1, order_z}};
+  struct dea_ply sheets[2] = {{kind == FLAT ? 0 : h_m, film_elements, order_z},
+                              {fibre_m, 1, order_z}};
   struct strip *s = calloc(1, sizeof *s);
   film = test_yeoh();
   s->kind = kind;
@@ -70,14 +70,14 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
                    DEA_OK);
   assert_int_equal(dea_hex_shape_create(order, order_z, &s->shape), DEA_OK);
   assert_int_equal(dea_flat_shape_create(order, &s->flat), DEA_OK);
-  s->layers[0] = (struct dea_layer){.law = film.law,
-                                    .param = film.param,
-                                    .pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
-                                    .kappa_Pa = 4e7,
-                                    .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                    .thickness_m = h_m};
-  s->layers[1] = (struct dea_layer){.lame_mu_Pa = 1e9, .lame_lambda_Pa = 2e9};
-  assert_int_equal(dea_layer_relax(&s->layers[0]), DEA_OK);
+  s->layers[0] = (struct dea_constituent){.law = film.law,
+                                          .param = film.param,
+                                          .pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
+                                          .kappa_Pa = 4e7,
+                                          .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                          .thickness_m = h_m};
+  s->layers[1] = (struct dea_constituent){.lame_mu_Pa = 1e9, .lame_lambda_Pa = 2e9};
+  assert_int_equal(dea_constituent_relax(&s->layers[0]), DEA_OK);
   size_t count = s->grid->element_count;
   s->layer = calloc(count, sizeof *s->layer);
   s->active = calloc(count, sizeof *s->active);
@@ -140,7 +140,7 @@ static void relax(struct strip *s, const double F[9])
     double cof[9], J = dea_cofactors(F, cof);
     if (s->layer[e] == 0 && s->kind != FLAT) {
       double field = s->active[e] ? s->in.voltage_V / h_m : 0;
-      assert_int_equal(dea_layer_point(&s->layers[0], F, cof, J, 0, field, &point), DEA_OK);
+      assert_int_equal(dea_constituent_point(&s->layers[0], F, cof, J, 0, field, &point), DEA_OK);
       double push = 0, size = 0; // along the current normal
       for (int i = 0; i < 3; i++) {
         push += point.P[3 * i + 2] * cof[3 * i + 2];

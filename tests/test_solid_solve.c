@@ -3,7 +3,7 @@
 #include "devices.h"
 #include "failing_allocator.h"
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "solid_node.h"
 #include "testing.h"
 
@@ -42,7 +42,7 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   double h = H0 / (pre_stretch * pre_stretch);
-  struct dea_layer film = {
+  struct dea_constituent film = {
       .law = dea_law_find("yeoh"),
       .param = yeoh,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
@@ -50,7 +50,7 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
       .thickness_m = h};
   struct disc disc = {0};
-  assert_int_equal(dea_layer_relax(&film), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
   const struct dea_quarter quarter = {2, order_z, a_m, b_m, h, .fine = fine, .edge = edge_m};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &disc.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = order_z,
@@ -169,7 +169,7 @@ static void test_four_fibres_as_built(void **state)
   (void)state;
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double h = 100e-6 / 2.25, E = 2950e6, nu = 0.38;
-  struct dea_layer layers[] = {
+  struct dea_constituent layers[] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
        .pre_stretch = {1.5, 1.5, 1 / 2.25},
@@ -188,7 +188,7 @@ static void test_four_fibres_as_built(void **state)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   size_t tip = node_near(grid, a_m, 0, 0.5 * h), centre = node_near(grid, 0, 0, 0);
@@ -228,8 +228,8 @@ static void test_cantilever_under_end_shear(void **state)
   static const double cuts[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, one[] = {0, 1};
   static const double part[] = {0.2, 0.5, 1.0}, wanted[] = {2.493, 4.933, 6.698};
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
-  const struct dea_sheet sheet = {0.1, 1, 2};
-  const struct dea_layer steel = {.lame_mu_Pa = 0.6e6}; // E 1.2e6, nu 0
+  const struct dea_ply sheet = {0.1, 1, 2};
+  const struct dea_constituent steel = {.lame_mu_Pa = 0.6e6}; // E 1.2e6, nu 0
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &steel, .held = clamp};
   struct dea_grid *grid;
@@ -268,7 +268,7 @@ static struct dea_grid *small_grid;
 
 static void make_solid(struct dea_context *failing)
 {
-  const struct dea_layer steel = {.lame_mu_Pa = 0.6e6};
+  const struct dea_constituent steel = {.lame_mu_Pa = 0.6e6};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &steel, .held = disc_held};
   struct dea_solid *solid = NULL;

@@ -1,8 +1,8 @@
 /* Stability of solids: modes of a clamped strip, buckling of a compressed strip
  * against Euler, both sides of the pitchfork, and solves that leave an unstable equilibrium. */
 // ctest: solid
-#include "model/solid/grid.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
+#include "model/solid/mesh/grid.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -40,8 +40,8 @@ static void create(void)
     cuts[i] = (double)i / ALONG;
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
-  const struct dea_sheet sheet = {thickness, 1, 2};
-  const struct dea_layer layer = {.lame_mu_Pa = mu};
+  const struct dea_ply sheet = {thickness, 1, 2};
+  const struct dea_constituent layer = {.lame_mu_Pa = mu};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .held = clamped};
   assert_int_equal(
@@ -86,7 +86,7 @@ static void test_strip_buckles_at_eulers_strain(void **state)
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   double below = 0.8 * euler, above = 1.2 * euler, value;
   create();
-  dea_solid_stay(solid, true);
+  dea_solid_accept_unstable(solid, true);
   compress(below);
   assert_int_equal(report.unstable_modes, 0);
   compress(above);
@@ -97,7 +97,7 @@ static void test_strip_buckles_at_eulers_strain(void **state)
     double middle = 0.5 * (below + above);
     destroy(); // from rest: a descent from an unstable state would find the buckled one
     create();
-    dea_solid_stay(solid, true);
+    dea_solid_accept_unstable(solid, true);
     compress(middle);
     assert_close(middle_z(), 0, 0, 1e-6);
     *(report.unstable_modes > 0 ? &above : &below) = middle;
@@ -114,7 +114,7 @@ static void test_both_sides_of_the_pitchfork(void **state)
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   double z[2], energy[2], flat;
   create();
-  dea_solid_stay(solid, true);
+  dea_solid_accept_unstable(solid, true);
   compress(1.5 * euler); // the second mode comes at 2.05
   assert_int_equal(report.unstable_modes, 1);
   flat = report.energy_J;
@@ -124,7 +124,7 @@ static void test_both_sides_of_the_pitchfork(void **state)
   memcpy(keep, dea_solid_displacement(solid), size);
   for (int k = 0; k < 2; k++) {
     memcpy(dea_solid_displacement(solid), keep, size);
-    assert_int_equal(dea_solid_leave(ctx, solid, k == 0 ? 1 : -1, &report), DEA_OK);
+    assert_int_equal(dea_solid_descend_unstable(ctx, solid, k == 0 ? 1 : -1, &report), DEA_OK);
     assert_true(report.snapped);
     assert_int_equal(report.unstable_modes, 0);
     z[k] = middle_z();
@@ -200,7 +200,7 @@ static void test_modes_of_a_square_plate(void **state)
   (void)state;
   enum { COUNT = 4 };
   const double h = plate.size[2], D = 2 * mu * h * h / 12;
-  const struct dea_layer layer = {.lame_mu_Pa = mu};
+  const struct dea_constituent layer = {.lame_mu_Pa = mu};
   double value[COUNT];
   grid = block_grid(ctx, &plate);
   solid = block_solid(ctx, grid, plate.order_z, &layer, clamped_around);

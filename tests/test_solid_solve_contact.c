@@ -1,6 +1,6 @@
 /* Rigid tips on a soft block and on a film under tension, against closed forms. */
 // ctest: solid
-#include "model/solid/loads.h"
+#include "model/solid/load/loads.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -42,13 +42,13 @@ static struct dea_grid *hertz_grid(void)
   static const double thick[] = {12, 5, 2, 0.7, 0.3};
   enum { CUTS = sizeof at / sizeof at[0], SHEETS = sizeof thick / sizeof thick[0] };
   double cuts[CUTS];
-  struct dea_sheet sheets[SHEETS];
+  struct dea_ply sheets[SHEETS];
   struct dea_grid *grid;
   for (int i = 0; i < CUTS; i++) {
     cuts[i] = at[i] / side;
   }
   for (int i = 0; i < SHEETS; i++) {
-    sheets[i] = (struct dea_sheet){thick[i], 1, 2};
+    sheets[i] = (struct dea_ply){thick[i], 1, 2};
   }
   const struct dea_block quad = {map_square, NULL, cuts, cuts, CUTS - 1, CUTS - 1, 0};
   assert_int_equal(dea_grid_create(ctx, 2, &quad, 1, sheets, SHEETS, NULL, 0, side, &grid), DEA_OK);
@@ -71,7 +71,7 @@ static double layer_factor(double d, double h, double nu)
 /* Gaps are closed where there is pressure and open elsewhere; returns the pressure nearest to the
  * axis. */
 static double check_gaps(const struct dea_surface *top, const struct dea_contact *contact,
-                         const struct dea_tip *tip, const double *u, double close)
+                         const struct dea_indenter *tip, const double *u, double close)
 {
   double place[3], middle = 0;
   dea_contact_place(contact, place);
@@ -81,7 +81,7 @@ static double check_gaps(const struct dea_surface *top, const struct dea_contact
       const double *X = top->grid->X + 3 * n;
       double p = dea_contact_pressure(contact)[f * (size_t)top->face_nodes + (size_t)q], normal[3];
       double x[3] = {X[0] + u[3 * n], X[1] + u[3 * n + 1], X[2] + u[3 * n + 2]};
-      double gap = dea_tip_distance(tip, place, x, normal, NULL);
+      double gap = dea_indenter_distance(tip, place, x, normal, NULL);
       assert_true(p >= 0 && gap > -close && (p == 0 || gap < close));
       middle = hypot(X[0], X[1]) < 1e-9 ? p : middle;
     }
@@ -95,8 +95,8 @@ static void test_hertz(void **state)
 {
   (void)state;
   const double E = 1e6, nu = 0.3, d = 0.01;
-  const struct dea_layer soft = {.lame_mu_Pa = E / (2 * (1 + nu)),
-                                 .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  const struct dea_constituent soft = {.lame_mu_Pa = E / (2 * (1 + nu)),
+                                       .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
   struct dea_grid *grid = hertz_grid();
   struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
   struct dea_hex_shape shape;
@@ -104,10 +104,11 @@ static void test_hertz(void **state)
   struct dea_contact *contact;
   struct dea_solid_report report;
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, upmost, NULL, &top), DEA_OK);
-  const struct dea_contact_options options = {.tip = {.shape = DEA_TIP_SPHERE, .radius_m = radius},
-                                              .place_m = {0, 0, side + radius},
-                                              .stiffness_Pa_per_m = 10 * E / 0.25};
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, upmost, NULL, &top), DEA_OK);
+  const struct dea_contact_options options = {
+      .tip = {.shape = DEA_INDENTER_SPHERE, .radius_m = radius},
+      .place_m = {0, 0, side + radius},
+      .stiffness_Pa_per_m = 10 * E / 0.25};
   assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
   const struct dea_solid_load load = dea_contact_load(contact);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
@@ -145,12 +146,12 @@ static void test_flat_punch_on_film(void **state)
 {
   (void)state;
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  struct dea_layer film = {.law = dea_law_find("yeoh"),
-                           .param = yeoh,
-                           .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                           .kappa_Pa = 4e7,
-                           .thickness_m = film_h};
-  assert_int_equal(dea_layer_relax(&film), DEA_OK);
+  struct dea_constituent film = {.law = dea_law_find("yeoh"),
+                                 .param = yeoh,
+                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                 .kappa_Pa = 4e7,
+                                 .thickness_m = film_h};
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
   const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = 2, .edge = 2e-4};
   struct dea_grid *grid;
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
@@ -160,9 +161,9 @@ static void test_flat_punch_on_film(void **state)
   struct dea_contact *contact;
   struct dea_solid_report report;
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_SIDE_TOP, NULL, NULL, &top), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
   const double edge = 1e-4, tension = 797.745e3 * film_h;
-  const struct dea_contact_options options = {.tip = {.shape = DEA_TIP_FLAT,
+  const struct dea_contact_options options = {.tip = {.shape = DEA_INDENTER_FLAT,
                                                       .radius_m = punch_m + edge,
                                                       .edge_radius_m = edge,
                                                       .axis = {0, 0, 1}},

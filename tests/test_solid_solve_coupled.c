@@ -1,7 +1,7 @@
 /* Solids with a coupled field: against the thin-film field, fringes, unstable modes, fibres. */
 // ctest: solid
 #include "failing_allocator.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
 #include "solid_node.h"
 #include "testing.h"
 
@@ -13,21 +13,21 @@
 static const double epsilon = 2.8 * DEA_EPSILON_0;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
-static struct dea_layer film(double pre_stretch, double thickness_m)
+static struct dea_constituent film(double pre_stretch, double thickness_m)
 {
-  struct dea_layer layer = {
+  struct dea_constituent layer = {
       .law = dea_law_find("yeoh"),
       .param = yeoh,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = epsilon,
       .thickness_m = thickness_m};
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   return layer;
 }
 
 /* What the callbacks of this file see. */
-struct place {
+struct location {
   double a, b, h; // radius of the electrode, of the frame or length of a strip, thickness
 };
 
@@ -47,14 +47,14 @@ static bool electrode_film(const void *self, int region, int sheet)
 /* Ground below, voltage on top of the film, inside the radius a. */
 static bool faces(const void *self, const double X[3], double *share)
 {
-  const struct place *p = self;
+  const struct location *p = self;
   *share = X[2] > 0 ? 1 : 0;
   return hypot(X[0], X[1]) < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
 }
 
 static int disc_held(const void *self, const double X[3])
 {
-  const struct place *p = self;
+  const struct location *p = self;
   if (hypot(X[0], X[1]) > p->b * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }
@@ -62,7 +62,7 @@ static int disc_held(const void *self, const double X[3])
 }
 
 struct body {
-  struct place place;
+  struct location location;
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -78,10 +78,10 @@ static void body_destroy(struct body *body)
 
 static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, double edge)
 {
-  struct body body = {.place = {3.75e-3, 15e-3, h}};
-  const struct dea_layer soft = film(1.5, h);
-  const struct dea_quarter quarter = {2,           2, body.place.a, body.place.b, h, .fine = fine,
-                                      .edge = edge};
+  struct body body = {.location = {3.75e-3, 15e-3, h}};
+  const struct dea_constituent soft = film(1.5, h);
+  const struct dea_quarter quarter = {
+      2, 2, body.location.a, body.location.b, h, .fine = fine, .edge = edge};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
                                             .layer_count = 1,
@@ -90,7 +90,7 @@ static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, 
                                             .active = electrode_film,
                                             .held = disc_held,
                                             .electrode = faces,
-                                            .self = &body.place};
+                                            .self = &body.location};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   return body;
@@ -111,8 +111,8 @@ static double strain(enum dea_solid_field_kind field, double h)
     solve(&body, 1e3 * kV * h / 44e-6);
     assert_int_equal(body.report.unstable_modes, 0);
   }
-  size_t n = node_near(body.grid, body.place.a, 0, 0);
-  double out = dea_solid_displacement(body.solid)[3 * n] / body.place.a;
+  size_t n = node_near(body.grid, body.location.a, 0, 0);
+  double out = dea_solid_displacement(body.solid)[3 * n] / body.location.a;
   body_destroy(&body);
   return out;
 }
@@ -133,7 +133,7 @@ static void test_fringe_of_a_disc_goes_with_its_thickness(void **state)
 
 static void map_strip(const void *self, double s, double t, double x[2])
 {
-  const struct place *p = self;
+  const struct location *p = self;
   x[0] = p->b * s;
   x[1] = p->h * t;
 }
@@ -141,14 +141,14 @@ static void map_strip(const void *self, double s, double t, double x[2])
 /* Plane strain; the plane x = 0 and the end are held. */
 static int strip_held(const void *self, const double X[3])
 {
-  const struct place *p = self;
+  const struct location *p = self;
   bool end = X[0] < 1e-9 * p->b || X[0] > p->b * (1 - 1e-9);
   return 2 | (end ? 1 | 4 : 0);
 }
 
 static bool strip_faces(const void *self, const double X[3], double *share)
 {
-  const struct place *p = self;
+  const struct location *p = self;
   *share = X[2] > 0 ? 1 : 0;
   return X[0] < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
 }
@@ -163,14 +163,14 @@ static bool everywhere(const void *self, int region, int sheet)
 
 /* Strip of a film, length b, electrodes up to x = a; cuts: [count + 1] ascending from 0 to 1;
  * sheets: [sheet_count], together as thick as the film. */
-static struct body strip(enum dea_solid_field_kind field, const struct place *place,
-                         const double *cuts, size_t count, const struct dea_sheet *sheets,
+static struct body strip(enum dea_solid_field_kind field, const struct location *location,
+                         const double *cuts, size_t count, const struct dea_ply *sheets,
                          size_t sheet_count)
 {
   static const double one[] = {0, 1};
-  struct body body = {.place = *place};
-  const struct dea_layer soft = film(1, place->h);
-  const struct dea_block block = {map_strip, &body.place, cuts, one, count, 1, 0};
+  struct body body = {.location = *location};
+  const struct dea_constituent soft = film(1, location->h);
+  const struct dea_block block = {map_strip, &body.location, cuts, one, count, 1, 0};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
                                             .layer_count = 1,
@@ -178,9 +178,9 @@ static struct body strip(enum dea_solid_field_kind field, const struct place *pl
                                             .active = everywhere,
                                             .held = strip_held,
                                             .electrode = strip_faces,
-                                            .self = &body.place};
-  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, sheets, sheet_count, NULL, -0.5 * place->h,
-                                   place->b, &body.grid),
+                                            .self = &body.location};
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, sheets, sheet_count, NULL, -0.5 * location->h,
+                                   location->b, &body.grid),
                    DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   return body;
@@ -195,17 +195,17 @@ static void test_fringe_of_a_plate_is_exact(void **state)
   (void)state;
   enum { SIDE = 6, COUNT = 2 * SIDE };
   const double h = 1e-4, V = 20;
-  const struct place place = {2 * h, 4 * h, h};
+  const struct location location = {2 * h, 4 * h, h};
   static const double part[SIDE] = {0.5, 0.2, 0.08, 0.025, 0.006, 0}; // of the length
-  static const struct dea_sheet sheets[] = {{0.02e-4, 1, 2}, {0.06e-4, 1, 2}, {0.17e-4, 1, 2},
-                                            {0.25e-4, 1, 2}, {0.25e-4, 1, 2}, {0.17e-4, 1, 2},
-                                            {0.06e-4, 1, 2}, {0.02e-4, 1, 2}};
+  static const struct dea_ply sheets[] = {{0.02e-4, 1, 2}, {0.06e-4, 1, 2}, {0.17e-4, 1, 2},
+                                          {0.25e-4, 1, 2}, {0.25e-4, 1, 2}, {0.17e-4, 1, 2},
+                                          {0.06e-4, 1, 2}, {0.02e-4, 1, 2}};
   double cuts[COUNT - 1];
   for (int i = 0; i < SIDE; i++) {
     cuts[i] = 0.5 - part[i];
     cuts[COUNT - 2 - i] = 0.5 + part[i];
   }
-  struct body body = strip(DEA_SOLID_FIELD_COUPLED, &place, cuts, COUNT - 2, sheets, 8);
+  struct body body = strip(DEA_SOLID_FIELD_COUPLED, &location, cuts, COUNT - 2, sheets, 8);
   solve(&body, 0);
   double rest = body.report.energy_J;
   solve(&body, V);
@@ -224,17 +224,17 @@ static void test_unstable_modes_are_those_of_the_thin_film(void **state)
   static const int wanted[VOLTAGES] = {0, 0, 1, 2, 3, 4};
   static const double voltages[VOLTAGES] = {0, 1000, 1500, 2500, 3100, 3800};
   const double h = 1e-4;
-  const struct place place = {30 * h, 30 * h, h};
-  const struct dea_sheet sheet = {h, 1, 2};
+  const struct location location = {30 * h, 30 * h, h};
+  const struct dea_ply sheet = {h, 1, 2};
   double cuts[COUNT + 1];
   for (int i = 0; i <= COUNT; i++) {
     cuts[i] = (double)i / COUNT;
   }
   for (int i = 0; i < VOLTAGES; i++) {
     for (int field = 0; field < 2; field++) {
-      struct body body = strip(field == 0 ? DEA_SOLID_FIELD_THIN : DEA_SOLID_FIELD_COUPLED, &place,
-                               cuts, COUNT, &sheet, 1);
-      dea_solid_stay(body.solid, true);
+      struct body body = strip(field == 0 ? DEA_SOLID_FIELD_THIN : DEA_SOLID_FIELD_COUPLED,
+                               &location, cuts, COUNT, &sheet, 1);
+      dea_solid_accept_unstable(body.solid, true);
       solve(&body, voltages[i]);
       assert_int_equal(body.report.unstable_modes, wanted[i]);
       body_destroy(&body);
@@ -260,7 +260,7 @@ static int swapped_held(const void *self, const double X[3])
 }
 
 /* Spring of 1 N/m between a node and the ground, upwards. */
-static dea_status spring(const void *self, size_t piece, const double *u, enum dea_level level,
+static dea_status spring(const void *self, size_t piece, const double *u, enum dea_eval_order level,
                          struct dea_piece *out)
 {
   const size_t *node = self;
@@ -281,8 +281,8 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
 static double lift(enum dea_solid_field_kind field, bool axes)
 {
   const double h = 44e-6, E = 2950e6, nu = 0.38;
-  struct body body = {.place = {3.75e-3, 15e-3, h}};
-  const struct dea_layer layers[] = {
+  struct body body = {.location = {3.75e-3, 15e-3, h}};
+  const struct dea_constituent layers[] = {
       film(1.5, h),
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
   const struct dea_quarter quarter = {2,    2,      3.75e-3,   15e-3,       h,           4,
@@ -296,7 +296,7 @@ static double lift(enum dea_solid_field_kind field, bool axes)
                                             .held = axes ? swapped_held : disc_held,
                                             .frame = axes ? swapped : NULL,
                                             .electrode = faces,
-                                            .self = &body.place};
+                                            .self = &body.location};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   size_t tip = node_near(body.grid, 3.75e-3, 0, 0.5 * h), centre = node_near(body.grid, 0, 0, 0);
@@ -336,8 +336,8 @@ static bool no_electrode(const void *self, const double X[3], double *share)
 static void test_a_field_needs_electrodes(void **state)
 {
   (void)state;
-  struct body body = {.place = {3.75e-3, 15e-3, 44e-6}};
-  struct dea_layer soft = film(1.5, 44e-6);
+  struct body body = {.location = {3.75e-3, 15e-3, 44e-6}};
+  struct dea_constituent soft = film(1.5, 44e-6);
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
   struct dea_solid_options options = {.order_z = 2,
                                       .field = DEA_SOLID_FIELD_COUPLED,
@@ -347,7 +347,7 @@ static void test_a_field_needs_electrodes(void **state)
                                       .active = electrode_film,
                                       .held = disc_held,
                                       .electrode = no_electrode,
-                                      .self = &body.place};
+                                      .self = &body.location};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
   options.electrode = NULL;
@@ -360,11 +360,11 @@ static void test_a_field_needs_electrodes(void **state)
 }
 
 static struct dea_grid *small_grid;
-static const struct place small_place = {3.75e-3, 15e-3, 44e-6};
+static const struct location small_place = {3.75e-3, 15e-3, 44e-6};
 
 static void make_solid(struct dea_context *failing)
 {
-  const struct dea_layer soft = film(1.5, 44e-6);
+  const struct dea_constituent soft = film(1.5, 44e-6);
   const struct dea_solid_options options = {.order_z = 1,
                                             .field = DEA_SOLID_FIELD_COUPLED,
                                             .layer_count = 1,

@@ -146,7 +146,7 @@ static void test_tip(void **state)
       .shape = DEA_PROBE_SPHERE, .radius_m = 2e-3, .from_fibre_side = true};
   struct dea_model *model = model_create(&device);
   struct dea_load_point first, p;
-  assert_int_equal(type->press(ctx, model, &tip, 0.5e-3, &first), DEA_OK);
+  assert_int_equal(type->indent(ctx, model, &tip, 0.5e-3, &first), DEA_OK);
   p = begin(model, 0, false);
   assert_close(p.force_N, first.force_N, 1e-6, 0);
   for (int i = 1; i <= 4; i++) {

@@ -1,6 +1,6 @@
 /* Solids that cannot be solved: each says why and where. */
 // ctest: solid
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "solid_fixture.h"
@@ -35,11 +35,11 @@ static int held_at_ends(const void *self, const double X[3])
 static struct dea_grid *grid;
 static struct dea_solid *solid;
 
-static dea_status solve(const struct dea_layer *layer, const int *bits, double voltage_V)
+static dea_status solve(const struct dea_constituent *layer, const int *bits, double voltage_V)
 {
   static const double cuts[] = {0, 0.5, 1};
   const struct dea_block block = {map_square, NULL, cuts, cuts, 2, 2, 0};
-  const struct dea_sheet sheet = {1e-3, 1, 2};
+  const struct dea_ply sheet = {1e-3, 1, 2};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,
                                             .layers = layer,
@@ -62,15 +62,15 @@ static void clear(void)
   solid = NULL;
 }
 
-static struct dea_layer film(void)
+static struct dea_constituent film(void)
 {
-  struct dea_layer layer = {.law = dea_law_find("yeoh"),
-                            .param = yeoh,
-                            .pre_stretch = {1, 1, 1},
-                            .kappa_Pa = 4e7,
-                            .permittivity_F_per_m = 2.5e-11,
-                            .thickness_m = 1e-3};
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
+                                  .param = yeoh,
+                                  .pre_stretch = {1, 1, 1},
+                                  .kappa_Pa = 4e7,
+                                  .permittivity_F_per_m = 2.5e-11,
+                                  .thickness_m = 1e-3};
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   return layer;
 }
 
@@ -84,7 +84,7 @@ static void expect(const char *part)
 static void test_unconstrained_bodies(void **state)
 {
   (void)state;
-  const struct dea_layer layer = film();
+  const struct dea_constituent layer = film();
   static const int free_ends[] = {0, 0}, slides[] = {1, 1 | 4}, turns[] = {4, 4}, held[] = {7, 0};
   const int *const loose[] = {free_ends, slides, turns};
   for (size_t i = 0; i < 3; i++) {
@@ -99,7 +99,7 @@ static void test_unconstrained_bodies(void **state)
 static void test_inverted_element(void **state)
 {
   (void)state;
-  const struct dea_layer layer = film();
+  const struct dea_constituent layer = film();
   static const int held[] = {7, 7};
   assert_int_equal(solve(&layer, held, 0), DEA_OK);
   struct dea_grid *folded = grid;
@@ -118,7 +118,7 @@ static void test_inverted_element(void **state)
 static void test_law_that_ends(void **state)
 {
   (void)state;
-  struct dea_layer layer = film();
+  struct dea_constituent layer = film();
   static const int held[] = {7, 7};
   layer.law = dea_law_find("gent"); // I1 - 3 below 3
   layer.param = gent;
@@ -135,10 +135,10 @@ static void test_voltage_beyond_any_equilibrium(void **state)
 {
   (void)state;
   static const double neo_hookean[DEA_LAW_PARAM_MAX] = {356.8e3};
-  struct dea_layer layer = film();
+  struct dea_constituent layer = film();
   layer.law = dea_law_find("neo-hookean");
   layer.param = neo_hookean;
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   static const int held[] = {7, 0};
   struct dea_solid_report report;
   assert_int_equal(solve(&layer, held, 20e3), DEA_OK);

@@ -2,7 +2,7 @@
  * displacements.
  */
 // ctest: solid
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
@@ -61,13 +61,13 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const struct turned turned = {angle, cos(angle), sin(angle)};
-  struct dea_layer layers[] = {{.law = dea_law_find("yeoh"),
-                                .param = yeoh,
-                                .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                .kappa_Pa = 4e7,
-                                .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                .thickness_m = h_m},
-                               {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
+  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
+                                      .param = yeoh,
+                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                      .kappa_Pa = 4e7,
+                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                      .thickness_m = h_m},
+                                     {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
   const struct dea_quarter quarter = {2, 2, a_m, b_m, h_m, 4, 2e-3, 100e-6, .fine = 2, .across = 1};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
@@ -80,7 +80,7 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   for (size_t n = 0; n < grid->node_count; n++) {
     double *X = grid->X + 3 * n, x = X[0], y = X[1];

@@ -1,6 +1,6 @@
 /* Loads in a solve, against closed forms: weight, foundation, pressure. */
 // ctest: solid
-#include "model/solid/loads.h"
+#include "model/solid/load/loads.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -32,7 +32,7 @@ static int on_planes(const void *self, const double X[3])
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
-static void slab_create(const struct dea_layer *layer,
+static void slab_create(const struct dea_constituent *layer,
                         int (*held)(const void *self, const double X[3]))
 {
   grid = block_grid(ctx, &slab);
@@ -59,7 +59,7 @@ static bool outside(const void *self, int region, int sheet, const double middle
   return !inside;
 }
 
-static struct dea_surface *side_create(enum dea_side side)
+static struct dea_surface *side_create(enum dea_face side)
 {
   struct dea_surface *surface;
   assert_int_equal(dea_surface_create(ctx, grid, &shape, side, outside, NULL, &surface), DEA_OK);
@@ -87,10 +87,10 @@ static double stretch(double P)
 static void test_slab_on_a_foundation(void **state)
 {
   (void)state;
-  static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
   static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
   slab_create(&soft, sideways);
-  struct dea_surface *bottom = side_create(DEA_SIDE_BOTTOM), *top = side_create(DEA_SIDE_TOP);
+  struct dea_surface *bottom = side_create(DEA_FACE_BOTTOM), *top = side_create(DEA_FACE_TOP);
   struct dea_foundation *springs;
   assert_int_equal(dea_foundation_create(ctx, bottom, stiffness, &springs), DEA_OK);
   const struct dea_solid_load load = dea_foundation_load(springs);
@@ -119,7 +119,7 @@ static double density(const void *self, int region, int sheet)
 static void test_hanging_block(void **state)
 {
   (void)state;
-  static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
   static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
   double way = 0;
   slab_create(&soft, hangs);
@@ -137,9 +137,9 @@ static void test_hanging_block(void **state)
 static void test_pressure_all_around(void **state)
 {
   (void)state;
-  static const struct dea_layer soft = {.lame_mu_Pa = 1e5, .lame_lambda_Pa = 2e5};
+  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5, .lame_lambda_Pa = 2e5};
   static const double origin[3] = {0, 0, 0}, p = 1.5e5;
-  static const enum dea_side sides[] = {DEA_SIDE_FIRST_HIGH, DEA_SIDE_SECOND_HIGH, DEA_SIDE_TOP};
+  static const enum dea_face sides[] = {DEA_FACE_FIRST_HIGH, DEA_FACE_SECOND_HIGH, DEA_FACE_TOP};
   struct dea_surface *surface[3];
   struct dea_pressure *pressure[3];
   slab_create(&soft, on_planes);

@@ -2,8 +2,8 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/loads.h"
-#include "model/solid/solve/mass.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/load/loads.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -30,7 +30,7 @@ static double density(const void *self, int region, int sheet)
 static void test_inertia_of_rigid_motions(void **state)
 {
   (void)state;
-  const struct dea_layer layer = {.lame_mu_Pa = 1, .density_kg_per_m3 = rho};
+  const struct dea_constituent layer = {.lame_mu_Pa = 1, .density_kg_per_m3 = rho};
   struct dea_grid *grid = block_grid(ctx, &slab);
   struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
   struct dea_hex_shape shape;

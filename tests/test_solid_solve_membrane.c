@@ -2,8 +2,8 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/membrane.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/element/membrane.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
@@ -49,7 +49,7 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double area = pre_stretch * pre_stretch, E = 2950e6, nu = 0.38;
-  struct dea_layer layers[3] = {
+  struct dea_constituent layers[3] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
        .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
@@ -63,7 +63,7 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
   struct dea_quarter quarter = *mesh;
   quarter.film_thickness = layers[FILM].thickness_m;
   quarter.membrane = true;
-  assert_int_equal(dea_layer_relax(&layers[FILM]), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layers[FILM]), DEA_OK);
   assert_int_equal(dea_membrane_bond(&layers[FILM], &layers[BOND]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &it.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = quarter.order_z,
@@ -213,10 +213,10 @@ static void test_law_that_is_refused(void **state)
 {
   (void)state;
   static const double param[DEA_LAW_PARAM_MAX] = {100e3, 400e3, 0.8, 0.1};
-  const struct dea_layer layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
-                                  .param = param,
-                                  .pre_stretch = {1, 1, 1},
-                                  .thickness_m = 1e-4};
+  const struct dea_constituent layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
+                                        .param = param,
+                                        .pre_stretch = {1, 1, 1},
+                                        .thickness_m = 1e-4};
   const struct dea_solid_options options = {.order_z = 1,
                                             .layer_count = 1,
                                             .layers = &layer,

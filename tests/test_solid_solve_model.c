@@ -3,7 +3,7 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above

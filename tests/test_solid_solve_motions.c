@@ -4,7 +4,7 @@
 #define _GNU_SOURCE // j0
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

@@ -1,7 +1,7 @@
 /* The actuator on its sector, on two sectors and as a whole disc: one answer. */
 // ctest: solid
-#include "model/solid/plate.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/mesh/fibre_disc.h"
 #include "solid_node.h"
 #include "testing.h"
 
@@ -15,23 +15,23 @@ static int layer_of(const void *self, int region, int sheet)
 {
   (void)self;
   (void)region;
-  return sheet == DEA_PLATE_FILM ? 0 : 1;
+  return sheet == DEA_FIBRE_DISC_FILM ? 0 : 1;
 }
 
 static bool active(const void *self, int region, int sheet)
 {
   (void)self;
-  return (region & DEA_PLATE_ELECTRODE) != 0 && sheet == DEA_PLATE_FILM;
+  return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && sheet == DEA_FIBRE_DISC_FILM;
 }
 
 static int held(const void *self, const double X[3])
 {
-  return dea_plate_held(self, X);
+  return dea_fibre_disc_held(self, X);
 }
 
 static bool frame(const void *self, const double X[3], double Q[9])
 {
-  return dea_plate_frame(self, X, Q);
+  return dea_fibre_disc_frame(self, X, Q);
 }
 
 struct answer {
@@ -44,7 +44,7 @@ static struct answer run(int fibres, int sectors)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double E = 2950e6, nu = 0.38, pi = acos(-1);
-  struct dea_layer layers[] = {
+  struct dea_constituent layers[] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
        .pre_stretch = {1.5, 1.5, 1 / 2.25},
@@ -52,20 +52,20 @@ static struct answer run(int fibres, int sectors)
        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
        .thickness_m = h_m},
       {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
-  const struct dea_plate plate = {.order = 2,
-                                  .order_z = 2,
-                                  .fibres = fibres,
-                                  .sectors = sectors,
-                                  .electrode_radius = a_m,
-                                  .frame_radius = b_m,
-                                  .tip_radius = a_m,
-                                  .outer_radius = b_m,
-                                  .tip_width = 2e-3,
-                                  .outer_width = 2e-3,
-                                  .film_thickness = h_m,
-                                  .fibre_thickness = 100e-6,
-                                  .size = 0.5 * a_m,
-                                  .edge = 0.2 * a_m};
+  const struct dea_fibre_disc plate = {.order = 2,
+                                       .order_z = 2,
+                                       .fibres = fibres,
+                                       .sectors = sectors,
+                                       .electrode_radius = a_m,
+                                       .frame_radius = b_m,
+                                       .tip_radius = a_m,
+                                       .outer_radius = b_m,
+                                       .tip_width = 2e-3,
+                                       .outer_width = 2e-3,
+                                       .film_thickness = h_m,
+                                       .fibre_thickness = 100e-6,
+                                       .size = 0.5 * a_m,
+                                       .edge = 0.2 * a_m};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,
                                             .layers = layers,
@@ -77,8 +77,8 @@ static struct answer run(int fibres, int sectors)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
-  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
-  assert_int_equal(dea_plate_create(ctx, &plate, &grid), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_fibre_disc_create(ctx, &plate, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, 3e3, &report), DEA_OK);

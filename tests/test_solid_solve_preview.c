@@ -3,7 +3,7 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -226,7 +226,7 @@ static void test_probe(void **state)
       struct dea_load_point point;
       device.solid_film = film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
       struct dea_model *model = create(&device);
-      assert_int_equal(solid->press(ctx, model, &probe, 20e-6, &point), DEA_OK);
+      assert_int_equal(solid->indent(ctx, model, &probe, 20e-6, &point), DEA_OK);
       force[film][side] = point.force_N;
       solid->destroy(ctx, model);
     }

@@ -4,7 +4,7 @@
 #define _GNU_SOURCE // mkdtemp, popen
 #include "command.h"
 #include "devices.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
 
 #include <jansson.h>
 
@@ -92,7 +92,7 @@ static struct answer solve(const struct test_case *k)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double l = k->pre_stretch, h = 100e-6 / (l * l), E = 2950e6, nu = 0.38;
-  struct dea_layer layers[] = {
+  struct dea_constituent layers[] = {
       {.law = dea_law_find("yeoh"),
        .param = yeoh,
        .pre_stretch = {l, l, 1 / (l * l)},
@@ -115,14 +115,14 @@ static struct answer solve(const struct test_case *k)
   struct dea_solid *solid = NULL;
   struct dea_solid_report report = {0};
   struct answer answer = {0};
-  dea_status status = dea_layer_relax(&layers[0]);
+  dea_status status = dea_constituent_relax(&layers[0]);
   status = status == DEA_OK ? dea_grid_quarter(ctx, &quarter, &grid) : status;
   status = status == DEA_OK ? dea_solid_create(ctx, grid, &options, &solid) : status;
   if (status == DEA_OK && k->inverted) {
     dea_solid_displacement(solid)[3 * (grid->node_count - 1)] = 0.1;
   }
   if (status == DEA_OK) {
-    dea_solid_stay(solid, k->stay);
+    dea_solid_accept_unstable(solid, k->stay);
   }
   for (int kV = 0; kV <= k->highest_kV && status == DEA_OK; kV++) {
     status = dea_solid_solve(ctx, solid, 1e3 * kV, &report);

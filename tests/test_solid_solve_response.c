@@ -3,8 +3,8 @@
 // ctest: solid
 #include "devices.h"
 #include "material/plane.h"
-#include "model/solid/solve/mass.h"
-#include "model/solid/solve/vibration.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/motion/vibration.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -75,7 +75,7 @@ static void strip_create(const struct dea_material *film, double voltage_V)
   static const double cuts[] = {0, 1};
   static struct dea_material hard; // layers lend its parameters
   hard = test_material("neo-hookean", 3e8, 0, 0);
-  const struct dea_layer layers[] = {
+  const struct dea_constituent layers[] = {
       {.law = film->law,
        .param = film->param,
        .pre_stretch = {l1, l2, 1 / (l1 * l2)},
@@ -89,7 +89,7 @@ static void strip_create(const struct dea_material *film, double voltage_V)
   };
   const struct dea_block blocks[] = {{map_strip, NULL, cuts, cuts, 1, 1, 0},
                                      {map_bar, NULL, cuts, cuts, 1, 1, 1}};
-  const struct dea_sheet sheet = {0, 1, 1};
+  const struct dea_ply sheet = {0, 1, 1};
   const struct dea_solid_options options = {.order_z = 1,
                                             .layer_count = 2,
                                             .layers = layers,
@@ -283,23 +283,23 @@ static void test_bender_against_static_solves(void **state)
   (void)state;
   static const double t = 200e-6;
   struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  struct dea_layer layer = {.law = gent.law,
-                            .param = gent.param,
-                            .pre_stretch = {1, 1, 1},
-                            .kappa_Pa = 43e5,
-                            .permittivity_F_per_m = eps,
-                            .thickness_m = t,
-                            .density_kg_per_m3 = 1000};
+  struct dea_constituent layer = {.law = gent.law,
+                                  .param = gent.param,
+                                  .pre_stretch = {1, 1, 1},
+                                  .kappa_Pa = 43e5,
+                                  .permittivity_F_per_m = eps,
+                                  .thickness_m = t,
+                                  .density_kg_per_m3 = 1000};
   static const double cuts[] = {0, 0.3, 0.6, 1};
   static const double whole[] = {0, 1};
   const struct dea_block strip = {block_map, &bender, cuts, whole, 3, 1, 0};
-  const struct dea_sheet sheets[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_ply sheets[] = {{t, 1, 2}, {t, 1, 2}};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .active = upper, .held = clamped};
   struct dea_solid_report report;
   struct dea_solid_response *response;
   double square[3];
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, sheets, 2, NULL, 0, 10e-3, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);

@@ -4,8 +4,8 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/actuator.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/equilibrium/branch.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
@@ -25,7 +25,7 @@ static struct dea_device slack(void)
 enum { VOLTAGES = 3 };
 static const double voltage_kV[VOLTAGES] = {0.5, 2, 0.5};
 
-static void sweep(enum dea_solid_side side, struct dea_load_point points[VOLTAGES])
+static void sweep(enum dea_buckling_branch side, struct dea_load_point points[VOLTAGES])
 {
   struct dea_device buckling = slack();
   struct dea_model *model;
@@ -46,8 +46,8 @@ static void test_model_goes_to_the_side_asked_for(void **state)
 {
   (void)state;
   struct dea_load_point any[VOLTAGES], up[VOLTAGES];
-  sweep(DEA_SIDE_ANY, any);
-  sweep(DEA_SIDE_FIBRES, up);
+  sweep(DEA_BRANCH_ANY, any);
+  sweep(DEA_BRANCH_FIBRES, up);
   for (int i = 0; i < VOLTAGES; i++) {
     assert_true(any[i].centre_z_m < 0);
     if (voltage_kV[i] < 0.6) {
@@ -91,7 +91,7 @@ static void create(void)
 {
   device = slack();
   assert_int_equal(dea_actuator_create(ctx, &device, &actuator), DEA_OK);
-  assert_int_equal(dea_plate_create(ctx, &actuator.plate, &grid), DEA_OK);
+  assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
   assert_int_equal(dea_solid_of_actuator(ctx, &actuator, grid, &solid), DEA_OK);
   centre = dea_grid_nearest(grid, (const double[3]){0});
 }
@@ -107,11 +107,11 @@ static double centre_z(void)
   return dea_solid_displacement(solid)[3 * centre + 2];
 }
 
-static struct dea_solid_trace *trace_to(double voltage_V, double step)
+static struct dea_solid_continuation *trace_to(double voltage_V, double step)
 {
-  const struct dea_trace_options options = {step, 0.5, 100e-6};
-  struct dea_solid_trace *trace;
-  assert_int_equal(dea_solid_trace_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
+  const struct dea_continuation_options options = {step, 0.5, 100e-6};
+  struct dea_solid_continuation *trace;
+  assert_int_equal(dea_solid_continuation_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
   return trace;
 }
 
@@ -120,17 +120,17 @@ static struct dea_solid_trace *trace_to(double voltage_V, double step)
 static void test_path_from_rest_goes_down(void **state)
 {
   (void)state;
-  struct dea_trace_point point = {0};
+  struct dea_continuation_point point = {0};
   struct dea_solid_report report;
   create();
-  struct dea_solid_trace *trace = trace_to(1200, 0.05);
+  struct dea_solid_continuation *trace = trace_to(1200, 0.05);
   while (point.load < 1) {
-    assert_int_equal(dea_solid_trace_step(ctx, trace, &point), DEA_OK);
+    assert_int_equal(dea_solid_continuation_step(ctx, trace, &point), DEA_OK);
     assert_int_equal(point.unstable_modes, 0);
-    assert_int_equal(point.passed, DEA_TRACE_NOTHING);
+    assert_int_equal(point.passed, DEA_CONTINUATION_NOTHING);
     assert_true(centre_z() < 0);
   }
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   double z = centre_z();
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
@@ -149,7 +149,7 @@ static bool above(const void *self, const double *u)
 static void test_other_arm_ends_at_a_limit_point(void **state)
 {
   (void)state;
-  struct dea_trace_point point = {0}, limit = {0};
+  struct dea_continuation_point point = {0}, limit = {0};
   struct dea_solid_report report;
   bool found;
   create();
@@ -167,22 +167,22 @@ static void test_other_arm_ends_at_a_limit_point(void **state)
   assert_int_equal(dea_solid_push(ctx, solid, push, above, NULL, &report, &found), DEA_OK);
   assert_true(found);
   assert_true(centre_z() > 5e-5);
-  struct dea_solid_trace *trace = trace_to(0, 0.05);
-  for (int i = 0; i < 40 && point.passed != DEA_TRACE_LIMIT; i++) {
+  struct dea_solid_continuation *trace = trace_to(0, 0.05);
+  for (int i = 0; i < 40 && point.passed != DEA_CONTINUATION_LIMIT; i++) {
     assert_int_equal(point.unstable_modes, 0);
-    assert_int_equal(dea_solid_trace_step(ctx, trace, &point), DEA_OK);
+    assert_int_equal(dea_solid_continuation_step(ctx, trace, &point), DEA_OK);
   }
-  assert_int_equal(point.passed, DEA_TRACE_LIMIT);
+  assert_int_equal(point.passed, DEA_CONTINUATION_LIMIT);
   assert_int_equal(point.unstable_modes, 1);
-  assert_int_equal(dea_solid_trace_locate(ctx, trace, &limit), DEA_OK);
+  assert_int_equal(dea_solid_continuation_locate(ctx, trace, &limit), DEA_OK);
   assert_true(limit.voltage_V > 700 && limit.voltage_V < 1000);
   for (int i = 0; i < 2; i++) {
     double before_V = point.voltage_V;
-    assert_int_equal(dea_solid_trace_step(ctx, trace, &point), DEA_OK);
+    assert_int_equal(dea_solid_continuation_step(ctx, trace, &point), DEA_OK);
     assert_int_equal(point.unstable_modes, 1);
     assert_true(point.voltage_V > before_V && point.voltage_V > limit.voltage_V);
   }
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   // from there a solve leaves for one of the two stable arms
   assert_int_equal(dea_solid_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
   assert_true(report.snapped);

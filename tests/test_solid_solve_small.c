@@ -1,6 +1,6 @@
 /* A coupled solid that is solved in a moment, for builds with sanitizers: fibres, a load, local
  * axes, orders 1 and 2. */
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -43,7 +43,7 @@ static bool faces(const void *self, const double X[3], double *share)
 }
 
 /* Spring of 1 N/m at the first node. */
-static dea_status spring(const void *self, size_t piece, const double *u, enum dea_level level,
+static dea_status spring(const void *self, size_t piece, const double *u, enum dea_eval_order level,
                          struct dea_piece *out)
 {
   (void)self;
@@ -63,13 +63,13 @@ static void check_capacity(int order)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double V = 100;
-  struct dea_layer layers[] = {{.law = dea_law_find("yeoh"),
-                                .param = yeoh,
-                                .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                .kappa_Pa = 4e7,
-                                .permittivity_F_per_m = epsilon,
-                                .thickness_m = h_m},
-                               {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
+  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
+                                      .param = yeoh,
+                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                      .kappa_Pa = 4e7,
+                                      .permittivity_F_per_m = epsilon,
+                                      .thickness_m = h_m},
+                                     {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
   const struct dea_quarter quarter = {.order = order,
                                       .order_z = order,
                                       .a = a_m,
@@ -93,7 +93,7 @@ static void check_capacity(int order)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
-  assert_int_equal(dea_layer_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);

@@ -9,7 +9,7 @@
 
 static const double mu = 1e5, length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
-static const struct dea_layer soft = {.lame_mu_Pa = 1e5};
+static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
 
 /* Slides on the three planes through the origin. */
 static int on_planes(const void *self, const double X[3])

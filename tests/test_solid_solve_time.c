@@ -1,8 +1,8 @@
 /* Steps in time of solids: creep, order, energy, vibration. Creep to pull-in: verify_time. */
 // ctest: solid
 #include "material/material.h"
-#include "model/solid/solve/state.h"
-#include "model/solid/solve/time.h"
+#include "model/solid/answer/state.h"
+#include "model/solid/motion/time.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
@@ -60,17 +60,17 @@ static void hang_weights(struct film *film)
 static void film_create(struct film *film)
 {
   const double p = film->pre_stretch;
-  struct dea_layer layer = {.law = dea_law_find("neo-hookean"),
-                            .param = mu,
-                            .pre_stretch = {p, p, 1 / (p * p)},
-                            .kappa_Pa = 100 * mu[0],
-                            .permittivity_F_per_m = eps,
-                            .thickness_m = film->block.size[2],
-                            .density_kg_per_m3 = film->density_kg_per_m3};
+  struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
+                                  .param = mu,
+                                  .pre_stretch = {p, p, 1 / (p * p)},
+                                  .kappa_Pa = 100 * mu[0],
+                                  .permittivity_F_per_m = eps,
+                                  .thickness_m = film->block.size[2],
+                                  .density_kg_per_m3 = film->density_kg_per_m3};
   struct dea_solid_report report;
   double most = -1;
   film->grid = block_grid(ctx, &film->block);
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = film->block.order_z,
                                             .layer_count = 1,
                                             .layers = &layer,

@@ -3,7 +3,7 @@
  * together. */
 // ctest: solid
 #include "failing_allocator.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -14,7 +14,7 @@
 static const double neo_hookean[DEA_LAW_PARAM_MAX] = {1};
 static struct dea_grid *grid;
 static struct dea_solid *solid;
-static struct dea_solid_trace *trace;
+static struct dea_solid_continuation *trace;
 
 static bool all_active(const void *self, int region, int sheet)
 {
@@ -28,16 +28,16 @@ static bool all_active(const void *self, int region, int sheet)
 static dea_status try(struct dea_context *with, const struct block *block, const char *law,
                       int (*held)(const void *self, const double X[3]))
 {
-  struct dea_layer layer = {.lame_mu_Pa = 1,
-                            .param = neo_hookean,
-                            .pre_stretch = {1, 1, 1},
-                            .kappa_Pa = 100,
-                            .thickness_m = block->size[2]};
+  struct dea_constituent layer = {.lame_mu_Pa = 1,
+                                  .param = neo_hookean,
+                                  .pre_stretch = {1, 1, 1},
+                                  .kappa_Pa = 100,
+                                  .thickness_m = block->size[2]};
   if (law != NULL) {
     layer.law = dea_law_find(law);
     layer.permittivity_F_per_m = 1;
   }
-  assert_int_equal(dea_layer_relax(&layer), DEA_OK);
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = block->order_z,
                                             .layer_count = 1,
                                             .layers = &layer,
@@ -56,23 +56,23 @@ static void create(const struct block *block, const char *law,
 
 static void start(double voltage_V, double step, double step_most, double unit_m)
 {
-  const struct dea_trace_options options = {step, step_most, unit_m};
-  assert_int_equal(dea_solid_trace_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
+  const struct dea_continuation_options options = {step, step_most, unit_m};
+  assert_int_equal(dea_solid_continuation_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
 }
 
-static struct dea_trace_point step(void)
+static struct dea_continuation_point step(void)
 {
-  struct dea_trace_point point;
-  if (dea_solid_trace_step(ctx, trace, &point) != DEA_OK) {
+  struct dea_continuation_point point;
+  if (dea_solid_continuation_step(ctx, trace, &point) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   return point;
 }
 
-static struct dea_trace_point locate(void)
+static struct dea_continuation_point locate(void)
 {
-  struct dea_trace_point point;
-  if (dea_solid_trace_locate(ctx, trace, &point) != DEA_OK) {
+  struct dea_continuation_point point;
+  if (dea_solid_continuation_locate(ctx, trace, &point) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   return point;
@@ -80,7 +80,7 @@ static struct dea_trace_point locate(void)
 
 static void destroy(void)
 {
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }
@@ -113,15 +113,15 @@ static void test_free_film_through_its_limit_point(void **state)
   create(&film, "neo-hookean", on_planes);
   start(0.7 * film.size[2], 0.1, 0, 1);
   for (int i = 0; i < 40 && stretch < 2; i++) {
-    struct dea_trace_point point = step();
+    struct dea_continuation_point point = step();
     stretch = 1 + displacement_at(1, 1, 0, 0);
     double field = point.voltage_V / film.size[2];
     assert_close(field * field, pow(stretch, -2) - pow(stretch, -8), 1e-5, 0);
     assert_true(stretch > 1.15 || point.unstable_modes == 0);
     assert_true(stretch < cbrt(2) || point.unstable_modes > 0);
     assert_true(point.slope * (cbrt(2) - stretch) > 0);
-    if (point.passed == DEA_TRACE_LIMIT) {
-      struct dea_trace_point limit = locate();
+    if (point.passed == DEA_CONTINUATION_LIMIT) {
+      struct dea_continuation_point limit = locate();
       limits++;
       assert_close(1 + displacement_at(1, 1, 0, 0), cbrt(2), 1e-5, 0);
       assert_close(limit.voltage_V / film.size[2], sqrt(pow(2, -2.0 / 3) - pow(2, -8.0 / 3)), 1e-7,
@@ -138,13 +138,13 @@ static void test_a_path_ends_without_voltage(void **state)
 {
   (void)state;
   struct dea_solid_report report;
-  struct dea_trace_point point;
+  struct dea_continuation_point point;
   dea_status status = DEA_OK;
   create(&film, "neo-hookean", on_planes);
   assert_int_equal(dea_solid_solve(ctx, solid, 0.5 * film.size[2], &report), DEA_OK);
   start(0.6 * film.size[2], -0.1, 0, 1);
   for (int i = 0; i < 60 && status == DEA_OK; i++) {
-    status = dea_solid_trace_step(ctx, trace, &point);
+    status = dea_solid_continuation_step(ctx, trace, &point);
   }
   assert_int_equal(status, DEA_E_DOMAIN);
   assert_non_null(strstr(dea_context_message(ctx), "0 V"));
@@ -180,20 +180,20 @@ static void test_film_buckles_under_voltage(void **state)
   (void)state;
   const double h = strip.size[2], pi = acos(-1);
   const double critical = 4 * pi * pi / 3 * h * h, goal = sqrt(2 * critical) * h; // L = 1
-  struct dea_trace_point point = {0};
+  struct dea_continuation_point point = {0};
   create(&strip, "neo-hookean", clamped_in_plane_strain);
   start(goal, 0.1, 0.2, h);
-  while (point.passed == DEA_TRACE_NOTHING && point.load < 1) {
+  while (point.passed == DEA_CONTINUATION_NOTHING && point.load < 1) {
     point = step();
     assert_close(middle_z(), 0, 0, 1e-9 * h);
   }
-  assert_int_equal(point.passed, DEA_TRACE_BIFURCATION);
-  struct dea_trace_point fork = locate();
+  assert_int_equal(point.passed, DEA_CONTINUATION_BIFURCATION);
+  struct dea_continuation_point fork = locate();
   assert_close(fork.load, 0.5, 1e-2, 0);
   double first[2];
   for (int k = 0; k < 2; k++) {
     int side = k == 0 ? 1 : -1;
-    assert_int_equal(dea_solid_trace_switch(ctx, trace, side, 0.1, &point), DEA_OK);
+    assert_int_equal(dea_solid_continuation_switch(ctx, trace, side, 0.1, &point), DEA_OK);
     first[k] = middle_z();
   }
   assert_true(first[0] > 0);
@@ -223,7 +223,7 @@ static void test_strip_buckles_at_eulers_strain(void **state)
   (void)state;
   const double h = strip.size[2], euler = acos(-1) * acos(-1) / 3 * h * h;
   const double to[3] = {-1.6 * euler, 0, 0};
-  struct dea_trace_point point = {0};
+  struct dea_continuation_point point = {0};
   create(&strip, NULL, clamped);
   for (size_t n = 0; n < grid->node_count; n++) {
     if (grid->X[3 * n] > 1 - 1e-9) {
@@ -231,10 +231,10 @@ static void test_strip_buckles_at_eulers_strain(void **state)
     }
   }
   start(0, 0.2, 0.3, h);
-  while (point.passed == DEA_TRACE_NOTHING && point.load < 1) {
+  while (point.passed == DEA_CONTINUATION_NOTHING && point.load < 1) {
     point = step();
   }
-  assert_int_equal(point.passed, DEA_TRACE_BIFURCATION);
+  assert_int_equal(point.passed, DEA_CONTINUATION_BIFURCATION);
   point = locate();
   assert_close(point.load, 1 / 1.6, 1e-2, 0);
   assert_close(displacement_at(1, 0, 0, 0), -1.6 * euler * point.load, 1e-9, 0);
@@ -244,26 +244,27 @@ static void test_strip_buckles_at_eulers_strain(void **state)
 static void test_what_cannot_be(void **state)
 {
   (void)state;
-  const struct dea_trace_options wrong[] = {{0.1, 0, 0}, {0, 0, 1}};
-  struct dea_trace_point point;
+  const struct dea_continuation_options wrong[] = {{0.1, 0, 0}, {0, 0, 1}};
+  struct dea_continuation_point point;
   create(&film, "neo-hookean", on_planes);
   for (int i = 0; i < 2; i++) {
-    assert_int_equal(dea_solid_trace_create(ctx, solid, 0.01, &wrong[i], &trace), DEA_E_ARGUMENT);
+    assert_int_equal(dea_solid_continuation_create(ctx, solid, 0.01, &wrong[i], &trace),
+                     DEA_E_ARGUMENT);
     assert_null(trace);
   }
   start(0.01, 0.1, 0, 1);
-  assert_int_equal(dea_solid_trace_locate(ctx, trace, &point), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_continuation_locate(ctx, trace, &point), DEA_E_ARGUMENT);
   step();
-  assert_int_equal(dea_solid_trace_locate(ctx, trace, &point), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_trace_switch(ctx, trace, 1, 0.1, &point), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_continuation_locate(ctx, trace, &point), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_continuation_switch(ctx, trace, 1, 0.1, &point), DEA_E_ARGUMENT);
   destroy();
 }
 
 /* Through the first critical point and back to it. */
 static void trace_it(struct dea_context *failing)
 {
-  static const struct dea_trace_options options = {0.3, 0, 1};
-  struct dea_trace_point point = {0};
+  static const struct dea_continuation_options options = {0.3, 0, 1};
+  struct dea_continuation_point point = {0};
   struct dea_solid_report report;
   trace = NULL;
   dea_status status = try(failing, &film, "neo-hookean", on_planes);
@@ -271,16 +272,16 @@ static void trace_it(struct dea_context *failing)
     status = dea_solid_solve(failing, solid, 0.65 * film.size[2], &report);
   }
   if (status == DEA_OK) {
-    status = dea_solid_trace_create(failing, solid, 0.7 * film.size[2], &options, &trace);
+    status = dea_solid_continuation_create(failing, solid, 0.7 * film.size[2], &options, &trace);
   }
-  while (status == DEA_OK && point.passed == DEA_TRACE_NOTHING) {
-    status = dea_solid_trace_step(failing, trace, &point);
+  while (status == DEA_OK && point.passed == DEA_CONTINUATION_NOTHING) {
+    status = dea_solid_continuation_step(failing, trace, &point);
   }
   if (status == DEA_OK) {
-    status = dea_solid_trace_locate(failing, trace, &point);
+    status = dea_solid_continuation_locate(failing, trace, &point);
   }
   failing_check(failing, status);
-  dea_solid_trace_destroy(failing, trace);
+  dea_solid_continuation_destroy(failing, trace);
   dea_solid_destroy(failing, solid);
 }
 

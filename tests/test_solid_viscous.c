@@ -1,6 +1,6 @@
 /* Branches of a layer at a point: derivatives, rest, weights, dissipation, pre-stretch. */
-#include "model/solid/hex.h"
-#include "model/solid/viscous.h"
+#include "model/solid/element/hex.h"
+#include "model/solid/point/viscous.h"
 #include "testing.h"
 
 #include <string.h>
@@ -28,7 +28,8 @@ static void strains_at(double size, double C[6], double inverse[6])
   dea_viscous_strain(F, cof, J, C, inverse);
 }
 
-static struct dea_point point_at(const struct dea_layer *layer, const double F[9], bool tangent)
+static struct dea_point point_at(const struct dea_constituent *layer, const double F[9],
+                                 bool tangent)
 {
   struct dea_point point = {0};
   double cof[9], J = dea_cofactors(F, cof);
@@ -41,7 +42,7 @@ static void test_derivatives(void **state)
 {
   (void)state;
   const double B[12] = {0, 0, 0, 0, 0, 0, 3e5, 2e5, 1.5e5, 2e4, -4e4, 3e4};
-  const struct dea_layer layer = {.viscous = B, .viscous_Pa = 2.2e5};
+  const struct dea_constituent layer = {.viscous = B, .viscous_Pa = 2.2e5};
   const double d = 1e-6;
   double F[9];
   deform(0.4, 0.03, F);
@@ -78,7 +79,7 @@ static void test_held_film_has_no_stress(void **state)
     for (int a = 0; a < 6; a++) {
       B[6 + a] = branch.modulus_Pa * share * inverse[a];
     }
-    const struct dea_layer layer = {.viscous = B, .viscous_Pa = branch.modulus_Pa * share};
+    const struct dea_constituent layer = {.viscous = B, .viscous_Pa = branch.modulus_Pa * share};
     const struct dea_point point = point_at(&layer, F, false);
     for (int a = 0; a < 9; a++) {
       assert_close(point.P[a], 0, 0, 1e-14 * branch.modulus_Pa);
@@ -86,7 +87,7 @@ static void test_held_film_has_no_stress(void **state)
   }
   const double B[12] = {0, 0, 0, 0, 0, 0, 1e5, 1e5, 1e5, 0, 0, 0};
   const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, e[9] = {0.3, 1, -2, 0.4, 1.1, 5, 0.6, 2, -0.7};
-  const struct dea_layer layer = {.viscous = B, .viscous_Pa = 1e5};
+  const struct dea_constituent layer = {.viscous = B, .viscous_Pa = 1e5};
   const struct dea_point rest = point_at(&layer, one, true);
   double twice = 0, wanted = 0;
   for (int a = 0; a < 9; a++) {
@@ -119,7 +120,7 @@ static void test_pre_stretch_drops_out(void **state)
   for (int a = 0; a < 9; a++) {
     FG[a] = F[a] * G[a % 3];
   }
-  const struct dea_layer unstretched = {.viscous = there}, stretched = {.viscous = here};
+  const struct dea_constituent unstretched = {.viscous = there}, stretched = {.viscous = here};
   assert_close(point_at(&unstretched, FG, false).W + trace[0],
                point_at(&stretched, F, false).W + trace[1], 1e-13, 0);
 }
@@ -180,8 +181,8 @@ static void test_work_is_stored_or_dissipated(void **state)
       B[6 + k] = branch.modulus_Pa * known;
       A[k] = known + step.end.w1 * to[k];
     }
-    const struct dea_layer layer = {.viscous = B,
-                                    .viscous_Pa = branch.modulus_Pa * (step.end.e + step.end.w0)};
+    const struct dea_constituent layer = {
+        .viscous = B, .viscous_Pa = branch.modulus_Pa * (step.end.e + step.end.w0)};
     const struct dea_point point = point_at(&layer, next, false);
     for (int a = 0; a < 9; a++) {
       work += 0.5 * (P[a] + point.P[a]) * (next[a] - F[a]);
@@ -201,7 +202,7 @@ static void test_flat(void **state)
   (void)state;
   const double B[6] = {3e5, 2e5, 1.5e5, 0, 0, 3e4}, d = 1e-6;
   const double F[6] = {1.2, 0.1, -0.2, 0.9, 0.3, 0.4};
-  const struct dea_layer layer = {.viscous = B};
+  const struct dea_constituent layer = {.viscous = B};
   struct dea_membrane_point at = {.area = 1}, up, down;
   dea_viscous_add_flat(&layer, 0, F, &at);
   for (int a = 0; a < 6; a++) {
@@ -220,7 +221,7 @@ static void test_flat(void **state)
   }
   double C[6], inverse[6];
   dea_viscous_strain_flat(F, C, inverse);
-  const struct dea_layer held = {.viscous = inverse};
+  const struct dea_constituent held = {.viscous = inverse};
   at = (struct dea_membrane_point){.area = 1};
   dea_viscous_add_flat(&held, 0, F, &at);
   for (int a = 0; a < 6; a++) {

@@ -2,8 +2,8 @@
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
-#include "output/store.h"
 #include "output/summary.h"
 #include "study/study.h"
 
@@ -150,7 +150,7 @@ static void test_errors_have_their_places(void **state)
       print_findings(ctx);
       fail_msg("no error has '%s'", bad[i].part);
     }
-    assert_int_equal(error->place.line, lines + bad[i].line);
+    assert_int_equal(error->location.line, lines + bad[i].line);
   }
   dea_finding_clear(ctx);
 }

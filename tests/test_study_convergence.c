@@ -3,8 +3,8 @@
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
-#include "output/store.h"
 #include "output/summary.h"
 #include "result/convergence.h"
 #include "study/study.h"

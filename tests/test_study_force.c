@@ -48,8 +48,8 @@ static dea_status solve(struct dea_context *context, struct dea_model *model, do
   return report(model, out);
 }
 
-static dea_status press(struct dea_context *context, struct dea_model *model,
-                        const struct dea_probe *tip, double depth_m, struct dea_load_point *out)
+static dea_status indent(struct dea_context *context, struct dea_model *model,
+                         const struct dea_probe *tip, double depth_m, struct dea_load_point *out)
 {
   (void)context;
   assert_close(tip->radius_m, 2e-3, 1e-12, 0);
@@ -65,7 +65,7 @@ static const struct dea_model_type spring = {.name = "spring",
                                              .create = create,
                                              .destroy = destroy,
                                              .solve = solve,
-                                             .press = press};
+                                             .indent = indent};
 
 static void test_depths_and_preloads(void **state)
 {

@@ -2,7 +2,7 @@
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "result/columns.h"
-#include "result/history.h"
+#include "result/time_series.h"
 #include "study/study.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -77,17 +77,17 @@ static void test_pulses(void **state)
   }
   assert_int_equal(jumps, 8);
   struct dea_energy_balance energy;
-  assert_true(dea_history_balance(run.curve, &energy));
+  assert_true(dea_time_series_balance(run.curve, &energy));
   assert_true(energy.error < 1e-3 && energy.dissipated_J > 0);
   struct dea_cycle *cycles;
   size_t count;
-  int column = dea_history_column(run.curve);
+  int column = dea_time_series_column(run.curve);
   assert_string_equal(dea_point_columns[column].key, "electrode_edge_u_m");
   assert_int_equal(
-      dea_history_cycles(ctx, run.curve, run.design->drive.waveform, column, &cycles, &count),
+      dea_time_series_cycles(ctx, run.curve, run.design->drive.waveform, column, &cycles, &count),
       DEA_OK);
   assert_int_equal(count, 4);
-  assert_int_equal(dea_history_level_end(cycles, count, 0), 3);
+  assert_int_equal(dea_time_series_level_end(cycles, count, 0), 3);
   for (size_t i = 0; i < 4; i++) {
     assert_true(cycles[i].level_V == 3000 && cycles[i].start_s == 0.5 * (double)i);
     assert_true(cycles[i].rise_time_s >= 0 && cycles[i].rise_time_s < 0.25);
@@ -96,7 +96,7 @@ static void test_pulses(void **state)
   dea_free(ctx, cycles);
   for (int moves = 0; moves < 2; moves++) { // the centre of a flat film does so by rounding only
     run.curve->points[1].centre_z_m = moves ? 1e-5 : 1e-20;
-    assert_string_equal(dea_point_columns[dea_history_column(run.curve)].key,
+    assert_string_equal(dea_point_columns[dea_time_series_column(run.curve)].key,
                         moves ? "centre_z_m" : "electrode_edge_u_m");
   }
   end(ctx, &run);
@@ -113,8 +113,8 @@ static void test_stairs(void **state)
   assert_int_equal(run.status, DEA_OK);
   struct dea_cycle *cycles;
   size_t count;
-  assert_int_equal(dea_history_cycles(ctx, run.curve, run.design->drive.waveform,
-                                      dea_history_column(run.curve), &cycles, &count),
+  assert_int_equal(dea_time_series_cycles(ctx, run.curve, run.design->drive.waveform,
+                                          dea_time_series_column(run.curve), &cycles, &count),
                    DEA_OK);
   assert_int_equal(count, 8);
   for (size_t i = 1; i < count; i++) { // about as the square of the voltage

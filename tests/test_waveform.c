@@ -204,12 +204,13 @@ static void check_error(const char *text, size_t line, size_t column, const char
   }
   const struct dea_finding *f = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    if (strstr(f[i].text, part) != NULL && f[i].place.line == line && f[i].place.column == column) {
+    if (strstr(f[i].text, part) != NULL && f[i].location.line == line &&
+        f[i].location.column == column) {
       return;
     }
   }
   fail_msg("no error at %zu:%zu with '%s', but: %zu:%zu %s", line, column, part,
-           count > 0 ? f[0].place.line : 0, count > 0 ? f[0].place.column : 0,
+           count > 0 ? f[0].location.line : 0, count > 0 ? f[0].location.column : 0,
            count > 0 ? f[0].text : "none");
 }
 

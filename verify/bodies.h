@@ -4,7 +4,7 @@
 
 #include "verify.h"
 
-#include "model/solid/solve/time.h"
+#include "model/solid/motion/time.h"
 
 static struct dea_context *ctx;
 
@@ -83,22 +83,22 @@ static inline int clamped(const void *self, const double X[3])
 static inline void body_create(struct body *body)
 {
   double cuts[33], one[2] = {0, 1}, p = body->pre_stretch;
-  struct dea_layer layer = {.law = dea_law_find("neo-hookean"),
-                            .param = mu,
-                            .pre_stretch = {p, p, 1 / (p * p)},
-                            .kappa_Pa = 100 * mu[0],
-                            .permittivity_F_per_m = eps,
-                            .thickness_m = body->size[2],
-                            .density_kg_per_m3 = body->density_kg_per_m3};
+  struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
+                                  .param = mu,
+                                  .pre_stretch = {p, p, 1 / (p * p)},
+                                  .kappa_Pa = 100 * mu[0],
+                                  .permittivity_F_per_m = eps,
+                                  .thickness_m = body->size[2],
+                                  .density_kg_per_m3 = body->density_kg_per_m3};
   struct dea_solid_report report;
   bool square = body->held == clamped;
   for (size_t i = 0; i <= body->count; i++) {
     cuts[i] = (double)i / (double)body->count;
   }
-  verify_ok(ctx, dea_layer_relax(&layer));
+  verify_ok(ctx, dea_constituent_relax(&layer));
   const struct dea_block block = {
       map_body, body, cuts, square ? cuts : one, body->count, square ? body->count : 1, 0};
-  const struct dea_sheet sheet = {body->size[2], 1, 2};
+  const struct dea_ply sheet = {body->size[2], 1, 2};
   verify_ok(ctx,
             dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, body->size[0], &body->grid));
   const struct dea_solid_options options = {.order_z = 2,

@@ -3,7 +3,7 @@
 #include "verify.h"
 
 #include "base/quadrature.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 
 static struct dea_context *ctx;
 
@@ -122,18 +122,18 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  struct dea_layer layer = {.law = dea_law_find("gent"),
-                            .param = gent,
-                            .pre_stretch = {1, 1, 1},
-                            .kappa_Pa = 100,
-                            .permittivity_F_per_m = 1,
-                            .thickness_m = 1};
-  verify_ok(ctx, dea_layer_relax(&layer));
+  struct dea_constituent layer = {.law = dea_law_find("gent"),
+                                  .param = gent,
+                                  .pre_stretch = {1, 1, 1},
+                                  .kappa_Pa = 100,
+                                  .permittivity_F_per_m = 1,
+                                  .thickness_m = 1};
+  verify_ok(ctx, dea_constituent_relax(&layer));
   for (size_t i = 0; i <= along; i++) {
     cuts[i] = (double)i / (double)along;
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, along, 1, 0};
-  const struct dea_sheet sheets[] = {{1, across, 2}, {1, across, 2}};
+  const struct dea_ply sheets[] = {{1, across, 2}, {1, across, 2}};
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, -1, length, &grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = kind,

@@ -6,8 +6,8 @@
 
 #include "design/design.h"
 #include "model/model.h"
-#include "model/solid/actuator.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/equilibrium/branch.h"
 
 extern const struct dea_model_type dea_solid_module;
 
@@ -86,7 +86,7 @@ static void solid_create(const char *refinement)
 {
   device_create(refinement, "any");
   verify_ok(ctx, dea_actuator_create(ctx, device, &actuator));
-  verify_ok(ctx, dea_plate_create(ctx, &actuator.plate, &grid));
+  verify_ok(ctx, dea_fibre_disc_create(ctx, &actuator.plate, &grid));
   verify_ok(ctx, dea_solid_of_actuator(ctx, &actuator, grid, &solid));
   centre = dea_grid_nearest(grid, (const double[3]){0});
 }
@@ -103,11 +103,11 @@ static double centre_mm(void)
   return 1e3 * dea_solid_displacement(solid)[3 * centre + 2];
 }
 
-static struct dea_solid_trace *trace_to(double voltage_V)
+static struct dea_solid_continuation *trace_to(double voltage_V)
 {
-  const struct dea_trace_options options = {0.05, 0.5, 100e-6};
-  struct dea_solid_trace *trace;
-  verify_ok(ctx, dea_solid_trace_create(ctx, solid, voltage_V, &options, &trace));
+  const struct dea_continuation_options options = {0.05, 0.5, 100e-6};
+  struct dea_solid_continuation *trace;
+  verify_ok(ctx, dea_solid_continuation_create(ctx, solid, voltage_V, &options, &trace));
   return trace;
 }
 
@@ -121,19 +121,19 @@ static void row(const char *refinement, const char *what, double voltage_V, doub
 /* From rest to 2 kV: no limit point, no unstable mode. */
 static void path_from_rest(const char *refinement)
 {
-  struct dea_trace_point point = {0};
+  struct dea_continuation_point point = {0};
   int unstable = 0, limits = 0;
   solid_create(refinement);
-  struct dea_solid_trace *trace = trace_to(2000);
+  struct dea_solid_continuation *trace = trace_to(2000);
   while (point.load < 1) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, trace, &point));
+    verify_ok(ctx, dea_solid_continuation_step(ctx, trace, &point));
     unstable += point.unstable_modes;
-    limits += point.passed != DEA_TRACE_NOTHING;
+    limits += point.passed != DEA_CONTINUATION_NOTHING;
   }
   verify_absolute("critical points from rest", limits, 0, 0);
   verify_absolute("unstable modes from rest", unstable, 0, 0);
   row(refinement, "from 0 V, end", point.voltage_V, centre_mm(), "0 all the way");
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   solid_destroy();
 }
 
@@ -161,26 +161,26 @@ static void push_over(double height_m)
 /* On the other arm from 1.2 kV down, through its limit point, and up on the unstable one. */
 static void path_of_other(const char *refinement)
 {
-  struct dea_trace_point point = {0}, limit;
+  struct dea_continuation_point point = {0}, limit;
   struct dea_solid_report report;
   solid_create(refinement);
   verify_ok(ctx, dea_solid_solve(ctx, solid, 1200, &report));
   push_over(450e-6);
   row(refinement, "other arm, start", 1200, centre_mm(), "0");
-  struct dea_solid_trace *trace = trace_to(0);
-  while (point.passed != DEA_TRACE_LIMIT) {
+  struct dea_solid_continuation *trace = trace_to(0);
+  while (point.passed != DEA_CONTINUATION_LIMIT) {
     verify_absolute("unstable modes of the other arm", point.unstable_modes, 0, 0);
-    verify_ok(ctx, dea_solid_trace_step(ctx, trace, &point));
+    verify_ok(ctx, dea_solid_continuation_step(ctx, trace, &point));
   }
-  verify_ok(ctx, dea_solid_trace_locate(ctx, trace, &limit));
+  verify_ok(ctx, dea_solid_continuation_locate(ctx, trace, &limit));
   verify_absolute("limit point of the other arm, kV", 1e-3 * limit.voltage_V, 0.85, 0.15);
   row(refinement, "**its limit point**", limit.voltage_V, centre_mm(), "");
   while (point.voltage_V < 1200) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, trace, &point));
+    verify_ok(ctx, dea_solid_continuation_step(ctx, trace, &point));
     verify_absolute("unstable modes between the arms", point.unstable_modes, 1, 0);
   }
   row(refinement, "between the arms, end", point.voltage_V, centre_mm(), "1 since the limit point");
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   solid_destroy();
 }
 

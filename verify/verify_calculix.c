@@ -2,7 +2,7 @@
  * elements, material and solver. Exit code 77 when ccx is not there. */
 #include "verify.h"
 
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 
 #include <unistd.h>
 
@@ -58,14 +58,14 @@ static struct answer ours(int elements, double stretch)
   }
   const struct dea_block block = {map_plate,        NULL, cuts, cuts, (size_t)elements,
                                   (size_t)elements, 0};
-  const struct dea_sheet sheet = {half_thickness_m, 2, 2};
-  struct dea_layer rubber = {
+  const struct dea_ply sheet = {half_thickness_m, 2, 2};
+  struct dea_constituent rubber = {
       .law = dea_law_find("yeoh"), .param = yeoh, .pre_stretch = {1, 1, 1}, .kappa_Pa = 4e7};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
   struct dea_grid *grid;
   struct dea_solid *solid;
-  verify_ok(ctx, dea_layer_relax(&rubber));
+  verify_ok(ctx, dea_constituent_relax(&rubber));
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, half_length_m, &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   const double pull = (stretch - 1) * half_length_m, step = 1e-3 * half_length_m;

@@ -2,7 +2,7 @@
 #include "verify.h"
 
 #include "model/model.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
 
 static struct dea_context *ctx;
 static const double frame_m = 15e-3;
@@ -33,14 +33,14 @@ static int held(const void *self, const double X[3])
 static struct disc disc_create(double a_m, double H0_m, size_t fine, double edge_m)
 {
   const double h = H0_m / 2.25;
-  struct dea_layer film = {.law = dea_law_find("yeoh"),
-                           .param = yeoh,
-                           .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                           .kappa_Pa = 4e7,
-                           .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                           .thickness_m = h};
+  struct dea_constituent film = {.law = dea_law_find("yeoh"),
+                                 .param = yeoh,
+                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                 .kappa_Pa = 4e7,
+                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                 .thickness_m = h};
   struct disc disc = {.a_m = a_m, .H0_m = H0_m};
-  verify_ok(ctx, dea_layer_relax(&film));
+  verify_ok(ctx, dea_constituent_relax(&film));
   const struct dea_quarter quarter = {2, 2, a_m, frame_m, h, .fine = fine, .edge = edge_m};
   verify_ok(ctx, dea_grid_quarter(ctx, &quarter, &disc.grid));
   const struct dea_solid_options options = {

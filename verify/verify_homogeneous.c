@@ -2,7 +2,7 @@
  * limit points (benchmark 2), and a film between clamps that buckles. */
 #include "verify.h"
 
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
 
 static struct dea_context *ctx;
 
@@ -15,7 +15,7 @@ struct body {
   double kappa_s; // over the one that the layer takes; 0: 1
   struct dea_grid *grid;
   struct dea_solid *solid;
-  struct dea_solid_trace *trace;
+  struct dea_solid_continuation *trace;
 };
 
 static void map_body(const void *self, double s, double t, double x[2])
@@ -40,18 +40,18 @@ static void cut(size_t count, double *cuts)
   }
 }
 
-static void body_create(struct body *body, struct dea_layer layer,
+static void body_create(struct body *body, struct dea_constituent layer,
                         int (*held)(const void *self, const double X[3]))
 {
   double cuts[2][65];
   layer.thickness_m = body->size[2];
   layer.kappa_Pa = 100 * layer.law->shear_modulus(layer.param);
-  verify_ok(ctx, dea_layer_relax(&layer));
+  verify_ok(ctx, dea_constituent_relax(&layer));
   layer.kappa_s_Pa *= body->kappa_s > 0 ? body->kappa_s : 1;
   cut(body->count, cuts[0]);
   cut(body->across, cuts[1]);
   const struct dea_block block = {map_body, body, cuts[0], cuts[1], body->count, body->across, 0};
-  const struct dea_sheet sheet = {body->size[2], 1, 2};
+  const struct dea_ply sheet = {body->size[2], 1, 2};
   verify_ok(ctx, dea_grid_create(ctx, body->order, &block, 1, &sheet, 1, NULL, 0, body->size[0],
                                  &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
@@ -65,15 +65,16 @@ static void body_create(struct body *body, struct dea_layer layer,
 
 static void body_destroy(struct body *body)
 {
-  dea_solid_trace_destroy(ctx, body->trace);
+  dea_solid_continuation_destroy(ctx, body->trace);
   dea_solid_destroy(ctx, body->solid);
   dea_grid_destroy(ctx, body->grid);
 }
 
 static void trace(struct body *body, double voltage_V, double step, double step_most, double unit_m)
 {
-  const struct dea_trace_options options = {step, step_most, unit_m};
-  verify_ok(ctx, dea_solid_trace_create(ctx, body->solid, voltage_V, &options, &body->trace));
+  const struct dea_continuation_options options = {step, step_most, unit_m};
+  verify_ok(ctx,
+            dea_solid_continuation_create(ctx, body->solid, voltage_V, &options, &body->trace));
 }
 
 /* ---- equal stretch ---- */
@@ -171,10 +172,10 @@ static struct body film_create(const struct film *film, int order, double kappa_
                       .across = 1,
                       .order = order,
                       .kappa_s = kappa_s};
-  const struct dea_layer layer = {.law = dea_law_find(film->law),
-                                  .param = film->param,
-                                  .pre_stretch = {pre, pre, 1 / (pre * pre)},
-                                  .permittivity_F_per_m = film->permittivity};
+  const struct dea_constituent layer = {.law = dea_law_find(film->law),
+                                        .param = film->param,
+                                        .pre_stretch = {pre, pre, 1 / (pre * pre)},
+                                        .permittivity_F_per_m = film->permittivity};
   body_create(&body, layer, on_planes);
   if (pre > 1) {
     hang_weights(&body);
@@ -197,9 +198,9 @@ static double field_of(const struct film *film, double voltage_V)
 /* A limit point of the solid beside the exact one and, where there is one, the published one. */
 static void limit_row(const struct film *film, struct body *body, int number, double *from)
 {
-  struct dea_trace_point point;
+  struct dea_continuation_point point;
   static const char *const names[] = {"peak", "valley"};
-  verify_ok(ctx, dea_solid_trace_locate(ctx, body->trace, &point));
+  verify_ok(ctx, dea_solid_continuation_locate(ctx, body->trace, &point));
   double stretch = stretch_of(film, body), field = field_of(film, point.voltage_V);
   double exact = *from = exact_limit(film, *from);
   double off = verify_relative("stretch of a limit", stretch, exact, 1e-4);
@@ -231,15 +232,15 @@ static void film_table(const struct film *film)
   trace(&body, 0.7 * film->H * sqrt(modulus_of(film) / film->permittivity), 0.05, 0.3,
         body.size[0]);
   for (int i = 0; i < 400 && stretch < film->end; i++) {
-    struct dea_trace_point point;
-    verify_ok(ctx, dea_solid_trace_step(ctx, body.trace, &point));
+    struct dea_continuation_point point;
+    verify_ok(ctx, dea_solid_continuation_step(ctx, body.trace, &point));
     stretch = stretch_of(film, &body);
     double field = field_of(film, point.voltage_V);
     double off = verify_relative("field", field, sqrt(exact_square(film, stretch)), 1e-5);
-    if (point.passed == DEA_TRACE_LIMIT) {
+    if (point.passed == DEA_CONTINUATION_LIMIT) {
       limit_row(film, &body, limits++, &from);
     }
-    if (stretch > 1.08 * shown || point.passed == DEA_TRACE_LIMIT) {
+    if (stretch > 1.08 * shown || point.passed == DEA_CONTINUATION_LIMIT) {
       printf("| | %.5f | %.6f | | %+.0e | %d |\n", stretch, field, off, point.unstable_modes);
       shown = stretch;
     }
@@ -326,13 +327,13 @@ static double first_mode(int order, double kappa_s)
 {
   static const struct film film = {.law = "neo-hookean", .param = {1}, .pre = 1, .end = 2, UNITS};
   struct body body = film_create(&film, order, kappa_s);
-  struct dea_trace_point point = {0};
+  struct dea_continuation_point point = {0};
   double limit = sqrt(exact_square(&film, exact_limit(&film, 1)));
   trace(&body, 0.7 * film.H, 0.1, 0.1, body.size[0]);
-  while (point.passed == DEA_TRACE_NOTHING && stretch_of(&film, &body) < film.end) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, body.trace, &point));
+  while (point.passed == DEA_CONTINUATION_NOTHING && stretch_of(&film, &body) < film.end) {
+    verify_ok(ctx, dea_solid_continuation_step(ctx, body.trace, &point));
   }
-  verify_ok(ctx, dea_solid_trace_locate(ctx, body.trace, &point));
+  verify_ok(ctx, dea_solid_continuation_locate(ctx, body.trace, &point));
   body_destroy(&body);
   return field_of(&film, point.voltage_V) / limit;
 }
@@ -369,21 +370,21 @@ static int clamped_in_plane_strain(const void *self, const double X[3])
 
 /* The branch up to twice the square of the critical voltage: largest difference of the deflection.
  */
-static double follow_buckled(struct body *body, const struct dea_trace_point *fork,
+static double follow_buckled(struct body *body, const struct dea_continuation_point *fork,
                              double tolerance)
 {
-  struct dea_trace_point point;
+  struct dea_continuation_point point;
   double worst = 0, h = body->size[2];
   int unstable = 0;
   size_t middle = dea_grid_nearest(body->grid, (const double[3]){0.5, 0, 0.5 * h});
-  verify_ok(ctx, dea_solid_trace_switch(ctx, body->trace, 1, 0.1, &point));
+  verify_ok(ctx, dea_solid_continuation_switch(ctx, body->trace, 1, 0.1, &point));
   while (point.load < 2 * fork->load) {
     double A = dea_solid_displacement(body->solid)[3 * middle + 2] / h;
     double wanted = sqrt(4.0 / 3 * (point.load / fork->load - 1));
     double off = verify_relative("deflection", A, wanted, tolerance);
     worst = fabs(off) > fabs(worst) ? off : worst;
     unstable += point.unstable_modes;
-    verify_ok(ctx, dea_solid_trace_step(ctx, body->trace, &point));
+    verify_ok(ctx, dea_solid_continuation_step(ctx, body->trace, &point));
   }
   verify_absolute("unstable modes of the buckled film", unstable, 0, 0);
   return worst;
@@ -393,18 +394,18 @@ static void buckle(size_t count, int order, double h, double tolerance)
 {
   static const double mu[DEA_LAW_PARAM_MAX] = {1};
   const double pi = acos(-1), critical = 4 * pi * pi / 3 * h * h;
-  const struct dea_layer layer = {.law = dea_law_find("neo-hookean"),
-                                  .param = mu,
-                                  .pre_stretch = {1, 1, 1},
-                                  .permittivity_F_per_m = 1};
+  const struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
+                                        .param = mu,
+                                        .pre_stretch = {1, 1, 1},
+                                        .permittivity_F_per_m = 1};
   struct body body = {.size = {1, 0.1, h}, .count = count, .across = 1, .order = order};
-  struct dea_trace_point point = {0}, fork;
+  struct dea_continuation_point point = {0}, fork;
   body_create(&body, layer, clamped_in_plane_strain);
   trace(&body, sqrt(2 * critical) * h, 0.1, 0.2, h);
-  while (point.passed == DEA_TRACE_NOTHING && point.load < 1) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, body.trace, &point));
+  while (point.passed == DEA_CONTINUATION_NOTHING && point.load < 1) {
+    verify_ok(ctx, dea_solid_continuation_step(ctx, body.trace, &point));
   }
-  verify_ok(ctx, dea_solid_trace_locate(ctx, body.trace, &fork));
+  verify_ok(ctx, dea_solid_continuation_locate(ctx, body.trace, &fork));
   double field = fork.voltage_V / h;
   double off = verify_relative("critical field", field * field, critical, tolerance);
   double worst = follow_buckled(&body, &fork, tolerance);

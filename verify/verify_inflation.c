@@ -1,8 +1,8 @@
 /* Inflated neo-Hookean membranes as thin solids (benchmark 7): a flat clamped disc, a balloon. */
 #include "verify.h"
 
-#include "model/solid/loads.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
+#include "model/solid/load/loads.h"
 
 static struct dea_context *ctx;
 
@@ -20,18 +20,18 @@ static void shell_fill(struct shell *shell, int order,
                        int (*held)(const void *self, const double X[3]))
 {
   static const double mu[DEA_LAW_PARAM_MAX] = {1}, origin[3] = {0, 0, 0};
-  struct dea_layer rubber = {.law = dea_law_find("neo-hookean"),
-                             .param = mu,
-                             .pre_stretch = {1, 1, 1},
-                             .kappa_Pa = 100,
-                             .thickness_m = shell->H};
+  struct dea_constituent rubber = {.law = dea_law_find("neo-hookean"),
+                                   .param = mu,
+                                   .pre_stretch = {1, 1, 1},
+                                   .kappa_Pa = 100,
+                                   .thickness_m = shell->H};
   struct dea_hex_shape shape;
-  verify_ok(ctx, dea_layer_relax(&rubber));
+  verify_ok(ctx, dea_constituent_relax(&rubber));
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
   verify_ok(ctx, dea_hex_shape_create(order, 2, &shape));
-  verify_ok(ctx, dea_surface_create(ctx, shell->grid, &shape, DEA_SIDE_BOTTOM, NULL, NULL,
+  verify_ok(ctx, dea_surface_create(ctx, shell->grid, &shape, DEA_FACE_BOTTOM, NULL, NULL,
                                     &shell->inside));
   verify_ok(ctx, dea_pressure_create(ctx, shell->inside, origin, &shell->pressure));
   const struct dea_solid_load load = dea_pressure_load(shell->pressure);
@@ -181,7 +181,7 @@ static struct shell balloon_create(double H, size_t count)
   for (int i = 0; i < 3; i++) {
     blocks[i] = (struct dea_block){map_corner, &corners[i], cuts, cuts, count, count, 0};
   }
-  const struct dea_sheet sheet = {H, 1, 2};
+  const struct dea_ply sheet = {H, 1, 2};
   verify_ok(ctx, dea_grid_create(ctx, 2, blocks, 3, &sheet, 1, NULL, -0.5 * H, 1, &balloon.grid));
   for (size_t n = 0; n < balloon.grid->node_count; n++) {
     double *X = balloon.grid->X + 3 * n, r = 1 + X[2];
@@ -232,10 +232,10 @@ static void balloon_row(const struct shell *balloon, int modes)
  * falls. */
 static void balloon_rows(double H, size_t count, double end)
 {
-  const struct dea_trace_options options = {0.05, 0.2, 1};
+  const struct dea_continuation_options options = {0.05, 0.2, 1};
   struct shell balloon = balloon_create(H, count);
-  struct dea_solid_trace *trace;
-  struct dea_trace_point point;
+  struct dea_solid_continuation *trace;
+  struct dea_continuation_point point;
   for (int step = 1; step <= 6; step++) {
     int modes;
     verify_ok(ctx, inflate(&balloon, 0.2 * step, &modes));
@@ -243,13 +243,13 @@ static void balloon_rows(double H, size_t count, double end)
   }
   double shown = balloon_stretch(&balloon);
   dea_pressure_set(balloon.pressure, 1.3 * H);
-  verify_ok(ctx, dea_solid_trace_create(ctx, balloon.solid, 0, &options, &trace));
+  verify_ok(ctx, dea_solid_continuation_create(ctx, balloon.solid, 0, &options, &trace));
   for (int limits = 0, i = 0; balloon_stretch(&balloon) < end && i < 60; i++) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, trace, &point));
-    if (point.passed == DEA_TRACE_LIMIT) {
-      struct dea_trace_point limit;
+    verify_ok(ctx, dea_solid_continuation_step(ctx, trace, &point));
+    if (point.passed == DEA_CONTINUATION_LIMIT) {
+      struct dea_continuation_point limit;
       verify_absolute("number of limit points", ++limits, 1, 0);
-      verify_ok(ctx, dea_solid_trace_locate(ctx, trace, &limit));
+      verify_ok(ctx, dea_solid_continuation_locate(ctx, trace, &limit));
       double p = dea_pressure_get(balloon.pressure) / H, stretch = balloon_stretch(&balloon);
       printf("| %g | %zu | **%.4f** (1.3831) | **%.5f** | 1.23946 | %+.2f %% | |\n", H,
              balloon.grid->node_count, stretch, p,
@@ -262,7 +262,7 @@ static void balloon_rows(double H, size_t count, double end)
   }
   verify_absolute("end of the path", balloon_stretch(&balloon) >= end, 1, 0);
   fflush(stdout);
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   shell_destroy(&balloon);
 }
 

@@ -2,7 +2,7 @@
 #include "manufactured.h"
 
 #include "model/model.h"
-#include "model/solid/solve/state.h"
+#include "model/solid/answer/state.h"
 
 static struct dea_context *ctx;
 static const double pi = 3.14159265358979323846;
@@ -66,18 +66,18 @@ static number potential_linear(const number X[3])
 }
 
 /* Layers with a shear modulus of 1 and, with a field, a permittivity of 1. */
-static struct dea_layer layer_of(bool compressible, bool field)
+static struct dea_constituent layer_of(bool compressible, bool field)
 {
-  struct dea_layer layer = {.lame_lambda_Pa = 1.5, .lame_mu_Pa = 1, .thickness_m = 1};
+  struct dea_constituent layer = {.lame_lambda_Pa = 1.5, .lame_mu_Pa = 1, .thickness_m = 1};
   if (!compressible) {
-    layer = (struct dea_layer){.law = dea_law_find("yeoh"),
-                               .param = yeoh,
-                               .pre_stretch = {1, 1, 1},
-                               .kappa_Pa = 100,
-                               .thickness_m = 1};
+    layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
+                                     .param = yeoh,
+                                     .pre_stretch = {1, 1, 1},
+                                     .kappa_Pa = 100,
+                                     .thickness_m = 1};
   }
   layer.permittivity_F_per_m = field ? 1 : 0;
-  verify_ok(ctx, dea_layer_relax(&layer));
+  verify_ok(ctx, dea_constituent_relax(&layer));
   return layer;
 }
 
@@ -113,7 +113,7 @@ static struct dea_grid *cube(int order, size_t count)
     cuts[i] = (double)i / (double)count;
   }
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
-  const struct dea_sheet sheet = {1, count, order};
+  const struct dea_ply sheet = {1, count, order};
   verify_ok(ctx, dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, 0, 1, &grid));
   return grid;
 }
@@ -141,7 +141,7 @@ static struct dea_grid *patch_of(int order)
   for (size_t i = 0; i < 4; i++) {
     blocks[i] = (struct dea_block){map_straight, corners[i][0], cuts, cuts, 1, 1, 0};
   }
-  const struct dea_sheet sheets[] = {{0.3, 1, order}, {0.7, 1, order}};
+  const struct dea_ply sheets[] = {{0.3, 1, order}, {0.7, 1, order}};
   verify_ok(ctx, dea_grid_create(ctx, order, blocks, 4, sheets, 2, NULL, 0, 1, &grid));
   return grid;
 }

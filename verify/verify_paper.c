@@ -57,13 +57,13 @@ static double onset_V(const struct run *run)
 }
 
 /* Force on a tip of 1.5 mm radius held at a depth, at 0 V and at `count` steps up to 6 kV. */
-static void press(const struct variant *variant, const struct variant *more, double depth_m,
-                  size_t count, double *force_N)
+static void indent(const struct variant *variant, const struct variant *more, double depth_m,
+                   size_t count, double *force_N)
 {
   const struct dea_probe tip = {DEA_PROBE_FLAT, 1.5e-3, 0.2e-3, true};
   struct opened open = open_model("3d", variant, more);
   struct dea_load_point point;
-  verify_ok(ctx, open.type->press(ctx, open.model, &tip, depth_m, &point));
+  verify_ok(ctx, open.type->indent(ctx, open.model, &tip, depth_m, &point));
   force_N[0] = point.force_N;
   for (size_t i = 1; i <= count; i++) {
     verify_ok(ctx, open.type->solve(ctx, open.model, 6e3 * (double)i / (double)count, &point));
@@ -267,8 +267,8 @@ static void force_numbers(void)
        "change "
        "|\n|---|---|---|---|---|---|---|---|---|");
   for (size_t i = 0; i < count; i++) {
-    press(&built4, NULL, 1e-3 * depths_mm[i], 2, four[i]);
-    press(&built8, NULL, 1e-3 * depths_mm[i], 2, eight[i]);
+    indent(&built4, NULL, 1e-3 * depths_mm[i], 2, four[i]);
+    indent(&built8, NULL, 1e-3 * depths_mm[i], 2, eight[i]);
     printf("| %.1f mm | %.1f | %.1f | %.1f | %+.1f | %.2f | %.1f | %.1f | %+.1f |\n", depths_mm[i],
            1e3 * four[i][0], 1e3 * four[i][1], 1e3 * four[i][2], 1e3 * (four[i][2] - four[i][0]),
            power(four[i]), 1e3 * eight[i][0], 1e3 * eight[i][2], 1e3 * (eight[i][2] - eight[i][0]));

@@ -1,8 +1,8 @@
 /* Thin plates in large bending (benchmark 8): a cantilever and an annulus that is slit open. */
 #include "verify.h"
 
-#include "model/solid/loads.h"
-#include "model/solid/solve/branch.h"
+#include "model/solid/equilibrium/branch.h"
+#include "model/solid/load/loads.h"
 
 enum { CUTS_MAX = 65 };
 
@@ -69,7 +69,7 @@ static struct dea_grid *unit_square(int order, const size_t count[2], double thi
     }
   }
   const struct dea_block block = {map_square, NULL, cuts[0], cuts[1], count[0], count[1], 0};
-  const struct dea_sheet sheet = {thickness, 1, 2};
+  const struct dea_ply sheet = {thickness, 1, 2};
   verify_ok(ctx,
             dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, -0.5 * thickness, 1, &grid));
   return grid;
@@ -80,7 +80,7 @@ static struct dea_grid *unit_square(int order, const size_t count[2], double thi
 static struct plate plate_create(const struct problem *problem, int order, const size_t count[2])
 {
   static const double nowhere[3] = {0, 0, 0};
-  const struct dea_layer layer = {.lame_mu_Pa = 0.5 * problem->modulus}; // nu = 0
+  const struct dea_constituent layer = {.lame_mu_Pa = 0.5 * problem->modulus}; // nu = 0
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};
@@ -95,7 +95,7 @@ static struct plate plate_create(const struct problem *problem, int order, const
   }
   memset(plate.force, 0, nodes * 3 * sizeof *plate.force);
   verify_ok(ctx, dea_hex_shape_create(order, 2, &shape));
-  verify_ok(ctx, dea_surface_create(ctx, plate.grid, &shape, DEA_SIDE_SECOND_HIGH, at_loaded_end,
+  verify_ok(ctx, dea_surface_create(ctx, plate.grid, &shape, DEA_FACE_SECOND_HIGH, at_loaded_end,
                                     NULL, &end));
   for (size_t n = 0; n < nodes; n++) {
     double *X = plate.grid->X + 3 * n, x[2];
@@ -151,20 +151,20 @@ static void plate_solve(struct plate *plate, double share, struct effort *effort
  * it back by a solve. */
 static void plate_follow(struct plate *plate, struct effort *effort)
 {
-  const struct dea_trace_options options = {0.1, 0, 2};
-  struct dea_solid_trace *trace;
-  struct dea_trace_point point = {0};
+  const struct dea_continuation_options options = {0.1, 0, 2};
+  struct dea_solid_continuation *trace;
+  struct dea_continuation_point point = {0};
   memcpy(dea_solid_force(plate->solid), plate->force,
          3 * plate->grid->node_count * sizeof *plate->force);
-  verify_ok(ctx, dea_solid_trace_create(ctx, plate->solid, 0, &options, &trace));
+  verify_ok(ctx, dea_solid_continuation_create(ctx, plate->solid, 0, &options, &trace));
   while (point.load < 1) {
-    verify_ok(ctx, dea_solid_trace_step(ctx, trace, &point));
+    verify_ok(ctx, dea_solid_continuation_step(ctx, trace, &point));
     effort->modes = point.unstable_modes > effort->modes ? point.unstable_modes : effort->modes;
-    effort->limits += point.passed == DEA_TRACE_LIMIT;
+    effort->limits += point.passed == DEA_CONTINUATION_LIMIT;
     effort->steps++;
     effort->iterations += point.iterations;
   }
-  dea_solid_trace_destroy(ctx, trace);
+  dea_solid_continuation_destroy(ctx, trace);
   plate_solve(plate, 1, effort);
 }
 
@@ -337,7 +337,7 @@ int main(int argc, char **argv)
   puts("\n## Slit annular plate\n\nRadii 6 and 10, thickness 0.03, E 21e6. One side of the slit is "
        "clamped, the other lifted by q = 0.8 per length (over its\nface). W at its inner (A) and "
        "outer (B) corner; reference: 13.891 and 17.528. Elements: across x along the ring. "
-       "By\narc-length (`dea_solid_trace`) until the load is passed, and back to it by a "
+       "By\narc-length (`dea_solid_continuation`) until the load is passed, and back to it by a "
        "solve.\n\n| order | elements | nodes | W(A) | difference | W(B) | difference | strain | "
        "steps | iterations | modes | limits |\n|---|---|---|---|---|---|---|---|---|---|---|---|");
   for (size_t i = 0; i < (small ? 1 : sizeof rings / sizeof rings[0]); i++) {

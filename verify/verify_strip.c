@@ -2,9 +2,9 @@
  * film whose mesh has converged, in plane strain. */
 #include "verify.h"
 
-#include "model/solid/cuts.h"
-#include "model/solid/membrane.h"
-#include "model/solid/solve/solid.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/element/membrane.h"
+#include "model/solid/mesh/cuts.h"
 
 enum { CUTS_MAX = 200, HALVINGS_MAX = 8, PARTS = 3 };
 enum { LAYER_FILM, LAYER_BOND, LAYER_BEAM, LAYERS };
@@ -22,7 +22,7 @@ struct strip {
   bool membrane;
   int halvings; // of the film's thickness, down to the elements at the beam
   double param[DEA_LAW_PARAM_MAX], cuts[PARTS][CUTS_MAX + 1];
-  struct dea_layer layers[LAYERS];
+  struct dea_constituent layers[LAYERS];
   struct dea_grid *grid;
   struct dea_solid *solid;
 };
@@ -52,19 +52,19 @@ static bool present_in_membrane(int region, int sheet)
 }
 
 /* Solid: from below h/2, h/4, ..., and the last of them twice; what is left over is not there. */
-static size_t fill_sheets(const struct strip *s, struct dea_sheet *sheets)
+static size_t fill_sheets(const struct strip *s, struct dea_ply *sheets)
 {
   if (s->membrane) {
-    sheets[0] = (struct dea_sheet){0, 1, 2};
-    sheets[1] = (struct dea_sheet){0.5 * s->h_m, 1, 2};
-    sheets[2] = (struct dea_sheet){beam_thickness_m, 1, 2};
+    sheets[0] = (struct dea_ply){0, 1, 2};
+    sheets[1] = (struct dea_ply){0.5 * s->h_m, 1, 2};
+    sheets[2] = (struct dea_ply){beam_thickness_m, 1, 2};
     return 3;
   }
   for (int k = 0; k <= HALVINGS_MAX; k++) {
     double share = exp2(k < s->halvings ? -k - 1 : -s->halvings);
-    sheets[k] = (struct dea_sheet){k <= s->halvings ? s->h_m * share : 0, k <= s->halvings, 2};
+    sheets[k] = (struct dea_ply){k <= s->halvings ? s->h_m * share : 0, k <= s->halvings, 2};
   }
-  sheets[HALVINGS_MAX + 1] = (struct dea_sheet){beam_thickness_m, 1, 2};
+  sheets[HALVINGS_MAX + 1] = (struct dea_ply){beam_thickness_m, 1, 2};
   return HALVINGS_MAX + 2;
 }
 
@@ -75,7 +75,7 @@ static void make_grid(struct strip *s)
   const struct part parts[PARTS] = {
       {0, beam_m}, {beam_m, electrode_m}, {beam_m + electrode_m, bare_m}};
   const double ends[PARTS][2] = {{other, tip}, {tip, other}, {other, other}};
-  struct dea_sheet sheets[HALVINGS_MAX + 2];
+  struct dea_ply sheets[HALVINGS_MAX + 2];
   struct dea_block blocks[PARTS];
   for (int k = 0; k < PARTS; k++) {
     size_t count =
@@ -120,15 +120,15 @@ static void make_layers(struct strip *s)
   for (int i = 0; i < 3; i++) {
     s->param[i] = scale * yeoh[i];
   }
-  s->layers[LAYER_FILM] = (struct dea_layer){.law = dea_law_find("yeoh"),
-                                             .param = s->param,
-                                             .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                             .kappa_Pa = 4e7 * scale,
-                                             .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                             .thickness_m = s->h_m};
-  s->layers[LAYER_BEAM] = (struct dea_layer){.lame_mu_Pa = E / (2 * (1 + nu)),
-                                             .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
-  verify_ok(ctx, dea_layer_relax(&s->layers[LAYER_FILM]));
+  s->layers[LAYER_FILM] = (struct dea_constituent){.law = dea_law_find("yeoh"),
+                                                   .param = s->param,
+                                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                                   .kappa_Pa = 4e7 * scale,
+                                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                                   .thickness_m = s->h_m};
+  s->layers[LAYER_BEAM] = (struct dea_constituent){
+      .lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  verify_ok(ctx, dea_constituent_relax(&s->layers[LAYER_FILM]));
   verify_ok(ctx, dea_membrane_bond(&s->layers[LAYER_FILM], &s->layers[LAYER_BOND]));
 }
 

@@ -2,8 +2,8 @@
 #include "bodies.h"
 
 #include "model/model.h"
-#include "model/solid/solve/state.h"
-#include "model/solid/solve/vibration.h"
+#include "model/solid/answer/state.h"
+#include "model/solid/motion/vibration.h"
 
 static bool small;
 

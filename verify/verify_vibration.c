@@ -3,8 +3,8 @@
 #include "runs.h"
 
 #include "material/plane.h"
-#include "model/solid/solve/solid.h"
-#include "model/solid/solve/vibration.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/motion/vibration.h"
 
 static const double pi = 3.14159265358979323846;
 static bool small;
@@ -60,13 +60,13 @@ static double closed_form_Hz(const struct film *film, double tension_Pa)
 static double computed_Hz(const struct film *film, bool membrane, double kappa, double voltage_V)
 {
   const double mu = film->material.law->shear_modulus(film->material.param), l = film->stretch;
-  struct dea_layer layer = {.law = film->material.law,
-                            .param = film->material.param,
-                            .pre_stretch = {l, l, 1 / (l * l)},
-                            .kappa_Pa = kappa * mu,
-                            .permittivity_F_per_m = 1e-11,
-                            .thickness_m = film->thickness_m,
-                            .density_kg_per_m3 = film->density_kg_per_m3};
+  struct dea_constituent layer = {.law = film->material.law,
+                                  .param = film->material.param,
+                                  .pre_stretch = {l, l, 1 / (l * l)},
+                                  .kappa_Pa = kappa * mu,
+                                  .permittivity_F_per_m = 1e-11,
+                                  .thickness_m = film->thickness_m,
+                                  .density_kg_per_m3 = film->density_kg_per_m3};
   enum { PIECES = 8 };
   double cuts[2][PIECES + 1], square;
   for (int i = 0; i < 2; i++) { // the film bends over about its thickness at the frame
@@ -78,7 +78,7 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
     }
   }
   const struct dea_block block = {map_film, film, cuts[0], cuts[1], PIECES, PIECES, 0};
-  const struct dea_sheet sheet = {membrane ? 0 : film->thickness_m, 1, membrane ? 1 : 2};
+  const struct dea_ply sheet = {membrane ? 0 : film->thickness_m, 1, membrane ? 1 : 2};
   const struct dea_solid_options options = {.order_z = membrane ? 1 : 2,
                                             .layer_count = 1,
                                             .layers = &layer,
@@ -88,7 +88,7 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  verify_ok(ctx, dea_layer_relax(&layer));
+  verify_ok(ctx, dea_constituent_relax(&layer));
   verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &sheet, 1, NULL, 0, film->size[0], &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   verify_ok(ctx, dea_solid_solve(ctx, solid, voltage_V, &report));

@@ -177,7 +177,7 @@ static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *ro
 }
 
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
-                           struct dea_place place, const char *format, ...)
+                           struct dea_location location, const char *format, ...)
 {
   char text[MESSAGE_MAX];
   va_list args;
@@ -186,8 +186,8 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_end(args);
   for (size_t i = 0; i < ctx->finding_count; i++) {
     const struct dea_finding *old = &ctx->findings[i];
-    if (old->severity == severity && old->place.file == place.file &&
-        old->place.line == place.line && old->place.column == place.column &&
+    if (old->severity == severity && old->location.file == location.file &&
+        old->location.line == location.line && old->location.column == location.column &&
         strcmp(old->text, text) == 0) {
       return DEA_OK;
     }
@@ -202,7 +202,7 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   if (copy == NULL) {
     return DEA_E_MEMORY;
   }
-  ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, place, copy};
+  ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, location, copy};
   return DEA_OK;
 }
 

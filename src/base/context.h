@@ -4,8 +4,9 @@
  * context first and returns a status; the context then holds the message, the chain of calls that
  * led to it, and for errors in an input file every finding with its file, line and column.
  * A context belongs to one thread at a time. Contexts of several threads may read designs and solve
- * at the same time; results (dea_store_write, dea_run_read, run folders) go through HDF5, which
- * keeps state of its own, and are for one thread at a time unless that HDF5 was built thread-safe.
+ * at the same time; results (dea_results_h5_write, dea_run_read, run folders) go through HDF5,
+ * which keeps state of its own, and are for one thread at a time unless that HDF5 was built
+ * thread-safe.
  */
 #ifndef DEA_BASE_CONTEXT_H
 #define DEA_BASE_CONTEXT_H
@@ -24,7 +25,7 @@
 
 /* Place of a value in an input. file: lent, lives as long as the context; "" when there is none.
  * line and column count from 1; 0 when unknown. */
-struct dea_place {
+struct dea_location {
   const char *file;
   size_t line, column;
 };
@@ -34,7 +35,7 @@ enum dea_severity { DEA_NOTE, DEA_WARNING, DEA_ERROR };
 /* One thing found in an input or during a run. text: one sentence without the place. */
 struct dea_finding {
   enum dea_severity severity;
-  struct dea_place place;
+  struct dea_location location;
   char *text;
 };
 
@@ -92,7 +93,7 @@ void dea_context_clear(struct dea_context *ctx);
 
 /* Adds a finding (printf style); the same one is kept once. Fails only for want of memory. */
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
-                           struct dea_place place, const char *format, ...) DEA_PRINTF(4, 5);
+                           struct dea_location location, const char *format, ...) DEA_PRINTF(4, 5);
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least);
 /* All findings in the order they were added; lent until the next dea_finding_add. */
 const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count);

@@ -26,11 +26,11 @@ static const char *kind_name(mode_t mode)
 
 static dea_status too_large(struct dea_context *ctx, const char *file, size_t max)
 {
-  struct dea_place place = {.file = dea_intern(ctx, file)};
-  if (place.file == NULL) {
+  struct dea_location location = {.file = dea_intern(ctx, file)};
+  if (location.file == NULL) {
     return DEA_E_MEMORY;
   }
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                "the file is larger than %zu MB, which is too much", max / 1000000));
   return dea_fail(ctx, DEA_E_DESIGN, "'%s' is larger than %zu MB", file, max / 1000000);
 }

@@ -14,13 +14,14 @@ struct section {
   const struct dea_node *node;
   const char *path; // "" for the file
   char *base;
-  struct dea_place place;
+  struct dea_location location;
 };
 
 static dea_status read_section(const struct dea_reader *reader, const struct section *section);
 
 /* Sets every member of a section that is not there. */
-static void absent_section(const struct dea_record *record, char *base, struct dea_place place)
+static void absent_section(const struct dea_record *record, char *base,
+                           struct dea_location location)
 {
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
@@ -28,9 +29,9 @@ static void absent_section(const struct dea_record *record, char *base, struct d
       continue;
     }
     if (field->kind == DEA_FIELD_RECORD) {
-      absent_section(field->record, base + field->offset, place);
+      absent_section(field->record, base + field->offset, location);
     } else {
-      dea_schema_value_absent(field, base + field->offset, place);
+      dea_schema_value_absent(field, base + field->offset, location);
     }
   }
 }
@@ -47,15 +48,15 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
     return DEA_OK;
   }
   if (node->kind == DEA_NODE_VALUE && node->empty) {
-    return dea_schema_error(reader, node->place, "%s has no value%s%s%s", field->key,
+    return dea_schema_error(reader, node->location, "%s has no value%s%s%s", field->key,
                             field->example != NULL ? "; write for example '" : "",
                             field->example != NULL ? field->example : "",
                             field->example != NULL ? "'" : "");
   }
   static const char *const forms[] = {"a single value", "a list", "a section with keys of its own"};
   return dea_schema_error(
-      reader, node->place, "%s must be %s, not %s%s%s%s", field->key, forms[due], forms[node->kind],
-      field->example != NULL ? "; write for example '" : "",
+      reader, node->location, "%s must be %s, not %s%s%s%s", field->key, forms[due],
+      forms[node->kind], field->example != NULL ? "; write for example '" : "",
       field->example != NULL ? field->example : "", field->example != NULL ? "'" : "");
 }
 
@@ -66,14 +67,14 @@ static dea_status read_node(const struct dea_reader *reader, const struct dea_fi
 {
   if (field->kind == DEA_FIELD_RECORD) {
     struct section inner = {field->record, node, path, target, node->key_place};
-    inner.place = node->key != NULL ? node->key_place : node->place;
+    inner.location = node->key != NULL ? node->key_place : node->location;
     return read_section(reader, &inner);
   }
   if (field->kind == DEA_FIELD_SECTION) {
     *(const struct dea_node **)target = node;
     return DEA_OK;
   }
-  struct dea_schema_value value = {field, node->text, node->place, origin, path};
+  struct dea_schema_value value = {field, node->text, node->location, origin, path};
   return dea_schema_value_read(reader, &value, target);
 }
 
@@ -83,7 +84,7 @@ static dea_status read_list(const struct dea_reader *reader, const struct dea_fi
 {
   size_t *count = (size_t *)(void *)(base + field->count_offset);
   if (node->child_count < field->list_min || node->child_count > field->list_max) {
-    return dea_schema_error(reader, node->place, "%s must have %zu to %zu items, not %zu",
+    return dea_schema_error(reader, node->location, "%s must have %zu to %zu items, not %zu",
                             field->key, field->list_min, field->list_max, node->child_count);
   }
   *count = 0;
@@ -96,7 +97,7 @@ static dea_status read_list(const struct dea_reader *reader, const struct dea_fi
     if (good) {
       DEA_TRY(reader->ctx, read_node(reader, field, item, item_path, origin, target));
     } else {
-      dea_schema_value_absent(field, target, item->place);
+      dea_schema_value_absent(field, target, item->location);
     }
     ++*count;
   }
@@ -127,11 +128,12 @@ static dea_status read_default(const struct dea_reader *reader, const struct sec
 {
   if (field->list_max > 0) {
     const struct dea_node *node;
-    DEA_TRY(reader->ctx, dea_yaml_fragment(reader->ctx, reader->yaml, section->place,
+    DEA_TRY(reader->ctx, dea_yaml_fragment(reader->ctx, reader->yaml, section->location,
                                            field->default_text, &node));
     return read_list(reader, field, node, path, DEA_DEFAULT, section->base);
   }
-  struct dea_schema_value value = {field, field->default_text, section->place, DEA_DEFAULT, path};
+  struct dea_schema_value value = {field, field->default_text, section->location, DEA_DEFAULT,
+                                   path};
   return dea_schema_value_read(reader, &value, section->base + field->offset);
 }
 
@@ -142,11 +144,12 @@ static dea_status missing_field(const struct dea_reader *reader, const struct se
   snprintf(where, sizeof where, section->path[0] != '\0' ? "section '%.60s'" : "the file",
            section->path);
   if (field->group > 0) {
-    return dea_schema_error(reader, section->place, "%s lacks its '%s' (%s), for example '%s: %s'",
-                            where, field->key, field->doc, field->key, field->example);
+    return dea_schema_error(reader, section->location,
+                            "%s lacks its '%s' (%s), for example '%s: %s'", where, field->key,
+                            field->doc, field->key, field->example);
   }
   return dea_schema_error(
-      reader, section->place, "%s lacks '%s' (%s)%s%s%s%s%s", where, field->key, field->doc,
+      reader, section->location, "%s lacks '%s' (%s)%s%s%s%s%s", where, field->key, field->doc,
       field->example != NULL ? ", for example '" : "", field->example != NULL ? field->key : "",
       field->example != NULL ? ": " : "", field->example != NULL ? field->example : "",
       field->example != NULL ? "'" : "");
@@ -159,20 +162,21 @@ static dea_status read_absent(const struct dea_reader *reader, const struct sect
   char *target = section->base + field->offset;
   if (field->kind == DEA_FIELD_RECORD && field->list_max == 0) {
     if (!field->required && field->present_offset == 0) {
-      struct section inner = {field->record, NULL, path, target, section->place};
+      struct section inner = {field->record, NULL, path, target, section->location};
       return read_section(reader, &inner);
     }
-    absent_section(field->record, target, section->place);
+    absent_section(field->record, target, section->location);
   } else if (field->default_text != NULL) {
     return read_default(reader, section, field, path);
   } else if (field->list_max == 0) {
-    dea_schema_value_absent(field, target, section->place);
+    dea_schema_value_absent(field, target, section->location);
   }
   if (field->required) {
     return missing_field(reader, section, field);
   }
   if (field->absent_text != NULL) {
-    return dea_schema_list(reader, path, field->absent_text, NULL, NAN, DEA_ABSENT, section->place);
+    return dea_schema_list(reader, path, field->absent_text, NULL, NAN, DEA_ABSENT,
+                           section->location);
   }
   return DEA_OK;
 }
@@ -229,7 +233,7 @@ static dea_status missing_group(const struct dea_reader *reader, const struct se
                                used > 0 ? " or " : "", field->key, field->example);
     }
   }
-  return dea_schema_error(reader, section->place,
+  return dea_schema_error(reader, section->location,
                           "section '%.60s' lacks the %s; write for example %s", section->path,
                           asking->doc, ways);
 }
@@ -245,7 +249,7 @@ static dea_status read_field(const struct dea_reader *reader, const struct secti
     int option;
     DEA_TRY(reader->ctx, choose_option(reader, section, field, &option));
     if (option == 0 && field->required) {
-      dea_schema_value_absent(field, section->base + field->offset, section->place);
+      dea_schema_value_absent(field, section->base + field->offset, section->location);
       return missing_group(reader, section, field);
     }
     if (option != field->option) {
@@ -310,7 +314,7 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
 
 static dea_status read_section(const struct dea_reader *reader, const struct section *section)
 {
-  absent_section(section->record, section->base, section->place);
+  absent_section(section->record, section->base, section->location);
   if (section->node != NULL) {
     DEA_TRY(reader->ctx, check_unknown_keys(reader, section));
   }
@@ -324,10 +328,10 @@ dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_rec
                            const struct dea_node *node, const char *path, void *base)
 {
   struct section section = {record, node, path, base,
-                            node->key != NULL ? node->key_place : node->place};
+                            node->key != NULL ? node->key_place : node->location};
   if (node->kind != DEA_NODE_SECTION) {
-    return dea_schema_error(reader, node->place, "this is not a %s: it must be 'key: value' lines",
-                            record->name);
+    return dea_schema_error(reader, node->location,
+                            "this is not a %s: it must be 'key: value' lines", record->name);
   }
   return read_section(reader, &section);
 }

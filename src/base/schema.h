@@ -80,7 +80,7 @@ enum { DEA_SCHEMA_ERRORS_MAX = 100 };
 /* Adds a value to the reader's list. text: lent for as long as the list. */
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,
                            const char *unit, double si, enum dea_origin origin,
-                           struct dea_place place);
+                           struct dea_location location);
 
 /* JSON Schema (draft 2020-12) of a record as text, ended by a newline. */
 dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,

@@ -23,13 +23,14 @@ dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_nod
   }
   if (kind == NULL || kind->kind != DEA_NODE_VALUE || kind->empty) {
     return dea_schema_error(reader,
-                            kind != NULL        ? kind->place
+                            kind != NULL        ? kind->location
                             : node->key != NULL ? node->key_place
-                                                : node->place,
+                                                : node->location,
                             "%s needs its kind: %s", what, list);
   }
   const char *nearest = dea_nearest_name(kind->text, names, count);
-  return dea_schema_error(reader, kind->place, "there is no %s '%.60s'%s%s%s: %s", noun, kind->text,
-                          nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+  return dea_schema_error(reader, kind->location, "there is no %s '%.60s'%s%s%s: %s", noun,
+                          kind->text, nearest != NULL ? "; did you mean '" : "",
+                          nearest != NULL ? nearest : "",
                           nearest != NULL ? "'? All are" : "; there are", list);
 }

@@ -9,7 +9,7 @@
 
 enum { MESSAGE_SIZE = 800 };
 
-dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place place,
+dea_status dea_schema_error(const struct dea_reader *reader, struct dea_location location,
                             const char *format, ...)
 {
   size_t count = dea_finding_count(reader->ctx, DEA_ERROR);
@@ -21,18 +21,18 @@ dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place pl
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, place, "%s", text));
+  DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, location, "%s", text));
   if (count + 1 == DEA_SCHEMA_ERRORS_MAX) {
     DEA_TRY(reader->ctx,
-            dea_finding_add(reader->ctx, DEA_NOTE, place, "errors after the first %d are not shown",
-                            DEA_SCHEMA_ERRORS_MAX));
+            dea_finding_add(reader->ctx, DEA_NOTE, location,
+                            "errors after the first %d are not shown", DEA_SCHEMA_ERRORS_MAX));
   }
   return DEA_OK;
 }
 
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,
                            const char *unit, double si, enum dea_origin origin,
-                           struct dea_place place)
+                           struct dea_location location)
 {
   struct dea_listing *listing = reader->listing;
   if (listing == NULL) {
@@ -52,7 +52,7 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
     return DEA_E_MEMORY;
   }
   listing->items[listing->count++] =
-      (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, place};
+      (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, location};
   return DEA_OK;
 }
 
@@ -72,12 +72,13 @@ static struct dea_measure measure_of(const struct dea_field *field)
                               field->example != NULL ? field->example : "1"};
 }
 
-void dea_schema_value_absent(const struct dea_field *field, char *target, struct dea_place place)
+void dea_schema_value_absent(const struct dea_field *field, char *target,
+                             struct dea_location location)
 {
-  struct dea_quantity nothing = {NAN, DEA_ABSENT, place};
+  struct dea_quantity nothing = {NAN, DEA_ABSENT, location};
   switch (field->kind) {
   case DEA_FIELD_LABEL:
-    *(struct dea_label *)target = (struct dea_label){.place = place};
+    *(struct dea_label *)target = (struct dea_label){.location = location};
     break;
   case DEA_FIELD_NUMBER:
   case DEA_FIELD_INTEGER:
@@ -88,7 +89,7 @@ void dea_schema_value_absent(const struct dea_field *field, char *target, struct
     *(struct dea_inplane_length *)target = (struct dea_inplane_length){nothing, DEA_STRETCHED};
     break;
   case DEA_FIELD_CHOICE:
-    *(struct dea_choice *)target = (struct dea_choice){-1, DEA_ABSENT, place};
+    *(struct dea_choice *)target = (struct dea_choice){-1, DEA_ABSENT, location};
     break;
   case DEA_FIELD_TEXT:
   case DEA_FIELD_RECORD:
@@ -123,8 +124,8 @@ static dea_status check_range(const struct dea_reader *reader, const struct dea_
   format_limit(field, low ? field->min : field->max, limit);
   const char *word =
       low ? (field->above_min ? "above" : "at least") : (field->below_max ? "below" : "at most");
-  return dea_schema_error(reader, value->place, "%s must be %s %s, not '%.60s'", field->key, word,
-                          limit, value->text);
+  return dea_schema_error(reader, value->location, "%s must be %s %s, not '%.60s'", field->key,
+                          word, limit, value->text);
 }
 
 /* The number in text (that of the value, or what is left of it without its qualifier). */
@@ -133,17 +134,17 @@ static dea_status read_number(const struct dea_reader *reader, const struct dea_
 {
   char why[DEA_WHY_SIZE];
   double si;
-  *out = (struct dea_quantity){NAN, value->origin, value->place};
+  *out = (struct dea_quantity){NAN, value->origin, value->location};
   if (!dea_units_read(reader->ctx, text, measure_of(value->field), &si, why)) {
     if (why[0] == '\0') {
       return dea_context_status(reader->ctx);
     }
-    return dea_schema_error(reader, value->place, "%s: %s", value->field->key, why);
+    return dea_schema_error(reader, value->location, "%s: %s", value->field->key, why);
   }
   bool good;
   DEA_TRY(reader->ctx, check_range(reader, value, si, &good));
   if (good && value->field->kind == DEA_FIELD_INTEGER && floor(si) != si) {
-    return dea_schema_error(reader, value->place, "%s must be a whole number, not '%.60s'",
+    return dea_schema_error(reader, value->location, "%s must be a whole number, not '%.60s'",
                             value->field->key, value->text);
   }
   if (good) {
@@ -187,7 +188,7 @@ static dea_status read_inplane(const struct dea_reader *reader,
   char number[DEA_TITLE_SIZE], why[DEA_WHY_SIZE];
   const char *word;
   double si;
-  *out = (struct dea_inplane_length){{NAN, value->origin, value->place}, DEA_STRETCHED};
+  *out = (struct dea_inplane_length){{NAN, value->origin, value->location}, DEA_STRETCHED};
   split_qualifier(value->text, number, &word);
   int state = film_state_of(word);
   if (state >= 0) {
@@ -196,17 +197,17 @@ static dea_status read_inplane(const struct dea_reader *reader,
   }
   const char *nearest = strlen(word) > 4 ? dea_nearest_name(word, film_states, 2) : NULL;
   if (nearest != NULL) {
-    return dea_schema_error(reader, value->place,
+    return dea_schema_error(reader, value->location,
                             "%s: '%.60s' is not a film state; did you mean '%s'?",
                             value->field->key, word, nearest);
   }
   if (!dea_units_read(reader->ctx, value->text, measure_of(value->field), &si, why)) {
     return why[0] == '\0'
                ? dea_context_status(reader->ctx)
-               : dea_schema_error(reader, value->place, "%s: %s", value->field->key, why);
+               : dea_schema_error(reader, value->location, "%s: %s", value->field->key, why);
   }
   return dea_schema_error(
-      reader, value->place,
+      reader, value->location,
       "%s: '%.40s' does not say in which film it is measured; write '%.40s stretched' "
       "(as built) or '%.40s unstretched' (before the pre-stretch)",
       value->field->key, value->text, value->text, value->text);
@@ -220,17 +221,17 @@ static dea_status read_plain_number(const struct dea_reader *reader,
   const char *word;
   split_qualifier(value->text, number, &word);
   int state = film_state_of(word);
-  *out = (struct dea_quantity){NAN, value->origin, value->place};
+  *out = (struct dea_quantity){NAN, value->origin, value->location};
   if (state < 0) {
     return read_number(reader, value, value->text, out);
   }
   if (value->field->kind != DEA_FIELD_STRETCHED) {
-    return dea_schema_error(reader, value->place, "%s: the word '%s' does not belong here (%s)",
+    return dea_schema_error(reader, value->location, "%s: the word '%s' does not belong here (%s)",
                             value->field->key, word, value->field->doc);
   }
   if (state == DEA_UNSTRETCHED) {
     return dea_schema_error(
-        reader, value->place,
+        reader, value->location,
         "%s: this part is rigid and holds the stretched film, so its lengths are "
         "lengths of the stretched film; write '%.60s'",
         value->field->key, number);
@@ -244,7 +245,7 @@ static dea_status read_choice(const struct dea_reader *reader, const struct dea_
   const char *const *choices = value->field->choices;
   char list[MESSAGE_SIZE / 2] = "";
   size_t count = 0, used = 0;
-  *out = (struct dea_choice){-1, value->origin, value->place};
+  *out = (struct dea_choice){-1, value->origin, value->location};
   for (; choices[count] != NULL; count++) {
     if (strcmp(choices[count], value->text) == 0) {
       out->value = (int)count;
@@ -256,7 +257,7 @@ static dea_status read_choice(const struct dea_reader *reader, const struct dea_
     }
   }
   const char *nearest = dea_nearest_name(value->text, choices, count);
-  return dea_schema_error(reader, value->place, "%s: '%.60s' is none of: %s%s%s%s",
+  return dea_schema_error(reader, value->location, "%s: '%.60s' is none of: %s%s%s%s",
                           value->field->key, value->text, list,
                           nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
                           nearest != NULL ? "'?" : "");
@@ -265,10 +266,10 @@ static dea_status read_choice(const struct dea_reader *reader, const struct dea_
 static dea_status read_label(const struct dea_reader *reader, const struct dea_schema_value *value,
                              struct dea_label *out)
 {
-  *out = (struct dea_label){.origin = value->origin, .place = value->place};
+  *out = (struct dea_label){.origin = value->origin, .location = value->location};
   if (strlen(value->text) >= sizeof out->text) {
-    return dea_schema_error(reader, value->place, "%s is longer than %zu bytes", value->field->key,
-                            sizeof out->text - 1);
+    return dea_schema_error(reader, value->location, "%s is longer than %zu bytes",
+                            value->field->key, sizeof out->text - 1);
   }
   snprintf(out->text, sizeof out->text, "%s", value->text);
   return DEA_OK;
@@ -279,7 +280,7 @@ dea_status dea_schema_value_read(const struct dea_reader *reader,
 {
   const struct dea_field *field = value->field;
   double si = NAN;
-  dea_schema_value_absent(field, target, value->place);
+  dea_schema_value_absent(field, target, value->location);
   switch (field->kind) {
   case DEA_FIELD_LABEL:
     DEA_TRY(reader->ctx, read_label(reader, value, (struct dea_label *)target));
@@ -306,5 +307,6 @@ dea_status dea_schema_value_read(const struct dea_reader *reader,
   }
   // The list holds what was written, so a diameter stays one although the struct keeps the radius.
   return dea_schema_list(reader, value->path, value->text, field->unit,
-                         field->scale != 0 ? si / field->scale : si, value->origin, value->place);
+                         field->scale != 0 ? si / field->scale : si, value->origin,
+                         value->location);
 }

@@ -10,13 +10,13 @@ enum { DEA_PATH_SIZE = 256 };
 struct dea_schema_value {
   const struct dea_field *field;
   const char *text;
-  struct dea_place place;
+  struct dea_location location;
   enum dea_origin origin;
   const char *path;
 };
 
 /* Adds an error as a finding, up to DEA_SCHEMA_ERRORS_MAX of them. */
-dea_status dea_schema_error(const struct dea_reader *reader, struct dea_place place,
+dea_status dea_schema_error(const struct dea_reader *reader, struct dea_location location,
                             const char *format, ...) DEA_PRINTF(3, 4);
 /* Reads one value into the member at target and lists it. */
 dea_status dea_schema_value_read(const struct dea_reader *reader,
@@ -27,6 +27,7 @@ dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_nod
                            const char *what, const char *const names[], size_t count,
                            size_t *index);
 /* Sets the member at target to what says "absent". */
-void dea_schema_value_absent(const struct dea_field *field, char *target, struct dea_place place);
+void dea_schema_value_absent(const struct dea_field *field, char *target,
+                             struct dea_location location);
 
 #endif

@@ -17,7 +17,7 @@ enum dea_origin {
 struct dea_quantity {
   double si;
   enum dea_origin origin;
-  struct dea_place place;
+  struct dea_location location;
 };
 
 /* Which film a length lies in. */
@@ -34,13 +34,13 @@ struct dea_inplane_length {
 struct dea_choice {
   int value; // an enumerator; -1 when absent
   enum dea_origin origin;
-  struct dea_place place;
+  struct dea_location location;
 };
 
 struct dea_label {
   char text[DEA_TITLE_SIZE];
   enum dea_origin origin;
-  struct dea_place place;
+  struct dea_location location;
 };
 
 /* One line of the list of all values of a file (`dea check`). */
@@ -50,7 +50,7 @@ struct dea_listed {
   const char *unit; // SI unit of the number; NULL for what is none
   double si;        // NAN for what is no number
   enum dea_origin origin;
-  struct dea_place place;
+  struct dea_location location;
 };
 
 /* The list; owned by whoever reads the file. */

@@ -26,8 +26,8 @@ struct reading {
   struct dea_context *ctx;
   struct dea_yaml *yaml;
   yaml_document_t *document;
-  const struct dea_place *fixed; // all places are this one, or NULL
-  size_t repeated;               // keys that stand twice
+  const struct dea_location *fixed; // all places are this one, or NULL
+  size_t repeated;                  // keys that stand twice
 };
 
 static void *keep_memory(struct dea_context *ctx, struct dea_yaml *yaml, size_t size)
@@ -51,18 +51,18 @@ static char *keep_text(struct dea_context *ctx, struct dea_yaml *yaml, const cha
   return copy;
 }
 
-static dea_status found(struct dea_context *ctx, struct dea_place place, const char *text)
+static dea_status found(struct dea_context *ctx, struct dea_location location, const char *text)
 {
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "%s", text));
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "%s", text));
   return dea_fail(ctx, DEA_E_DESIGN, "%s", text);
 }
 
-static struct dea_place place_of(const struct reading *r, yaml_mark_t mark)
+static struct dea_location place_of(const struct reading *r, yaml_mark_t mark)
 {
   if (r->fixed != NULL) {
     return *r->fixed;
   }
-  return (struct dea_place){r->yaml->name, mark.line + 1, mark.column + 1};
+  return (struct dea_location){r->yaml->name, mark.line + 1, mark.column + 1};
 }
 
 static bool is_null(const yaml_node_t *node)
@@ -79,7 +79,7 @@ static dea_status take_value(struct reading *r, const yaml_node_t *source, struc
   const char *text = (const char *)source->data.scalar.value;
   size_t length = source->data.scalar.length;
   if (strlen(text) != length) {
-    return found(r->ctx, node->place, "the value holds a zero byte");
+    return found(r->ctx, node->location, "the value holds a zero byte");
   }
   node->empty = is_null(source);
   node->text = keep_text(r->ctx, r->yaml, text, length);
@@ -144,15 +144,15 @@ static dea_status take_section(struct reading *r, const yaml_node_t *source, str
   for (const yaml_node_pair_t *pair = source->data.mapping.pairs.start;
        pair < source->data.mapping.pairs.top; pair++) {
     const yaml_node_t *key = yaml_document_get_node(r->document, pair->key);
-    struct dea_place place = place_of(r, key->start_mark);
+    struct dea_location location = place_of(r, key->start_mark);
     if (key->type != YAML_SCALAR_NODE) {
-      return found(r->ctx, place, "a key must be a word");
+      return found(r->ctx, location, "a key must be a word");
     }
     struct dea_node *key_node = NULL;
     DEA_TRY(r->ctx, take_node(r, pair->key, &key_node));
     DEA_TRY(r->ctx, take_node(r, pair->value, last));
     (*last)->key = key_node->text;
-    (*last)->key_place = place;
+    (*last)->key_place = location;
     last = &(*last)->next;
     node->child_count++;
   }
@@ -163,12 +163,12 @@ static dea_status take_section(struct reading *r, const yaml_node_t *source, str
 static dea_status take_node(struct reading *r, int index, struct dea_node **out)
 {
   const yaml_node_t *source = yaml_document_get_node(r->document, index);
-  struct dea_place place = place_of(r, source->start_mark);
+  struct dea_location location = place_of(r, source->start_mark);
   struct dea_node *node = keep_memory(r->ctx, r->yaml, sizeof *node);
   if (node == NULL) {
     return DEA_E_MEMORY;
   }
-  *node = (struct dea_node){.text = "", .place = place, .overridden = r->fixed != NULL};
+  *node = (struct dea_node){.text = "", .location = location, .overridden = r->fixed != NULL};
   *out = node;
   if (source->type == YAML_SCALAR_NODE) {
     node->kind = DEA_NODE_VALUE;
@@ -184,7 +184,7 @@ static dea_status take_node(struct reading *r, int index, struct dea_node **out)
 
 /* Parses text into nodes of yaml. fixed: place of all nodes, or NULL. */
 static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, const char *bytes,
-                             size_t length, const struct dea_place *fixed, struct dea_node **out)
+                             size_t length, const struct dea_location *fixed, struct dea_node **out)
 {
   const struct dea_yaml_text text = {yaml->name, bytes, length, fixed};
   yaml_parser_t parser;
@@ -256,11 +256,12 @@ const struct dea_node *dea_node_find(const struct dea_node *section, const char 
   return NULL;
 }
 
-dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
-                             const char *text, const struct dea_node **out)
+dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml,
+                             struct dea_location location, const char *text,
+                             const struct dea_node **out)
 {
   struct dea_node *node = NULL;
-  DEA_TRY(ctx, parse_into(ctx, yaml, text, strlen(text), &place, &node));
+  DEA_TRY(ctx, parse_into(ctx, yaml, text, strlen(text), &location, &node));
   *out = node;
   return DEA_OK;
 }
@@ -277,7 +278,7 @@ static struct dea_node **link_of(struct dea_node *section, const char *key, size
 }
 
 /* Walks to the section that holds the last key of the path, making sections on the way. */
-static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
+static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_location location,
                        const char **path, struct dea_node **section)
 {
   struct dea_node *at = yaml->root;
@@ -290,15 +291,15 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
       if (made == NULL || key == NULL) {
         return DEA_E_MEMORY;
       }
-      *made =
-          (struct dea_node){DEA_NODE_SECTION, "", false, true, key, place, place, NULL, NULL, 0};
+      *made = (struct dea_node){DEA_NODE_SECTION, "",       false, true, key,
+                                location,         location, NULL,  NULL, 0};
       *link = made;
       at->child_count++;
     }
     at = *link;
     if (at->kind != DEA_NODE_SECTION) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "'%.60s' is %s, not a section", at->key,
-                                   at->kind == DEA_NODE_LIST ? "a list" : "a value"));
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%.60s' is %s, not a section",
+                                   at->key, at->kind == DEA_NODE_LIST ? "a list" : "a value"));
       return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is not a section", at->key);
     }
     at->overridden = true;
@@ -311,7 +312,7 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
 /* Puts a node into a section in the place of the member `key`; one without a value takes it away.
  */
 static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_node *section,
-                      const char *key, struct dea_place place, struct dea_node *node)
+                      const char *key, struct dea_location location, struct dea_node *node)
 {
   struct dea_node **link = link_of(section, key, strlen(key)), *old = *link;
   if (node->kind == DEA_NODE_VALUE && node->empty) {
@@ -323,7 +324,7 @@ static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea
   if (node->key == NULL) {
     return DEA_E_MEMORY;
   }
-  node->key_place = place;
+  node->key_place = location;
   node->next = old != NULL ? old->next : NULL;
   section->child_count += old == NULL;
   *link = node;
@@ -335,18 +336,19 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
 {
   struct dea_text name = {.ctx = ctx};
   dea_text_add(&name, "--set %s", path);
-  struct dea_place place = {.file = name.failed ? NULL : dea_intern(ctx, dea_text_get(&name))};
+  struct dea_location location = {.file =
+                                      name.failed ? NULL : dea_intern(ctx, dea_text_get(&name))};
   dea_text_free(&name);
-  if (place.file == NULL) {
+  if (location.file == NULL) {
     return DEA_E_MEMORY;
   }
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
   struct dea_node *section = NULL, *node = NULL;
-  DEA_TRY(ctx, walk(ctx, yaml, place, &path, &section));
-  DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &place, &node));
-  DEA_TRY(ctx, put(ctx, yaml, section, path, place, node));
+  DEA_TRY(ctx, walk(ctx, yaml, location, &path, &section));
+  DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &location, &node));
+  DEA_TRY(ctx, put(ctx, yaml, section, path, location, node));
   return DEA_OK;
 }
 

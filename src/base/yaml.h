@@ -22,8 +22,8 @@ struct dea_node {
   bool empty;                    // nothing was written: "key:", "~" or "null"
   bool overridden;               // comes from an override, or holds a node that does
   const char *key;               // in a section; NULL otherwise
-  struct dea_place place;        // of the value
-  struct dea_place key_place;    // of the key
+  struct dea_location location;  // of the value
+  struct dea_location key_place; // of the key
   struct dea_node *child, *next; // first member of a list or section; next sibling
   size_t child_count;
 };
@@ -50,8 +50,9 @@ dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
                           const struct dea_node *changes);
 /* A node of its own from YAML text (the default of a list), kept by the document; places = place.
  */
-dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_place place,
-                             const char *text, const struct dea_node **out);
+dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml,
+                             struct dea_location location, const char *text,
+                             const struct dea_node **out);
 /* Member of a section with that key, or NULL. */
 const struct dea_node *dea_node_find(const struct dea_node *section, const char *key);
 

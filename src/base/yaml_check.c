@@ -16,10 +16,10 @@ struct check {
 
 static dea_status refuse(const struct check *check, yaml_mark_t mark, const char *message)
 {
-  struct dea_place place = {check->text->name, mark.line + 1, mark.column + 1};
-  DEA_TRY(check->ctx,
-          dea_finding_add(check->ctx, DEA_ERROR,
-                          check->text->fixed != NULL ? *check->text->fixed : place, "%s", message));
+  struct dea_location location = {check->text->name, mark.line + 1, mark.column + 1};
+  DEA_TRY(check->ctx, dea_finding_add(check->ctx, DEA_ERROR,
+                                      check->text->fixed != NULL ? *check->text->fixed : location,
+                                      "%s", message));
   return dea_fail(check->ctx, DEA_E_DESIGN, "%s", message);
 }
 

@@ -9,7 +9,7 @@ struct dea_yaml_text {
   const char *name;  // for places
   const char *bytes; // [length]
   size_t length;
-  const struct dea_place *fixed; // place of everything in it, or NULL
+  const struct dea_location *fixed; // place of everything in it, or NULL
 };
 
 /* One pass over the events of the text, in time that grows with its length only. Refuses what is

@@ -51,7 +51,7 @@ static void print_values(const struct dea_design *design)
     const struct dea_listed *value = &design->values.items[i];
     printf("  %-*s  %-24s  ", width, value->path, value->text);
     if (value->origin == DEA_GIVEN) {
-      printf("line %zu\n", value->place.line);
+      printf("line %zu\n", value->location.line);
     } else if (value->origin == DEA_OVERRIDE) {
       puts("--set");
     } else {
@@ -115,12 +115,12 @@ json_t *cli_findings_json(const struct dea_context *ctx)
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   json_t *array = json_array();
   for (size_t i = 0; i < count; i++) {
-    const struct dea_place *place = &findings[i].place;
+    const struct dea_location *location = &findings[i].location;
     json_array_append_new(array, json_pack("{s:s, s:s, s:I, s:I, s:s}", "severity",
                                            severity_names[findings[i].severity], "file",
-                                           place->file != NULL ? place->file : "", "line",
-                                           (json_int_t)place->line, "column",
-                                           (json_int_t)place->column, "text", findings[i].text));
+                                           location->file != NULL ? location->file : "", "line",
+                                           (json_int_t)location->line, "column",
+                                           (json_int_t)location->column, "text", findings[i].text));
   }
   return array;
 }
@@ -132,8 +132,8 @@ static json_t *values_json(const struct dea_design *design)
     const struct dea_listed *value = &design->values.items[i];
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:I, s:I}", "key", value->path, "text", value->text, "origin",
-                  origin_names[value->origin], "line", (json_int_t)value->place.line, "column",
-                  (json_int_t)value->place.column);
+                  origin_names[value->origin], "line", (json_int_t)value->location.line, "column",
+                  (json_int_t)value->location.column);
     if (value->unit != NULL && !isnan(value->si)) {
       json_object_set_new(row, "si", json_real(value->si));
       json_object_set_new(row, "unit", json_string(value->unit));

@@ -7,7 +7,7 @@
 #include "output/csv.h"
 #include "output/figure.h"
 #include "output/measured.h"
-#include "output/store.h"
+#include "output/results_h5.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -253,7 +253,7 @@ static dea_status note_left_out(struct dea_context *ctx, const struct pair *pair
     }
     if (m->count < measured) {
       DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+              dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                               "%zu of %zu measured points of '%s' lie outside the voltages of "
                               "the run and are left out",
                               measured - m->count, measured, dea_point_columns[m->column].header));
@@ -349,7 +349,7 @@ static dea_status compare(struct dea_cli *cli, struct request *request, struct p
   for (size_t i = 0; i < *count; i++) {
     DEA_TRY(ctx, compare_pair(ctx, request, &pairs[i]));
     if (pairs[i].comparison->part_only) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
                                    "the voltages of %s and %s differ and go up and down: only the "
                                    "first part of one was compared",
                                    pairs[i].compared.a, pairs[i].compared.b));

@@ -69,7 +69,7 @@ static void say_data(struct dea_context *ctx, struct report *report, enum import
 /* All materials must be readable; the folder is that of the first. */
 static dea_status check_materials(struct dea_context *ctx, struct report *report)
 {
-  const struct dea_place nowhere = {.file = ""};
+  const struct dea_location nowhere = {.file = ""};
   const char **names;
   const char *folder = "";
   size_t count;

@@ -2,11 +2,11 @@
 #include "cli/cli.h"
 
 #include "base/file.h"
+#include "base/json.h"
+#include "base/write_file.h"
 #include "lab/instrument/drive.h"
 #include "lab/instrument/instrument.h"
 #include "lab/protocol/export.h"
-#include "output/file.h"
-#include "output/json.h"
 
 #include <getopt.h>
 #include <math.h>

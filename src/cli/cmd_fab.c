@@ -1,10 +1,10 @@
 /* dea fab: design -> files for the workshop. */
 #include "cli/cli.h"
 
+#include "base/json.h"
 #include "base/text.h"
 #include "fabricate/files.h"
 #include "fabricate/process.h"
-#include "output/json.h"
 
 static dea_status add_name(void *array, const char *name)
 {

@@ -1,9 +1,9 @@
 #define _GNU_SOURCE // getopt_long, unlink
 #include "base/file.h"
 #include "base/version.h"
+#include "base/write_file.h"
 #include "cli/cli.h"
 #include "lab/import/import.h"
-#include "output/file.h"
 #include "result/provenance.h"
 
 #include <getopt.h>

@@ -138,7 +138,7 @@ static json_t *material_json(const struct dea_catalogue_entry *entry)
 static dea_status show(struct dea_cli *cli, const char *name, bool whole, json_t *array)
 {
   struct dea_catalogue_entry *entry;
-  DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_place){0}, &entry));
+  DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_location){0}, &entry));
   if (array != NULL) {
     json_array_append_new(array, material_json(entry));
   } else if (whole) {

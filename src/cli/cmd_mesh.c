@@ -1,17 +1,17 @@
 #include "cli/cli.h"
 
-#include "model/solid/actuator.h"
+#include "model/solid/actuator/actuator.h"
 #include "output/msh.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Displacement components that nothing holds. */
-static size_t count_unknowns(const struct dea_plate *plate, const struct dea_grid *grid)
+static size_t count_unknowns(const struct dea_fibre_disc *plate, const struct dea_grid *grid)
 {
   size_t count = 3 * grid->node_count;
   for (size_t n = 0; n < grid->node_count; n++) {
-    int held = dea_plate_held(plate, grid->X + 3 * n);
+    int held = dea_fibre_disc_held(plate, grid->X + 3 * n);
     count -= (size_t)((held & 1) + ((held >> 1) & 1) + ((held >> 2) & 1));
   }
   return count;
@@ -28,9 +28,9 @@ static size_t count_flat(const struct dea_grid *grid)
 }
 
 static void print_summary(const struct cli_design_arguments *arguments,
-                          const struct dea_plate *plate, const struct dea_grid *grid)
+                          const struct dea_fibre_disc *plate, const struct dea_grid *grid)
 {
-  double degrees = dea_plate_angle(plate) * 180 / acos(-1);
+  double degrees = dea_fibre_disc_angle(plate) * 180 / acos(-1);
   double jacobian = dea_grid_smallest_jacobian(grid);
   size_t unknowns = count_unknowns(plate, grid), flat = count_flat(grid);
   if (arguments->json) {
@@ -65,17 +65,17 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   struct dea_grid *grid = NULL;
-  struct dea_plate plate;
+  struct dea_fibre_disc plate;
   int wrong = cli_parse_design_arguments(cli, &cmd_mesh, CLI_WRITES_FILE, argc, argv, &arguments);
   if (wrong >= 0) {
     return wrong;
   }
   dea_status status = cli_build_device(cli, &arguments, &design, &device);
   if (status == DEA_OK) {
-    status = dea_plate_of_device(cli->ctx, device, &plate);
+    status = dea_fibre_disc_of_device(cli->ctx, device, &plate);
   }
   if (status == DEA_OK) {
-    status = dea_plate_create(cli->ctx, &plate, &grid);
+    status = dea_fibre_disc_create(cli->ctx, &plate, &grid);
   }
   if (status == DEA_OK && arguments.output != NULL) {
     status = dea_msh_write(cli->ctx, &plate, grid, arguments.output);

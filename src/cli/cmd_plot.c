@@ -3,11 +3,11 @@
 
 #include "base/file.h"
 #include "base/units.h"
+#include "base/write_file.h"
 #include "cli/figure_options.h"
 #include "output/figure.h"
-#include "output/file.h"
+#include "output/results_h5.h"
 #include "output/run_folder.h"
-#include "output/store.h"
 
 #include <getopt.h>
 #include <math.h>

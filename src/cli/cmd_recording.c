@@ -1,8 +1,8 @@
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
+#include "base/json.h"
 #include "lab/recording/table.h"
-#include "output/json.h"
 
 #include <getopt.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 
 #include "base/units.h"
-#include "output/file.h"
+#include "base/write_file.h"
 #include "output/report/report.h"
 
 #include <getopt.h>

@@ -5,7 +5,7 @@
 #include "base/yaml.h"
 #include "cli/models.h"
 #include "cli/print_studies.h"
-#include "output/keep.h"
+#include "output/checkpoint.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -140,9 +140,9 @@ static dea_status choose_models(struct dea_cli *cli, const struct run_options *o
   *count = given ? options->model_count : design->compute.model_count;
   for (size_t i = 0; i < *count; i++) {
     const struct dea_label *label = &design->compute.models[i];
-    const struct dea_place option = {.file = "--model"};
+    const struct dea_location option = {.file = "--model"};
     out[i] = given ? cli_model_find(cli, options->models[i], option)
-                   : cli_model_find(cli, label->text, label->place);
+                   : cli_model_find(cli, label->text, label->location);
     bad = bad || out[i] == NULL;
   }
   if (bad) {
@@ -196,7 +196,7 @@ static void release(struct dea_cli *cli, struct run *run)
   if (run->others.ctx != NULL) {
     dea_text_free(&run->others);
   }
-  dea_keep_destroy(cli->ctx, run->keep);
+  dea_checkpoint_destroy(cli->ctx, run->keep);
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
@@ -328,14 +328,14 @@ static dea_status open_folder(struct dea_cli *cli, const struct run_options *opt
     return DEA_OK;
   }
   if (options->resume) {
-    DEA_TRY(ctx, dea_keep_restore(ctx, directory, run->result));
+    DEA_TRY(ctx, dea_checkpoint_restore(ctx, directory, run->result));
   }
   DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, options->force || options->resume));
   if (options->force) {
     dea_run_folder_clear(ctx, directory);
   }
-  DEA_TRY(ctx, dea_keep_create(ctx, directory, &run->keep));
-  run->result->keeper = dea_keep_keeper(run->keep);
+  DEA_TRY(ctx, dea_checkpoint_create(ctx, directory, &run->keep));
+  run->result->keeper = dea_checkpoint_get_sink(run->keep);
   return DEA_OK;
 }
 
@@ -358,7 +358,8 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   dea_status first = DEA_OK;
   char message[1024] = "";
   clock_gettime(CLOCK_MONOTONIC, &start);
-  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_keep_refused(run->keep); i++) {
+  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(run->keep);
+       i++) {
     dea_status status = dea_study_run_named(ctx, types[i], chosen_studies(options),
                                             options->study_count, run->result);
     if (status != DEA_OK && first == DEA_OK) {
@@ -369,7 +370,7 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   clock_gettime(CLOCK_MONOTONIC, &end);
   run->result->provenance.wall_s =
       (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-  if (!dea_keep_refused(run->keep)) {
+  if (!dea_checkpoint_refused(run->keep)) {
     DEA_TRY(ctx, deliver(cli, options, run, types, count));
   }
   return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);

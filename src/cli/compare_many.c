@@ -1,9 +1,9 @@
 #include "cli/compare_many.h"
 
 #include "base/file.h"
+#include "base/write_file.h"
 #include "output/compare_set.h"
-#include "output/file.h"
-#include "output/store.h"
+#include "output/results_h5.h"
 
 #include <math.h>
 #include <string.h>

@@ -64,14 +64,14 @@ static const char *severity_text(enum dea_severity severity, bool colour)
   return colour ? coloured[severity] : plain[severity];
 }
 
-static void print_place(const struct dea_place *place)
+static void print_place(const struct dea_location *location)
 {
-  if (place->file == NULL || place->file[0] == '\0') {
+  if (location->file == NULL || location->file[0] == '\0') {
     fputs("dea: ", stderr);
-  } else if (place->line == 0) {
-    fprintf(stderr, "%s: ", place->file);
+  } else if (location->line == 0) {
+    fprintf(stderr, "%s: ", location->file);
   } else {
-    fprintf(stderr, "%s:%zu:%zu: ", place->file, place->line, place->column);
+    fprintf(stderr, "%s:%zu:%zu: ", location->file, location->line, location->column);
   }
 }
 
@@ -83,7 +83,7 @@ int cli_report(struct dea_cli *cli, dea_status status)
     if (findings[i].severity == DEA_NOTE && cli->quiet) {
       continue;
     }
-    print_place(&findings[i].place);
+    print_place(&findings[i].location);
     fprintf(stderr, "%s: %s\n", severity_text(findings[i].severity, cli->colour), findings[i].text);
   }
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;

@@ -8,7 +8,7 @@
 
 /* Model of that name, or NULL after a finding at `place` that names those that there are. */
 const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *name,
-                                            struct dea_place place);
+                                            struct dea_location location);
 /* DEA_E_DESIGN after a finding for each model of the design that this version lacks. */
 dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design);
 

@@ -1,7 +1,7 @@
 #include "cli/print_studies.h"
 
 #include "output/csv.h"
-#include "result/history.h"
+#include "result/time_series.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ static void print_cycles(const struct dea_cycle *cycles, size_t count, int colum
   printf("%9s%8s%13s%13s%13s%13s\n%9s%8s%13s%13s%13s%13s\n", "V", "cycles", "first", "last",
          "creep", "rise 10-90", "kV", "", c->display_unit, c->display_unit, c->display_unit, "s");
   for (size_t first = 0, last; first < count; first = last + 1) {
-    last = dea_history_level_end(cycles, count, first);
+    last = dea_time_series_level_end(cycles, count, first);
     if (shown < LEVELS_SHOWN) {
       print_level(&cycles[first], &cycles[last], last - first + 1, c->factor);
       shown++;
@@ -51,12 +51,12 @@ dea_status cli_print_transient(struct dea_context *ctx, const struct dea_result 
   struct dea_energy_balance energy;
   struct dea_cycle *cycles = NULL;
   size_t count = 0;
-  int column = dea_history_column(curve);
+  int column = dea_time_series_column(curve);
   printf("\n%s: in time, %zu points to %.6g s\n", model, curve->count,
          curve->points[curve->count - 1].time_s);
   if (column >= 0) {
-    DEA_TRY(ctx, dea_history_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
-                                    &count));
+    DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
+                                        &count));
   }
   if (count > 0) {
     char title[96];
@@ -65,7 +65,7 @@ dea_status cli_print_transient(struct dea_context *ctx, const struct dea_result 
     print_cycles(cycles, count, column);
   }
   dea_free(ctx, cycles);
-  if (dea_history_balance(curve, &energy)) {
+  if (dea_time_series_balance(curve, &energy)) {
     printf("energy: the supply gave %.5g uJ; %.5g uJ are stored, %.5g uJ moving, %.5g uJ lost; "
            "not accounted for %.2g %%\n",
            1e6 * energy.supply_work_J, 1e6 * energy.stored_J, 1e6 * energy.kinetic_J,

@@ -31,7 +31,7 @@ enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
 enum dea_solid_electrostatics { DEA_FIELD_THIN, DEA_FIELD_COUPLED };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
 enum dea_gravity { DEA_GRAVITY_OFF, DEA_GRAVITY_FIBRES_UP, DEA_GRAVITY_FIBRES_DOWN };
-enum dea_solid_side { DEA_SIDE_ANY, DEA_SIDE_FIBRES, DEA_SIDE_BACK }; // of the centre
+enum dea_buckling_branch { DEA_BRANCH_ANY, DEA_BRANCH_FIBRES, DEA_BRANCH_BACK }; // of the centre
 
 struct dea_design;
 
@@ -100,10 +100,10 @@ struct dea_design {
     size_t model_count;
     double *voltages_V; // [voltage_count], owned; in the order to be computed
     size_t voltage_count;
-    struct dea_place voltages_place;
+    struct dea_location voltages_place;
     struct dea_quantity path_max_stretch; // of the electrode, total; DEA_DEFAULT: or beyond
     struct { // force on a rigid tip; without depths and preloads nothing is computed
-      struct dea_choice tip;  // enum dea_tip_shape
+      struct dea_choice tip;  // enum dea_indenter_shape
       struct dea_choice side; // 0: it comes from the fibres' side, 1: from the other
       struct dea_quantity radius_m, edge_radius_m;
       struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
@@ -143,7 +143,7 @@ struct dea_design {
     struct dea_quantity coverage;         // R itself; absent: from coverage_by
     struct {                              // model 3d
       struct dea_choice film, domain;     // enum dea_solid_film, enum dea_solid_domain
-      struct dea_choice side;             // enum dea_solid_side
+      struct dea_choice side;             // enum dea_buckling_branch
       struct dea_choice field;            // enum dea_solid_electrostatics
       struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
       struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes

@@ -22,14 +22,14 @@ static dea_status make_sweep(struct dea_context *ctx, struct dea_design_raw *raw
   }
   size_t count = sweep_count(from, to, step);
   if (count == 0) {
-    return dea_finding_add(ctx, DEA_ERROR, raw->step_V.place,
+    return dea_finding_add(ctx, DEA_ERROR, raw->step_V.location,
                            "step: from %g V to %g V in steps of %g V are more than %d voltages",
                            from, to, step, DEA_DESIGN_VOLTAGES_MAX);
   }
   double span = step * (double)(count - 1), whole = fabs(to - from);
   bool reaches = fabs(span - whole) <= 1e-6 * step;
   if (!reaches) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, raw->step_V.place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, raw->step_V.location,
                                  "step: steps of %g V from %g V do not meet %g V; the last voltage "
                                  "is %g V",
                                  step, from, to, from + copysign(span, to - from)));
@@ -70,10 +70,10 @@ static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *
 {
   struct dea_design *design = &raw->design;
   if (raw->voltage_count == 0) {
-    design->compute.voltages_place = raw->to_V.place;
+    design->compute.voltages_place = raw->to_V.location;
     return make_sweep(ctx, raw);
   }
-  design->compute.voltages_place = raw->voltages_V[0].place;
+  design->compute.voltages_place = raw->voltages_V[0].location;
   design->compute.voltages_V =
       dea_alloc(ctx, raw->voltage_count, sizeof *design->compute.voltages_V);
   if (design->compute.voltages_V == NULL) {
@@ -113,7 +113,7 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
     return DEA_OK;
   }
   if (end->si <= pre_stretch) {
-    return dea_finding_add(ctx, DEA_ERROR, end->place,
+    return dea_finding_add(ctx, DEA_ERROR, end->location,
                            "max_stretch %g is the total stretch and must be above the pre-stretch "
                            "%g",
                            end->si, pre_stretch);
@@ -136,7 +136,7 @@ static dea_status take_convergence(struct dea_context *ctx, struct dea_design *d
   for (size_t i = 1; i < design->compute.convergence.refinement_count; i++) {
     if (n[i].si <= n[i - 1].si) {
       DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_ERROR, n[i].place,
+              dea_finding_add(ctx, DEA_ERROR, n[i].location,
                               "refinement: %g after %g, but each mesh has to be finer than the "
                               "one before",
                               n[i].si, n[i - 1].si));
@@ -152,12 +152,12 @@ static dea_status take_drive(const struct dea_reader *reader, struct dea_design 
     DEA_TRY(ctx, dea_waveform_read(reader, design->drive.section, "drive.waveform", design->file,
                                    &design->drive.waveform));
   } else if (has_section(design, "transient")) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, design->compute.transient.until_s.place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, design->compute.transient.until_s.location,
                                  "transient: without drive.waveform nothing happens in time"));
   }
   if (design->compute.transient.press.value == 1 &&
       design->compute.force.depth_count + design->compute.force.preload_count == 0) {
-    return dea_finding_add(ctx, DEA_ERROR, design->compute.transient.press.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->compute.transient.press.location,
                            "press: how far? compute.force.depth or compute.force.preload says it");
   }
   return DEA_OK;
@@ -169,11 +169,11 @@ static dea_status take_vibration(struct dea_context *ctx, struct dea_design *des
   const struct dea_quantity *to = &design->compute.frequency.to_Hz;
   design->compute.modal.asked = has_section(design, "modal");
   if (has_section(design, "frequency") && design->compute.frequency.bias_count == 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, to->place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, to->location,
                                  "frequency: without `bias` there is no such study"));
   }
   if (to->si <= design->compute.frequency.from_Hz.si) {
-    return dea_finding_add(ctx, DEA_ERROR, to->place, "to: %g Hz is not above `from`, %g Hz",
+    return dea_finding_add(ctx, DEA_ERROR, to->location, "to: %g Hz is not above `from`, %g Hz",
                            to->si, design->compute.frequency.from_Hz.si);
   }
   return DEA_OK;
@@ -185,7 +185,7 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_design 
     const struct dea_label *model = &design->compute.models[i];
     for (size_t j = 0; j < i; j++) {
       if (strcmp(model->text, design->compute.models[j].text) == 0 && model->text[0] != '\0') {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->place,
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location,
                                      "the model '%.60s' stands twice in the list", model->text));
         break;
       }
@@ -214,7 +214,7 @@ static dea_status take_fields(struct dea_context *ctx, struct dea_design_raw *ra
       found = fabs(design->compute.voltages_V[k] - wanted) <= 1e-9 * (1 + fabs(wanted));
     }
     if (!found) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, raw->fields_at_V[i].place,
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, raw->fields_at_V[i].location,
                                    "fields_at: %g V is not a voltage of the sweep "
                                    "(compute.voltage)",
                                    wanted));
@@ -235,9 +235,9 @@ static dea_status take_materials(const struct dea_reader *reader, struct dea_des
     const struct dea_label *name = &raw->materials[i].name;
     for (size_t j = 0; j < i && name->text[0] != '\0'; j++) {
       if (strcmp(name->text, raw->materials[j].name.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
                                      "the name '%.60s' is taken by the material in line %zu",
-                                     name->text, raw->materials[j].name.place.line));
+                                     name->text, raw->materials[j].name.location.line));
       }
     }
   }

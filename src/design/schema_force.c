@@ -5,7 +5,7 @@
 
 #define AT(member) offsetof(struct dea_design_raw, design.compute.force.member)
 
-// In the order of enum dea_tip_shape.
+// In the order of enum dea_indenter_shape.
 static const char *const tips[] = {"sphere", "flat", "cylinder", NULL};
 static const char *const sides[] = {"fibres", "back", NULL};
 

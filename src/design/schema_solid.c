@@ -5,7 +5,7 @@
 
 #define AT(member) offsetof(struct dea_design_raw, design.compute.solid.member)
 
-// In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_solid_side.
+// In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_buckling_branch.
 static const char *const films[] = {"solid", "membrane", NULL};
 static const char *const electrostatics[] = {"thin", "coupled",
                                              NULL}; // enum dea_solid_electrostatics

@@ -16,8 +16,8 @@ static dea_status read_other_file(struct dea_context *ctx, const struct dea_desi
   }
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &bytes, &other.length);
   if (status == DEA_E_IO) {
-    status =
-        dea_finding_add(ctx, DEA_ERROR, variant->file.place, "file: %s", dea_context_message(ctx));
+    status = dea_finding_add(ctx, DEA_ERROR, variant->file.location, "file: %s",
+                             dea_context_message(ctx));
     status = status == DEA_OK ? DEA_E_DESIGN : status;
   } else if (status == DEA_OK) {
     other.name = path;
@@ -33,12 +33,12 @@ static dea_status check_name(struct dea_context *ctx, const struct dea_design *d
 {
   const struct dea_label *name = &design->compute.compare[i].name;
   if (strlen(name->text) >= DEA_NAME_SIZE || strchr(name->text, '/') != NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
                                  "name: at most %d characters, and no '/'", DEA_NAME_SIZE - 1));
   }
   for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
     if (strcmp(design->compute.compare[k].name.text, name->text) == 0) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
                                    "the name '%.60s' stands twice in the list", name->text));
     }
   }

@@ -15,7 +15,7 @@ static dea_status resolve(struct dea_context *ctx, const struct dea_design *desi
     }
   }
   struct dea_catalogue_entry *entry;
-  DEA_TRY(ctx, dea_catalogue_read(ctx, name->text, name->place, &entry));
+  DEA_TRY(ctx, dea_catalogue_read(ctx, name->text, name->location, &entry));
   dea_status status = dea_material_select(ctx, &entry->data, choice, out);
   dea_catalogue_destroy(ctx, entry);
   return status;
@@ -24,20 +24,20 @@ static dea_status resolve(struct dea_context *ctx, const struct dea_design *desi
 static dea_status check_film(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_material *film)
 {
-  struct dea_place place = design->film.material.place;
+  struct dea_location location = design->film.material.location;
   if (film->law == NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "material '%s' has no hyperelastic law and cannot be the film",
                                  film->name));
   }
   if (film->permittivity.at_rest == 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "material '%s' has no permittivity and cannot be the film",
                                  film->name));
   }
   if (!film->breakdown.known) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, place,
+            dea_finding_add(ctx, DEA_NOTE, location,
                             "the breakdown field of '%s' is unknown: results have no breakdown "
                             "margin",
                             film->name));
@@ -46,7 +46,7 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_design *d
   if (film->breakdown.known && !film->breakdown.exponent_known && l_pre > 1) {
     bool chosen = design->film.breakdown.origin != DEA_ABSENT;
     DEA_TRY(ctx, dea_finding_add(
-                     ctx, DEA_NOTE, chosen ? design->film.breakdown.place : place,
+                     ctx, DEA_NOTE, chosen ? design->film.breakdown.location : location,
                      "the breakdown field of '%s', %g V/um, is that of unstretched film; it "
                      "usually grows with stretch, but by how much is unknown here and taken as "
                      "nothing, so breakdown margins at pre-stretch %g are pessimistic",
@@ -55,7 +55,7 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_design *d
   bool ranged = film->stretch_max > 0;
   if (ranged && (l_pre < film->stretch_min || l_pre > film->stretch_max)) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_WARNING, design->pre_stretch.place,
+            dea_finding_add(ctx, DEA_WARNING, design->pre_stretch.location,
                             "the pre-stretch %g is outside the stretches %g to %g that the "
                             "data of '%s' (%s) cover",
                             l_pre, film->stretch_min, film->stretch_max, film->name, film->law_id));
@@ -68,24 +68,25 @@ static dea_status check_film_in_time(struct dea_context *ctx, const struct dea_d
                                      const struct dea_material *film)
 {
   bool chosen = design->film.viscosity.origin != DEA_ABSENT;
-  struct dea_place place = chosen ? design->film.viscosity.place : design->film.material.place;
+  struct dea_location location =
+      chosen ? design->film.viscosity.location : design->film.material.location;
   if (design->drive.waveform == NULL) {
     return DEA_OK;
   }
   if (film->branch_count == 0 && !chosen) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, location,
                                  "the viscosity of '%s' is unknown: it follows without delay",
                                  film->name));
   }
   if (film->viscosity_assumed) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, location,
                                  "the viscosity of '%s' (%s) is a plausible assumption, nobody "
                                  "measured it: times and creep show what may be, not what is",
                                  film->name, film->viscosity_id));
   }
   if (film->resistivity_ohm_m == 0) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, design->film.material.place,
+            dea_finding_add(ctx, DEA_NOTE, design->film.material.location,
                             "the resistivity of '%s' is unknown: no charge leaks", film->name));
   }
   return DEA_OK;
@@ -98,11 +99,11 @@ static dea_status build_film(struct dea_context *ctx, const struct dea_design *d
       .law = design->film.law.text,
       .permittivity = design->film.permittivity.text,
       .breakdown = design->film.breakdown.text,
-      .law_place = design->film.law.place,
-      .permittivity_place = design->film.permittivity.place,
-      .breakdown_place = design->film.breakdown.place,
+      .law_place = design->film.law.location,
+      .permittivity_place = design->film.permittivity.location,
+      .breakdown_place = design->film.breakdown.location,
       .viscosity = design->film.viscosity.text,
-      .viscosity_place = design->film.viscosity.place,
+      .viscosity_place = design->film.viscosity.location,
   };
   DEA_TRY(ctx, resolve(ctx, design, &design->film.material, &choice, &device->film));
   DEA_TRY(ctx, check_film(ctx, design, &device->film));
@@ -119,7 +120,7 @@ static dea_status build_electrode(struct dea_context *ctx, const struct dea_desi
   if (device->electrode_thickness_m > 0 && device->electrode.law == NULL &&
       device->electrode.young_modulus_Pa == 0) {
     bool named = design->electrodes.material.origin != DEA_ABSENT;
-    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.thickness_m.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.thickness_m.location,
                            "electrodes with a thickness need a material with a law or a Young's "
                            "modulus; %s%s%s",
                            named ? "'" : "", named ? device->electrode.name : "none is given",
@@ -137,7 +138,7 @@ static dea_status build_fibre(struct dea_context *ctx, const struct dea_design *
   }
   DEA_TRY(ctx, resolve(ctx, design, &design->fibres.material, &first, &device->fibre));
   if (device->fibre.young_modulus_Pa == 0) {
-    return dea_finding_add(ctx, DEA_ERROR, design->fibres.material.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->fibres.material.location,
                            "material '%s' has no linear elastic constants and cannot be a fibre",
                            device->fibre.name);
   }

@@ -34,7 +34,7 @@ struct dea_device {
   enum dea_solid_film solid_film; // of model 3d, as the next four
   enum dea_solid_domain solid_domain;
   enum dea_solid_electrostatics solid_field;
-  enum dea_solid_side solid_side;
+  enum dea_buckling_branch solid_side;
   double solid_refinement;        // 1: the coarsest mesh
   int solid_order, solid_order_z; // of the elements, 1 to 3; 0: 2
 };

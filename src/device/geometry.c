@@ -77,7 +77,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
   device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
   device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;
-  device->solid_side = (enum dea_solid_side)design->compute.solid.side.value;
+  device->solid_side = (enum dea_buckling_branch)design->compute.solid.side.value;
   device->solid_refinement = design->compute.solid.refinement.si;
   device->solid_order = (int)design->compute.solid.order.si;
   device->solid_order_z = (int)design->compute.solid.order_z.si;
@@ -98,11 +98,11 @@ static dea_status check_neighbours(struct dea_context *ctx, const struct dea_des
          r_o = device->frame_radius_m - device->fibre_outer_gap_m;
   bool tapers = design->fibres.tip_width_m.origin != DEA_ABSENT;
   if (w_t > 2 * r_t * room * (1 + touching)) {
-    struct dea_place place = N > 1    ? design->fibres.count.place
-                             : tapers ? design->fibres.tip_width_m.place
-                                      : design->fibres.width_m.place;
+    struct dea_location location = N > 1    ? design->fibres.count.location
+                                   : tapers ? design->fibres.tip_width_m.location
+                                            : design->fibres.width_m.location;
     return dea_finding_add(
-        ctx, DEA_ERROR, place,
+        ctx, DEA_ERROR, location,
         N > 1 ? "%d fibres of %.4g mm width overlap each other at their tips, %.4g mm from "
                 "the centre (stretched); there they may be at most %.4g mm wide, or their "
                 "tips must be at least %.4g mm from the centre"
@@ -112,7 +112,7 @@ static dea_status check_neighbours(struct dea_context *ctx, const struct dea_des
         N, 1e3 * w_t, 1e3 * r_t, 2e3 * r_t * room, 1e3 * w_t / (2 * room));
   }
   if (w > 2 * r_o * room * (1 + touching)) {
-    return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.location,
                            "%d fibres of %.4g mm width overlap each other at the frame, where they "
                            "may be at most %.4g mm wide",
                            N, 1e3 * w, 2e3 * r_o * room);
@@ -128,14 +128,14 @@ static dea_status check_outer_end(struct dea_context *ctx, const struct dea_desi
   const struct dea_quantity *gap = &design->fibres.outer_gap.length;
   if (device->outer_end != DEA_END_FREE) {
     bool given = gap->origin == DEA_GIVEN || gap->origin == DEA_OVERRIDE;
-    return given ? dea_finding_add(ctx, DEA_WARNING, gap->place,
+    return given ? dea_finding_add(ctx, DEA_WARNING, gap->location,
                                    "outer_gap has no effect: the outer end is not free")
                  : DEA_OK;
   }
   if (device->fibre_outer_gap_m < device->fibre_length_m * (1 - touching)) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR, gap->place,
+  return dea_finding_add(ctx, DEA_ERROR, gap->location,
                          "a gap of %.4g mm (stretched) at the frame leaves nothing of fibres that "
                          "reach %.4g mm from it to their tips",
                          1e3 * device->fibre_outer_gap_m, 1e3 * device->fibre_length_m);
@@ -145,15 +145,15 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
                                const struct dea_device *device)
 {
   double r_t = device->fibre_tip_radius_m, frame = device->frame_radius_m;
-  struct dea_place place = tip_value(design)->place;
+  struct dea_location location = tip_value(design)->location;
   if (device->fibre_width_m >= 2 * frame) {
-    return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.location,
                            "fibres of %.4g mm width do not fit into a frame of %.4g mm inner "
                            "diameter",
                            1e3 * device->fibre_width_m, 2e3 * frame);
   }
   if (r_t <= touching * frame) {
-    return dea_finding_add(ctx, DEA_ERROR, place,
+    return dea_finding_add(ctx, DEA_ERROR, location,
                            "the fibres, %.4g mm long from a frame of %.4g mm inner radius "
                            "(stretched), %s",
                            1e3 * device->fibre_length_m, 1e3 * frame,
@@ -162,7 +162,7 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
   }
   if (r_t >= frame * (1 - touching)) {
     return dea_finding_add(
-        ctx, DEA_ERROR, place,
+        ctx, DEA_ERROR, location,
         "the fibre tips, %.4g mm from the centre (stretched), are not inside the "
         "frame of %.4g mm inner radius",
         1e3 * r_t, 1e3 * frame);
@@ -180,7 +180,7 @@ static dea_status check_probe(struct dea_context *ctx, const struct dea_design *
   if (!used || radius->si <= device->electrode_radius_m * (1 + touching)) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR, radius->place,
+  return dea_finding_add(ctx, DEA_ERROR, radius->location,
                          "the tip, %.4g mm in radius, is larger than the electrode, the part that "
                          "moves: at most %.4g mm (stretched)",
                          1e3 * radius->si, 1e3 * device->electrode_radius_m);
@@ -191,7 +191,7 @@ dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *
 {
   double r_a = device->electrode_radius_m, frame = device->frame_radius_m;
   if (r_a >= frame * (1 - touching)) { // then the tips of fibres mean nothing either
-    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.radius.length.place,
+    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.radius.length.location,
                            "the electrodes, %.4g mm in radius (stretched), do not fit into the "
                            "frame of %.4g mm inner radius",
                            1e3 * r_a, 1e3 * frame);

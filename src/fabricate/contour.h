@@ -11,7 +11,7 @@ struct dea_vertex {
   double x_m, y_m;
   double bulge; // tan of a quarter of the arc's angle to the next vertex; > 0: counter-clockwise,
                 // 0: straight
-  struct dea_place place; // of the value in the design that made this piece
+  struct dea_location location; // of the value in the design that made this piece
 };
 
 struct dea_contour {

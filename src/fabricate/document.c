@@ -1,6 +1,6 @@
 #include "fabricate/document.h"
 
-#include "fabricate/words.h"
+#include "fabricate/labels.h"
 
 #include <stdarg.h>
 #include <stdio.h>

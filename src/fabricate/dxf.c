@@ -4,7 +4,7 @@
 #include "fabricate/dxf.h"
 
 #include "base/version.h"
-#include "fabricate/words.h"
+#include "fabricate/labels.h"
 
 #include <math.h>
 
@@ -385,8 +385,8 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
   struct dea_text words = {.ctx = part->ctx};
   begin_section(file, "ENTITIES");
   write_path(file, &edge, corners, 4, origin);
-  dea_sheet_words(workshop, index, &words);
-  double height = dea_sheet_words_height(layout);
+  dea_sheet_labels(workshop, index, &words);
+  double height = dea_sheet_labels_height(layout);
   write_words(file, DEA_LAYER_NOTE, 2e-3, -2 * height, height, false, dea_text_get(&words));
   dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
   dea_text_free(&words);

@@ -1,13 +1,13 @@
 #define _POSIX_C_SOURCE 200809L // unlink
 #include "fabricate/files.h"
 
+#include "base/write_file.h"
 #include "fabricate/dxf.h"
 #include "fabricate/pages.h"
 #include "fabricate/parts.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"
 #include "fabricate/svg.h"
-#include "output/file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -67,25 +67,25 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
   return status;
 }
 
-struct place {
+struct location {
   struct dea_context *ctx;
   const char *directory;
 };
 
 static dea_status refuse_existing(void *user, const char *name)
 {
-  const struct place *place = user;
-  char *path = dea_path_join(place->ctx, place->directory, name);
+  const struct location *location = user;
+  char *path = dea_path_join(location->ctx, location->directory, name);
   if (path == NULL) {
     return DEA_E_MEMORY;
   }
   bool there = dea_path_exists(path);
-  dea_free(place->ctx, path);
+  dea_free(location->ctx, path);
   return !there ? DEA_OK
-                : dea_fail(place->ctx, DEA_E_IO,
+                : dea_fail(location->ctx, DEA_E_IO,
                            "%s/%s is there already; choose another folder with -o, or replace "
                            "what is there with --force",
-                           place->directory, name);
+                           location->directory, name);
 }
 
 /* Removes the sheets of a part that an older design had and this one has not: they would be taken
@@ -108,9 +108,9 @@ static dea_status forget_part(struct dea_context *ctx, const char *directory, co
 dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_workshop *workshop,
                                 const char *directory, const struct dea_workshop_options *options)
 {
-  struct place place = {ctx, directory};
+  struct location location = {ctx, directory};
   if (!options->force) {
-    DEA_TRY(ctx, dea_workshop_files(workshop, options, refuse_existing, &place));
+    DEA_TRY(ctx, dea_workshop_files(workshop, options, refuse_existing, &location));
   }
   if (options->force && !options->drawing_only && workshop->plan.device->fibre_count == 0) {
     DEA_TRY(ctx, forget_part(ctx, directory, dea_part_fibres.name));

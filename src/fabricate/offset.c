@@ -142,9 +142,9 @@ static enum meeting meet(const struct dea_piece *a, const struct dea_piece *b, d
   return fabs(*turn) < 1e-6 ? SMOOTH : *turn * distance > 0 ? OPEN : CLOSING;
 }
 
-static struct dea_vertex vertex_at(const double at[2], double bulge, struct dea_place place)
+static struct dea_vertex vertex_at(const double at[2], double bulge, struct dea_location location)
 {
-  return (struct dea_vertex){at[0], at[1], bulge, place};
+  return (struct dea_vertex){at[0], at[1], bulge, location};
 }
 
 /* Moved piece i, cut off where its neighbours are. */
@@ -183,10 +183,10 @@ bool dea_contour_offset(const struct dea_contour *contour, double distance_m,
     if (!cut_piece(contour, i, distance_m, &piece)) {
       return false;
     }
-    struct dea_place place = contour->vertex[i].place;
-    out[(*out_count)++] = vertex_at(piece.from, piece.arc ? tan(0.25 * piece.sweep) : 0, place);
+    struct dea_location location = contour->vertex[i].location;
+    out[(*out_count)++] = vertex_at(piece.from, piece.arc ? tan(0.25 * piece.sweep) : 0, location);
     if (meet(&old, &after, distance_m, &turn) == OPEN) { // the cutter goes around the corner
-      out[(*out_count)++] = vertex_at(piece.to, tan(0.25 * turn), place);
+      out[(*out_count)++] = vertex_at(piece.to, tan(0.25 * turn), location);
     }
   }
   return true;

@@ -1,7 +1,7 @@
 #include "fabricate/pages.h"
 
 #include "base/file.h"
-#include "fabricate/draft.h"
+#include "fabricate/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -105,10 +105,10 @@ static void draw_measures(const struct dea_paper *paper, const struct dea_worksh
     if (m->kind == DEA_MEASURE_DIAMETER) {
       callouts[i].radius_mm = 0.5 * length;
     } else {
-      dea_draft_dimension(paper, from, to, &callouts[i]);
+      dea_dimensions_dimension(paper, from, to, &callouts[i]);
     }
   }
-  dea_draft_callouts(paper, around, callouts, part->measure_count);
+  dea_dimensions_callouts(paper, around, callouts, part->measure_count);
 }
 
 static void draw_part_page(const struct dea_paper *paper, const struct dea_workshop *w,
@@ -119,12 +119,12 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
   snprintf(below, sizeof below, "%s; %s; lengths of the %s film, pre-stretch %.4g; %.80s",
            part->paper ? "not to be cut" : "finished part, without kerf", part->seen,
            dea_film_state_name(part->state), w->plan.stretch, dea_path_name(w->plan.design->file));
-  dea_draft_head(paper, size[0], size[1], part->title, below);
-  dea_draft_scale(paper, size[0],
-                  "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");
+  dea_dimensions_head(paper, size[0], size[1], part->title, below);
+  dea_dimensions_scale(paper, size[0],
+                       "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");
   double box[4];
   dea_part_box(part, box);
-  dea_draft_centre(paper, x, y, 1e3 * box[2] + 4);
+  dea_dimensions_centre(paper, x, y, 1e3 * box[2] + 4);
   draw_part(paper, part, x, y);
   draw_measures(paper, w, part, x, y);
 }
@@ -138,7 +138,7 @@ static void draw_sheet_page(const struct dea_paper *paper, const struct dea_work
   snprintf(words, sizeof words,
            "%.80s: %s; %d copies on their sheet, finished parts without kerf; 1:1",
            dea_path_name(w->plan.design->file), w->part[index].title, layout->count);
-  dea_draft_fit(paper, 5, 1.6, 2.3, false, 0x6a6a6a, 1e3 * layout->width_m - 10, words);
+  dea_dimensions_fit(paper, 5, 1.6, 2.3, false, 0x6a6a6a, 1e3 * layout->width_m - 10, words);
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];
     dea_layout_place(layout, copy, at);

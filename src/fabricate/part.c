@@ -34,23 +34,23 @@ void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed)
 }
 
 static void add_vertex(struct dea_part *part, double x, double y, double bulge,
-                       struct dea_place place)
+                       struct dea_location location)
 {
   void *items = part->vertex;
   if (make_room(part, &items, sizeof *part->vertex, part->vertex_count, &part->vertex_room)) {
     part->vertex = items;
-    part->vertex[part->vertex_count++] = (struct dea_vertex){x, y, bulge, place};
+    part->vertex[part->vertex_count++] = (struct dea_vertex){x, y, bulge, location};
     part->contour[part->contour_count - 1].count++;
   }
 }
 
-void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_place place)
+void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_location location)
 {
-  add_vertex(part, x_m, y_m, 0, place);
+  add_vertex(part, x_m, y_m, 0, location);
 }
 
 void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
-                  double to_rad, struct dea_place place)
+                  double to_rad, struct dea_location location)
 {
   int pieces = (int)ceil(fabs(to_rad - from_rad) / (0.5 * pi) - 1e-9); // of a quarter at most
   pieces = pieces < 1 ? 1 : pieces;
@@ -58,27 +58,27 @@ void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius
   for (int i = 0; i < pieces; i++) {
     double angle = from_rad + i * step;
     add_vertex(part, centre_m[0] + radius_m * cos(angle), centre_m[1] + radius_m * sin(angle),
-               tan(0.25 * step), place);
+               tan(0.25 * step), location);
   }
 }
 
 void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
-                     double radius_m, struct dea_place place)
+                     double radius_m, struct dea_location location)
 {
   dea_part_begin(part, layer, true);
-  add_vertex(part, x_m + radius_m, y_m, 1, place);
-  add_vertex(part, x_m - radius_m, y_m, 1, place);
+  add_vertex(part, x_m + radius_m, y_m, 1, location);
+  add_vertex(part, x_m - radius_m, y_m, 1, location);
   if (!part->failed) {
     part->contour[part->contour_count - 1].circle = true;
   }
 }
 
 void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
-                   double x1_m, double y1_m, struct dea_place place)
+                   double x1_m, double y1_m, struct dea_location location)
 {
   dea_part_begin(part, layer, false);
-  add_vertex(part, x0_m, y0_m, 0, place);
-  add_vertex(part, x1_m, y1_m, 0, place);
+  add_vertex(part, x0_m, y0_m, 0, location);
+  add_vertex(part, x1_m, y1_m, 0, location);
 }
 
 void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
@@ -95,11 +95,11 @@ void dea_part_write(struct dea_part *part, double x_m, double y_m, double height
 }
 
 void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
-                      double x1_m, double y1_m, const char *what, struct dea_place place)
+                      double x1_m, double y1_m, const char *what, struct dea_location location)
 {
   if (part->measure_count < DEA_PART_MEASURES_MAX) {
     part->measure[part->measure_count++] =
-        (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what, place};
+        (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what, location};
   }
 }
 

@@ -40,7 +40,7 @@ struct dea_part_measure {
   enum dea_measure_kind kind;
   double from_m[2], to_m[2]; // ends; of a diameter: at opposite places of the circle
   const char *what;          // "electrode"
-  struct dea_place place;
+  struct dea_location location;
 };
 
 struct dea_part {
@@ -67,18 +67,18 @@ struct dea_part {
 /* What follows is one contour on a layer. */
 void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed);
 /* A vertex from which a line goes on. */
-void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_place place);
+void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_location location);
 /* Vertices of an arc from an angle to another about a centre, without its end. */
 void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
-                  double to_rad, struct dea_place place);
+                  double to_rad, struct dea_location location);
 void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
-                     double radius_m, struct dea_place place);
+                     double radius_m, struct dea_location location);
 void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
-                   double x1_m, double y1_m, struct dea_place place);
+                   double x1_m, double y1_m, struct dea_location location);
 void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
                     const char *format, ...) DEA_PRINTF(5, 6);
 void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
-                      double x1_m, double y1_m, const char *what, struct dea_place place);
+                      double x1_m, double y1_m, const char *what, struct dea_location location);
 
 /* ---- looking at one ---- */
 

@@ -15,12 +15,12 @@ static bool is_cut(enum dea_layer layer)
 static dea_status report_gap(const struct dea_part *part, const struct dea_contour *contour,
                              const struct dea_gap *gap, double feature)
 {
-  struct dea_place place = contour->vertex[gap->piece].place;
+  struct dea_location location = contour->vertex[gap->piece].location;
   if (gap->width_m <= 1e-9) {
-    return dea_finding_add(part->ctx, DEA_ERROR, place, "parts overlap " AT_FORMAT,
+    return dea_finding_add(part->ctx, DEA_ERROR, location, "parts overlap " AT_FORMAT,
                            AT_ARGUMENTS(part, gap->x_m, gap->y_m));
   }
-  return dea_finding_add(part->ctx, DEA_ERROR, place,
+  return dea_finding_add(part->ctx, DEA_ERROR, location,
                          "only %.4g mm lie between two edges " AT_FORMAT
                          "; the minimum feature is %.4g mm",
                          1e3 * gap->width_m, AT_ARGUMENTS(part, gap->x_m, gap->y_m), 1e3 * feature);
@@ -35,7 +35,7 @@ static dea_status check_circle(const struct dea_part *part, const struct dea_con
     return DEA_OK;
   }
   return dea_finding_add(
-      part->ctx, DEA_ERROR, circle->vertex[0].place,
+      part->ctx, DEA_ERROR, circle->vertex[0].location,
       "a circle of %.4g mm diameter " AT_FORMAT " is smaller than the minimum feature of %.4g mm",
       2e3 * piece.radius_m, AT_ARGUMENTS(part, piece.centre[0], piece.centre[1]), 1e3 * feature);
 }
@@ -57,7 +57,7 @@ static dea_status check_nesting(const struct dea_part *part, size_t hole,
   if (inside && !in_hole) {
     return DEA_OK;
   }
-  return dea_finding_add(part->ctx, DEA_ERROR, at->place,
+  return dea_finding_add(part->ctx, DEA_ERROR, at->location,
                          in_hole ? "parts overlap: a hole lies in another one, " AT_FORMAT
                                  : "a hole lies outside of the part, " AT_FORMAT,
                          AT_ARGUMENTS(part, at->x_m, at->y_m));
@@ -76,7 +76,7 @@ static dea_status check_path(const struct dea_part *part, size_t i,
   dea_free(part->ctx, path);
   const struct dea_vertex *v = &contour->vertex[good ? 0 : at];
   return good ? DEA_OK
-              : dea_finding_add(part->ctx, DEA_ERROR, v->place,
+              : dea_finding_add(part->ctx, DEA_ERROR, v->location,
                                 "an edge " AT_FORMAT
                                 " is too short for a cutter with a kerf of %.4g mm",
                                 AT_ARGUMENTS(part, v->x_m, v->y_m), 1e3 * kerf);

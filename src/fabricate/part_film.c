@@ -3,19 +3,19 @@
 
 #include <math.h>
 
-void dea_draw_marks(const struct dea_plan *plan, bool mirrored, double scale, enum dea_layer layer,
-                    struct dea_part *part)
+void dea_draw_marks(const struct dea_fab_geometry *plan, bool mirrored, double scale,
+                    enum dea_layer layer, struct dea_part *part)
 {
-  struct dea_place place = plan->design->fabrication.mark_diameter.length.place;
-  for (int m = 0; m < DEA_PLAN_MARKS; m++) {
+  struct dea_location location = plan->design->fabrication.mark_diameter.length.location;
+  for (int m = 0; m < DEA_FAB_MARKS; m++) {
     double x = cos(plan->mark_angle_rad[m]), y = sin(plan->mark_angle_rad[m]);
     dea_part_circle(part, layer, scale * plan->mark_centre_m * (mirrored ? -x : x),
-                    scale * plan->mark_centre_m * y, scale * plan->mark_m, place);
+                    scale * plan->mark_centre_m * y, scale * plan->mark_m, location);
   }
 }
 
 /* Whether a cross at this place of the stretched film would lie on something else. */
-static bool is_taken(const struct dea_plan *plan, double x, double y)
+static bool is_taken(const struct dea_fab_geometry *plan, double x, double y)
 {
   double r = hypot(x, y), clear = 1.5 * plan->cross_m + plan->feature_m;
   bool taken = r < plan->frame_m + clear || r > plan->blank_m - clear;
@@ -24,7 +24,7 @@ static bool is_taken(const struct dea_plan *plan, double x, double y)
     taken |= hypot(x - plan->pad_centre_m * cos(a), y - plan->pad_centre_m * sin(a)) <
              plan->pad_m + clear;
   }
-  for (int m = 0; m < DEA_PLAN_MARKS; m++) {
+  for (int m = 0; m < DEA_FAB_MARKS; m++) {
     double a = plan->mark_angle_rad[m];
     taken |= hypot(x - plan->mark_centre_m * cos(a), y - plan->mark_centre_m * sin(a)) <
              plan->mark_m + clear;
@@ -32,32 +32,32 @@ static bool is_taken(const struct dea_plan *plan, double x, double y)
   return taken;
 }
 
-void dea_draw_grid(const struct dea_plan *plan, double scale, struct dea_part *part)
+void dea_draw_grid(const struct dea_fab_geometry *plan, double scale, struct dea_part *part)
 {
-  struct dea_place place = plan->design->fabrication.grid_spacing.length.place;
+  struct dea_location location = plan->design->fabrication.grid_spacing.length.location;
   int n = (int)(plan->blank_m / plan->grid_m);
   double arm = scale * plan->cross_m;
   for (int j = -n; j <= n; j++) {
     for (int i = -n; i <= n; i++) {
       if (!is_taken(plan, i * plan->grid_m, j * plan->grid_m)) {
         double x = scale * i * plan->grid_m, y = scale * j * plan->grid_m;
-        dea_part_line(part, DEA_LAYER_MARK, x - arm, y, x + arm, y, place);
-        dea_part_line(part, DEA_LAYER_MARK, x, y - arm, x, y + arm, place);
+        dea_part_line(part, DEA_LAYER_MARK, x - arm, y, x + arm, y, location);
+        dea_part_line(part, DEA_LAYER_MARK, x, y - arm, x, y + arm, location);
       }
     }
   }
 }
 
-static void build(const struct dea_plan *plan, struct dea_part *part)
+static void build(const struct dea_fab_geometry *plan, struct dea_part *part)
 {
   double scale = 1 / plan->stretch, edge = scale * plan->blank_m;
-  struct dea_place place = plan->design->fabrication.blank.margin.length.place;
+  struct dea_location location = plan->design->fabrication.blank.margin.length.location;
   dea_draw_grid(plan, scale, part);
   dea_draw_marks(plan, false, scale, DEA_LAYER_MARK, part);
-  dea_part_circle(part, DEA_LAYER_CUT_OUTER, 0, 0, edge, place);
-  dea_part_measure(part, DEA_MEASURE_DIAMETER, -edge, 0, edge, 0, "film", place);
+  dea_part_circle(part, DEA_LAYER_CUT_OUTER, 0, 0, edge, location);
+  dea_part_measure(part, DEA_MEASURE_DIAMETER, -edge, 0, edge, 0, "film", location);
   dea_part_measure(part, DEA_MEASURE_LENGTH, -scale * plan->grid_m, -0.86 * edge, 0, -0.86 * edge,
-                   "grid", plan->design->fabrication.grid_spacing.length.place);
+                   "grid", plan->design->fabrication.grid_spacing.length.location);
 }
 
 const struct dea_part_type dea_part_film = {

@@ -7,12 +7,13 @@
 
 static const double pi = 3.14159265358979323846;
 
-void dea_draw_electrode(const struct dea_plan *plan, enum dea_plan_side side, bool mirrored,
-                        double scale, enum dea_layer layer, struct dea_part *part)
+void dea_draw_electrode(const struct dea_fab_geometry *plan, enum dea_fab_geometry_side side,
+                        bool mirrored, double scale, enum dea_layer layer, struct dea_part *part)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
-  struct dea_place disc = plan->design->electrodes.radius.length.place;
-  struct dea_place lead = f->leads.width.length.place, pad = f->leads.pad_diameter.length.place;
+  struct dea_location disc = plan->design->electrodes.radius.length.location;
+  struct dea_location lead = f->leads.width.length.location,
+                      pad = f->leads.pad_diameter.length.location;
   double angle = mirrored ? pi - plan->lead_angle_rad[side] : plan->lead_angle_rad[side];
   double r = scale * plan->electrode_m, w = scale * plan->lead_width_m, p = scale * plan->pad_m;
   double a = asin(0.5 * w / r), b = asin(0.5 * w / p), c = cos(angle), s = sin(angle);
@@ -26,13 +27,13 @@ void dea_draw_electrode(const struct dea_plan *plan, enum dea_plan_side side, bo
   dea_part_point(part, c * along - s * 0.5 * w, s * along + c * 0.5 * w, lead);
 }
 
-static void build(const struct dea_plan *plan, enum dea_plan_side side, bool mirrored,
-                  struct dea_part *part)
+static void build(const struct dea_fab_geometry *plan, enum dea_fab_geometry_side side,
+                  bool mirrored, struct dea_part *part)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
   double scale = 1 / plan->stretch, half = scale * plan->blank_m, r = scale * plan->electrode_m;
   double angle = mirrored ? pi - plan->lead_angle_rad[side] : plan->lead_angle_rad[side];
-  struct dea_place edge = f->blank.margin.length.place;
+  struct dea_location edge = f->blank.margin.length.location;
   dea_draw_electrode(plan, side, mirrored, scale, DEA_LAYER_CUT_INNER, part);
   dea_draw_marks(plan, mirrored, scale, DEA_LAYER_CUT_INNER, part);
   dea_part_begin(part, DEA_LAYER_CUT_OUTER, true);
@@ -41,29 +42,29 @@ static void build(const struct dea_plan *plan, enum dea_plan_side side, bool mir
   dea_part_point(part, -half, -half, edge);
   dea_part_point(part, half, -half, edge);
   double height = fmin(2e-3, 0.06 * half);
-  dea_part_write(part, 0, -0.94 * half, height, "%s", side == DEA_PLAN_TOP ? "TOP" : "BOTTOM");
+  dea_part_write(part, 0, -0.94 * half, height, "%s", side == DEA_FAB_TOP ? "TOP" : "BOTTOM");
   double c = cos(angle + 0.5 * pi), s = sin(angle + 0.5 * pi), d = scale * plan->pad_centre_m;
   double w = 0.5 * scale * plan->lead_width_m;
   double mx = 0.5 * (r + d - scale * plan->pad_m) * cos(angle),
          my = 0.5 * (r + d - scale * plan->pad_m) * sin(angle);
   dea_part_measure(part, DEA_MEASURE_DIAMETER, -r * c, -r * s, r * c, r * s, "electrode",
-                   plan->design->electrodes.radius.length.place);
+                   plan->design->electrodes.radius.length.location);
   dea_part_measure(part, DEA_MEASURE_LENGTH, mx - w * c, my - w * s, mx + w * c, my + w * s, "lead",
-                   f->leads.width.length.place);
+                   f->leads.width.length.location);
   double px = d * cos(angle), py = d * sin(angle), p = scale * plan->pad_m;
   dea_part_measure(part, DEA_MEASURE_DIAMETER, px - p * c, py - p * s, px + p * c, py + p * s,
-                   "pad", f->leads.pad_diameter.length.place);
+                   "pad", f->leads.pad_diameter.length.location);
   dea_part_measure(part, DEA_MEASURE_LENGTH, -half, half, half, half, "stencil", edge);
 }
 
-static void build_top(const struct dea_plan *plan, struct dea_part *part)
+static void build_top(const struct dea_fab_geometry *plan, struct dea_part *part)
 {
-  build(plan, DEA_PLAN_TOP, false, part);
+  build(plan, DEA_FAB_TOP, false, part);
 }
 
-static void build_bottom(const struct dea_plan *plan, struct dea_part *part)
+static void build_bottom(const struct dea_fab_geometry *plan, struct dea_part *part)
 {
-  build(plan, DEA_PLAN_BOTTOM, true, part);
+  build(plan, DEA_FAB_BOTTOM, true, part);
 }
 
 const struct dea_part_type dea_part_stencil_top = {

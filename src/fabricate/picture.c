@@ -1,7 +1,7 @@
 #include "fabricate/picture.h"
 
 #include "base/file.h"
-#include "fabricate/draft.h"
+#include "fabricate/dimensions.h"
 #include "fabricate/parts.h"
 
 #include <math.h>
@@ -55,8 +55,8 @@ static void paint(struct picture *p, size_t first, unsigned colour, double opaci
 
 static void draw_top(struct picture *p)
 {
-  static const struct dea_place nowhere = {0};
-  const struct dea_plan *plan = &p->w->plan;
+  static const struct dea_location nowhere = {0};
+  const struct dea_fab_geometry *plan = &p->w->plan;
   struct dea_part *parts = &p->parts;
   dea_part_circle(parts, DEA_LAYER_MARK, 0, 0, plan->ring_m, nowhere);
   paint(p, 0, RING, 1, 0);
@@ -64,10 +64,10 @@ static void draw_top(struct picture *p)
   dea_part_circle(parts, DEA_LAYER_MARK, 0, 0, plan->frame_m, nowhere);
   paint(p, first, FILM, 1, 0);
   first = parts->contour_count;
-  dea_draw_electrode(plan, DEA_PLAN_BOTTOM, false, 1, DEA_LAYER_MARK, parts);
+  dea_draw_electrode(plan, DEA_FAB_BOTTOM, false, 1, DEA_LAYER_MARK, parts);
   paint(p, first, ELECTRODE, 0.25, 0.8);
   first = parts->contour_count;
-  dea_draw_electrode(plan, DEA_PLAN_TOP, false, 1, DEA_LAYER_MARK, parts);
+  dea_draw_electrode(plan, DEA_FAB_TOP, false, 1, DEA_LAYER_MARK, parts);
   paint(p, first, ELECTRODE, 1, 0);
   for (int k = 0; k < plan->device->fibre_count; k++) {
     first = parts->contour_count;
@@ -78,7 +78,7 @@ static void draw_top(struct picture *p)
   first = parts->contour_count;
   dea_draw_marks(plan, false, 1, DEA_LAYER_MARK, parts);
   paint(p, first, 0xffffff, 1, 0);
-  dea_draft_centre(p->paper, top_x, top_y, p->scale * plan->ring_m + 4);
+  dea_dimensions_centre(p->paper, top_x, top_y, p->scale * plan->ring_m + 4);
 }
 
 static void set_note(struct dea_callout *c, const char *what, double length, double stretch)
@@ -108,7 +108,7 @@ static void add_length(struct picture *p, struct dea_callout *c, const double fr
   char text[32];
   double length = hypot(to[0] - from[0], to[1] - from[1]);
   *c = (struct dea_callout){0};
-  dea_draft_dimension(p->paper, a, b, c);
+  dea_dimensions_dimension(p->paper, a, b, c);
   dea_length_text(text, sizeof text, length);
   snprintf(c->label, sizeof c->label, "%s mm", text);
   set_note(c, what, length, stretch);
@@ -143,14 +143,14 @@ static size_t add_fibre_lengths(struct picture *p, struct dea_callout *out)
 
 static void label_top(struct picture *p)
 {
-  const struct dea_plan *plan = &p->w->plan;
+  const struct dea_fab_geometry *plan = &p->w->plan;
   struct dea_callout c[8];
   size_t n = 0;
   double r = p->scale * plan->ring_m;
   const double box[4] = {top_x - r, top_y - r, top_x + r, top_y + r};
   add_round(p, &c[n++], 0, 0, plan->frame_m, "frame, inside", 1);
   add_round(p, &c[n++], 0, 0, plan->electrode_m, "electrode", plan->stretch);
-  double a = plan->lead_angle_rad[DEA_PLAN_TOP], b = plan->lead_angle_rad[DEA_PLAN_BOTTOM];
+  double a = plan->lead_angle_rad[DEA_FAB_TOP], b = plan->lead_angle_rad[DEA_FAB_BOTTOM];
   add_round(p, &c[n++], plan->pad_centre_m * cos(a), plan->pad_centre_m * sin(a), plan->pad_m,
             "pad above", plan->stretch);
   add_round(p, &c[n++], plan->pad_centre_m * cos(b), plan->pad_centre_m * sin(b), plan->pad_m,
@@ -158,7 +158,7 @@ static void label_top(struct picture *p)
   if (plan->device->fibre_count > 0) {
     n += add_fibre_lengths(p, &c[n]);
   }
-  dea_draft_callouts(p->paper, box, c, n);
+  dea_dimensions_callouts(p->paper, box, c, n);
 }
 
 /* ---- section along the first fibre ---- */
@@ -189,7 +189,7 @@ static struct heights choose_heights(const struct dea_device *d)
 
 static void draw_section(struct picture *p, const struct heights *h)
 {
-  const struct dea_plan *plan = &p->w->plan;
+  const struct dea_fab_geometry *plan = &p->w->plan;
   const struct dea_device *d = plan->device;
   double R = plan->frame_m, o = plan->ring_m, r = plan->electrode_m, top = h->film;
   layer(p, -o, -R, -top - 6, -top, RING);
@@ -230,7 +230,7 @@ static void add_layer_label(struct picture *p, struct dea_callout *c, double x, 
 
 static void label_section(struct picture *p, const struct heights *h)
 {
-  const struct dea_plan *plan = &p->w->plan;
+  const struct dea_fab_geometry *plan = &p->w->plan;
   const struct dea_device *d = plan->device;
   double l = plan->stretch, o = p->scale * plan->ring_m, t = d->electrode_thickness_m;
   const double box[4] = {top_x - o, section_y - 11, top_x + o, section_y + 13};
@@ -250,20 +250,20 @@ static void label_section(struct picture *p, const struct heights *h)
       add_layer_label(p, &c[n++], fibre, base + 0.5 * h->bond, "glue", d->bond_thickness_m, 0);
     }
   }
-  dea_draft_callouts(p->paper, box, c, n);
+  dea_dimensions_callouts(p->paper, box, c, n);
 }
 
 static void write_words(struct picture *p)
 {
-  const struct dea_plan *plan = &p->w->plan;
+  const struct dea_fab_geometry *plan = &p->w->plan;
   const struct dea_canvas_type *type = p->paper->type;
   const char *title = plan->design->title.text;
   char below[256];
   snprintf(below, sizeof below,
            "%.80s; pre-stretch %.4g; film %.60s; lengths in the stretched film",
            dea_path_name(plan->design->file), plan->stretch, plan->device->film.name);
-  dea_draft_head(p->paper, page_width, page_height,
-                 title[0] != '\0' ? title : dea_path_name(plan->design->file), below);
+  dea_dimensions_head(p->paper, page_width, page_height,
+                      title[0] != '\0' ? title : dea_path_name(plan->design->file), below);
   type->text(p->paper->canvas, 12, 60.5, 2.6, 0, DEA_ALIGN_LEFT, true, INK,
              plan->device->fibre_count > 0 ? "Section along the first fibre" : "Section");
   type->text(p->paper->canvas, 12, 56.8, 2.3, 0, DEA_ALIGN_LEFT, false, GREY,

@@ -1,7 +1,7 @@
 #include "fabricate/process.h"
 
 #include "base/file.h"
-#include "fabricate/draft.h"
+#include "fabricate/dimensions.h"
 #include "fabricate/parts.h"
 #include "fabricate/sensitivity.h"
 
@@ -48,12 +48,12 @@ static double printed_area(const struct dea_part *stencil)
 
 void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *out)
 {
-  const struct dea_plan *plan = &workshop->plan;
+  const struct dea_fab_geometry *plan = &workshop->plan;
   const struct dea_device *d = plan->device;
   const struct dea_part *top = find_part(workshop, "stencil-top");
   const struct dea_part *bottom = find_part(workshop, "stencil-bottom");
   double l2 = plan->stretch * plan->stretch, side = 2 * plan->blank_m / plan->stretch;
-  double marks = DEA_PLAN_MARKS * pi * plan->mark_m * plan->mark_m / l2;
+  double marks = DEA_FAB_MARKS * pi * plan->mark_m * plan->mark_m / l2;
   *out = (struct dea_amounts){.film_area_m2 = pi * plan->blank_m * plan->blank_m / l2,
                               .ink_area_m2 = printed_area(top) + printed_area(bottom),
                               .transfer_glue_area_m2 = printed_area(bottom) - marks -
@@ -157,7 +157,7 @@ static void mm(char out[NUMBER], double length_m)
 
 static void add_printing(struct sheet *s)
 {
-  const struct dea_plan *plan = &s->w->plan;
+  const struct dea_fab_geometry *plan = &s->w->plan;
   const struct dea_fabrication *f = &plan->design->fabrication;
   double l = plan->stretch, celsius = f->cure_temperature_K.si - 273.15;
   double hours = f->cure_time_s.si / 3600;
@@ -197,7 +197,7 @@ static void add_printing(struct sheet *s)
 
 static void add_stretching(struct sheet *s)
 {
-  const struct dea_plan *plan = &s->w->plan;
+  const struct dea_fab_geometry *plan = &s->w->plan;
   const struct dea_device *d = plan->device;
   char a[NUMBER], b[NUMBER], c[NUMBER];
   mm(a, plan->grid_m / plan->stretch);
@@ -279,7 +279,7 @@ static void add_length_check(struct sheet *s, const struct dea_sensitivity found
 
 static void add_check_rows(struct sheet *s, const struct dea_sensitivity found[DEA_SENSITIVITIES])
 {
-  const struct dea_plan *plan = &s->w->plan;
+  const struct dea_fab_geometry *plan = &s->w->plan;
   const struct dea_device *d = plan->device;
   const struct dea_fabrication *f = &plan->design->fabrication;
   char wanted[96], tolerance[64], number[NUMBER];

@@ -1,6 +1,6 @@
 #include "fabricate/svg.h"
 
-#include "fabricate/words.h"
+#include "fabricate/labels.h"
 
 #include <math.h>
 
@@ -101,7 +101,7 @@ dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, stru
   const struct dea_part *part = &workshop->part[index];
   struct dea_text words = {.ctx = part->ctx};
   double width = mm(layout->width_m), height = mm(layout->height_m);
-  dea_sheet_words(workshop, index, &words);
+  dea_sheet_labels(workshop, index, &words);
   dea_text_add(out,
                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                "<svg xmlns=\"http://www.w3.org/2000/svg\" "

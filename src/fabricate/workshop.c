@@ -60,13 +60,13 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
     return DEA_OK;
   }
   if (columns * rows >= 1) {
-    return dea_finding_add(ctx, DEA_ERROR, f->copies.place,
+    return dea_finding_add(ctx, DEA_ERROR, f->copies.location,
                            "copies: a sheet of %.4g mm x %.4g mm takes %.0f of the part '%s', not "
                            "%d",
                            1e3 * across, 1e3 * up, columns * rows, part->name, w->plan.copies);
   }
   return dea_finding_add(ctx, DEA_ERROR,
-                         columns < 1 ? f->sheet.width_m.place : f->sheet.height_m.place,
+                         columns < 1 ? f->sheet.width_m.location : f->sheet.height_m.location,
                          "a sheet of %.4g mm x %.4g mm is too small for the part '%s' of %.4g mm, "
                          "with a margin of %.4g mm",
                          1e3 * across, 1e3 * up, part->name, 2e3 * half, 1e3 * margin);
@@ -122,7 +122,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
                        const struct dea_device *device, struct dea_workshop *w)
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  DEA_TRY(ctx, dea_plan_make(ctx, design, device, &w->plan));
+  DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
     DEA_TRY(ctx, build_parts(ctx, w));
     DEA_TRY(ctx, lay_out(ctx, w));

@@ -3,8 +3,8 @@
 #ifndef DEA_FABRICATE_WORKSHOP_H
 #define DEA_FABRICATE_WORKSHOP_H
 
+#include "fabricate/fab_geometry.h"
 #include "fabricate/part.h"
-#include "fabricate/plan.h"
 
 enum { DEA_WORKSHOP_PARTS_MAX = 8 };
 
@@ -20,7 +20,7 @@ struct dea_layout {
 };
 
 struct dea_workshop {
-  struct dea_plan plan;
+  struct dea_fab_geometry plan;
   struct dea_part part[DEA_WORKSHOP_PARTS_MAX]; // in the order of the work
   struct dea_layout layout[DEA_WORKSHOP_PARTS_MAX];
   size_t count;

@@ -106,7 +106,7 @@ dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, siz
 
 /* Adds the finding that there is no such material, with the nearest name and all names. */
 static dea_status unknown_material(struct dea_context *ctx, const char *name,
-                                   struct dea_place place)
+                                   struct dea_location location)
 {
   const char **names;
   size_t count;
@@ -117,12 +117,13 @@ static dea_status unknown_material(struct dea_context *ctx, const char *name,
   }
   const char *nearest = dea_nearest_name(name, names, count);
   dea_status status =
-      list.failed ? DEA_E_MEMORY
-                  : dea_finding_add(ctx, DEA_ERROR, place, "there is no material '%.60s'%s%s%s: %s",
-                                    name, nearest != NULL ? "; did you mean '" : "",
-                                    nearest != NULL ? nearest : "",
-                                    nearest != NULL ? "'? All materials" : "; there are",
-                                    count > 0 ? dea_text_get(&list) : "none");
+      list.failed
+          ? DEA_E_MEMORY
+          : dea_finding_add(ctx, DEA_ERROR, location, "there is no material '%.60s'%s%s%s: %s",
+                            name, nearest != NULL ? "; did you mean '" : "",
+                            nearest != NULL ? nearest : "",
+                            nearest != NULL ? "'? All materials" : "; there are",
+                            count > 0 ? dea_text_get(&list) : "none");
   dea_text_free(&list);
   dea_free(ctx, names);
   DEA_TRY(ctx, status);
@@ -130,7 +131,7 @@ static dea_status unknown_material(struct dea_context *ctx, const char *name,
 }
 
 /* Text of NAME.yaml from the first directory that has it; *file is interned. */
-static dea_status load(struct dea_context *ctx, const char *name, struct dea_place place,
+static dea_status load(struct dea_context *ctx, const char *name, struct dea_location location,
                        const char **file, char **bytes, size_t *length)
 {
   struct directories list;
@@ -153,7 +154,7 @@ static dea_status load(struct dea_context *ctx, const char *name, struct dea_pla
     }
     return dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, bytes, length);
   }
-  return unknown_material(ctx, name, place);
+  return unknown_material(ctx, name, location);
 }
 
 static dea_status read_entry(struct dea_context *ctx, const char *name, const char *bytes,
@@ -166,7 +167,7 @@ static dea_status read_entry(struct dea_context *ctx, const char *name, const ch
                                &entry->data));
   DEA_TRY(ctx, dea_material_data_finish(&reader, "", &entry->data));
   if (entry->data.name.text[0] != '\0' && strcmp(entry->data.name.text, name) != 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, entry->data.name.place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, entry->data.name.location,
                                  "the material '%.60s' must stand in a file '%.60s.yaml'",
                                  entry->data.name.text, entry->data.name.text));
   }
@@ -176,8 +177,8 @@ static dea_status read_entry(struct dea_context *ctx, const char *name, const ch
   return DEA_OK;
 }
 
-dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct dea_place place,
-                              struct dea_catalogue_entry **out)
+dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
+                              struct dea_location location, struct dea_catalogue_entry **out)
 {
   char *bytes = NULL;
   size_t length = 0;
@@ -186,7 +187,7 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct 
   if (entry == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = load(ctx, name, place, &entry->file, &bytes, &length);
+  dea_status status = load(ctx, name, location, &entry->file, &bytes, &length);
   if (status == DEA_OK) {
     status = read_entry(ctx, name, bytes, length, entry);
   }
@@ -212,7 +213,7 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
 /* Index of the set with that id (the first for ""); -1 after adding a finding. ids: a label every
  * `stride` bytes. */
 static int find_set(struct dea_context *ctx, const char *what, const struct dea_material_data *data,
-                    const char *wanted, struct dea_place place, const struct dea_label *ids,
+                    const char *wanted, struct dea_location location, const struct dea_label *ids,
                     size_t count, size_t stride)
 {
   const char *names[DEA_MATERIAL_SETS_MAX] = {NULL};
@@ -230,7 +231,7 @@ static int find_set(struct dea_context *ctx, const char *what, const struct dea_
   }
   const char *nearest = dea_nearest_name(wanted, names, count);
   dea_status status = dea_finding_add(
-      ctx, DEA_ERROR, place, "material '%s' has no %s '%.60s'%s%s%s: %s", data->name.text, what,
+      ctx, DEA_ERROR, location, "material '%s' has no %s '%.60s'%s%s%s: %s", data->name.text, what,
       wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
       nearest != NULL ? "'? All" : "; there are", count > 0 ? list : "none");
   if (status == DEA_OK) {
@@ -264,7 +265,7 @@ static dea_status take_viscosity(struct dea_context *ctx, const struct dea_visco
     const struct dea_branch_data *branch = &set->branches[i];
     bool relative = branch->ratio.origin != DEA_ABSENT;
     if (relative && out->law == NULL) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, branch->ratio.place,
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, branch->ratio.location,
                                    "ratio: '%s' has no law whose modulus it could be a share of",
                                    out->name));
       return dea_fail(ctx, DEA_E_DESIGN, "a branch of '%s' has no modulus", out->name);

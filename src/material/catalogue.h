@@ -111,8 +111,8 @@ struct dea_catalogue_entry {
 dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, size_t *count);
 /* Reads one material. place: where the name stands in an input, for the finding when there is no
  * such material (DEA_E_DESIGN). out: owned by the caller, NULL on failure. */
-dea_status dea_catalogue_read(struct dea_context *ctx, const char *name, struct dea_place place,
-                              struct dea_catalogue_entry **out);
+dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
+                              struct dea_location location, struct dea_catalogue_entry **out);
 /* NULL is fine. */
 void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
 
@@ -120,7 +120,7 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
  * place: of what named it. */
 struct dea_material_choice {
   const char *law, *permittivity, *breakdown, *viscosity;
-  struct dea_place law_place, permittivity_place, breakdown_place, viscosity_place;
+  struct dea_location law_place, permittivity_place, breakdown_place, viscosity_place;
 };
 
 /* The material as the models use it. A set that does not exist gives DEA_E_DESIGN after a finding

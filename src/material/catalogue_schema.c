@@ -337,7 +337,7 @@ static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *
   }
   const char *nearest = dea_nearest_name(set->law_name.text, names, count);
   dea_status status = dea_schema_error(
-      reader, set->law_name.place, "'%.60s' is not a law%s%s%s: %s", set->law_name.text,
+      reader, set->law_name.location, "'%.60s' is not a law%s%s%s: %s", set->law_name.text,
       nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
       nearest != NULL ? "'? All laws" : "; there are", dea_text_get(&list));
   bool failed = list.failed;
@@ -380,8 +380,8 @@ static dea_status check_id(const struct dea_reader *reader, const struct dea_lab
   if (id->text[0] == '\0' || strcmp(id->text, other->text) != 0) {
     return DEA_OK;
   }
-  return dea_schema_error(reader, id->place, "the id '%.60s' is taken by the set in line %zu",
-                          id->text, other->place.line);
+  return dea_schema_error(reader, id->location, "the id '%.60s' is taken by the set in line %zu",
+                          id->text, other->location.line);
 }
 
 static dea_status check_length(const struct dea_reader *reader, const struct dea_label *label)
@@ -389,8 +389,8 @@ static dea_status check_length(const struct dea_reader *reader, const struct dea
   if (strlen(label->text) < DEA_NAME_SIZE) {
     return DEA_OK;
   }
-  return dea_schema_error(reader, label->place, "'%.60s...' is longer than %d bytes", label->text,
-                          DEA_NAME_SIZE - 1);
+  return dea_schema_error(reader, label->location, "'%.60s...' is longer than %d bytes",
+                          label->text, DEA_NAME_SIZE - 1);
 }
 
 static dea_status check_range(const struct dea_reader *reader,
@@ -399,7 +399,7 @@ static dea_status check_range(const struct dea_reader *reader,
   if (range->count != 2 || !(range->limits[0].si >= range->limits[1].si)) {
     return DEA_OK;
   }
-  return dea_schema_error(reader, range->limits[1].place,
+  return dea_schema_error(reader, range->limits[1].location,
                           "stretch_range must rise; %g is not above %g", range->limits[1].si,
                           range->limits[0].si);
 }

@@ -39,7 +39,7 @@ dea_status dea_film_say_weight(struct dea_context *ctx, const struct dea_device 
                                const char *model)
 {
   if (device->gravity != DEA_GRAVITY_OFF) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model %s knows no weight: its film stays flat (gravity)", model));
   }
   return DEA_OK;

@@ -108,8 +108,8 @@ struct dea_model_type {
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
    * solved, in steps of its own; later solves keep it there and their points have its force. The
    * tip of the first call stays. NULL when the model knows no tips. */
-  dea_status (*press)(struct dea_context *ctx, struct dea_model *model, const struct dea_probe *tip,
-                      double depth_m, struct dea_load_point *out);
+  dea_status (*indent)(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_probe *tip, double depth_m, struct dea_load_point *out);
   /* The lowest modes of small motions about the last point solved, `at`: copies of it with the keys
    * of a mode, [count]. shapes: the film's middle surface there with a field a mode; owned by the
    * caller, NULL on failure. NULL when the model has no mass. */

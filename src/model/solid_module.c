@@ -63,10 +63,10 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
-static dea_status press(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
+static dea_status indent(struct dea_context *ctx, struct dea_model *model,
+                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, model->type->press(ctx, model->inner, probe, depth_m, out));
+  DEA_TRY(ctx, model->type->indent(ctx, model->inner, probe, depth_m, out));
   return DEA_OK;
 }
 
@@ -143,7 +143,7 @@ const struct dea_model_type dea_model_3d = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
-    .press = press,
+    .indent = indent,
     .modes = modes,
     .respond = respond,
     .profile = profile,

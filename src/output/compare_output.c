@@ -1,7 +1,7 @@
 #include "output/compare_output.h"
 
+#include "base/write_file.h"
 #include "output/figure.h"
-#include "output/file.h"
 #include "output/gnuplot.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_OUTPUT_COMPARE_OUTPUT_H
 #define DEA_OUTPUT_COMPARE_OUTPUT_H
 
-#include "output/json.h"
+#include "base/json.h"
 #include "output/plot.h"
 #include "result/compare.h"
 

@@ -12,7 +12,7 @@ const char *const dea_half_names[DEA_HALVES] = {
     [DEA_HALF_BETWEEN] = "between fibres",
 };
 
-static const struct dea_place nowhere = {"", 0, 0};
+static const struct dea_location nowhere = {"", 0, 0};
 
 dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference,
                                   const struct dea_measured *measured,

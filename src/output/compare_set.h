@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_COMPARE_SET_H
 #define DEA_OUTPUT_COMPARE_SET_H
 
-#include "output/json.h"
+#include "base/json.h"
 #include "output/measured.h"
 #include "output/plot.h"
 #include "result/compare_history.h"

@@ -1,7 +1,7 @@
 /* The figures of several curves beside one reference (see compare_set.h). */
+#include "base/write_file.h"
 #include "output/compare_set_parts.h"
 #include "output/figure.h"
-#include "output/file.h"
 #include "output/gnuplot.h"
 
 #include <math.h>
@@ -29,9 +29,9 @@ dea_status dea_set_figure_finish(struct dea_set_figures *f, struct dea_plot *plo
   return status;
 }
 
-struct dea_series dea_set_look(const struct dea_compare_set *set, size_t curve)
+struct dea_series dea_set_style(const struct dea_compare_set *set, size_t curve)
 {
-  return dea_figure_look(set->curves[curve].name, curve);
+  return dea_figure_style(set->curves[curve].name, curve);
 }
 
 void dea_set_range(struct dea_panel *panel)
@@ -155,7 +155,7 @@ static dea_status fill_quantity(struct dea_set_figures *f, int column, struct de
     DEA_TRY(f->ctx, add_measured(f->ctx, panel, m, column, true));
   }
   for (size_t i = 0; i < set->curve_count; i++) {
-    struct dea_series look = dea_set_look(set, i);
+    struct dea_series look = dea_set_style(set, i);
     DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, set->curves[i].curve, column,
                                    dea_point_columns[column].factor, 0.0, &look));
   }
@@ -237,7 +237,7 @@ static dea_status add_line(struct dea_set_figures *f, struct dea_panel *panel,
                            const struct dea_set_profile *p)
 {
   const struct dea_film_line *line = &p->line;
-  struct dea_series *series, look = dea_set_look(f->set, p->curve);
+  struct dea_series *series, look = dea_set_style(f->set, p->curve);
   size_t n = line->count;
   look.style = p->half == DEA_HALF_FIBRE ? DEA_LINE : DEA_DASHED;
   if (p->half == DEA_HALF_BETWEEN) {

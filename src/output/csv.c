@@ -1,6 +1,6 @@
 #include "output/csv.h"
 
-#include "output/file.h"
+#include "base/write_file.h"
 #include "result/convergence.h"
 
 #include <math.h>

@@ -29,9 +29,9 @@ bool dea_csv_unit(struct dea_context *ctx, const char *unit, struct dea_measure 
 }
 
 /* Counts an error; false when its finding should no longer be added. */
-static bool one_more(struct reader *r, size_t column, struct dea_place *place)
+static bool one_more(struct reader *r, size_t column, struct dea_location *location)
 {
-  *place = (struct dea_place){r->out->file, r->line, column};
+  *location = (struct dea_location){r->out->file, r->line, column};
   return ++r->errors <= FINDINGS_MAX;
 }
 
@@ -39,10 +39,10 @@ static dea_status read_unit(struct reader *r, int w, const char *title, const ch
                             size_t column)
 {
   char why[DEA_WHY_SIZE] = "";
-  struct dea_place place;
+  struct dea_location location;
   if (unit[0] == '\0') {
-    return one_more(r, column, &place)
-               ? dea_finding_add(r->ctx, DEA_ERROR, place,
+    return one_more(r, column, &location)
+               ? dea_finding_add(r->ctx, DEA_ERROR, location,
                                  "'%s' needs a unit in parentheses, for example '%s'", title,
                                  r->wanted[w].title)
                : DEA_OK;
@@ -53,16 +53,16 @@ static dea_status read_unit(struct reader *r, int w, const char *title, const ch
   if (why[0] == '\0') {
     return dea_context_status(r->ctx);
   }
-  return one_more(r, column, &place)
-             ? dea_finding_add(r->ctx, DEA_ERROR, place, "the unit in '%s' does not fit: %s", title,
-                               why)
+  return one_more(r, column, &location)
+             ? dea_finding_add(r->ctx, DEA_ERROR, location, "the unit in '%s' does not fit: %s",
+                               title, why)
              : DEA_OK;
 }
 
 static dea_status read_title(struct reader *r, const char *title, size_t column)
 {
   char name[DEA_CSV_FIELD_MAX], unit[DEA_CSV_FIELD_MAX];
-  struct dea_place place = {r->out->file, r->line, column};
+  struct dea_location location = {r->out->file, r->line, column};
   int *meaning = &r->meaning[r->field_count++];
   *meaning = -1;
   dea_csv_split_title(title, name, unit);
@@ -70,12 +70,12 @@ static dea_status read_title(struct reader *r, const char *title, size_t column)
     *meaning = strcmp(name, r->wanted[w].name) == 0 ? (int)w : -1;
   }
   if (*meaning < 0) {
-    return dea_finding_add(r->ctx, DEA_NOTE, place, "column '%s' is not used", title);
+    return dea_finding_add(r->ctx, DEA_NOTE, location, "column '%s' is not used", title);
   }
   for (size_t f = 0; f + 1 < r->field_count; f++) {
     if (r->meaning[f] == *meaning) {
-      return one_more(r, column, &place)
-                 ? dea_finding_add(r->ctx, DEA_ERROR, place, "'%s' is there twice", title)
+      return one_more(r, column, &location)
+                 ? dea_finding_add(r->ctx, DEA_ERROR, location, "'%s' is there twice", title)
                  : DEA_OK;
     }
   }
@@ -87,13 +87,13 @@ static dea_status read_header(struct reader *r, const char *line)
   const char *cursor = line;
   char title[DEA_CSV_FIELD_MAX];
   size_t column;
-  struct dea_place place;
+  struct dea_location location;
   bool there[DEA_CSV_COLUMNS_MAX] = {false};
   r->separator = dea_csv_separator(line);
   while (dea_csv_field(line, &cursor, r->separator, title, &column)) {
     if (r->field_count == FIELDS_MAX) {
-      return one_more(r, column, &place)
-                 ? dea_finding_add(r->ctx, DEA_ERROR, place, "more than %d columns", FIELDS_MAX)
+      return one_more(r, column, &location)
+                 ? dea_finding_add(r->ctx, DEA_ERROR, location, "more than %d columns", FIELDS_MAX)
                  : DEA_OK;
     }
     DEA_TRY(r->ctx, read_title(r, title, column));
@@ -103,8 +103,8 @@ static dea_status read_header(struct reader *r, const char *line)
     }
   }
   for (size_t w = 0; w < r->wanted_count; w++) {
-    if (r->wanted[w].needed && !there[w] && one_more(r, 1, &place)) {
-      DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, place, "no column such as '%s'",
+    if (r->wanted[w].needed && !there[w] && one_more(r, 1, &location)) {
+      DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, location, "no column such as '%s'",
                                       r->wanted[w].title));
     }
   }
@@ -141,7 +141,7 @@ static bool grow(struct reader *r)
 static dea_status read_field(struct reader *r, size_t field, char *text, size_t column)
 {
   int w = r->meaning[field];
-  struct dea_place place;
+  struct dea_location location;
   char shown[DEA_CSV_FIELD_MAX];
   double value;
   if (w < 0) {
@@ -153,12 +153,12 @@ static dea_status read_field(struct reader *r, size_t field, char *text, size_t 
     r->out->values[w][r->out->rows] = value * r->factor[w];
     return DEA_OK;
   }
-  if (!one_more(r, column, &place)) {
+  if (!one_more(r, column, &location)) {
     return DEA_OK;
   }
-  return number
-             ? dea_finding_add(r->ctx, DEA_ERROR, place, "a row without '%s'", r->wanted[w].title)
-             : dea_finding_add(r->ctx, DEA_ERROR, place, "'%s' is not a number", shown);
+  return number ? dea_finding_add(r->ctx, DEA_ERROR, location, "a row without '%s'",
+                                  r->wanted[w].title)
+                : dea_finding_add(r->ctx, DEA_ERROR, location, "'%s' is not a number", shown);
 }
 
 static dea_status read_row(struct reader *r, const char *line)
@@ -166,7 +166,7 @@ static dea_status read_row(struct reader *r, const char *line)
   const char *cursor = line;
   char text[DEA_CSV_FIELD_MAX];
   size_t column = 1, field = 0, before = r->errors;
-  struct dea_place place;
+  struct dea_location location;
   bool more = false;
   if (!grow(r)) {
     return DEA_E_MEMORY;
@@ -177,9 +177,9 @@ static dea_status read_row(struct reader *r, const char *line)
       DEA_TRY(r->ctx, read_field(r, field, text, column));
     }
   }
-  if ((more || field < r->field_count) && one_more(r, column, &place)) {
+  if ((more || field < r->field_count) && one_more(r, column, &location)) {
     DEA_TRY(r->ctx,
-            dea_finding_add(r->ctx, DEA_ERROR, place, "%s fields than the header, which has %zu",
+            dea_finding_add(r->ctx, DEA_ERROR, location, "%s fields than the header, which has %zu",
                             more ? "more" : "fewer", r->field_count));
   }
   r->out->line[r->out->rows] = r->line;
@@ -189,7 +189,7 @@ static dea_status read_row(struct reader *r, const char *line)
 
 static dea_status read_lines(struct reader *r, char *text)
 {
-  struct dea_place place;
+  struct dea_location location;
   const char *line = dea_csv_line(&text, &r->line);
   if (line != NULL) {
     DEA_TRY(r->ctx, read_header(r, line));
@@ -199,8 +199,8 @@ static dea_status read_lines(struct reader *r, char *text)
          (line = dea_csv_line(&text, &r->line)) != NULL) {
     DEA_TRY(r->ctx, read_row(r, line));
   }
-  if (r->out->rows == 0 && r->errors == 0 && one_more(r, 1, &place)) {
-    return dea_finding_add(r->ctx, DEA_ERROR, place, "no rows of numbers");
+  if (r->out->rows == 0 && r->errors == 0 && one_more(r, 1, &location)) {
+    return dea_finding_add(r->ctx, DEA_ERROR, location, "no rows of numbers");
   }
   return DEA_OK;
 }

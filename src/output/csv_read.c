@@ -3,8 +3,8 @@
 
 #include "base/csv_line.h"
 #include "base/file.h"
+#include "base/write_file.h"
 #include "output/csv_columns.h"
-#include "output/file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,9 +43,9 @@ static const struct {
 };
 enum { OTHER_NAMES = sizeof other_names / sizeof other_names[0] };
 
-static struct dea_place place_of(const struct reader *r, size_t column)
+static struct dea_location place_of(const struct reader *r, size_t column)
 {
-  return (struct dea_place){r->file, r->line, column};
+  return (struct dea_location){r->file, r->line, column};
 }
 
 /* Counts an error; false when its finding should no longer be added (too many, or no memory). */

@@ -1,7 +1,7 @@
 #include "output/figure.h"
 
+#include "base/write_file.h"
 #include "output/figure_list.h"
-#include "output/file.h"
 #include "output/gnuplot.h"
 
 #include <string.h>
@@ -85,7 +85,7 @@ static dea_status write_one(struct dea_context *ctx, const struct dea_result *re
                           ? figure->write(ctx, result, options, directory, drawn)
                           : write_plot(ctx, result, directory, options, figure, drawn);
   if (status == DEA_OK && !*drawn && options->names != NULL) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
                              "the result has nothing to show in figure '%s'", figure->name);
   }
   return status;

@@ -49,7 +49,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
                           const struct dea_curve *curve, int column, double factor, double shift,
                           const struct dea_series *look);
 /* Look of the m-th model. */
-struct dea_series dea_figure_look(const char *model, size_t m);
+struct dea_series dea_figure_style(const char *model, size_t m);
 /* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
 void dea_figure_voltage_axis(struct dea_panel *panel);
 /* Marks the events of all paths on their curves, with a key entry a kind. column, factor, shift: as

@@ -1,6 +1,6 @@
 /* The deformed film over the voltages of the sweep, as an animated GIF. */
 #include "output/script.h"
-#include "output/space.h"
+#include "output/view3d.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@ enum { PIECES = 1200, FRAMES_MAX = 33, WIDTH_PX = 720, LABEL_PX = 40 };
 
 static const char name[] = "animation";
 
-static void add_script(struct dea_text *gp, const struct dea_space *space,
+static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
   char caption[160];
@@ -17,10 +17,10 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
            "the film's middle surface over the sweep, z drawn %g times larger than x and y",
            space->times);
   dea_script_head(gp, name, caption, format, 1e3 * format->width_m, 1e3 * format->width_m);
-  dea_picture_add_palette(gp, space->low_m, space->high_m);
-  dea_space_add_settings(gp, space);
-  double height_px = 0.78 * WIDTH_PX * dea_space_shape(space) + 2 * LABEL_PX;
-  dea_space_add_margins(gp, LABEL_PX / height_px);
+  dea_colour_map_add_palette(gp, space->low_m, space->high_m);
+  dea_view3d_add_settings(gp, space);
+  double height_px = 0.78 * WIDTH_PX * dea_view3d_shape(space) + 2 * LABEL_PX;
+  dea_view3d_add_margins(gp, LABEL_PX / height_px);
   dea_text_add(gp,
                "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
                "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
@@ -37,13 +37,13 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
                "do for [k = 0:%zu] {\n"
                "  set label 1 kV[k + 1].\" kV\" at screen 0.03, screen 0.94 front\n",
                WIDTH_PX, height_px, space->count - 1);
-  dea_space_add_command(gp, space);
+  dea_view3d_add_command(gp, space);
   dea_text_add(gp, "}\nunset output\n");
 }
 
 /* Pictures of all records on one mesh; *count: how many were made, also after a failure. */
 static dea_status make_pictures(struct dea_context *ctx, const struct dea_surface_record *records[],
-                                size_t record_count, struct dea_picture *pictures, size_t *count)
+                                size_t record_count, struct dea_colour_map *pictures, size_t *count)
 {
   const struct dea_field_mesh *first = records[0]->mesh;
   *count = 0;
@@ -51,7 +51,7 @@ static dea_status make_pictures(struct dea_context *ctx, const struct dea_surfac
     const struct dea_field_mesh *mesh = records[i]->mesh;
     if (mesh->point_count == first->point_count && mesh->cell_count == first->cell_count &&
         memcmp(mesh->X, first->X, 3 * mesh->point_count * sizeof *mesh->X) == 0) {
-      DEA_TRY(ctx, dea_picture_create(ctx, records[i], PIECES, &pictures[(*count)++]));
+      DEA_TRY(ctx, dea_colour_map_create(ctx, records[i], PIECES, &pictures[(*count)++]));
     }
   }
   return DEA_OK;
@@ -61,9 +61,9 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const struct dea_figure_options *options, const char *directory,
                         bool *drawn)
 {
-  static const struct dea_space_figure figure = {.name = name, .add_script = add_script};
+  static const struct dea_view3d_figure figure = {.name = name, .add_script = add_script};
   const struct dea_surface_record *records[FRAMES_MAX];
-  struct dea_picture pictures[FRAMES_MAX];
+  struct dea_colour_map pictures[FRAMES_MAX];
   size_t count = dea_surface_spread(result, FRAMES_MAX, records);
   *drawn = count > 1 && records[0]->mesh->cell_count > 0; // one is no animation
   if (!*drawn) {
@@ -71,10 +71,10 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   }
   dea_status status = make_pictures(ctx, records, count, pictures, &count);
   if (status == DEA_OK) {
-    status = dea_space_write(ctx, &figure, pictures, count, &options->format, directory);
+    status = dea_view3d_write(ctx, &figure, pictures, count, &options->format, directory);
   }
   for (size_t i = 0; i < count; i++) {
-    dea_picture_free(ctx, &pictures[i]);
+    dea_colour_map_free(ctx, &pictures[i]);
   }
   return status;
 }

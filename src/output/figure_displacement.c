@@ -45,7 +45,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   double factor = z_factor(result, z);
   size_t strain_count = 0;
   for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_look(models[m], m);
+    struct dea_series look = dea_figure_style(models[m], m);
     snprintf(look.title + strlen(look.title), sizeof look.title - strlen(look.title), ", strain");
     DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false),
                                 dea_point_column_find("electrode_stretch"), 100.0, -1.0, &look));
@@ -58,7 +58,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   for (size_t m = 0; m < count; m++) {
     bool once = are_equal(dea_figure_curve(result, models[m], false), z);
     for (int c = 0; c < (once ? 1 : 2); c++) {
-      struct dea_series look = dea_figure_look(models[m], m);
+      struct dea_series look = dea_figure_style(models[m], m);
       look.style = DEA_LINE_MARKED;
       look.colour = colours[next % COLOURS];
       look.marker = 2 + (int)next;

@@ -96,7 +96,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     DEA_TRY(ctx, add_breakdown(ctx, panel, furthest, top));
   }
   for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_look(models[m], m);
+    struct dea_series look = dea_figure_style(models[m], m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false), column,
                                 dea_point_columns[column].factor, 0.0, &look));
   }

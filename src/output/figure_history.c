@@ -1,7 +1,7 @@
 /* What happens in time: voltage above displacement, force, current. */
 #include "output/figure.h"
 
-#include "result/history.h"
+#include "result/time_series.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -54,7 +54,7 @@ static dea_status add_models(struct dea_context *ctx, const struct dea_result *r
   for (size_t m = 0; m < count; m++) {
     const struct dea_curve *curve = dea_result_find(result, models[m], "transient");
     if (curve != NULL && curve->count > 1) {
-      struct dea_series look = dea_figure_look(models[m], m);
+      struct dea_series look = dea_figure_style(models[m], m);
       look.style = line_of(curve);
       DEA_TRY(ctx, add(ctx, panel, curve, key, factor, &look));
     }
@@ -90,7 +90,7 @@ static dea_status add_voltages(struct dea_context *ctx, const struct dea_curve *
 /* Column that shows the motion, and its factor: micrometres below half a millimetre. */
 static int motion_of(const struct dea_curve *curve, double *factor)
 {
-  int column = dea_history_column(curve);
+  int column = dea_time_series_column(curve);
   double largest = 0;
   for (size_t i = 0; i < curve->count && column >= 0; i++) {
     double value = fabs(dea_point_get(&curve->points[i], column));

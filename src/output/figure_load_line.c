@@ -13,7 +13,7 @@ enum { SHOWN_MAX = 6 };
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct dea_stops *stops, size_t k, size_t number)
 {
-  const struct dea_series look = dea_stops_look(number);
+  const struct dea_series look = dea_stops_style(number);
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
   snprintf(series->title, sizeof series->title, "%.4g kV",

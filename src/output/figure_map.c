@@ -1,20 +1,20 @@
 /* Displacement out of the plane over the whole disc, as colours. */
 #include "output/script.h"
-#include "output/space.h"
+#include "output/view3d.h"
 
 enum { PIECES = 3000 };
 
 static const char name[] = "map";
 static const char caption[] = "displacement out of the plane, over the place in the stretched film";
 
-static void add_script(struct dea_text *gp, const struct dea_space *space,
+static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
   double width_mm = 1e3 * format->width_m, left = 12, right = 21.5, bottom = 11.5, top = 3;
   double side = width_mm - left - right, height_mm = side + bottom + top;
   double edge_mm = 1.03e3 * space->radius_m;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
-  dea_picture_add_palette(gp, space->low_m, space->high_m);
+  dea_colour_map_add_palette(gp, space->low_m, space->high_m);
   dea_text_add(
       gp,
       "set lmargin at screen %.4f\nset rmargin at screen %.4f\n"
@@ -37,7 +37,7 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
                1e-3 * space->pictures[0].voltage_V);
-  dea_space_add_command(gp, space);
+  dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }
 
@@ -45,9 +45,9 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const struct dea_figure_options *options, const char *directory,
                         bool *drawn)
 {
-  static const struct dea_space_figure figure = {
+  static const struct dea_view3d_figure figure = {
       .name = name, .flat = true, .pieces = PIECES, .add_script = add_script};
-  return dea_space_write_one(ctx, &figure, result, options, directory, drawn);
+  return dea_view3d_write_one(ctx, &figure, result, options, directory, drawn);
 }
 
 const struct dea_figure dea_figure_map = {.name = name, .caption = caption, .write = write};

@@ -1,7 +1,7 @@
 /* Shapes of the lowest modes: motion out of the plane over the whole disc, one map each. */
-#include "output/file.h"
+#include "base/write_file.h"
 #include "output/script.h"
-#include "output/space.h"
+#include "output/view3d.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static const struct dea_surface_record *choose(const struct dea_result *result, 
 
 /* A shape as the displacement of a picture; one unit is drawn as a micrometre. */
 static dea_status make_picture(struct dea_context *ctx, const struct dea_surface_record *record,
-                               const struct dea_mesh_field *shape, struct dea_picture *out)
+                               const struct dea_mesh_field *shape, struct dea_colour_map *out)
 {
   struct dea_field_mesh mesh = *record->mesh; // lends all but one array
   const struct dea_surface_record moved = {.voltage_V = record->voltage_V, .mesh = &mesh};
@@ -45,7 +45,7 @@ static dea_status make_picture(struct dea_context *ctx, const struct dea_surface
       mesh.fields[f].values = values;
     }
   }
-  dea_status status = dea_picture_create(ctx, &moved, PIECES, out);
+  dea_status status = dea_colour_map_create(ctx, &moved, PIECES, out);
   dea_free(ctx, values);
   return status;
 }
@@ -53,7 +53,7 @@ static dea_status make_picture(struct dea_context *ctx, const struct dea_surface
 /* What is drawn: pictures, and the frequency of each [Hz] and how much of it is out of the plane.
  */
 struct maps {
-  struct dea_picture pictures[MAPS_MAX];
+  struct dea_colour_map pictures[MAPS_MAX];
   double frequency_Hz[MAPS_MAX], out_of_plane[MAPS_MAX], voltage_V;
   size_t count;
 };
@@ -94,7 +94,7 @@ static dea_status make_maps(struct dea_context *ctx, const struct dea_result *re
 }
 
 /* One map: its place on the page, its words, the picture. */
-static void add_map(struct dea_text *gp, const struct dea_space *space, const struct maps *maps,
+static void add_map(struct dea_text *gp, const struct dea_view3d *space, const struct maps *maps,
                     size_t k, size_t rows)
 {
   enum { HEAD = 14 }; // per cent of a cell's height for words
@@ -111,10 +111,10 @@ static void add_map(struct dea_text *gp, const struct dea_space *space, const st
                : maps->out_of_plane[k] < 0.5 ? ", in plane"
                                              : "",
                left + 0.5 * wide, top - 0.5 * HEAD * 0.01 * high, k);
-  dea_space_add_command(gp, space);
+  dea_view3d_add_command(gp, space);
 }
 
-static void add_script(struct dea_text *gp, const struct dea_space *space, const struct maps *maps,
+static void add_script(struct dea_text *gp, const struct dea_view3d *space, const struct maps *maps,
                        const struct dea_plot_format *format)
 {
   size_t rows = (maps->count + ACROSS - 1) / ACROSS;
@@ -124,7 +124,7 @@ static void add_script(struct dea_text *gp, const struct dea_space *space, const
   snprintf(words, sizeof words, "%s, about %.4g kV; red up, blue down", caption,
            1e-3 * maps->voltage_V);
   dea_script_head(gp, name, words, format, width_mm, 1.16 * cell_mm * (double)rows);
-  dea_picture_add_palette(gp, -1e-6, 1e-6);
+  dea_colour_map_add_palette(gp, -1e-6, 1e-6);
   dea_text_add(gp,
                "set view map\nset pm3d corners2color mean border retrace\nset surface explicit\n"
                "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
@@ -142,14 +142,14 @@ static dea_status write_maps(struct dea_context *ctx, const struct maps *maps,
                              const struct dea_plot_format *format, const char *directory)
 {
   struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
-  struct dea_space space;
-  dea_space_measure(maps->pictures, maps->count, &space);
+  struct dea_view3d space;
+  dea_view3d_measure(maps->pictures, maps->count, &space);
   space.flat = true;
   void *before = dea_c_locale_enter();
   add_script(&gp, &space, maps, format);
-  dea_space_add_data(&dat, &space);
+  dea_view3d_add_data(&dat, &space);
   dea_c_locale_leave(before);
-  dea_status status = dea_picture_write(ctx, &gp, &dat, name, directory);
+  dea_status status = dea_colour_map_write(ctx, &gp, &dat, name, directory);
   dea_text_free(&gp);
   dea_text_free(&dat);
   return status;
@@ -170,7 +170,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
     status = write_maps(ctx, &maps, &options->format, directory);
   }
   for (size_t k = 0; k < maps.count; k++) {
-    dea_picture_free(ctx, &maps.pictures[k]);
+    dea_colour_map_free(ctx, &maps.pictures[k]);
   }
   return status;
 }

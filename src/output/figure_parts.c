@@ -16,7 +16,7 @@ const struct dea_curve *dea_figure_curve(const struct dea_result *result, const 
   return other != NULL && other->count > 0 ? other : NULL;
 }
 
-struct dea_series dea_figure_look(const char *model, size_t m)
+struct dea_series dea_figure_style(const char *model, size_t m)
 {
   static const enum dea_colour order[] = {DEA_BLUE, DEA_VERMILLION, DEA_GREEN, DEA_PURPLE};
   struct dea_series look = {

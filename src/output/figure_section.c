@@ -1,6 +1,6 @@
 /* Displacement out of the plane along two diameters: along the first fibre, and between it and the
  * next. */
-#include "output/picture.h"
+#include "output/colour_map.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,13 +8,13 @@
 enum { SHOWN_MAX = 3, PIECES = 80000 };
 
 static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
-                               const struct dea_drawing *drawing, double angle,
+                               const struct dea_surface_lattice *drawing, double angle,
                                const struct dea_series *look)
 {
   double *found;
   size_t count;
   struct dea_series *series;
-  DEA_TRY(ctx, dea_drawing_section(ctx, drawing, angle, &found, &count));
+  DEA_TRY(ctx, dea_surface_lattice_section(ctx, drawing, angle, &found, &count));
   dea_status status = dea_panel_add(ctx, panel, count, &series);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     series->values[i] = 1e3 * found[i];
@@ -33,9 +33,9 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
 {
   static const enum dea_colour order[SHOWN_MAX] = {DEA_SKY, DEA_VERMILLION, DEA_BLACK};
   struct dea_series look = {.style = DEA_LINE, .colour = order[shown]};
-  struct dea_drawing drawing;
+  struct dea_surface_lattice drawing;
   snprintf(look.title, sizeof look.title, "%.4g kV", 1e-3 * record->voltage_V);
-  dea_status status = dea_drawing_create(ctx, record->mesh, PIECES, &drawing);
+  dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
   if (status == DEA_OK) {
     status = add_diameter(ctx, panel, &drawing, 0, &look);
   }
@@ -46,7 +46,7 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   }
   panel->x_max = 1e3 * drawing.radius_m;
   panel->x_min = -panel->x_max;
-  dea_drawing_free(ctx, &drawing);
+  dea_surface_lattice_free(ctx, &drawing);
   return status;
 }
 

@@ -36,7 +36,7 @@ void dea_stops_find(const struct dea_result *result, struct dea_stops *out)
   sort(out);
 }
 
-struct dea_series dea_stops_look(size_t i)
+struct dea_series dea_stops_style(size_t i)
 {
   static const enum dea_colour order[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
                                           DEA_PURPLE, DEA_ORANGE,     DEA_BLACK};

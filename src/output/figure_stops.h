@@ -13,6 +13,6 @@ struct dea_stops {
 };
 void dea_stops_find(const struct dea_result *result, struct dea_stops *out);
 /* Look of the i-th curve, without title. */
-struct dea_series dea_stops_look(size_t i);
+struct dea_series dea_stops_style(size_t i);
 
 #endif

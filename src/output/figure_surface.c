@@ -1,6 +1,6 @@
 /* The deformed film in space, coloured by its displacement. */
 #include "output/script.h"
-#include "output/space.h"
+#include "output/view3d.h"
 
 #include <stdio.h>
 
@@ -8,7 +8,7 @@ enum { PIECES = 3000, LABEL_MM = 6 }; // room for words above and below
 
 static const char name[] = "surface";
 
-static void add_script(struct dea_text *gp, const struct dea_space *space,
+static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
   double width_mm = 1e3 * format->width_m, voltage_kV = 1e-3 * space->pictures[0].voltage_V;
@@ -16,11 +16,11 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
   snprintf(caption, sizeof caption,
            "the film's middle surface at %.4g kV, z drawn %g times larger than x and y", voltage_kV,
            space->times);
-  double height_mm = 0.78 * width_mm * dea_space_shape(space) + 2 * LABEL_MM;
+  double height_mm = 0.78 * width_mm * dea_view3d_shape(space) + 2 * LABEL_MM;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
-  dea_picture_add_palette(gp, space->low_m, space->high_m);
-  dea_space_add_settings(gp, space);
-  dea_space_add_margins(gp, LABEL_MM / height_mm);
+  dea_colour_map_add_palette(gp, space->low_m, space->high_m);
+  dea_view3d_add_settings(gp, space);
+  dea_view3d_add_margins(gp, LABEL_MM / height_mm);
   dea_text_add(gp, "\n");
   dea_script_terminals(gp);
   dea_text_add(gp,
@@ -31,7 +31,7 @@ static void add_script(struct dea_text *gp, const struct dea_space *space,
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
                voltage_kV, space->times, 2e3 * space->radius_m);
-  dea_space_add_command(gp, space);
+  dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }
 
@@ -39,9 +39,9 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const struct dea_figure_options *options, const char *directory,
                         bool *drawn)
 {
-  static const struct dea_space_figure figure = {
+  static const struct dea_view3d_figure figure = {
       .name = name, .moved = true, .pieces = PIECES, .add_script = add_script};
-  return dea_space_write_one(ctx, &figure, result, options, directory, drawn);
+  return dea_view3d_write_one(ctx, &figure, result, options, directory, drawn);
 }
 
 const struct dea_figure dea_figure_surface = {

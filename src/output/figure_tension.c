@@ -37,7 +37,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_look(models[m], m);
+    struct dea_series look = dea_figure_style(models[m], m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false),
                                 dea_point_column_find("min_tension_N_per_m"), 1.0, 0.0, &look));
   }

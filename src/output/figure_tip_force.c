@@ -15,7 +15,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     struct dea_curve part = *stops.curve; // lent points: a curve of one stop
     part.points = stops.curve->points + stops.first[i];
     part.count = stops.first[i + 1] - stops.first[i];
-    struct dea_series look = dea_stops_look(i);
+    struct dea_series look = dea_stops_style(i);
     snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, &part, column, dea_point_columns[column].factor, 0.0,
                                 &look));

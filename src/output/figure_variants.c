@@ -21,7 +21,7 @@ size_t dea_figure_variants(const struct dea_result *result, const char *study, b
       }
       if (count < max && (!profiles || variant->profile.count > 0)) {
         out[count].variant = variant;
-        out[count].look = dea_figure_look("", shown);
+        out[count].look = dea_figure_style("", shown);
         out[count++].look.colour = order[number % (sizeof order / sizeof order[0])];
       }
       number++;

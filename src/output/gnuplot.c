@@ -2,7 +2,7 @@
 #include "output/gnuplot.h"
 
 #include "base/file.h"
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <dirent.h>
 #include <errno.h>

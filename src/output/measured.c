@@ -1,6 +1,6 @@
 #include "output/measured.h"
 
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -50,8 +50,9 @@ bool dea_measured_is_folder(const char *path)
 static dea_status out_of_order(struct dea_context *ctx, const struct dea_csv_columns *rows,
                                size_t row, const char *what)
 {
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, (struct dea_place){rows->file, rows->line[row], 1},
-                               "%s from the row before to this one", what));
+  DEA_TRY(ctx,
+          dea_finding_add(ctx, DEA_ERROR, (struct dea_location){rows->file, rows->line[row], 1},
+                          "%s from the row before to this one", what));
   return dea_fail(ctx, DEA_E_IO, "%s cannot be used: its rows are out of order", rows->file);
 }
 

@@ -1,6 +1,6 @@
 #include "output/msh.h"
 
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <string.h>
 
@@ -52,20 +52,20 @@ static const int quad_order[FACE_NODES] = {0, 2, 8, 6, 1, 5, 7, 3, 4};
 static const int face_first[FACES] = {0, 18, 0, 6, 0, 2};
 static const int face_step[FACES][2] = {{3, 1}, {1, 3}, {1, 9}, {9, 1}, {9, 3}, {3, 9}};
 
-static enum group group_of(const struct dea_plate *plate, int region, int sheet)
+static enum group group_of(const struct dea_fibre_disc *plate, int region, int sheet)
 {
-  bool electrode = (region & DEA_PLATE_ELECTRODE) != 0;
+  bool electrode = (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
   switch (sheet) {
-  case DEA_PLATE_BOTTOM:
+  case DEA_FIBRE_DISC_BOTTOM:
     return plate->membrane ? ELECTRODES : ELECTRODE_BELOW;
-  case DEA_PLATE_FILM:
+  case DEA_FIBRE_DISC_FILM:
     return electrode ? FILM_ACTIVE : FILM;
-  case DEA_PLATE_BOND:
+  case DEA_FIBRE_DISC_BOND:
     return BOND;
-  case DEA_PLATE_TOP:
+  case DEA_FIBRE_DISC_TOP:
     return electrode ? ELECTRODE_ABOVE : FILLER;
   default:
-    return sheet == DEA_PLATE_GLUE ? GLUE : FIBRE;
+    return sheet == DEA_FIBRE_DISC_GLUE ? GLUE : FIBRE;
   }
 }
 
@@ -79,21 +79,21 @@ static void face_nodes(const int *nodes, int face, int out[FACE_NODES])
 
 /* Group of a side that looks along the plane: a face of a solid element, an edge of a flat one.
  * GROUPS for none. */
-static enum group side_group(const struct dea_plate *plate, const struct dea_grid *grid,
+static enum group side_group(const struct dea_fibre_disc *plate, const struct dea_grid *grid,
                              const int *nodes, int count)
 {
   int held = 7, edges = 3;
   for (int n = 0; n < count; n++) {
     const double *X = grid->X + 3 * nodes[n];
-    held &= dea_plate_held(plate, X);
-    edges &= dea_plate_edges(plate, X);
+    held &= dea_fibre_disc_held(plate, X);
+    edges &= dea_fibre_disc_edges(plate, X);
   }
   return held == 7 ? FRAME : edges == 1 ? AXIS_PLANE : edges == 2 ? MIDDLE_PLANE : GROUPS;
 }
 
 /* A mesh on its way into a text; without one its elements are counted only. */
 struct writer {
-  const struct dea_plate *plate;
+  const struct dea_fibre_disc *plate;
   const struct dea_grid *grid;
   struct dea_text *text;
   size_t number, counts[DIMENSIONS][GROUPS];
@@ -172,7 +172,7 @@ static void add_names(struct dea_text *text, const struct writer *w)
   dea_text_add(text, "$EndPhysicalNames\n");
 }
 
-static void add_mesh(struct dea_text *text, const struct dea_plate *plate,
+static void add_mesh(struct dea_text *text, const struct dea_fibre_disc *plate,
                      const struct dea_grid *grid)
 {
   struct writer writer = {.plate = plate, .grid = grid};
@@ -190,7 +190,7 @@ static void add_mesh(struct dea_text *text, const struct dea_plate *plate,
   dea_text_add(text, "$EndElements\n");
 }
 
-dea_status dea_msh_write(struct dea_context *ctx, const struct dea_plate *plate,
+dea_status dea_msh_write(struct dea_context *ctx, const struct dea_fibre_disc *plate,
                          const struct dea_grid *grid, const char *path)
 {
   struct dea_text text = {.ctx = ctx};

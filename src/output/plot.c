@@ -1,6 +1,6 @@
 #include "output/plot.h"
 
-#include "output/file.h"
+#include "base/write_file.h"
 #include "output/script.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 #include "output/run_folder.h"
 
+#include "base/write_file.h"
+#include "output/checkpoint.h"
 #include "output/csv.h"
 #include "output/figure.h"
-#include "output/file.h"
-#include "output/keep.h"
-#include "output/store.h"
+#include "output/results_h5.h"
 #include "output/summary.h"
 
 #include <math.h>
@@ -83,9 +83,9 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
       forget(ctx, directory, name);
-      dea_keep_forget(ctx, directory, curve->model, curve->count);
+      dea_checkpoint_forget(ctx, directory, curve->model, curve->count);
       snprintf(name, sizeof name, "%s_%s", curve->model, curve->kind); // shapes of modes
-      dea_keep_forget(ctx, directory, name, curve->count);
+      dea_checkpoint_forget(ctx, directory, name, curve->count);
     }
     for (size_t i = 0; i < old->result->variant_count; i++) {
       const struct dea_curve *curve = &old->result->variants[i].curve;
@@ -155,7 +155,7 @@ static dea_status write_store(struct dea_context *ctx, const struct dea_result *
   if (path == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = dea_store_write(ctx, result, path);
+  dea_status status = dea_results_h5_write(ctx, result, path);
   dea_free(ctx, path);
   return status;
 }
@@ -193,7 +193,7 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
     }
   }
   DEA_TRY(ctx, write_tables(ctx, result, directory));
-  DEA_TRY(ctx, dea_keep_shapes(ctx, result, directory));
+  DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
   if (result->provenance.input != NULL) {
     DEA_TRY(ctx, write_text(ctx, directory, "design.yaml", result->provenance.input));
   }

@@ -1,7 +1,7 @@
 #include "output/state_file.h"
 
+#include "base/h5.h"
 #include "base/version.h"
-#include "output/h5.h"
 #include "result/provenance.h"
 
 #include <string.h>

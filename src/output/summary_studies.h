@@ -2,7 +2,7 @@
 #ifndef DEA_OUTPUT_SUMMARY_STUDIES_H
 #define DEA_OUTPUT_SUMMARY_STUDIES_H
 
-#include "output/json.h"
+#include "base/json.h"
 #include "result/result.h"
 
 /* All points of a curve (NULL: none) as objects in a list. NULL when memory is short. */

@@ -2,7 +2,7 @@
 #include "output/summary_studies.h"
 
 #include "result/columns.h"
-#include "result/history.h"
+#include "result/time_series.h"
 
 #include <math.h>
 
@@ -25,7 +25,7 @@ static json_t *creep_json(const struct dea_cycle *cycles, size_t count)
 {
   json_t *list = json_array();
   for (size_t first = 0, last; first < count; first = last + 1) {
-    last = dea_history_level_end(cycles, count, first);
+    last = dea_time_series_level_end(cycles, count, first);
     json_t *object = json_object();
     dea_json_put(object, "level_V", cycles[first].level_V);
     json_object_set_new(object, "cycles", json_integer((json_int_t)(last - first + 1)));
@@ -59,18 +59,18 @@ dea_status dea_summary_put_transient(struct dea_context *ctx, const struct dea_r
   json_t *object = json_object();
   json_object_set_new(object, "points", json_integer((json_int_t)curve->count));
   dea_json_put(object, "end_s", curve->points[curve->count - 1].time_s);
-  if (dea_history_balance(curve, &energy)) {
+  if (dea_time_series_balance(curve, &energy)) {
     json_object_set_new(object, "energy", energy_json(&energy));
   }
   json_object_set_new(parent, "transient", object);
-  int column = dea_history_column(curve);
+  int column = dea_time_series_column(curve);
   if (result->design == NULL || result->design->drive.waveform == NULL || column < 0) {
     return DEA_OK;
   }
   struct dea_cycle *cycles;
   size_t count;
-  DEA_TRY(ctx,
-          dea_history_cycles(ctx, curve, result->design->drive.waveform, column, &cycles, &count));
+  DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
+                                      &count));
   json_t *list = json_array();
   for (size_t i = 0; i < count; i++) {
     json_array_append_new(list, cycle_json(&cycles[i]));

@@ -1,9 +1,9 @@
 #include "output/vtu.h"
 
+#include "base/bytes.h"
 #include "base/version.h"
-#include "output/bytes.h"
+#include "base/write_file.h"
 #include "output/copies.h"
-#include "output/file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -49,9 +49,9 @@ struct dea_variant {
 
 struct dea_result;
 
-/* Told of a sweep as it goes, so that what is there can be kept before it ends (output/keep.h). A
- * failure ends the sweep. */
-struct dea_keeper {
+/* Told of a sweep as it goes, so that what is there can be kept before it ends
+ * (output/checkpoint.h). A failure ends the sweep. */
+struct dea_checkpoint_sink {
   void *user;
   /* Before the first solve; the curve may have points already, from which the model is to go on. */
   dea_status (*start)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
@@ -87,8 +87,8 @@ struct dea_result {
   size_t surface_bytes_max; // of one model's; may be changed before the first
   struct dea_variant *variants;
   size_t variant_count;
-  double convergence_tolerance;    // relative error that the study asks for; NAN: it did not run
-  const struct dea_keeper *keeper; // lent, NULL for none
+  double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
+  const struct dea_checkpoint_sink *keeper; // lent, NULL for none
   struct dea_provenance provenance;
 };
 

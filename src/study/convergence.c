@@ -17,7 +17,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   dea_status first = DEA_OK;
   if (type->size == NULL) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                             "model %s has no mesh to refine: no study of convergence", type->name));
     return DEA_OK;
   }

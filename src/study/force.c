@@ -20,7 +20,7 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
   struct dea_load_point point;
   double depth_m = first_m, last_m = 0, last_N = 0;
   for (int i = 0; i < PRELOAD_TRIALS; i++) {
-    DEA_TRY(ctx, type->press(ctx, model, tip, depth_m, &point));
+    DEA_TRY(ctx, type->indent(ctx, model, tip, depth_m, &point));
     if (fabs(point.force_N - preload_N) <= preload_close * preload_N) {
       return DEA_OK;
     }
@@ -34,8 +34,8 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
                   1e3 * preload_N);
 }
 
-dea_status dea_force_press(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_design *design, size_t stop)
+dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_design *design, size_t stop)
 {
   size_t depths = design->compute.force.depth_count;
   const struct dea_probe tip = {.shape = (enum dea_probe_shape)design->compute.force.tip.value,
@@ -44,7 +44,7 @@ dea_status dea_force_press(struct dea_context *ctx, const struct dea_model_type 
                                 .from_fibre_side = design->compute.force.side.value == 0};
   struct dea_load_point point;
   if (stop < depths) {
-    DEA_TRY(ctx, type->press(ctx, model, &tip, design->compute.force.depths_m[stop].si, &point));
+    DEA_TRY(ctx, type->indent(ctx, model, &tip, design->compute.force.depths_m[stop].si, &point));
     return DEA_OK;
   }
   DEA_TRY(ctx, find_preload(ctx, type, model, &tip,
@@ -59,7 +59,7 @@ static dea_status load_line(struct dea_context *ctx, const struct dea_model_type
   const struct dea_design *design = result->design;
   struct dea_model *model;
   DEA_TRY(ctx, type->create(ctx, result->device, &model));
-  dea_status status = dea_force_press(ctx, type, model, design, stop);
+  dea_status status = dea_force_indent(ctx, type, model, design, stop);
   if (status == DEA_OK) {
     status = dea_study_take_points(ctx, type, model, design->compute.voltages_V,
                                    design->compute.voltage_count, curve);
@@ -76,7 +76,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   size_t stops = design->compute.force.depth_count + design->compute.force.preload_count;
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
-  if (type->press == NULL) {
+  if (type->indent == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "force", &curve));

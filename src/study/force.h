@@ -6,7 +6,7 @@
 
 /* Presses it to the stop of that number, first depths, then preloads, at the model's last voltage.
  * DEA_E_NOT_CONVERGED when no depth gives a preload. */
-dea_status dea_force_press(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_design *design, size_t stop);
+dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_design *design, size_t stop);
 
 #endif

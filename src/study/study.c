@@ -118,7 +118,7 @@ dea_status dea_study_stop_by_stop(
   struct dea_curve *curve;
   char what[2 * DEA_NAME_SIZE];
   if (!able) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "model %s knows no vibrations: no study '%s'", type->name, kind);
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));

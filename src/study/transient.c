@@ -237,17 +237,17 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
 }
 
 /* Presses the tip in, where that is asked for. */
-static dea_status press(struct dea_context *ctx, const struct dea_design *design, struct player *p)
+static dea_status indent(struct dea_context *ctx, const struct dea_design *design, struct player *p)
 {
   if (design->compute.transient.press.value == 0) {
     return DEA_OK;
   }
-  if (p->type->press == NULL) {
+  if (p->type->indent == NULL) {
     return dea_finding_add(
-        ctx, DEA_NOTE, (struct dea_place){0},
+        ctx, DEA_NOTE, (struct dea_location){0},
         "model %s knows no tips: compute.transient.press is without effect there", p->type->name);
   }
-  DEA_TRY(ctx, dea_force_press(ctx, p->type, p->model, design, 0));
+  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, 0));
   return DEA_OK;
 }
 
@@ -263,7 +263,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   };
   struct dea_load_point point;
   DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
-  DEA_TRY(ctx, press(ctx, design, p));
+  DEA_TRY(ctx, indent(ctx, design, p));
   DEA_TRY(ctx, p->type->begin(ctx, p->model, &options, &point));
   return keep(ctx, p, &point, true);
 }
@@ -275,7 +275,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   struct player p = {.type = type, .inertia = result->design->compute.transient.inertia.value == 1};
   struct dea_waveform *limited = NULL;
   if (type->advance == NULL) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "model %s knows no time: drive.waveform is without effect there",
                            type->name);
   }

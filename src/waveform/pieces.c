@@ -172,7 +172,7 @@ dea_status dea_wave_check_rise(const struct dea_reader *reader, const struct dea
   if (!(rise_s->si > room)) {
     return DEA_OK;
   }
-  return dea_finding_add(reader->ctx, DEA_ERROR, rise_s->place,
+  return dea_finding_add(reader->ctx, DEA_ERROR, rise_s->location,
                          "rise_time: %g s is longer than the %g s that the shorter part of a cycle "
                          "lasts",
                          rise_s->si, room);

@@ -39,7 +39,7 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   p[PERIOD] = raw->period_s.si;
   p[BURSTS] = raw->bursts.si;
   if (p[CYCLES] / p[FREQUENCY] > p[PERIOD]) {
-    return dea_finding_add(reader->ctx, DEA_ERROR, raw->period_s.place,
+    return dea_finding_add(reader->ctx, DEA_ERROR, raw->period_s.location,
                            "period: %g s is shorter than a burst, %g s", p[PERIOD],
                            p[CYCLES] / p[FREQUENCY]);
   }

@@ -70,7 +70,7 @@ static dea_status count_levels(const struct dea_reader *reader, const struct raw
     *count = (size_t)steps + 1;
     return DEA_OK;
   }
-  return dea_finding_add(reader->ctx, DEA_ERROR, raw->step_V.place,
+  return dea_finding_add(reader->ctx, DEA_ERROR, raw->step_V.location,
                          "step: from %g V to %g V in steps of %g V are more than %d voltages",
                          raw->from_V.si, raw->to_V.si, raw->step_V.si, LEVELS_MAX);
 }

@@ -27,7 +27,7 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   const struct raw *raw = data;
   out->end_s = raw->duration_s.si;
   if (raw->at_s.si + raw->rise_s.si > out->end_s) {
-    return dea_finding_add(reader->ctx, DEA_ERROR, raw->duration_s.place,
+    return dea_finding_add(reader->ctx, DEA_ERROR, raw->duration_s.location,
                            "duration: the step is over after %g s, but the waveform lasts %g s",
                            raw->at_s.si + raw->rise_s.si, out->end_s);
   }

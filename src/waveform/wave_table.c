@@ -49,9 +49,9 @@ struct table {
 };
 
 /* Where the next error may be reported; false when there were too many. */
-static bool at_column(struct table *t, size_t column, struct dea_place *place)
+static bool at_column(struct table *t, size_t column, struct dea_location *location)
 {
-  *place = (struct dea_place){t->file, t->line, column};
+  *location = (struct dea_location){t->file, t->line, column};
   return ++t->errors <= FINDINGS_MAX;
 }
 
@@ -59,11 +59,11 @@ static dea_status read_unit(struct table *t, int c, const char *title, const cha
                             size_t column)
 {
   struct dea_context *ctx = t->reader->ctx;
-  struct dea_place place;
+  struct dea_location location;
   char one[DEA_CSV_FIELD_MAX + 2], why[DEA_WHY_SIZE] = "";
   if (unit[0] == '\0') {
-    at_column(t, column, &place);
-    return dea_finding_add(ctx, DEA_ERROR, place,
+    at_column(t, column, &location);
+    return dea_finding_add(ctx, DEA_ERROR, location,
                            "'%s' needs a unit in parentheses, for example '%s'", title,
                            columns[c].example);
   }
@@ -75,8 +75,8 @@ static dea_status read_unit(struct table *t, int c, const char *title, const cha
   if (why[0] == '\0') {
     return dea_context_status(ctx);
   }
-  at_column(t, column, &place);
-  return dea_finding_add(ctx, DEA_ERROR, place, "the unit in '%s' does not fit: %s", title, why);
+  at_column(t, column, &location);
+  return dea_finding_add(ctx, DEA_ERROR, location, "the unit in '%s' does not fit: %s", title, why);
 }
 
 /* Column of that folded name, -1 when it is none of the two. */
@@ -98,14 +98,14 @@ static dea_status read_header(struct table *t, const char *line)
   const char *cursor = line;
   char title[DEA_CSV_FIELD_MAX], name[DEA_CSV_FIELD_MAX], unit[DEA_CSV_FIELD_MAX];
   size_t column;
-  struct dea_place place;
+  struct dea_location location;
   t->separator = dea_csv_separator(line);
   while (dea_csv_field(line, &cursor, t->separator, title, &column)) {
     dea_csv_split_title(title, name, unit);
     int c = find_column(name);
     if (c >= 0 && t->of_field[c] >= 0) {
-      at_column(t, column, &place);
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "'%s' is there twice", title));
+      at_column(t, column, &location);
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%s' is there twice", title));
     } else if (c >= 0) {
       t->of_field[c] = (int)t->field_count;
       DEA_TRY(ctx, read_unit(t, c, title, unit, column));
@@ -114,9 +114,9 @@ static dea_status read_header(struct table *t, const char *line)
   }
   for (int c = 0; c < 2; c++) {
     if (t->of_field[c] < 0) {
-      at_column(t, 1, &place);
-      DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_ERROR, place, "no column such as '%s'", columns[c].example));
+      at_column(t, 1, &location);
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "no column such as '%s'",
+                                   columns[c].example));
     }
   }
   return DEA_OK;
@@ -127,11 +127,11 @@ static dea_status add_row(struct table *t, const double value[2], size_t column)
 {
   struct dea_context *ctx = t->reader->ctx;
   struct dea_waveform *w = t->out;
-  struct dea_place place;
+  struct dea_location location;
   double last = w->knot_count > 0 ? w->knots[w->knot_count - 1].offset_s : 0;
   if (w->knot_count == 0 ? value[TIME] != 0 : value[TIME] < last) {
-    return at_column(t, column, &place)
-               ? dea_finding_add(ctx, DEA_ERROR, place,
+    return at_column(t, column, &location)
+               ? dea_finding_add(ctx, DEA_ERROR, location,
                                  w->knot_count == 0 ? "times start at 0, not at %g s"
                                                     : "times rise; %g s comes too late",
                                  value[TIME])
@@ -156,7 +156,7 @@ static dea_status read_row(struct table *t, const char *line)
   char text[DEA_CSV_FIELD_MAX], shown[DEA_CSV_FIELD_MAX];
   size_t column = 1, number = 0, at[2] = {1, 1}, before = t->errors;
   double value[2] = {NAN, NAN};
-  struct dea_place place;
+  struct dea_location location;
   for (; dea_csv_field(line, &cursor, t->separator, text, &column); number++) {
     for (int c = 0; c < 2; c++) {
       memcpy(shown, text, sizeof shown);
@@ -164,21 +164,21 @@ static dea_status read_row(struct table *t, const char *line)
         continue;
       }
       at[c] = column;
-      if (!dea_csv_number(t->separator, text, &value[c]) && at_column(t, column, &place)) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "'%s' is not a number", shown));
+      if (!dea_csv_number(t->separator, text, &value[c]) && at_column(t, column, &location)) {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%s' is not a number", shown));
       }
       value[c] *= t->factor[c];
     }
   }
   if (t->errors == before && (isnan(value[0]) || isnan(value[1]))) {
-    return at_column(t, at[isnan(value[0]) ? 0 : 1], &place)
-               ? dea_finding_add(ctx, DEA_ERROR, place, "a row without a %s",
+    return at_column(t, at[isnan(value[0]) ? 0 : 1], &location)
+               ? dea_finding_add(ctx, DEA_ERROR, location, "a row without a %s",
                                  isnan(value[0]) ? "time" : "voltage")
                : DEA_OK;
   }
   if (t->errors == before && !(fabs(value[1]) <= voltage_max_V)) {
-    return at_column(t, at[1], &place)
-               ? dea_finding_add(ctx, DEA_ERROR, place, "a voltage is at most 1 MV")
+    return at_column(t, at[1], &location)
+               ? dea_finding_add(ctx, DEA_ERROR, location, "a voltage is at most 1 MV")
                : DEA_OK;
   }
   return t->errors == before ? add_row(t, value, at[TIME]) : DEA_OK;
@@ -187,7 +187,7 @@ static dea_status read_row(struct table *t, const char *line)
 static dea_status read_text(struct table *t, char *text)
 {
   struct dea_context *ctx = t->reader->ctx;
-  struct dea_place place;
+  struct dea_location location;
   const char *header = dea_csv_line(&text, &t->line);
   if (header != NULL) {
     DEA_TRY(ctx, read_header(t, header));
@@ -200,8 +200,8 @@ static dea_status read_text(struct table *t, char *text)
   }
   const struct dea_waveform *w = t->out;
   if (t->errors == 0 && !(w->knot_count > 0 && w->knots[w->knot_count - 1].offset_s > 0)) {
-    at_column(t, 1, &place);
-    return dea_finding_add(ctx, DEA_ERROR, place, "a table needs two times at least");
+    at_column(t, 1, &location);
+    return dea_finding_add(ctx, DEA_ERROR, location, "a table needs two times at least");
   }
   return DEA_OK;
 }
@@ -219,7 +219,8 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
       t.file != NULL ? dea_file_read(ctx, path, FILE_MAX, &text, &length) : DEA_E_MEMORY;
   dea_free(ctx, path);
   if (status == DEA_E_IO) {
-    return dea_finding_add(ctx, DEA_ERROR, raw->file.place, "file: %s", dea_context_message(ctx));
+    return dea_finding_add(ctx, DEA_ERROR, raw->file.location, "file: %s",
+                           dea_context_message(ctx));
   }
   if (status == DEA_E_DESIGN) { // too large, which is a finding
     return DEA_OK;

@@ -1,8 +1,8 @@
 /* A canvas by cairo: the whole of the loadable module that fabricate/canvas.c opens. */
 #include "fabricate/canvas.h"
 
-#include "fabricate/words.h"
-#include "output/bytes.h"
+#include "base/bytes.h"
+#include "fabricate/labels.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

@@ -9,25 +9,25 @@ static const double jitter_max = 0.01;
 static dea_status refuse(struct dea_context *ctx, const struct dea_table *table,
                          const struct dea_table_column *column, size_t row)
 {
-  const struct dea_place place = {table->file, 0, 0};
+  const struct dea_location location = {table->file, 0, 0};
   double before = row > 0 ? column->values[row - 1] : NAN, now = column->values[row];
   if (isnan(now) || (row > 0 && isnan(before))) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "the time column '%.60s' has no time in row %zu of its numbers",
                                  column->name, row + (isnan(now) ? 1 : 0)));
   } else if (now == before) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "the time column '%.60s' repeats %.10g in row %zu of its numbers: "
                                  "it has too few digits; give the rate in a mapping (rate: 10 kHz)",
                                  column->name, now, row + 1));
   } else if (now <= column->values[0] + fabs(before - column->values[0]) * 1e-3) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_ERROR, place,
+            dea_finding_add(ctx, DEA_ERROR, location,
                             "the time column '%.60s' starts again in row %zu of its numbers "
                             "(%.10g after %.10g): the file holds several measurements, split it",
                             column->name, row + 1, now, before));
   } else {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "the time column '%.60s' falls in row %zu of its numbers (%.10g "
                                  "after %.10g)",
                                  column->name, row + 1, now, before));
@@ -71,7 +71,7 @@ dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_tab
 {
   // 2000 to 2050 in days since 1900, with steps below a quarter of an hour
   static const double first_day = 36526, last_day = 54788, step_days = 0.01;
-  const struct dea_place place = {table->file, 0, 0};
+  const struct dea_location location = {table->file, 0, 0};
   const struct dea_table_column *c = &table->columns[column];
   double first = c->count > 0 ? c->values[0] : 0;
   double span = c->count > 1 ? c->values[c->count - 1] - first : 0;
@@ -85,7 +85,7 @@ dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_tab
     return DEA_OK;
   }
   DEA_TRY(ctx,
-          dea_finding_add(ctx, DEA_ERROR, place,
+          dea_finding_add(ctx, DEA_ERROR, location,
                           "the time column '%.60s' has no unit, and %.12g looks like %s%s: say "
                           "which it is in a mapping (time_unit: %s, or time_unit: s)",
                           c->name, first, unit,

@@ -140,10 +140,10 @@ static dea_status refuse_thousands(const struct sample *sample, size_t last, boo
     struct dea_slice rest = sample->lines[last], field;
     while (dea_slice_field(&rest, separators[i], &field)) {
       if (has_thousands(field)) {
-        const struct dea_place place = {sample->file, sample->numbers[last],
-                                        (size_t)(field.text - sample->lines[last].text) + 1};
+        const struct dea_location location = {sample->file, sample->numbers[last],
+                                              (size_t)(field.text - sample->lines[last].text) + 1};
         *found = true;
-        return dea_finding_add(sample->ctx, DEA_ERROR, place,
+        return dea_finding_add(sample->ctx, DEA_ERROR, location,
                                "'%.*s' has a comma and a point: numbers with marks between "
                                "thousands are not read; export them without",
                                (int)(field.length < 40 ? field.length : 40), field.text);
@@ -221,9 +221,9 @@ static dea_status check_above(const struct sample *sample, const struct candidat
     alone = numbers && count == 1 ? alone + 1 : 0;
     if ((numbers && count > 1) || alone > 1 ||
         (!best->all_numeric && is_like(sample->lines[i], model, best, text))) {
-      const struct dea_place place = {sample->file, sample->numbers[i], 1};
+      const struct dea_location location = {sample->file, sample->numbers[i], 1};
       DEA_TRY(sample->ctx,
-              dea_finding_add(sample->ctx, DEA_ERROR, place,
+              dea_finding_add(sample->ctx, DEA_ERROR, location,
                               "numbers stand here, and below other lines those from line %zu on: "
                               "split the file, or take out what is between them",
                               sample->numbers[best->first]));
@@ -320,9 +320,9 @@ static dea_status check_last_title(struct dea_context *ctx, const char *file,
   if (count != dialect->count || numbers == 0 || odd.length == 0) {
     return DEA_OK;
   }
-  const struct dea_place place = {file, dialect->title_lines[0],
-                                  (size_t)(odd.text - dialect->titles[0].text) + 1};
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+  const struct dea_location location = {file, dialect->title_lines[0],
+                                        (size_t)(odd.text - dialect->titles[0].text) + 1};
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                "'%.*s' stands in a line of numbers; write a missing one as NaN or "
                                "leave it empty",
                                (int)(odd.length < 40 ? odd.length : 40), odd.text));

@@ -134,8 +134,8 @@ static dea_status find_titles(struct dea_context *ctx, const struct dea_table *o
     }
   }
   if (!good) {
-    const struct dea_place place = {.file = out->file};
-    return dea_finding_add(ctx, DEA_WARNING, place,
+    const struct dea_location location = {.file = out->file};
+    return dea_finding_add(ctx, DEA_WARNING, location,
                            "the line '%% %.*s' does not name the %zu columns below: they are "
                            "called 'column 1' and so on",
                            (int)(header->titles.length < 60 ? header->titles.length : 60),

@@ -57,7 +57,7 @@ static dea_status find_titles(struct dea_context *ctx, const struct dea_table *t
                               const struct dea_csv_dialect *dialect, struct dea_slice *titles,
                               struct dea_slice *unit_fields, bool *units)
 {
-  const struct dea_place place = {table->file, dialect->line + 1, 1};
+  const struct dea_location location = {table->file, dialect->line + 1, 1};
   *units = false;
   for (size_t i = 0; i < 2 && i < dialect->title_count; i++) {
     if (part(dialect, i, unit_fields) && is_row_of_units(ctx, unit_fields, dialect->count) &&
@@ -73,7 +73,7 @@ static dea_status find_titles(struct dea_context *ctx, const struct dea_table *t
     titles[i] = (struct dea_slice){"", 0};
   }
   if (dialect->title_count > 0) {
-    return dea_finding_add(ctx, DEA_NOTE, place,
+    return dea_finding_add(ctx, DEA_NOTE, location,
                            "the lines above the numbers name no %zu columns: they are called "
                            "'column 1' and so on",
                            dialect->count);

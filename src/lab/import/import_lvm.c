@@ -254,9 +254,9 @@ static dea_status read_field(struct dea_lvm *lvm, struct dea_slice line, size_t 
     return DEA_OK; // a comment, or the empty field of the times
   }
   if (!dea_slice_number(field, lvm->decimal, &value)) {
-    const struct dea_place place = {lvm->file, lvm->lines.line,
-                                    (size_t)(field.text - line.text) + 1};
-    DEA_TRY(lvm->ctx, dea_finding_add(lvm->ctx, DEA_ERROR, place, "'%.*s' is not a number",
+    const struct dea_location location = {lvm->file, lvm->lines.line,
+                                          (size_t)(field.text - line.text) + 1};
+    DEA_TRY(lvm->ctx, dea_finding_add(lvm->ctx, DEA_ERROR, location, "'%.*s' is not a number",
                                       (int)(field.length < 40 ? field.length : 40), field.text));
     return dea_fail(lvm->ctx, DEA_E_IO, "'%s' has lines that cannot be read", lvm->file);
   }

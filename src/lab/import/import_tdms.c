@@ -167,7 +167,7 @@ static dea_status read_segments(struct dea_tdms *tdms, const unsigned char *star
     }
     DEA_TRY(tdms->ctx, read_raw(tdms, table, &segment));
     if (segment.open && table == NULL) {
-      const struct dea_place place = {.file = tdms->file};
+      const struct dea_location place = {.file = tdms->file};
       DEA_TRY(tdms->ctx, dea_finding_add(
                              tdms->ctx, DEA_WARNING, place,
                              "the file was not closed: its last segment, from byte %zu on, is read "
@@ -241,7 +241,7 @@ static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
     }
     column->start = object->start_offset;
     column->interval = object->increment;
-    const struct dea_place place = {.file = tdms->file};
+    const struct dea_location place = {.file = tdms->file};
     if (dea_tdms_is_linear(object)) {
       DEA_TRY(tdms->ctx,
               dea_finding_add(tdms->ctx, DEA_NOTE, place,

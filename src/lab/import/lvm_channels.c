@@ -174,8 +174,8 @@ dea_status dea_lvm_add_columns(struct dea_lvm *lvm)
     }
   }
   if (gap && lvm->x == DEA_LVM_X_NONE) {
-    const struct dea_place place = {.file = lvm->file};
-    return dea_finding_add(lvm->ctx, DEA_NOTE, place,
+    const struct dea_location location = {.file = lvm->file};
+    return dea_finding_add(lvm->ctx, DEA_NOTE, location,
                            "its %zu segments do not follow one another without a gap: every sample "
                            "gets its time",
                            lvm->segments);

@@ -230,9 +230,9 @@ static dea_status check(struct dea_context *ctx, const struct dea_mapping *mappi
     const struct dea_label *name = &mapping->columns[i].column;
     for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
       if (dea_mapping_matches(mapping->columns[k].column.text, name->text, false)) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->place,
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
                                      "the column '%.60s' is taken in line %zu already", name->text,
-                                     mapping->columns[k].column.place.line));
+                                     mapping->columns[k].column.location.line));
       }
     }
   }
@@ -242,11 +242,11 @@ static dea_status check(struct dea_context *ctx, const struct dea_mapping *mappi
   bool named = mapping->profile.x.text[0] != '\0';
   bool from = !isnan(mapping->profile.x_from_m.si), to = !isnan(mapping->profile.x_to_m.si);
   if (named ? from || to : !from || !to) {
-    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.columns.place,
+    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.columns.location,
                            "profile: where its points are is said by x_from and x_to, or by x");
   }
   if (!named && mapping->profile.x_from_m.si == mapping->profile.x_to_m.si) {
-    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.x_to_m.place,
+    return dea_finding_add(ctx, DEA_ERROR, mapping->profile.x_to_m.location,
                            "x_to is where x_from is");
   }
   return DEA_OK;

@@ -2,7 +2,7 @@
 #include "lab/import/mat.h"
 
 #include "base/module.h"
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <ctype.h>
 #include <stdint.h>

@@ -19,9 +19,9 @@ struct work {
   double origin_s; // what is taken off all times
 };
 
-static struct dea_place file_place(const struct work *work)
+static struct dea_location file_place(const struct work *work)
 {
-  return (struct dea_place){.file = work->table->file};
+  return (struct dea_location){.file = work->table->file};
 }
 
 // Clocks -----------------------------------------------------------------------------------------

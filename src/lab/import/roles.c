@@ -61,7 +61,7 @@ static dea_status find_column(struct work *work, const struct dea_label *wanted,
   }
   const char *nearest = dea_nearest_name(wanted->text, names, count);
   work->errors++;
-  return dea_finding_add(work->ctx, DEA_ERROR, wanted->place,
+  return dea_finding_add(work->ctx, DEA_ERROR, wanted->location,
                          "'%s' has no column '%.80s'; %s%.80s%s", table->file, wanted->text,
                          nearest != NULL ? "did you mean '" : "dea import --list shows what it has",
                          nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
@@ -69,12 +69,13 @@ static dea_status find_column(struct work *work, const struct dea_label *wanted,
 
 /* Gives a column a use; an error when it has another one. */
 static dea_status take(struct work *work, size_t column, enum dea_column_use use,
-                       struct dea_place place)
+                       struct dea_location location)
 {
   struct dea_column_role *role = &work->roles[column];
   if (role->use != DEA_USE_LEFT && role->use != use) {
     work->errors++;
-    return dea_finding_add(work->ctx, DEA_ERROR, place, "the column '%.60s' is taken as %s already",
+    return dea_finding_add(work->ctx, DEA_ERROR, location,
+                           "the column '%.60s' is taken as %s already",
                            work->table->columns[column].name, dea_role_name(role));
   }
   role->use = use;
@@ -84,11 +85,11 @@ static dea_status take(struct work *work, size_t column, enum dea_column_use use
 
 /* Scale of a column; counts an error. */
 static dea_status scale(struct work *work, size_t column, const char *si,
-                        const struct dea_scale_text *text, struct dea_place place)
+                        const struct dea_scale_text *text, struct dea_location location)
 {
   struct dea_column_role *role = &work->roles[column];
   bool good;
-  DEA_TRY(work->ctx, dea_scale_find(work->ctx, &work->table->columns[column], si, text, place,
+  DEA_TRY(work->ctx, dea_scale_find(work->ctx, &work->table->columns[column], si, text, location,
                                     &role->factor, &role->offset, &good));
   work->errors += !good;
   return DEA_OK;
@@ -104,8 +105,8 @@ static dea_status take_time(struct work *work, const struct dea_label *name, siz
     return DEA_OK;
   }
   *clock = column + 1;
-  DEA_TRY(work->ctx, take(work, column, DEA_USE_TIME, name->place));
-  return scale(work, column, "s", &text, name->place);
+  DEA_TRY(work->ctx, take(work, column, DEA_USE_TIME, name->location));
+  return scale(work, column, "s", &text, name->location);
 }
 
 static dea_status take_channel(struct work *work, const struct dea_mapped *mapped)
@@ -116,11 +117,11 @@ static dea_status take_channel(struct work *work, const struct dea_mapped *mappe
   if (column == work->table->column_count) {
     return DEA_OK;
   }
-  DEA_TRY(work->ctx, take(work, column, DEA_USE_CHANNEL, mapped->column.place));
+  DEA_TRY(work->ctx, take(work, column, DEA_USE_CHANNEL, mapped->column.location));
   struct dea_column_role *role = &work->roles[column];
   role->kind = (enum dea_channel_kind)mapped->as.value;
   DEA_TRY(work->ctx, scale(work, column, dea_channel_meanings[role->kind].si_unit, &text,
-                           mapped->column.place));
+                           mapped->column.location));
   return mapped->time.text[0] != '\0' ? take_time(work, &mapped->time, &role->clock) : DEA_OK;
 }
 
@@ -139,23 +140,23 @@ static dea_status take_profile(struct work *work)
     size_t column;
     DEA_TRY(work->ctx, find_column(work, &mapping->profile.x, &column));
     if (column < work->table->column_count) {
-      DEA_TRY(work->ctx, take(work, column, DEA_USE_PLACE, mapping->profile.x.place));
-      DEA_TRY(work->ctx, scale(work, column, "m", &x_text, mapping->profile.x.place));
+      DEA_TRY(work->ctx, take(work, column, DEA_USE_PLACE, mapping->profile.x.location));
+      DEA_TRY(work->ctx, scale(work, column, "m", &x_text, mapping->profile.x.location));
     }
   }
   for (size_t i = 0; i < work->table->column_count && work->errors == errors; i++) {
     // a column that another key names is none of its points
     if (work->roles[i].use == DEA_USE_LEFT &&
         dea_mapping_matches(work->table->columns[i].name, pattern->text, true)) {
-      DEA_TRY(work->ctx, take(work, i, DEA_USE_PROFILE, pattern->place));
-      DEA_TRY(work->ctx, scale(work, i, "m", &text, pattern->place));
+      DEA_TRY(work->ctx, take(work, i, DEA_USE_PROFILE, pattern->location));
+      DEA_TRY(work->ctx, scale(work, i, "m", &text, pattern->location));
       work->roles[i].clock = clock;
       found++;
     }
   }
   if (found < 2 && work->errors == errors) {
     work->errors++;
-    return dea_finding_add(work->ctx, DEA_ERROR, pattern->place,
+    return dea_finding_add(work->ctx, DEA_ERROR, pattern->location,
                            "'%.60s' names %zu column%s of '%s', and a profile has at least 2",
                            pattern->text, found, found == 1 ? "" : "s", work->table->file);
   }

@@ -39,7 +39,7 @@ static dea_status read_quantity(struct dea_context *ctx, const struct dea_label 
   if (why[0] == '\0') {
     return dea_context_status(ctx);
   }
-  return dea_finding_add(ctx, DEA_ERROR, label->place, "%s: %s", key, why);
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "%s: %s", key, why);
 }
 
 /* Factor of the unit; 0: of another dimension than due, 1 without a unit. */
@@ -62,8 +62,8 @@ static dea_status read_unit(struct dea_context *ctx, const struct dea_table_colu
 }
 
 dea_status dea_scale_find(struct dea_context *ctx, const struct dea_table_column *column,
-                          const char *si, const struct dea_scale_text *text, struct dea_place place,
-                          double *factor, double *offset, bool *good)
+                          const char *si, const struct dea_scale_text *text,
+                          struct dea_location location, double *factor, double *offset, bool *good)
 {
   double unit, number;
   *good = true;
@@ -73,14 +73,14 @@ dea_status dea_scale_find(struct dea_context *ctx, const struct dea_table_column
   bool says = is_given(text->per_unit) && !bare_number(text->per_unit->text, &number);
   if (unit == 0 && is_given(text->unit)) {
     *good = false;
-    return dea_finding_add(ctx, DEA_ERROR, text->unit->place,
+    return dea_finding_add(ctx, DEA_ERROR, text->unit->location,
                            "'%.40s' is no unit that becomes %s; what 1 in the column stands for is "
                            "said by per_unit, such as '1 %s'",
                            text->unit->text, si, si);
   }
   if (unit == 0 && !says) {
     *good = false;
-    return dea_finding_add(ctx, DEA_ERROR, place,
+    return dea_finding_add(ctx, DEA_ERROR, location,
                            "the column '%.60s' is in '%.40s', not in %s: say what 1 of that stands "
                            "for in a mapping (per_unit: 1 %s)",
                            column->name, column->unit, si, si);
@@ -90,7 +90,7 @@ dea_status dea_scale_find(struct dea_context *ctx, const struct dea_table_column
     DEA_TRY(ctx, read_quantity(ctx, text->per_unit, "per_unit", si, unit, factor, good));
     if (*good && *factor == 0) {
       *good = false;
-      return dea_finding_add(ctx, DEA_ERROR, text->per_unit->place, "per_unit must not be 0");
+      return dea_finding_add(ctx, DEA_ERROR, text->per_unit->location, "per_unit must not be 0");
     }
   }
   if (is_given(text->at_zero)) {

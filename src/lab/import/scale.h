@@ -13,7 +13,7 @@ struct dea_scale_text {
  * unit due, "": none in particular. Errors are findings at the mapping's values, or at `place` for
  * the file's unit; *good false then. */
 dea_status dea_scale_find(struct dea_context *ctx, const struct dea_table_column *column,
-                          const char *si, const struct dea_scale_text *text, struct dea_place place,
-                          double *factor, double *offset, bool *good);
+                          const char *si, const struct dea_scale_text *text,
+                          struct dea_location location, double *factor, double *offset, bool *good);
 
 #endif

@@ -84,12 +84,12 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
     if (!rows->dialect->text[i]) {
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
     } else {
-      const struct dea_place place = {rows->table->file, rows->dialect->line + 1, 1};
+      const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
       struct dea_slice name, unit = {"", 0};
       dea_title_split(rows->ctx, titles[i], &name, &unit);
-      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE, place,
-                                         "column %zu '%.*s' holds text and is left out", i + 1,
-                                         shown(titles[i]), titles[i].text));
+      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE,
+                                         location, "column %zu '%.*s' holds text and is left out",
+                                         i + 1, shown(titles[i]), titles[i].text));
     }
   }
   return DEA_OK;
@@ -150,10 +150,10 @@ static dea_status refuse_thousands(struct rows *rows)
         !(m->plain > 0 || (comma && separator == ','))) {
       continue;
     }
-    const struct dea_place place = {rows->table->file, m->line, 1};
+    const struct dea_location location = {rows->table->file, m->line, 1};
     rows->errors++;
     DEA_TRY(rows->ctx,
-            dea_finding_add(rows->ctx, DEA_ERROR, place,
+            dea_finding_add(rows->ctx, DEA_ERROR, location,
                             "the '%c' in '%.60s' seems to stand between thousands, since three "
                             "digits always follow it: export numbers without such marks, or with "
                             "the same number of decimals throughout",
@@ -172,9 +172,10 @@ static dea_status read_field(struct rows *rows, size_t line, struct dea_slice wh
     count_marks(&rows->marks[index], field, rows->dialect->decimal, line);
     return DEA_OK;
   }
-  const struct dea_place place = {rows->table->file, line, (size_t)(field.text - whole.text) + 1};
+  const struct dea_location location = {rows->table->file, line,
+                                        (size_t)(field.text - whole.text) + 1};
   rows->errors++;
-  return dea_finding_add(rows->ctx, DEA_ERROR, place,
+  return dea_finding_add(rows->ctx, DEA_ERROR, location,
                          "'%.*s' is not a number%s; write a missing one as NaN or leave it empty",
                          shown(field), field.text,
                          rows->dialect->decimal == ',' ? " with a decimal comma" : "");
@@ -186,9 +187,9 @@ static dea_status read_line(struct rows *rows, size_t line, struct dea_slice who
   const struct dea_csv_dialect *dialect = rows->dialect;
   struct dea_slice rest = whole, field = {"", 0};
   size_t count = dea_slice_count(whole, dialect->separator);
-  const struct dea_place place = {rows->table->file, line, 1};
+  const struct dea_location location = {rows->table->file, line, 1};
   if (last && count < dialect->count) {
-    return dea_finding_add(rows->ctx, DEA_WARNING, place,
+    return dea_finding_add(rows->ctx, DEA_WARNING, location,
                            "the last line has %zu of %zu fields: the file was cut off there; the "
                            "line is left out",
                            count, dialect->count);
@@ -198,7 +199,7 @@ static dea_status read_line(struct rows *rows, size_t line, struct dea_slice who
   }
   if (count != dialect->count) {
     rows->errors++;
-    return dea_finding_add(rows->ctx, DEA_ERROR, place,
+    return dea_finding_add(rows->ctx, DEA_ERROR, location,
                            "the line has %zu field%s where %zu are due: when another table begins "
                            "here, split the file",
                            count, count == 1 ? "" : "s", dialect->count);

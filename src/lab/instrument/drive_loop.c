@@ -427,7 +427,7 @@ static dea_status note_ranges(const struct loop *loop)
     double share = (double)loop->at_end[i] / (double)loop->got;
     if (loop->at_end[i] > 0) {
       DEA_TRY(loop->ctx, dea_finding_add(
-                             loop->ctx, DEA_WARNING, input->name.place,
+                             loop->ctx, DEA_WARNING, input->name.location,
                              "channel '%s' was at the end of its range of +-%g V in %.2g %% of its "
                              "samples: what was measured there was cut off",
                              input->name.text, input->range_V.si, 100 * share));

@@ -1,7 +1,7 @@
 /* What a drive is made of: who does what, and the recording that it fills. */
 #include "lab/instrument/drive_loop.h"
 
-#include "output/json.h"
+#include "base/json.h"
 #include "result/provenance.h"
 
 #include <math.h>

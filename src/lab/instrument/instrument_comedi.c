@@ -79,18 +79,18 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const struct dea_label *output = &protocol->amplifier.terminal;
   (void)data;
   if (protocol->rate_Hz.si < rate_least_Hz) {
-    DEA_TRY(reader->ctx, dea_schema_error(reader, protocol->rate_Hz.place,
+    DEA_TRY(reader->ctx, dea_schema_error(reader, protocol->rate_Hz.location,
                                           "comedi's clocks have at least %g Hz", rate_least_Hz));
   }
   if (channel_number(output->text, "ao") < 0) {
-    DEA_TRY(reader->ctx, dea_schema_error(reader, output->place,
+    DEA_TRY(reader->ctx, dea_schema_error(reader, output->location,
                                           "comedi's outputs are called ao0, ao1, ..., not '%.60s'",
                                           output->text));
   }
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_label *input = &protocol->inputs[i].terminal;
     if (channel_number(input->text, "ai") < 0) {
-      DEA_TRY(reader->ctx, dea_schema_error(reader, input->place,
+      DEA_TRY(reader->ctx, dea_schema_error(reader, input->location,
                                             "comedi's inputs are called ai0, ai1, ..., not '%.60s'",
                                             input->text));
     }
@@ -137,7 +137,7 @@ static dea_status find_converter(struct dea_context *ctx, struct comedi *c, cons
     }
     free(path); // of the library
     if (found < 0) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                                    "%s has no calibration, so that its voltages may be wrong by a "
                                    "percent; run comedi_soft_calibrate",
                                    c->name));
@@ -326,7 +326,7 @@ static dea_status go(struct dea_context *ctx, struct comedi *c)
     return failed(ctx, c, "start its output");
   }
   double late_s = dea_clock_s() - before_s;
-  return measures ? dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+  return measures ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                     "the output of %s started up to %.2g ms after its inputs",
                                     c->name, 1e3 * late_s)
                   : DEA_OK;

@@ -114,7 +114,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const struct raw *raw = data;
   struct dea_instrument sketch = {0};
   if (raw->mode.value != PROFILES && raw->measurement_count == 0) {
-    return dea_schema_error(reader, raw->mode.place,
+    return dea_schema_error(reader, raw->mode.location,
                             "without profiles it needs its 'measurements', for example "
                             "'measurements: [{name: centre, id: 0}]'");
   }
@@ -124,7 +124,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
     dea_instrument_add_reading(&sketch, &m->name, &m->quantity, &m->unit);
     for (size_t k = 0; k < i; k++) {
       if (raw->measurements[k].id.si == m->id.si) {
-        DEA_TRY(reader->ctx, dea_schema_error(reader, m->id.place,
+        DEA_TRY(reader->ctx, dea_schema_error(reader, m->id.location,
                                               "measurement %.0f is read into '%.60s' already",
                                               m->id.si, raw->measurements[k].name.text));
       }
@@ -162,7 +162,7 @@ static dea_status start_sensor(struct dea_context *ctx, struct gocator *g)
     length += more;
   }
   if (status == STATUS_WRONG_STATE) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "%s runs already, and is left running at the end", g->data.name);
   }
   if (status != STATUS_GOOD) {
@@ -233,7 +233,7 @@ static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, doub
   }
   if (g->frames.other_grid && !g->noted_grid) {
     g->noted_grid = true;
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "%s changed its positions; frames were interpolated onto the first ones",
                            g->data.name);
   }
@@ -271,7 +271,7 @@ static dea_status take_data(struct dea_context *ctx, struct gocator *g, const un
       g->base.lost += intake != NULL;
       if (!g->noted_odd) {
         g->noted_odd = true;
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                                      "%s sent a message that contradicts itself; it is left out",
                                      g->data.name));
       }
@@ -388,7 +388,7 @@ static dea_status start_by_text(struct dea_context *ctx, struct gocator *g)
   g->started = !dea_gocator_refused(line, &reason);
   return g->started
              ? DEA_OK
-             : dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+             : dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                "%s answers the command to start: %.200s; it is left as it is",
                                g->data.name, reason);
 }

@@ -18,11 +18,12 @@ dea_status dea_instrument_check_reading(const struct dea_reader *reader,
     taken = strcmp(protocol->inputs[i].name.text, name->text) == 0 ? "an input" : taken;
   }
   if (taken != NULL) {
-    return dea_schema_error(reader, name->place, "'%.60s' is the name of %s too; give it another",
-                            name->text, taken);
+    return dea_schema_error(reader, name->location,
+                            "'%.60s' is the name of %s too; give it another", name->text, taken);
   }
   if (strlen(name->text) >= DEA_CHANNEL_NAME_SIZE) {
-    return dea_schema_error(reader, name->place, "a name has at most %d bytes; shorten '%.20s...'",
+    return dea_schema_error(reader, name->location,
+                            "a name has at most %d bytes; shorten '%.20s...'",
                             DEA_CHANNEL_NAME_SIZE - 1, name->text);
   }
   return DEA_OK;

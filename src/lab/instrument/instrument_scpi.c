@@ -136,12 +136,12 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   if (raw->output.origin == DEA_ABSENT) {
     return raw->reading_count > 0
                ? DEA_OK
-               : dea_schema_error(reader, raw->kind.place,
+               : dea_schema_error(reader, raw->kind.location,
                                   "it neither reads nor plays: write 'readings' or 'output'");
   }
   const char *hole = strchr(raw->output.text, '%');
   if (hole == NULL || hole[1] != 'g' || strchr(hole + 1, '%') != NULL) {
-    return dea_schema_error(reader, raw->output.place,
+    return dea_schema_error(reader, raw->output.location,
                             "the output's command must have one %%g where the voltage in V goes, "
                             "and no other %%; write for example 'SOUR:VOLT %%g'");
   }
@@ -204,7 +204,7 @@ static dea_status look_for_error(struct dea_context *ctx, struct scpi *s)
   int code;
   DEA_TRY(ctx, ask(ctx, s, "SYST:ERR?", &answer));
   if (answer == NULL || !dea_scpi_error(answer, &code, &text)) {
-    return dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+    return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                            "%s does not answer SYST:ERR?, so that its setup is not checked",
                            s->name);
   }
@@ -226,7 +226,8 @@ static dea_status identify(struct dea_context *ctx, struct scpi *s)
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.120s', not a '%.60s'; look at its address",
                     s->name, answer, wanted);
   }
-  return dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0}, "%s is a '%.120s'", s->name, answer);
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0}, "%s is a '%.120s'", s->name,
+                         answer);
 }
 
 static dea_status set_output(struct dea_context *ctx, struct scpi *s, double volts)
@@ -249,7 +250,7 @@ static dea_status set_up(struct dea_context *ctx, struct scpi *s)
   }
   if (plays) {
     DEA_TRY(ctx, set_output(ctx, s, 0));
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "%s plays by the computer's clock, at most %.3g voltages a second",
                                  s->name, 1 / s->raw.output_interval_s.si));
   }
@@ -395,7 +396,7 @@ static dea_status check_suffix(struct dea_context *ctx, struct scpi *s, size_t r
     return DEA_OK;
   }
   s->noted_suffix = true;
-  return dea_finding_add(ctx, DEA_WARNING, (struct dea_place){0},
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "%s answered '%.60s' to '%.60s', where '%s' stood behind the number "
                          "before: such answers are left out; fix its range",
                          s->name, answer, s->raw.readings[reading].query.text, s->suffix[reading]);

@@ -152,7 +152,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const struct raw *raw = data;
   const struct dea_model_type *type = dea_model_find(raw->model.text);
   if (protocol->design == NULL) {
-    DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, raw->kind.place,
+    DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, raw->kind.location,
                                          "the simulated bench needs a film: name its `design`"));
   }
   if (type != NULL && type->advance != NULL) {
@@ -170,7 +170,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   }
   const char *nearest = dea_nearest_name(raw->model.text, names, count);
   dea_status status = dea_finding_add(
-      reader->ctx, DEA_ERROR, raw->model.place, "%s '%.60s'%s%s%s%s; models with time are: %s",
+      reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s%s%s; models with time are: %s",
       type == NULL ? "there is no model" : "model", raw->model.text,
       type == NULL ? "" : " knows no time", nearest != NULL ? "; did you mean '" : "",
       nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "", dea_text_get(&list));

@@ -94,8 +94,8 @@ static size_t element_count(const matvar_t *variable)
 
 static dea_status say(struct reader *reader, const char *name, const char *what)
 {
-  const struct dea_place place = {.file = reader->file};
-  return dea_finding_add(reader->ctx, DEA_NOTE, place, "'%.80s' %s", name, what);
+  const struct dea_location location = {.file = reader->file};
+  return dea_finding_add(reader->ctx, DEA_NOTE, location, "'%.80s' %s", name, what);
 }
 
 // Columns ----------------------------------------------------------------------------------------

@@ -17,15 +17,15 @@ void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
            label[0] != '\0' ? ")" : "");
 }
 
-struct dea_place dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
-                                            double voltage_V)
+struct dea_location dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
+                                               double voltage_V)
 {
   char path[64];
   const struct dea_node *section = protocol->steps[step].section;
   bool alone = strcmp(section->key, "waveform") == 0 &&
                dea_node_find(dea_yaml_root(protocol->document), "sequence") == NULL;
   snprintf(path, sizeof path, alone ? "waveform." : "sequence[%zu].waveform.", step);
-  struct dea_place place = section->place;
+  struct dea_location location = section->location;
   double nearest = INFINITY;
   for (size_t i = 0; i < protocol->values.count; i++) {
     const struct dea_listed *value = &protocol->values.items[i];
@@ -33,15 +33,15 @@ struct dea_place dea_protocol_voltage_place(const struct dea_protocol *protocol,
     if (here && value->unit != NULL && strcmp(value->unit, "V") == 0 &&
         fabs(value->si - voltage_V) < nearest) {
       nearest = fabs(value->si - voltage_V);
-      place = value->place;
+      location = value->location;
     }
   }
-  return place;
+  return location;
 }
 
-static struct dea_place step_place(const struct dea_protocol *protocol, size_t step)
+static struct dea_location step_place(const struct dea_protocol *protocol, size_t step)
 {
-  return protocol->steps[step].section->place;
+  return protocol->steps[step].section->location;
 }
 
 /* "the amplifier", with its name where it has one. */
@@ -77,18 +77,18 @@ static dea_status check_voltage(struct dea_context *ctx, const struct dea_protoc
   double limit_V = low ? protocol->amplifier.lowest_V.si : protocol->amplifier.highest_V.si;
   double control_V = fabs(peak->voltage_V) / protocol->amplifier.gain.si;
   char step[DEA_STEP_NAME_SIZE], amplifier[DEA_STEP_NAME_SIZE];
-  struct dea_place place = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
+  struct dea_location location = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
   dea_protocol_step_name(protocol, peak->step, step);
   amplifier_name(protocol, amplifier);
   if (fabs(peak->voltage_V) > fabs(limit_V) * (1 + rounding)) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "refused: the sequence asks for %g kV at %s, %s gives "
                                  "%g kV at %s",
                                  1e-3 * peak->voltage_V, step, amplifier, 1e-3 * limit_V,
                                  low ? "least" : "most"));
   }
   if (control_V > protocol->amplifier.control_V.si * (1 + rounding)) {
-    return dea_finding_add(ctx, DEA_ERROR, place,
+    return dea_finding_add(ctx, DEA_ERROR, location,
                            "refused: %g kV at %s need a control voltage of %g V (gain %g), "
                            "%s takes %g V",
                            1e-3 * peak->voltage_V, step, control_V, protocol->amplifier.gain.si,
@@ -130,20 +130,21 @@ static dea_status check_rise(struct dea_context *ctx, const struct dea_protocol 
     return DEA_OK;
   }
   format_time(plan->rise_s, time);
-  struct dea_place place = dea_protocol_voltage_place(protocol, slopes->jump_step, slopes->jump_V);
+  struct dea_location location =
+      dea_protocol_voltage_place(protocol, slopes->jump_step, slopes->jump_V);
   DEA_TRY(ctx,
           by_current > by_slew
-              ? dea_finding_add(ctx, DEA_NOTE, place,
+              ? dea_finding_add(ctx, DEA_NOTE, location,
                                 "the largest jump, %g kV, takes %s: the amplifier charges the "
                                 "film's %.3g pF with %g mA",
                                 1e-3 * jump_V, time, 1e12 * plan->capacitance_F, 1e3 * limit->si)
-              : dea_finding_add(ctx, DEA_NOTE, place,
+              : dea_finding_add(ctx, DEA_NOTE, location,
                                 "the largest jump, %g kV, takes %s by the amplifier's slew "
                                 "limit",
                                 1e-3 * jump_V, time));
   if (by_current > protocol->safety.trip_time_s.si &&
       limit->si > protocol->safety.trip_current_A.si) {
-    return dea_finding_add(ctx, DEA_WARNING, protocol->safety.trip_time_s.place,
+    return dea_finding_add(ctx, DEA_WARNING, protocol->safety.trip_time_s.location,
                            "trip_time is shorter than the %s that charging the film takes: the "
                            "measurement would end there",
                            time);
@@ -160,15 +161,15 @@ static dea_status check_slopes(struct dea_context *ctx, const struct dea_protoco
   char step[DEA_STEP_NAME_SIZE];
   double current_A = plan->capacitance_F * slopes->slope_V_per_s; // or NAN
   dea_protocol_step_name(protocol, slopes->slope_step, step);
-  struct dea_place place = step_place(protocol, slopes->slope_step);
+  struct dea_location location = step_place(protocol, slopes->slope_step);
   if (slew->origin != DEA_ABSENT && slopes->slope_V_per_s > slew->si) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, location,
                                  "%s changes with %.3g V/us, the amplifier follows with %.3g V/us "
                                  "only",
                                  step, 1e-6 * slopes->slope_V_per_s, 1e-6 * slew->si));
   }
   if (limit->origin != DEA_ABSENT && current_A > limit->si) {
-    return dea_finding_add(ctx, DEA_WARNING, place,
+    return dea_finding_add(ctx, DEA_WARNING, location,
                            "%s needs %.3g mA to charge the film's %.3g pF as fast as asked, the "
                            "amplifier gives %g mA",
                            step, 1e3 * current_A, 1e12 * plan->capacitance_F, 1e3 * limit->si);
@@ -192,7 +193,7 @@ static dea_status check_range(struct dea_context *ctx, const struct dea_protocol
     return DEA_OK;
   }
   return dea_finding_add(
-      ctx, DEA_ERROR, input->range_V.place,
+      ctx, DEA_ERROR, input->range_V.location,
       "refused: %g kV give %.4g V at the input of '%s', which reads %g V at most", 1e-3 * of, worst,
       input->name.text, input->range_V.si);
 }
@@ -206,7 +207,7 @@ static dea_status check_trip(struct dea_context *ctx, const struct dea_protocol 
   if (seen_A > protocol->safety.trip_current_A.si) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR, input->range_V.place,
+  return dea_finding_add(ctx, DEA_ERROR, input->range_V.location,
                          "refused: the input of '%s' shows %.4g mA at most, so that "
                          "safety.trip_current of %.4g mA is never exceeded",
                          input->name.text, 1e3 * seen_A, 1e3 * protocol->safety.trip_current_A.si);
@@ -225,19 +226,19 @@ static dea_status check_inputs(struct dea_context *ctx, const struct dea_protoco
       DEA_TRY(ctx, check_trip(ctx, protocol, input));
     }
     if (input->filter_Hz.si >= 0.5 * protocol->rate_Hz.si) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, input->filter_Hz.place,
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, input->filter_Hz.location,
                                    "a filter of %g Hz does nothing at %g samples a second",
                                    input->filter_Hz.si, protocol->rate_Hz.si));
     }
   }
-  struct dea_place place = {protocol->file, 1, 1};
+  struct dea_location location = {protocol->file, 1, 1};
   if (counts[DEA_CHANNEL_VOLTAGE] == 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, location,
                                  "no channel measures the voltage: nobody notices when the "
                                  "amplifier does not follow"));
   }
   if (counts[DEA_CHANNEL_CURRENT] == 0) {
-    return dea_finding_add(ctx, DEA_WARNING, place,
+    return dea_finding_add(ctx, DEA_WARNING, location,
                            "no channel measures the current: a breakdown does not end the "
                            "measurement");
   }
@@ -251,7 +252,7 @@ static dea_status check_rate(struct dea_context *ctx, const struct dea_protocol 
   double samples = protocol->rate_Hz.si * slopes->cycle_s;
   char step[DEA_STEP_NAME_SIZE];
   if (protocol->rate_Hz.si < rate_least_Hz) {
-    return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.place,
+    return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.location,
                            "refused: at %g samples a second the way to 0 V would begin only %.2g s "
                            "after its reason; at least %g samples a second are played",
                            protocol->rate_Hz.si, 2 / protocol->rate_Hz.si, rate_least_Hz);
@@ -261,7 +262,7 @@ static dea_status check_rate(struct dea_context *ctx, const struct dea_protocol 
   }
   bool refused = samples < too_few_samples * (1 - 1e-9);
   dea_protocol_step_name(protocol, slopes->cycle_step, step);
-  return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, protocol->rate_Hz.place,
+  return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, protocol->rate_Hz.location,
                          "%sa cycle of %s has %.3g samples only at %g samples a second; %g samples "
                          "a second give it %g",
                          refused ? "refused: " : "", step, samples, protocol->rate_Hz.si,
@@ -279,7 +280,7 @@ static dea_status check_ramp(struct dea_context *ctx, const struct dea_protocol 
     return DEA_OK;
   }
   bool refused = time_s > too_long_s;
-  return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, ramp->place,
+  return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, ramp->location,
                          "%sthe ramp from %g kV to 0 V takes %.3g s by %g V/s, also after a "
                          "breakdown, and nothing shortens it; at most %g s are allowed",
                          refused ? "refused: " : "", 1e-3 * highest_V, time_s, ramp->si,
@@ -293,7 +294,7 @@ static dea_status check_labels(struct dea_context *ctx, const struct dea_protoco
     const struct dea_label *label = &protocol->steps[i].label;
     for (size_t k = 0; k < i && label->text[0] != '\0'; k++) {
       if (strcmp(label->text, protocol->steps[k].label.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, label->place,
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, label->location,
                                      "step %zu has the label '%.60s' too", k + 1, label->text));
         break;
       }
@@ -309,13 +310,13 @@ static dea_status check_size(struct dea_context *ctx, const struct dea_protocol 
   double samples = ceil(plan->duration_s * protocol->rate_Hz.si * (1 - 1e-12));
   double bytes = samples * (double)(protocol->input_count + 1) * (double)sizeof(double);
   if (samples > too_much) {
-    return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.place,
+    return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.location,
                            "refused: %.3g s are %.3g samples of every channel", plan->duration_s,
                            samples);
   }
   plan->samples = (size_t)samples;
   if (bytes > much_B) {
-    return dea_finding_add(ctx, DEA_WARNING, protocol->rate_Hz.place,
+    return dea_finding_add(ctx, DEA_WARNING, protocol->rate_Hz.location,
                            "the recording will have %.3g GB", 1e-9 * bytes);
   }
   return DEA_OK;
@@ -330,14 +331,14 @@ static dea_status check_safety(struct dea_context *ctx, const struct dea_protoco
   const struct dea_quantity *error = &protocol->safety.voltage_error_V;
   double largest_V = fmax(-plan->lowest_V, plan->highest_V);
   if (limit->origin != DEA_ABSENT && limit->si <= trip->si) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, limit->place,
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, limit->location,
                                  "safety.trip_current of %g mA is never exceeded, as the amplifier "
                                  "gives %g mA at most: set it lower",
                                  1e3 * trip->si, 1e3 * limit->si));
   }
   if (error->si >= largest_V && largest_V > 0) {
     DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_WARNING, error->place,
+            dea_finding_add(ctx, DEA_WARNING, error->location,
                             "safety.voltage_error of %g V is not below the largest voltage, %g "
                             "V: an amplifier that gives nothing is not noticed",
                             error->si, largest_V));

@@ -26,8 +26,8 @@ enum { DEA_STEP_NAME_SIZE = 320 };
 void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
                             char out[DEA_STEP_NAME_SIZE]);
 /* Where the file says that voltage of a step: the value itself, else what comes nearest to it. */
-struct dea_place dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
-                                            double voltage_V);
+struct dea_location dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
+                                               double voltage_V);
 
 /* Field, pull-in, capacitance and energy of the film at the peak, by the model `lumped`. */
 dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_protocol *protocol,

@@ -87,16 +87,16 @@ static dea_status refuse_field(const struct film *film, const struct dea_protoco
   DEA_TRY(film->ctx, allowed_voltage(film, fabs(peak->voltage_V), &voltage_V));
   dea_context_clear(film->ctx);
   dea_protocol_step_name(protocol, peak->step, step);
-  struct dea_place place = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
+  struct dea_location location = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
   if (protocol->safety.largest_field_V_per_m.origin != DEA_ABSENT) {
-    return dea_finding_add(film->ctx, DEA_ERROR, place,
+    return dea_finding_add(film->ctx, DEA_ERROR, location,
                            "refused: %g kV at %s makes a true field of %.4g V/um in the film, but "
                            "safety.largest_field allows %.4g V/um, which is %.2f kV",
                            1e-3 * peak->voltage_V, step, 1e-6 * plan->largest_field_V_per_m,
                            1e-6 * plan->allowed_field_V_per_m, 1e-3 * voltage_V);
   }
   return dea_finding_add(
-      film->ctx, DEA_ERROR, place,
+      film->ctx, DEA_ERROR, location,
       "refused: %g kV at %s makes a true field of %.4g V/um in the film, but %.4g V/um are "
       "allowed, "
       "the breakdown field of %s over a margin of %g, which is %.2f kV; who knows the film better "
@@ -145,7 +145,7 @@ static dea_status look(const struct film *film, const struct dea_protocol_peak *
     DEA_TRY(ctx, report_pull_in(film, peak, plan->pull_in_V, false));
   }
   if (isnan(plan->allowed_field_V_per_m)) {
-    return dea_finding_add(ctx, DEA_WARNING, film->protocol->design_file.place,
+    return dea_finding_add(ctx, DEA_WARNING, film->protocol->design_file.location,
                            "no breakdown field of %s is known, so the field of %.4g V/um is not "
                            "checked; safety.largest_field says what is allowed",
                            film->device->film.name, 1e-6 * plan->largest_field_V_per_m);
@@ -161,7 +161,7 @@ dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_pro
 {
   struct film film = {.ctx = ctx, .protocol = protocol, .type = dea_model_find("lumped")};
   if (protocol->design == NULL) {
-    return dea_finding_add(ctx, DEA_WARNING, (struct dea_place){protocol->file, 1, 1},
+    return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){protocol->file, 1, 1},
                            "no `design` is named: field, pull-in and current of the film are not "
                            "checked");
   }

@@ -1,8 +1,8 @@
 #include "lab/protocol/export.h"
 
+#include "base/write_file.h"
 #include "lab/import/guess.h"
 #include "lab/import/mat.h"
-#include "output/file.h"
 #include "output/report/assets.h"
 
 #include <ctype.h>
@@ -301,8 +301,8 @@ static dea_status write_mat(struct dea_context *ctx, const struct dea_protocol *
       dea_mat_write(ctx, file, variables, sizeof variables / sizeof variables[0], DEA_MAT_5);
   dea_free(ctx, file);
   if (status == DEA_E_UNSUPPORTED) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0}, "waveform.mat is left out: %s",
-                             dea_context_message(ctx));
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                             "waveform.mat is left out: %s", dea_context_message(ctx));
     dea_context_clear(ctx);
   }
   return status;

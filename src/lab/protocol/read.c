@@ -50,7 +50,7 @@ static dea_status read_scale(const struct dea_reader *reader,
     return DEA_OK;
   }
   return why[0] == '\0' ? dea_context_status(reader->ctx)
-                        : dea_schema_error(reader, text->place, "%s: %s", key, why);
+                        : dea_schema_error(reader, text->location, "%s: %s", key, why);
 }
 
 static dea_status take_input(const struct dea_reader *reader, struct dea_protocol_input *input)
@@ -61,13 +61,13 @@ static dea_status take_input(const struct dea_reader *reader, struct dea_protoco
   input->kind.value += DEA_CHANNEL_COMMAND + 1; // the choices begin after it
   if (strlen(input->name.text) >= DEA_CHANNEL_NAME_SIZE ||
       strlen(input->unit.text) >= DEA_CHANNEL_NAME_SIZE) {
-    DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.place,
+    DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.location,
                                           "a channel's name and unit have at most %d bytes",
                                           DEA_CHANNEL_NAME_SIZE - 1));
   }
   if (input->unit.text[0] != '\0' && input->kind.value != DEA_CHANNEL_OTHER) {
     DEA_TRY(reader->ctx,
-            dea_schema_error(reader, input->unit.place,
+            dea_schema_error(reader, input->unit.location,
                              "unit: only of a quantity `other`; the recording keeps %s in %s",
                              dea_channel_names[input->kind.value],
                              dea_channel_meanings[input->kind.value].si_unit));
@@ -78,7 +78,7 @@ static dea_status take_input(const struct dea_reader *reader, struct dea_protoco
             read_scale(reader, input, "per_volt", &input->per_volt_text, &input->per_volt));
     if (input->per_volt == 0) {
       DEA_TRY(reader->ctx,
-              dea_schema_error(reader, input->per_volt_text.place,
+              dea_schema_error(reader, input->per_volt_text.location,
                                "per_volt must not be 0, not '%.60s'", input->per_volt_text.text));
     }
   }
@@ -99,14 +99,14 @@ static dea_status take_inputs(const struct dea_reader *reader, struct dea_protoc
     for (size_t k = 0; k < i; k++) {
       const struct dea_protocol_input *other = &raw->inputs[k];
       if (input->name.text[0] != '\0' && strcmp(input->name.text, other->name.text) == 0) {
-        DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.place,
+        DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.location,
                                               "the channel in line %zu has the name '%.60s' too",
-                                              other->name.place.line, input->name.text));
+                                              other->name.location.line, input->name.text));
       }
       if (input->terminal.text[0] != '\0' &&
           strcmp(input->terminal.text, other->terminal.text) == 0) {
         DEA_TRY(reader->ctx,
-                dea_schema_error(reader, input->terminal.place,
+                dea_schema_error(reader, input->terminal.location,
                                  "the channel '%.60s' is connected to the input '%.60s' too",
                                  other->name.text, input->terminal.text));
       }
@@ -133,7 +133,7 @@ static dea_status count_cycles(struct dea_context *ctx, struct dea_protocol_step
   if (step->waveform->end_s > 0) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR, step->section->place,
+  return dea_finding_add(ctx, DEA_ERROR, step->section->location,
                          "this waveform takes no time; give it a duration");
 }
 
@@ -193,7 +193,7 @@ static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *r
     start_s += step->repeat.si * step->waveform->end_s + step->pause_s.si;
     cycles += step->repeat.si * (double)step->cycles;
     if (cycles > cycles_max) {
-      return dea_finding_add(ctx, DEA_ERROR, step->repeat.place,
+      return dea_finding_add(ctx, DEA_ERROR, step->repeat.location,
                              "the sequence has more than %g cycles", cycles_max);
     }
   }
@@ -215,7 +215,7 @@ static dea_status take_sequence(const struct dea_reader *reader, struct dea_prot
     };
   } else if (protocol->step_count == 0 && dea_node_find(root, "sequence") == NULL &&
              dea_node_find(root, "waveform") == NULL) {
-    return dea_schema_error(reader, root->place,
+    return dea_schema_error(reader, root->location,
                             "the file lacks what is to be played; write for example 'waveform: "
                             "{kind: square, high: 7 kV, frequency: 0.5 Hz}', or a 'sequence' of "
                             "such steps");
@@ -252,7 +252,7 @@ static dea_status take_design(struct dea_context *ctx, struct dea_protocol *prot
   }
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &protocol->design_text, &length);
   if (status == DEA_E_IO) {
-    status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.place,
+    status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.location,
                              "design: %s; a path counts from the protocol's folder",
                              dea_context_message(ctx));
   } else if (status == DEA_OK) {
@@ -282,7 +282,8 @@ static dea_status take_amplifier(struct dea_context *ctx, struct dea_protocol *p
 {
   const struct dea_quantity *highest = &protocol->amplifier.highest_V;
   if (protocol->amplifier.lowest_V.origin == DEA_ABSENT && highest->origin != DEA_ABSENT) {
-    protocol->amplifier.lowest_V = (struct dea_quantity){-highest->si, DEA_DEFAULT, highest->place};
+    protocol->amplifier.lowest_V =
+        (struct dea_quantity){-highest->si, DEA_DEFAULT, highest->location};
   }
   if (protocol->input_count + 1 > DEA_CHANNELS_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "more channels than a recording can have");

@@ -7,7 +7,7 @@
 #ifndef DEA_LAB_RECORDING_DISK_H
 #define DEA_LAB_RECORDING_DISK_H
 
-#include "output/h5.h"
+#include "base/h5.h"
 
 struct dea_disk {
   int error;        // errno of the write that failed; 0: none has

@@ -1,10 +1,10 @@
 #include "lab/recording/recorder.h"
 
+#include "base/write_file.h"
 #include "lab/instrument/clock.h"
 #include "lab/recording/disk.h"
 #include "lab/recording/layout.h"
 #include "lab/recording/series.h"
-#include "output/file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_LAB_RECORDING_SERIES_H
 #define DEA_LAB_RECORDING_SERIES_H
 
-#include "output/h5.h"
+#include "base/h5.h"
 
 #include <stdint.h>
 

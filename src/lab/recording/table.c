@@ -1,7 +1,7 @@
 #include "lab/recording/table.h"
 
+#include "base/write_file.h"
 #include "output/csv.h"
-#include "output/file.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 #ifndef DEA_LAB_REDUCE_OUTPUT_H
 #define DEA_LAB_REDUCE_OUTPUT_H
 
+#include "base/json.h"
 #include "base/text.h"
 #include "lab/reduce/reduce.h"
-#include "output/json.h"
 #include "output/plot.h"
 
 enum { DEA_REDUCTION_SCHEMA = 1, DEA_HISTORY_ROWS_MAX = 20000 };

@@ -148,7 +148,7 @@ static dea_status fill_series(struct dea_context *ctx, const struct dea_profiles
     }
   }
   return both == 0 ? DEA_OK
-                   : dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0},
+                   : dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
                                      "one side of the profiles has no points at the fibre tips: "
                                      "the displacement there is that of the other side");
 }

@@ -16,7 +16,7 @@ struct job {
 };
 
 #define NOTE(ctx, ...)                                                                             \
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){"", 0, 0}, __VA_ARGS__))
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0}, __VA_ARGS__))
 
 static dea_status copy_channel(struct dea_context *ctx, const struct dea_channel *channel,
                                struct dea_channel *out)

@@ -1,7 +1,7 @@
 #include "lab/reduce/output.h"
 
 #include "base/version.h"
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <stdio.h>
 #include <string.h>

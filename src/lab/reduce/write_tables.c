@@ -1,6 +1,6 @@
 #include "lab/reduce/output.h"
 
-#include "output/file.h"
+#include "base/write_file.h"
 
 #include <stdio.h>
 

@@ -111,7 +111,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->lumped.electrode_radius_m = device->electrode_radius_m;
   model->lift = dea_lift_create(device);
   if (device->fibre_count > 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_place){0},
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "z and force of model lumped are those of rigid, hinged rods "
                                  "without the film between them (paper eqs 18-20): upper bounds, "
                                  "far above a pre-stretched film's, and without a sign"));

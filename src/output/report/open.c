@@ -1,6 +1,6 @@
 /* A run as the report reads it: results, design, notes. */
 #include "base/file.h"
-#include "output/file.h"
+#include "base/write_file.h"
 #include "output/report/section.h"
 
 #include <jansson.h>

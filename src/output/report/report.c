@@ -2,7 +2,7 @@
 #include "output/report/report.h"
 
 #include "base/version.h"
-#include "output/file.h"
+#include "base/write_file.h"
 #include "output/measured.h"
 #include "output/report/assets.h"
 #include "output/report/section.h"

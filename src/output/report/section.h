@@ -6,7 +6,7 @@
 #include "output/csv.h"
 #include "output/report/html.h"
 #include "output/report/report.h"
-#include "output/store.h"
+#include "output/results_h5.h"
 
 /* One of the runs. design, device: NULL when the file cannot be read any more. */
 struct dea_report_run {

@@ -153,7 +153,7 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
     for (size_t m = 0; m < count && looks < DEA_PANEL_SERIES_MAX / 2; m++) {
       char title[DEA_NAME_SIZE + 16];
       snprintf(title, sizeof title, "%d %s", report->runs[r].number, models[m]);
-      struct dea_series look = dea_figure_look(title, looks);
+      struct dea_series look = dea_figure_style(title, looks);
       look.colour = (enum dea_colour)(looks % 7);
       size_t before = panel->series_count;
       DEA_TRY(report->ctx,

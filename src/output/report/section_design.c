@@ -9,7 +9,7 @@ static const char *origin_of(const struct dea_listed *value, char *text, size_t 
 {
   switch (value->origin) {
   case DEA_GIVEN:
-    snprintf(text, size, "line %zu", value->place.line);
+    snprintf(text, size, "line %zu", value->location.line);
     return text;
   case DEA_OVERRIDE:
     return "--set";
@@ -188,7 +188,7 @@ static const struct dea_material_data *find_data(struct dea_context *ctx,
       return &design->materials[i];
     }
   }
-  if (dea_catalogue_read(ctx, name, (struct dea_place){0}, entry) != DEA_OK) {
+  if (dea_catalogue_read(ctx, name, (struct dea_location){0}, entry) != DEA_OK) {
     dea_context_clear(ctx); // the device was built with it, so this is rare
     return NULL;
   }

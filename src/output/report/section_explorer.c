@@ -71,7 +71,7 @@ static dea_status add_materials(struct dea_context *ctx, struct dea_text *out,
   DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
   for (size_t i = 0; i < count; i++) {
     struct dea_catalogue_entry *entry;
-    if (dea_catalogue_read(ctx, names[i], (struct dea_place){0}, &entry) != DEA_OK) {
+    if (dea_catalogue_read(ctx, names[i], (struct dea_location){0}, &entry) != DEA_OK) {
       dea_context_clear(ctx);
       continue;
     }

@@ -1,6 +1,6 @@
 /* The film's middle surface at the points of a sweep, as numbers for the page's script: the part
  * that was computed, quantised to 16 bits between the extremes of the sweep, in base64. */
-#include "output/picture.h"
+#include "output/colour_map.h"
 #include "output/report/section.h"
 
 #include <math.h>

@@ -1,0 +1,364 @@
+#include "base/h5.h"
+
+#include "base/write_file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
+{
+  *h = (struct h5){.ctx = ctx, .path = path, .not_it = "not a complete results file:"};
+  H5open();
+  H5Eget_auto2(H5E_DEFAULT, &h->print, &h->print_data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+void dea_h5_end(struct h5 *h)
+{
+  H5Eclear2(H5E_DEFAULT);
+  H5Eset_auto2(H5E_DEFAULT, h->print, h->print_data);
+}
+
+/* Takes the first (innermost) description of an error stack. */
+static herr_t take_description(unsigned n, const H5E_error2_t *error, void *user)
+{
+  (void)n;
+  const char **text = user;
+  if (*text == NULL && error->desc != NULL) {
+    *text = error->desc;
+  }
+  return 0;
+}
+
+void dea_h5_fail(struct h5 *h, const char *what)
+{
+  if (h->status != DEA_OK) {
+    return;
+  }
+  const char *text = NULL;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_description, (void *)&text);
+  h->status = dea_fail(h->ctx, DEA_E_IO, "%s %s%s%s", what, h->path, text != NULL ? ": " : "",
+                       text != NULL ? text : "");
+}
+
+static const char cannot_write[] = "cannot write";
+
+static hid_t checked(struct h5 *h, hid_t id, const char *what)
+{
+  if (id < 0) {
+    dea_h5_fail(h, what);
+  }
+  return id;
+}
+
+hid_t dea_h5_file_make(struct h5 *h)
+{
+  hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, 1 << 18, false);
+  hid_t file = H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  dea_h5_close(access);
+  return checked(h, file, cannot_write);
+}
+
+/* The whole file as bytes; owned by the caller. */
+static char *file_image(struct h5 *h, hid_t file, size_t *length)
+{
+  *length = 0;
+  ssize_t size = -1;
+  if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0) {
+    size = H5Fget_file_image(file, NULL, 0);
+  }
+  if (size < 0) {
+    dea_h5_fail(h, cannot_write);
+    return NULL;
+  }
+  char *bytes = dea_alloc(h->ctx, (size_t)size, 1);
+  if (bytes == NULL) {
+    h->status = DEA_E_MEMORY;
+  } else if (H5Fget_file_image(file, bytes, (size_t)size) != size) {
+    dea_h5_fail(h, cannot_write);
+  }
+  *length = (size_t)size;
+  return bytes;
+}
+
+void dea_h5_file_write(struct h5 *h, hid_t file)
+{
+  size_t length;
+  char *bytes = file_image(h, file, &length);
+  dea_h5_close(file);
+  if (h->status == DEA_OK) {
+    h->status = dea_file_write(h->ctx, h->path, bytes, length);
+  }
+  dea_free(h->ctx, bytes);
+}
+
+hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name)
+{
+  return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
+                                     : dea_h5_group_make(h, parent, name);
+}
+
+hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name)
+{
+  if (h->status != DEA_OK) {
+    return H5I_INVALID_HID;
+  }
+  return checked(h, H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), cannot_write);
+}
+
+hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name)
+{
+  if (h->status != DEA_OK) {
+    return H5I_INVALID_HID;
+  }
+  return checked(h, H5Gopen2(parent, name, H5P_DEFAULT), h->not_it);
+}
+
+void dea_h5_close(hid_t object)
+{
+  if (object >= 0) {
+    H5Idec_ref(object);
+  }
+}
+
+static hid_t text_type(size_t size)
+{
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, size);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+static void put_scalar(struct h5 *h, hid_t object, const char *name, hid_t memory_type,
+                       hid_t file_type, const void *value)
+{
+  if (h->status != DEA_OK) {
+    return;
+  }
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT);
+  if (attribute < 0 || H5Awrite(attribute, memory_type, value) < 0) {
+    dea_h5_fail(h, cannot_write);
+  }
+  dea_h5_close(attribute);
+  dea_h5_close(space);
+}
+
+void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text)
+{
+  const char *value = text != NULL ? text : "";
+  hid_t type = text_type(strlen(value) + 1);
+  put_scalar(h, object, name, type, type, value);
+  dea_h5_close(type);
+}
+
+void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value)
+{
+  put_scalar(h, object, name, H5T_NATIVE_LLONG, H5T_STD_I64LE, &value);
+}
+
+void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
+{
+  put_scalar(h, object, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, &value);
+}
+
+static hid_t make_dataset(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                          hid_t file_type, hid_t space, const void *values)
+{
+  hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(properties, false); // the same result gives the same bytes
+  hid_t set = H5Dcreate2(group, name, file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  if (set < 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    dea_h5_fail(h, cannot_write);
+  }
+  dea_h5_close(properties);
+  return set;
+}
+
+void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                      hid_t file_type, size_t count, const void *values, const char *unit,
+                      const char *meaning)
+{
+  if (h->status != DEA_OK) {
+    return;
+  }
+  hsize_t length = count;
+  hid_t space = H5Screate_simple(1, &length, NULL);
+  hid_t set = make_dataset(h, group, name, memory_type, file_type, space, values);
+  dea_h5_put_text(h, set, "unit", unit);
+  dea_h5_put_text(h, set, "meaning", meaning);
+  dea_h5_close(set);
+  dea_h5_close(space);
+}
+
+hsize_t dea_h5_file_size(const struct h5 *h, hid_t object)
+{
+  hsize_t size = 0;
+  hid_t file = h->status == DEA_OK ? H5Iget_file_id(object) : H5I_INVALID_HID;
+  if (file < 0 || H5Fget_filesize(file, &size) < 0) {
+    size = 0;
+  }
+  dea_h5_close(file);
+  return size;
+}
+
+hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
+{
+  if (h->status != DEA_OK) {
+    return H5I_INVALID_HID;
+  }
+  return checked(h, H5Dopen2(group, name, H5P_DEFAULT), h->not_it);
+}
+
+void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)
+{
+  if (h->status == DEA_OK && H5Lcreate_hard(from, name, to, name, H5P_DEFAULT, H5P_DEFAULT) < 0) {
+    dea_h5_fail(h, cannot_write);
+  }
+}
+
+void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text)
+{
+  if (h->status != DEA_OK || text == NULL) {
+    return;
+  }
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t type = text_type(strlen(text) + 1);
+  dea_h5_close(make_dataset(h, group, name, type, type, space, text));
+  dea_h5_close(type);
+  dea_h5_close(space);
+}
+
+/* True when an attribute or dataset of this space holds exactly one value. */
+static bool is_single(hid_t space)
+{
+  return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
+}
+
+void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size)
+{
+  out[0] = '\0';
+  if (h->status != DEA_OK) {
+    return;
+  }
+  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  hid_t stored = attribute >= 0 ? H5Aget_type(attribute) : H5I_INVALID_HID;
+  hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
+  hid_t type = text_type(size);
+  if (!is_single(space) || stored < 0 || H5Tget_class(stored) != H5T_STRING ||
+      H5Tis_variable_str(stored) > 0 || H5Aread(attribute, type, out) < 0) {
+    dea_h5_fail(h, h->not_it);
+    out[0] = '\0';
+  }
+  out[size - 1] = '\0';
+  dea_h5_close(type);
+  dea_h5_close(space);
+  dea_h5_close(stored);
+  dea_h5_close(attribute);
+}
+
+static void get_scalar(struct h5 *h, hid_t object, const char *name, hid_t memory_type, void *out)
+{
+  if (h->status != DEA_OK) {
+    return;
+  }
+  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
+  if (!is_single(space) || H5Aread(attribute, memory_type, out) < 0) {
+    dea_h5_fail(h, h->not_it);
+  }
+  dea_h5_close(space);
+  dea_h5_close(attribute);
+}
+
+long long dea_h5_get_int(struct h5 *h, hid_t object, const char *name)
+{
+  long long value = 0;
+  get_scalar(h, object, name, H5T_NATIVE_LLONG, &value);
+  return value;
+}
+
+double dea_h5_get_real(struct h5 *h, hid_t object, const char *name)
+{
+  double value = 0.0;
+  get_scalar(h, object, name, H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+bool dea_h5_has_attribute(const struct h5 *h, hid_t object, const char *name)
+{
+  return h->status == DEA_OK && H5Aexists(object, name) > 0;
+}
+
+bool dea_h5_has(const struct h5 *h, hid_t group, const char *name)
+{
+  return h->status == DEA_OK && H5Lexists(group, name, H5P_DEFAULT) > 0;
+}
+
+void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
+                      void *out)
+{
+  if (h->status != DEA_OK) {
+    return;
+  }
+  hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
+  hid_t space = set >= 0 ? H5Dget_space(set) : H5I_INVALID_HID;
+  if (space >= 0 && H5Sget_simple_extent_npoints(space) != (hssize_t)count) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: dataset '%s' has not %zu values",
+                         h->path, name, count);
+  } else if (space < 0 || H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {
+    dea_h5_fail(h, h->not_it);
+  }
+  dea_h5_close(space);
+  dea_h5_close(set);
+}
+
+char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name)
+{
+  if (!dea_h5_has(h, group, name)) {
+    return NULL;
+  }
+  hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
+  hid_t type = set >= 0 ? H5Dget_type(set) : H5I_INVALID_HID;
+  hid_t space = set >= 0 ? H5Dget_space(set) : H5I_INVALID_HID;
+  char *text = NULL;
+  if (type >= 0 && is_single(space) && H5Tget_class(type) == H5T_STRING &&
+      H5Tis_variable_str(type) == 0 && H5Dget_storage_size(set) > 0 &&
+      H5Tget_size(type) <= dea_h5_file_size(h, set)) {
+    text = dea_alloc(h->ctx, H5Tget_size(type) + 1, 1);
+    if (text == NULL) {
+      h->status = DEA_E_MEMORY;
+    } else if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
+      dea_h5_fail(h, h->not_it);
+    }
+  } else {
+    dea_h5_fail(h, h->not_it);
+  }
+  dea_h5_close(space);
+  dea_h5_close(type);
+  dea_h5_close(set);
+  return text;
+}
+
+size_t dea_h5_link_count(struct h5 *h, hid_t group)
+{
+  H5G_info_t info;
+  if (h->status != DEA_OK) {
+    return 0;
+  }
+  if (H5Gget_info(group, &info) < 0) {
+    dea_h5_fail(h, h->not_it);
+    return 0;
+  }
+  return (size_t)info.nlinks;
+}
+
+void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size)
+{
+  out[0] = '\0';
+  if (h->status == DEA_OK && H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, out,
+                                                size, H5P_DEFAULT) < 0) {
+    dea_h5_fail(h, h->not_it);
+  }
+}

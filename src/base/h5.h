@@ -1,0 +1,72 @@
+/* Small things on the HDF5 C API for the files that write and read HDF5.
+ *
+ * A struct h5 remembers the first failure, after which all calls do nothing, so that a row of calls
+ * is checked once at its end. Its error stack is turned into the message of dea_fail. */
+#ifndef DEA_BASE_H5_H
+#define DEA_BASE_H5_H
+
+#include "base/context.h"
+
+#include <hdf5.h>
+
+struct h5 {
+  struct dea_context *ctx;
+  const char *path;   // of the file, for messages
+  const char *not_it; // begins the message about a file that cannot be read; may be replaced
+  dea_status status;
+  H5E_auto2_t print; // what HDF5 did with errors before
+  void *print_data;
+};
+
+/* Silences HDF5's own printing for this thread until dea_h5_end. */
+void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path);
+void dea_h5_end(struct h5 *h);
+/* Records the failure with the innermost text of HDF5's error stack; what: "cannot write". */
+void dea_h5_fail(struct h5 *h, const char *what);
+
+/* A file is made in memory (core driver) and written as a whole or not at all, so that a full disk
+ * is an ordinary error; writing closes it. */
+hid_t dea_h5_file_make(struct h5 *h);
+void dea_h5_file_write(struct h5 *h, hid_t file);
+
+/* Handles are negative after a failure; dea_h5_close takes any. group_get: opened, or made when it
+ * is not there. */
+hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name);
+hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name);
+hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name);
+void dea_h5_close(hid_t object);
+
+void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text);
+void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value);
+void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value);
+/* One-dimensional dataset with its unit and meaning. memory_type, file_type: HDF5 types. */
+void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                      hid_t file_type, size_t count, const void *values, const char *unit,
+                      const char *meaning);
+/* Bytes of the file that an object is in; 0 when they cannot be found out. */
+hsize_t dea_h5_file_size(const struct h5 *h, hid_t object);
+/* A dataset by name, for its attributes. */
+hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name);
+/* Gives an object of `from` the same name in `to` as well. */
+void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to);
+/* Text of any length as a scalar dataset. */
+void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
+
+/* Readers of attributes fail when the attribute is missing. Text longer than size is cut. */
+void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size);
+long long dea_h5_get_int(struct h5 *h, hid_t object, const char *name);
+double dea_h5_get_real(struct h5 *h, hid_t object, const char *name);
+bool dea_h5_has_attribute(const struct h5 *h, hid_t object, const char *name);
+/* True when a link of that name exists. */
+bool dea_h5_has(const struct h5 *h, hid_t group, const char *name);
+/* A one-dimensional dataset of exactly `count` values. */
+void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
+                      void *out);
+/* Text of a scalar dataset, NULL when it does not exist; owned by the caller. A failure when the
+ * file is shorter than the text. */
+char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
+/* Number of links of a group, and the name of one of them in alphabetical order. */
+size_t dea_h5_link_count(struct h5 *h, hid_t group);
+void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size);
+
+#endif

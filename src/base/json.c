@@ -1,0 +1,38 @@
+#include "base/json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void dea_json_put(json_t *object, const char *key, double value)
+{
+  if (isfinite(value)) {
+    json_object_set_new(object, key, json_real(value));
+  }
+}
+
+void dea_json_put_text(json_t *object, const char *key, const char *text)
+{
+  json_t *value = json_string(text != NULL ? text : "");
+  // Text that is not UTF-8 is not JSON; a file name may be any bytes.
+  json_object_set_new(object, key, value != NULL ? value : json_string("(not UTF-8)"));
+}
+
+dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
+{
+  *out = NULL;
+  char *dumped = root != NULL ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  json_decref(root);
+  if (dumped == NULL) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory while writing JSON");
+  }
+  size_t length = strlen(dumped);
+  char *text = dea_alloc(ctx, length + 2, 1);
+  if (text != NULL) {
+    memcpy(text, dumped, length);
+    text[length] = '\n';
+  }
+  free(dumped);
+  *out = text;
+  return text != NULL ? DEA_OK : DEA_E_MEMORY;
+}

@@ -1,0 +1,16 @@
+/* Small things on jansson that the writers share. */
+#ifndef DEA_BASE_JSON_H
+#define DEA_BASE_JSON_H
+
+#include "base/context.h"
+
+#include <jansson.h>
+
+/* Sets a number unless it is not finite (JSON has no such number). */
+void dea_json_put(json_t *object, const char *key, double value);
+/* Sets a text; NULL gives "". */
+void dea_json_put_text(json_t *object, const char *key, const char *text);
+/* Text of root with a final newline; takes root. out: owned by the caller (dea_free). */
+dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out);
+
+#endif

@@ -1,0 +1,156 @@
+#define _GNU_SOURCE // uselocale, fileno
+#include "base/write_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <locale.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name)
+{
+  struct dea_text text = {.ctx = ctx};
+  size_t n = strlen(directory);
+  dea_text_add(&text, "%s%s%s", directory, n > 0 && directory[n - 1] != '/' ? "/" : "", name);
+  return text.data;
+}
+
+bool dea_path_exists(const char *path)
+{
+  struct stat info;
+  return lstat(path, &info) == 0;
+}
+
+bool dea_path_is_folder(const char *path)
+{
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+static dea_status folder_make_one(struct dea_context *ctx, const char *directory)
+{
+  if (mkdir(directory, 0777) == 0 || (errno == EEXIST && dea_path_is_folder(directory))) {
+    return DEA_OK;
+  }
+  return dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", directory,
+                  errno == EEXIST ? "a file has that name" : strerror(errno));
+}
+
+dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
+{
+  if (directory[0] == '\0') {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the name of the folder is empty");
+  }
+  char *path = dea_copy_text(ctx, directory, SIZE_MAX);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  for (char *c = path + 1; *c != '\0' && status == DEA_OK; c++) {
+    if (*c == '/' && c[-1] != '/') {
+      *c = '\0';
+      if (!dea_path_is_folder(path)) {
+        status = folder_make_one(ctx, path);
+      }
+      *c = '/';
+    }
+  }
+  if (status == DEA_OK) {
+    status = folder_make_one(ctx, path);
+  }
+  dea_free(ctx, path);
+  return status;
+}
+
+char *dea_partial_name(struct dea_context *ctx, const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  int folder = slash != NULL ? (int)(slash - path) + 1 : 0;
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "%.*s.%s.%ld.part", folder, path, path + folder, (long)getpid());
+  return text.data;
+}
+
+dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path)
+{
+  if (rename(partial, path) == 0) {
+    return DEA_OK;
+  }
+  int reason = errno;
+  unlink(partial);
+  return dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(reason));
+}
+
+/* Writes all of a new file; errno says what went wrong. */
+static bool write_all(const char *path, const char *bytes, size_t length)
+{
+  unlink(path); // left by a process of the same number that was killed
+  int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) {
+    return false;
+  }
+  bool good = true;
+  for (size_t done = 0; done < length && good;) {
+    ssize_t n = write(file, bytes + done, length - done);
+    if (n >= 0) {
+      done += (size_t)n;
+    } else {
+      good = errno == EINTR;
+    }
+  }
+  int reason = errno;
+  if (close(file) != 0 && good) {
+    return false;
+  }
+  errno = reason;
+  return good;
+}
+
+dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
+                          size_t length)
+{
+  char *partial = dea_partial_name(ctx, path);
+  if (partial == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status;
+  if (write_all(partial, bytes, length)) {
+    status = dea_partial_finish(ctx, partial, path);
+  } else {
+    status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));
+    unlink(partial);
+  }
+  dea_free(ctx, partial);
+  return status;
+}
+
+dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
+                          const char *directory, const char *name)
+{
+  if (text->failed) {
+    return DEA_E_MEMORY;
+  }
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_file_write(ctx, path, dea_text_get(text), text->length);
+  dea_free(ctx, path);
+  return status;
+}
+
+void *dea_c_locale_enter(void)
+{
+  locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", duplocale(uselocale((locale_t)0)));
+  return c_locale != (locale_t)0 ? (void *)uselocale(c_locale) : NULL;
+}
+
+void dea_c_locale_leave(void *before)
+{
+  if (before != NULL) {
+    freelocale(uselocale((locale_t)before));
+  }
+}

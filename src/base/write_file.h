@@ -1,0 +1,32 @@
+/* Files of a run folder: folders, names, and writing that is complete or does not happen. */
+#ifndef DEA_BASE_WRITE_FILE_H
+#define DEA_BASE_WRITE_FILE_H
+
+#include "base/text.h"
+
+/* "directory/name"; owned by the caller, NULL on failure. */
+char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name);
+/* Makes a folder and those above it; fine when it is there. DEA_E_IO otherwise. */
+dea_status dea_folder_make(struct dea_context *ctx, const char *directory);
+/* True when something of that name exists. */
+bool dea_path_exists(const char *path);
+bool dea_path_is_folder(const char *path);
+
+/* Writes a file as a whole: the bytes go to a hidden file beside it, which then takes the name, so
+ * that no interruption leaves half a file. Replaces an existing file. */
+dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
+                          size_t length);
+/* The two halves of that, for files that another library writes: name of the hidden file for `path`
+ * ("dir/.name.PID.part"; owned by the caller, NULL on failure), and giving the finished one its
+ * name, or removing it when that fails. */
+char *dea_partial_name(struct dea_context *ctx, const char *path);
+dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
+/* The text of *text as file directory/name; fails for a text with a failed append. */
+dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
+                          const char *directory, const char *name);
+/* Numbers are written with a decimal point whatever the program's locale: between these two calls
+ * the thread formats in the C locale. */
+void *dea_c_locale_enter(void);
+void dea_c_locale_leave(void *before);
+
+#endif

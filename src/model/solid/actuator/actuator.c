@@ -1,0 +1,199 @@
+#include "model/solid/actuator/actuator.h"
+
+#include "model/film.h"
+#include "model/solid/element/membrane.h"
+
+#include <math.h>
+
+static const double kappa_share = 100; // kappa over the shear modulus
+
+/* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
+static const double incompressible = 0.49;
+
+/* Film or electrode: a law, and the film's pre-stretch. */
+static struct dea_constituent stretched(const struct dea_material *material, double pre_stretch)
+{
+  return (struct dea_constituent){
+      .law = material->law,
+      .param = material->param,
+      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
+      .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
+  };
+}
+
+/* A part that is bonded free of stress. mu_Pa: memory for the parameter of an incompressible one.
+ */
+static struct dea_constituent bonded(double young_modulus_Pa, double poisson_ratio, double *mu_Pa)
+{
+  double E = young_modulus_Pa, nu = poisson_ratio;
+  if (nu < incompressible) {
+    return (struct dea_constituent){.lame_mu_Pa = E / (2 * (1 + nu)),
+                                    .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  }
+  *mu_Pa = E / 3;
+  return (struct dea_constituent){.law = dea_law_find("neo-hookean"),
+                                  .param = mu_Pa,
+                                  .pre_stretch = {1, 1, 1},
+                                  .kappa_Pa = kappa_share * *mu_Pa};
+}
+
+static bool known(double density)
+{
+  return density > 0;
+}
+
+/* Densities; an electrode or a glue of which none is known is as heavy as the film. The layers that
+ * join a membrane to fibres have no mass: all of the film's is in its surface. */
+static void set_densities(const struct dea_device *d, struct dea_constituent *layers)
+{
+  double film = d->film.density_kg_per_m3, electrode = d->electrode.density_kg_per_m3;
+  layers[DEA_CONSTITUENT_FILM].density_kg_per_m3 = film;
+  layers[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3 = known(electrode) ? electrode : film;
+  layers[DEA_CONSTITUENT_GLUE].density_kg_per_m3 = film;
+  layers[DEA_CONSTITUENT_FIBRE].density_kg_per_m3 = d->fibre.density_kg_per_m3;
+}
+
+dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *a)
+{
+  const struct dea_device *d = a->device;
+  bool fibres = d->fibre_count > 0;
+  if (!known(d->film.density_kg_per_m3) || (fibres && !known(d->fibre.density_kg_per_m3))) {
+    return dea_fail(ctx, DEA_E_DESIGN,
+                    "weight and inertia need the density of the material '%s' "
+                    "(materials[].density)",
+                    known(d->film.density_kg_per_m3) ? d->fibre.name : d->film.name);
+  }
+  if (a->plate.electrode_thickness > 0 && !known(d->electrode.density_kg_per_m3)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: the density of the electrodes is unknown; that of the "
+                                 "film, %.4g kg/m^3, is taken",
+                                 d->film.density_kg_per_m3));
+  }
+  if (fibres && a->plate.glue_thickness > 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: the density of the glue is unknown; that of the film, "
+                                 "%.4g kg/m^3, is taken",
+                                 d->film.density_kg_per_m3));
+  }
+  return DEA_OK;
+}
+
+/* Film and electrodes as surfaces, and what joins them to fibres (docs/theory/membrane.md). */
+static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
+                                struct dea_constituent *layers)
+{
+  struct dea_constituent *film = &layers[DEA_CONSTITUENT_FILM],
+                         *electrode = &layers[DEA_CONSTITUENT_ELECTRODE];
+  struct dea_constituent *under = &layers[DEA_CONSTITUENT_BOND_ELECTRODE];
+  dea_status status = dea_membrane_bond(film, &layers[DEA_CONSTITUENT_BOND]);
+  film->relaxed = !stiff_electrodes; // bonded sheets wrinkle together, not each by itself
+  if (status == DEA_OK && stiff_electrodes) {
+    status = dea_membrane_bond(electrode, under);
+    // the load comes in below it, and not over its depth as a film's own does
+    under->lame_mu_Pa /= 1.5;
+    under->lame_lambda_Pa /= 1.5;
+    electrode->thickness_m *= 2; // both
+  }
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status,
+                                     "compute.solid.film: membrane takes isotropic laws of film "
+                                     "and electrodes only; take compute.solid.film: solid");
+}
+
+dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_actuator *out)
+{
+  const struct dea_device *d = device;
+  struct dea_film film;
+  *out = (struct dea_actuator){.device = device};
+  DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
+  DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, &out->plate));
+  struct dea_constituent *layers = out->layers;
+  double l = d->pre_stretch, slope = d->film.permittivity.slope;
+  layers[DEA_CONSTITUENT_FILM] = stretched(&d->film, l);
+  // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
+  layers[DEA_CONSTITUENT_FILM].permittivity_F_per_m =
+      DEA_EPSILON_0 * (d->film.permittivity.at_rest + slope * (l - 1));
+  layers[DEA_CONSTITUENT_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
+  layers[DEA_CONSTITUENT_FILM].thickness_m = d->film_thickness_m;
+  layers[DEA_CONSTITUENT_ELECTRODE] =
+      stretched(film.electrode != NULL ? film.electrode : &d->film, l);
+  layers[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
+  // a glue is taken as incompressible; the design says nothing else of it
+  layers[DEA_CONSTITUENT_GLUE] = bonded(d->bond_modulus_Pa, 0.5, &out->glue_mu_Pa);
+  layers[DEA_CONSTITUENT_FIBRE] =
+      bonded(d->fibre.young_modulus_Pa, d->fibre.poisson_ratio, &out->fibre_mu_Pa);
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+    bool there = i == DEA_CONSTITUENT_FILM ||
+                 (i == DEA_CONSTITUENT_ELECTRODE && film.electrode != NULL) ||
+                 (i > DEA_CONSTITUENT_ELECTRODE && d->fibre_count > 0); // bonds come below
+    dea_status status = there ? dea_constituent_relax(&layers[i]) : DEA_OK;
+    if (status != DEA_OK) {
+      return dea_fail(ctx, status, "the law '%s' ends before the pre-stretch %.4g",
+                      layers[i].law->name, d->pre_stretch);
+    }
+  }
+  if (out->plate.membrane && d->solid_field == DEA_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "compute.solid.field: coupled needs a film with a thickness; take "
+                    "compute.solid.film: solid");
+  }
+  set_densities(d, layers);
+  if (out->plate.membrane) {
+    DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, layers));
+  }
+  return DEA_OK;
+}
+
+int dea_actuator_layer(const void *self, int region, int sheet)
+{
+  const struct dea_actuator *a = self;
+  bool electrode = (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
+  switch (sheet) {
+  case DEA_FIBRE_DISC_FILM:
+    return DEA_CONSTITUENT_FILM;
+  case DEA_FIBRE_DISC_BOND:
+    return DEA_CONSTITUENT_BOND;
+  case DEA_FIBRE_DISC_TOP: // beside the electrodes it fills what is under the fibre
+    return electrode
+               ? a->plate.membrane ? DEA_CONSTITUENT_BOND_ELECTRODE : DEA_CONSTITUENT_ELECTRODE
+           : a->plate.glue_thickness > 0 ? DEA_CONSTITUENT_GLUE
+                                         : DEA_CONSTITUENT_FIBRE;
+  case DEA_FIBRE_DISC_BOTTOM:
+    return DEA_CONSTITUENT_ELECTRODE;
+  default:
+    return sheet == DEA_FIBRE_DISC_GLUE ? DEA_CONSTITUENT_GLUE : DEA_CONSTITUENT_FIBRE;
+  }
+}
+
+bool dea_actuator_active(const void *self, int region, int sheet)
+{
+  (void)self;
+  return sheet == DEA_FIBRE_DISC_FILM && (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
+}
+
+int dea_actuator_held(const void *self, const double X[3])
+{
+  const struct dea_actuator *a = self;
+  return dea_fibre_disc_held(&a->plate, X);
+}
+
+bool dea_actuator_electrode(const void *self, const double X[3], double *share)
+{
+  const struct dea_actuator *a = self;
+  double face = 0.5 * a->plate.film_thickness;
+  *share = X[2] > 0 ? 1 : 0;
+  return fabs(fabs(X[2]) - face) < 1e-6 * face &&
+         hypot(X[0], X[1]) < a->plate.electrode_radius * (1 + 1e-9);
+}
+
+bool dea_actuator_frame(const void *self, const double X[3], double Q[9])
+{
+  const struct dea_actuator *a = self;
+  return dea_fibre_disc_frame(&a->plate, X, Q);
+}
+
+double dea_actuator_copies(const struct dea_actuator *a)
+{
+  return (double)dea_fibre_disc_sectors(&a->plate) / a->plate.sectors;
+}

@@ -1,0 +1,49 @@
+/* A device as a solid: its mesh and what each part of it is made of (docs/theory/mesh.md). */
+#ifndef DEA_MODEL_SOLID_ACTUATOR_ACTUATOR_H
+#define DEA_MODEL_SOLID_ACTUATOR_ACTUATOR_H
+
+#include "model/solid/mesh/fibre_disc.h"
+
+enum {
+  DEA_CONSTITUENT_FILM,
+  DEA_CONSTITUENT_ELECTRODE,
+  DEA_CONSTITUENT_GLUE,
+  DEA_CONSTITUENT_FIBRE,
+  DEA_CONSTITUENT_BOND,           // of a membrane, the next one too: under fibres, free of stress
+  DEA_CONSTITUENT_BOND_ELECTRODE, // where fibres lie on electrodes of a thickness
+  DEA_CONSTITUENT_COUNT
+};
+
+/* Stays where it is: layers lend from it. */
+struct dea_actuator {
+  const struct dea_device *device; // lent
+  struct dea_fibre_disc plate;
+  struct dea_constituent layers[DEA_CONSTITUENT_COUNT];
+  double glue_mu_Pa, fibre_mu_Pa; // of those that are incompressible
+};
+
+/* The plate of a device, on the domain and with the refinement that it names. DEA_E_UNSUPPORTED for
+ * a domain that cannot show what the device does. */
+dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *device,
+                                    struct dea_fibre_disc *out);
+
+/* Plate and layers. device: lent, outlives the actuator. */
+dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_actuator *out);
+
+/* Before anything that takes the layers' densities: DEA_E_DESIGN where that of film or fibres is
+ * unknown, a note where that of electrodes or glue is and the film's is taken. */
+dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *actuator);
+
+/* Callbacks for a solid (solve/solid.h); self: a struct dea_actuator. */
+int dea_actuator_layer(const void *self, int region, int sheet);
+bool dea_actuator_active(const void *self, int region, int sheet);
+int dea_actuator_held(const void *self, const double X[3]);
+/* Of a coupled field: the two faces of the film, the one with the fibres at the voltage. */
+bool dea_actuator_electrode(const void *self, const double X[3], double *share);
+bool dea_actuator_frame(const void *self, const double X[3], double Q[9]);
+
+/* How often the domain lies in the whole actuator. */
+double dea_actuator_copies(const struct dea_actuator *actuator);
+
+#endif

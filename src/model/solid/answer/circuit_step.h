@@ -1,0 +1,32 @@
+/* A solid between electrodes in time: its steps together with those of the supply's circuit
+ * (docs/theory/time.md). The voltage of a step is that of the circuit for the capacitance which the
+ * film then has. */
+#ifndef DEA_MODEL_SOLID_ANSWER_CIRCUIT_STEP_H
+#define DEA_MODEL_SOLID_ANSWER_CIRCUIT_STEP_H
+
+#include "model/model.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/motion/time.h"
+
+struct dea_circuit_step;
+
+/* From the solid's last equilibrium, at rest there for long and charged to its voltage. actuator:
+ * what the solid is of; both lent, and the solid in time until *out is destroyed. With inertia also
+ * statuses of dea_actuator_check_mass. */
+dea_status dea_circuit_step_create(struct dea_context *ctx, struct dea_solid *solid,
+                                   const struct dea_actuator *actuator,
+                                   const struct dea_time_options *time,
+                                   struct dea_circuit_step **out);
+void dea_circuit_step_destroy(struct dea_context *ctx, struct dea_circuit_step *driven);
+
+/* advance and accept of struct dea_model_type. */
+dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_step *driven,
+                                    const struct dea_time_step *step,
+                                    struct dea_solid_report *report, double *error);
+void dea_circuit_step_accept(struct dea_circuit_step *driven);
+
+/* Time, voltages, charge, current, energies and works of the last advance into *point; its
+ * stored_energy_J and energy_J count from the start. */
+void dea_circuit_step_point(const struct dea_circuit_step *driven, struct dea_load_point *point);
+
+#endif

@@ -1,0 +1,34 @@
+/* A rigid probe against the middle of the actuator, as study "force" presses it. */
+#ifndef DEA_MODEL_SOLID_ANSWER_INDENT_H
+#define DEA_MODEL_SOLID_ANSWER_INDENT_H
+
+#include "model/model.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/load/loads.h"
+
+struct dea_indent {
+  struct dea_surface *surface;
+  struct dea_contact *contact;
+  bool from_fibre_side;
+  double touch_z_m; // of the tip's place when it touches the flat film
+  double depth_m;   // where it is
+  double copies;    // of the domain in the actuator
+};
+
+/* Puts the probe just out of touch and adds it to the solid. The solid must be destroyed first. */
+dea_status dea_indent_create(struct dea_context *ctx, const struct dea_actuator *actuator,
+                             const struct dea_grid *grid, struct dea_solid *solid,
+                             const struct dea_probe *probe, struct dea_indent **out);
+void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent);
+
+/* Brings it to a depth in steps, at the voltage given. It stays where it came to when a step fails.
+ */
+dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
+                           struct dea_solid *solid, double voltage_V, double depth_m,
+                           struct dea_solid_report *report);
+
+/* Force of the whole actuator on the probe, away from the film [N]. u: displacements. */
+double dea_indent_force(const struct dea_indent *indent, const double *u);
+
+#endif

@@ -1,0 +1,486 @@
+/* Model "3d" behind the common interface: the actuator as a solid, on a sector or as a whole disc.
+ * It is the whole of the loadable module that model/solid_module.c opens. */
+#include "model/make.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/answer/buckling_branch.h"
+#include "model/solid/answer/circuit_step.h"
+#include "model/solid/answer/fields.h"
+#include "model/solid/answer/indent.h"
+#include "model/solid/answer/motions.h"
+#include "model/solid/answer/state.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/recovery/line_profile.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double free_fall_m_per_s2 = 9.81;
+static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+
+struct dea_model {
+  const struct dea_device *device;
+  struct dea_actuator actuator;
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  size_t tip, centre, between; // nodes that are reported
+  size_t centre_twin,
+      between_twin; // on the other side of the film's middle plane, or the same ones
+  double voltage_V, rest_energy_J;
+  struct dea_solid_report report;
+  double *profile;                 // what the last one lends from
+  struct dea_indent *indent;       // NULL: no probe
+  struct dea_circuit_step *driven; // NULL: no history in time
+  double stored_J;                 // of the film when that began
+};
+
+/* The node at the mirror image of another one by the middle plane. */
+static size_t twin_of(const struct dea_grid *grid, size_t node)
+{
+  const double *X = grid->X + 3 * node;
+  const double mirrored[3] = {X[0], X[1], -X[2]};
+  return dea_grid_nearest(grid, mirrored);
+}
+
+/* Nodes that are reported. The tip is where film and fibre meet. Elements of odd order have no
+ * nodes in the middle plane: there two of them stand for the one between. */
+static void find_nodes(struct dea_model *model)
+{
+  const struct dea_fibre_disc *p = &model->actuator.plate;
+  double a = p->electrode_radius, half = dea_fibre_disc_angle(p) / p->sectors;
+  const double centre[3] = {0}, between[3] = {a * cos(half), a * sin(half), 0};
+  const double tip[3] = {p->tip_radius, 0, 0.5 * p->film_thickness};
+  model->centre = dea_grid_nearest(model->grid, centre);
+  model->between = dea_grid_nearest(model->grid, between);
+  model->centre_twin = twin_of(model->grid, model->centre);
+  model->between_twin = twin_of(model->grid, model->between);
+  model->tip = dea_grid_nearest(model->grid, tip);
+}
+
+/* What is about to be solved, and what it cannot show. */
+static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *model)
+{
+  const struct dea_fibre_disc *p = &model->actuator.plate;
+  bool whole = p->sectors == dea_fibre_disc_sectors(p);
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                               "model 3d: %zu elements, %zu unknowns, %s",
+                               model->grid->element_count, 3 * model->grid->node_count,
+                               whole ? "the whole disc"
+                                     : "one sector of the actuator; it is blind to motions that "
+                                       "break its symmetry (compute.solid.domain: disc)"));
+  if (p->membrane) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d with a membrane film is a preview: %s"
+                                 "it has no bending of the film and no shape of its wrinkles "
+                                 "(compute.solid.film: solid)",
+                                 p->fibres > 0 ? "10 to 20 % off the solid film at the fibre tip; "
+                                               : ""));
+  }
+  if (p->membrane && model->device->pre_stretch <= 1) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                                 "a membrane film without pre-stretch is slack under any voltage: "
+                                 "nothing will move, where a solid film buckles "
+                                 "(compute.solid.film: solid)"));
+  }
+  return DEA_OK;
+}
+
+/* Puts the weight of all parts among the loads of every solve: also that at 0 V. */
+static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+{
+  enum dea_gravity gravity = model->device->gravity;
+  if (gravity == DEA_GRAVITY_OFF) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  double *fall = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fall);
+  if (dea_solid_any(fall == NULL)) {
+    dea_free(ctx, fall);
+    return DEA_E_MEMORY;
+  }
+  for (size_t n = 0; n < model->grid->node_count; n++) {
+    fall[3 * n + 2] = gravity == DEA_GRAVITY_FIBRES_UP ? -free_fall_m_per_s2 : free_fall_m_per_s2;
+  }
+  dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, dea_solid_force(model->solid));
+  dea_free(ctx, fall);
+  return status;
+}
+
+/* Where the weight alone brings the film. */
+static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model)
+{
+  if (model->device->gravity != DEA_GRAVITY_OFF) {
+    const double *u = dea_solid_displacement(model->solid);
+    DEA_TRY(ctx, dea_finding_add(
+                     ctx, DEA_NOTE, (struct dea_location){0},
+                     "model 3d: with its weight the centre is at z = %.4g um without voltage, "
+                     "where the sweep starts (gravity: fibres_%s)",
+                     1e6 * 0.5 * (u[3 * model->centre + 2] + u[3 * model->centre_twin + 2]),
+                     model->device->gravity == DEA_GRAVITY_FIBRES_UP ? "up" : "down"));
+  }
+  return DEA_OK;
+}
+
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+                          struct dea_model *model)
+{
+  model->device = device;
+  DEA_TRY(ctx, dea_actuator_create(ctx, device, &model->actuator));
+  DEA_TRY(ctx, dea_fibre_disc_create(ctx, &model->actuator.plate, &model->grid));
+  DEA_TRY(ctx, say_mesh(ctx, model));
+  DEA_TRY(ctx, dea_solid_start(ctx));
+  DEA_TRY(ctx, dea_solid_of_actuator(ctx, &model->actuator, model->grid, &model->solid));
+  find_nodes(model);
+  DEA_TRY(ctx, add_weight(ctx, model));
+  DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, 0, &model->report));
+  model->rest_energy_J = model->report.energy_J;
+  DEA_TRY(ctx, say_sag(ctx, model));
+  return DEA_OK;
+}
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    dea_circuit_step_destroy(ctx, model->driven);
+    dea_solid_destroy(ctx, model->solid);
+    dea_indent_destroy(ctx, model->indent);
+    dea_grid_destroy(ctx, model->grid);
+    dea_free(ctx, model->profile);
+    dea_free(ctx, model);
+  }
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, prepare, destroy, out));
+  return DEA_OK;
+}
+
+/* Largest and smallest displacement out of the plane among the film's nodes. */
+static void find_heights(const struct dea_model *model, const double *u, struct dea_load_point *out)
+{
+  double face = 0.5 * model->actuator.plate.film_thickness * (1 + 1e-9);
+  out->highest_z_m = -INFINITY;
+  out->lowest_z_m = INFINITY;
+  for (size_t n = 0; n < model->grid->node_count; n++) {
+    if (fabs(model->grid->X[3 * n + 2]) <= face) {
+      out->highest_z_m = fmax(out->highest_z_m, u[3 * n + 2]);
+      out->lowest_z_m = fmin(out->lowest_z_m, u[3 * n + 2]);
+    }
+  }
+}
+
+static dea_status report(struct dea_context *ctx, struct dea_model *model,
+                         struct dea_load_point *out)
+{
+  const struct dea_device *d = model->device;
+  const double *u = dea_solid_displacement(model->solid);
+  struct dea_solid_extremes extremes;
+  double capacitance_F;
+  dea_status status = dea_solid_extremes(model->solid, &d->film, d->pre_stretch, &extremes);
+  if (status == DEA_OK) {
+    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
+  }
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
+  }
+  const double *X = model->grid->X + 3 * model->between;
+  const double *v = u + 3 * model->between, *w = u + 3 * model->between_twin;
+  double outwards = 0.5 * ((v[0] + w[0]) * X[0] + (v[1] + w[1]) * X[1]) / hypot(X[0], X[1]);
+  *out = dea_load_point_empty();
+  out->voltage_V = model->voltage_V;
+  out->electrode_stretch = 1 + outwards / d->electrode_radius_m;
+  out->electrode_edge_u_m = outwards;
+  out->centre_z_m = 0.5 * (u[3 * model->centre + 2] + u[3 * model->centre_twin + 2]);
+  out->fibre_tip_z_m = d->fibre_count > 0 ? u[3 * model->tip + 2] : NAN;
+  find_heights(model, u, out);
+  out->nominal_field_V_per_m = model->voltage_V / d->film_thickness_unstretched_m;
+  out->true_field_V_per_m = extremes.true_field_V_per_m;
+  out->breakdown_margin = extremes.breakdown_margin;
+  out->min_tension_N_per_m = extremes.min_tension_N_per_m;
+  double copies = dea_actuator_copies(&model->actuator);
+  out->energy_J = copies * (model->report.energy_J - model->rest_energy_J);
+  out->capacitance_F = copies * capacitance_F;
+  if (model->indent != NULL) {
+    out->tip_depth_m = model->indent->depth_m;
+    out->force_N = dea_indent_force(model->indent, u);
+  }
+  out->unstable_modes = model->report.unstable_modes;
+  out->stable = out->unstable_modes == 0;
+  return DEA_OK;
+}
+
+/* What a user can make of a solve that failed on the way to a voltage. */
+static dea_status stopped(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                          dea_status status)
+{
+  char why[200];
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, status,
+                  "stopped between %.4g and %.4g kV (%s); the points before are kept. Try smaller "
+                  "steps of compute.voltage",
+                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
+}
+
+/* Where the path to a voltage has turned unstable and the solid has gone down from it. */
+static dea_status say_snap(struct dea_context *ctx, const struct dea_model *model)
+{
+  if (model->report.snapped) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                            "model 3d: the state on the way to %.4g kV is unstable (buckling or "
+                            "snapping); the sweep goes on from the stable one below it",
+                            1e-3 * model->voltage_V));
+  }
+  return DEA_OK;
+}
+
+/* To the side that the design asks for, where there is a state. */
+static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
+{
+  bool moved;
+  double before_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
+  if (model->indent != NULL || model->voltage_V == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_buckling_branch_take(ctx, model->solid, model->grid, &model->actuator.plate,
+                                        model->centre, model->device->solid_side, &model->report,
+                                        &moved));
+  if (moved) {
+    double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: at %.4g kV the centre goes over from %.4g to %.4g um "
+                                 "(compute.solid.side)",
+                                 1e-3 * model->voltage_V, 1e6 * before_m, 1e6 * after_m));
+  }
+  return DEA_OK;
+}
+
+/* ---- in time ---- */
+
+/* Equilibria are looked for from where the history has come to. */
+static void end_history(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model->driven != NULL) {
+    dea_circuit_step_destroy(ctx, model->driven);
+    model->driven = NULL;
+    model->voltage_V = dea_solid_voltage(model->solid);
+  }
+}
+
+static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
+                              struct dea_load_point *out)
+{
+  model->voltage_V = dea_solid_voltage(model->solid);
+  DEA_TRY(ctx, report(ctx, model, out));
+  dea_circuit_step_point(model->driven, out);
+  out->stored_energy_J += model->stored_J;
+  out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
+  return DEA_OK;
+}
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *time, struct dea_load_point *out)
+{
+  end_history(ctx, model);
+  DEA_TRY(ctx, report(ctx, model, out));
+  model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
+  DEA_TRY(ctx, dea_circuit_step_create(ctx, model->solid, &model->actuator, time, &model->driven));
+  DEA_TRY(ctx, report_time(ctx, model, out));
+  return DEA_OK;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  if (model->driven == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
+  }
+  if (dea_solid_any(dea_interrupted(ctx))) {
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
+  }
+  DEA_TRY(ctx, dea_circuit_step_advance(ctx, model->driven, step, &model->report, error));
+  DEA_TRY(ctx, report_time(ctx, model, out));
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *model)
+{
+  dea_circuit_step_accept(model->driven);
+}
+
+/* ---- equilibria ---- */
+
+static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  end_history(ctx, model);
+  double step = field_step_V_per_m * model->device->film_thickness_unstretched_m;
+  double from = model->voltage_V, way = voltage_V - from;
+  int steps = (int)ceil(fabs(way) / step - 1e-9);
+  steps = steps < 1 ? 1 : steps;
+  for (int i = 1; i <= steps; i++) {
+    if (dea_solid_any(dea_interrupted(ctx))) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
+                      1e-3 * voltage_V);
+    }
+    double next = i == steps ? voltage_V : from + way * i / steps;
+    dea_status status = dea_solid_solve(ctx, model->solid, next, &model->report);
+    if (status != DEA_OK) {
+      return stopped(ctx, model, next, status);
+    }
+    model->voltage_V = next;
+    DEA_TRY(ctx, say_snap(ctx, model));
+    DEA_TRY(ctx, take_side(ctx, model));
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  return DEA_OK;
+}
+
+static dea_status indent(struct dea_context *ctx, struct dea_model *model,
+                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
+{
+  end_history(ctx, model);
+  if (model->indent == NULL) {
+    DEA_TRY(ctx, dea_indent_create(ctx, &model->actuator, model->grid, model->solid, probe,
+                                   &model->indent));
+  }
+  dea_status status =
+      dea_indent_move(ctx, model->indent, model->solid, model->voltage_V, depth_m, &model->report);
+  if (status != DEA_OK) {
+    char why[200];
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    return dea_fail(ctx, status,
+                    "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
+                    1e3 * model->indent->depth_m, 1e3 * depth_m, why);
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  return DEA_OK;
+}
+
+/* What small motions are of; notes say what they leave out. */
+static dea_status find_motions(struct dea_context *ctx, const struct dea_model *model,
+                               struct dea_motions *out)
+{
+  const struct dea_fibre_disc *p = &model->actuator.plate;
+  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  DEA_TRY(ctx,
+          dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                          "model 3d: frequencies are those in vacuo; the air that moves with a "
+                          "film makes it slower, by up to a fifth%s",
+                          p->sectors == dea_fibre_disc_sectors(p)
+                              ? ""
+                              : ". A sector has only those modes that have its symmetry "
+                                "(compute.solid.domain: disc has all)"));
+  *out = (struct dea_motions){.solid = model->solid,
+                              .grid = model->grid,
+                              .centre = model->centre,
+                              .centre_twin = model->centre_twin,
+                              .tip = model->tip,
+                              .has_tip = model->device->fibre_count > 0};
+  dea_motions_set_branches(out, model->device);
+  return DEA_OK;
+}
+
+static void set_symmetry(const struct dea_model *model, struct dea_field_mesh *mesh)
+{
+  const struct dea_fibre_disc *p = &model->actuator.plate;
+  mesh->fold = p->sectors == 1 ? dea_fibre_disc_sectors(p) / 2 : 0;
+  mesh->fibres = model->device->fibre_count;
+}
+
+static dea_status modes(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_load_point *at, size_t count,
+                        struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  struct dea_motions motions;
+  *shapes = NULL;
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
+  DEA_TRY(ctx, dea_motions_modes(ctx, &motions, DEA_FIBRE_DISC_FILM, at, count, points, shapes));
+  set_symmetry(model, *shapes);
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_load_point *at, const struct dea_ripple *ripple,
+                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+{
+  struct dea_motions motions;
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
+  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, ripple, frequency_Hz, count, points));
+  return DEA_OK;
+}
+
+static dea_status fields(struct dea_context *ctx, struct dea_model *model,
+                         enum dea_fields_part part, struct dea_field_mesh **out)
+{
+  DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
+                   ? dea_solid_volume(ctx, model->solid, out)
+                   : dea_solid_surface(ctx, model->solid, DEA_FIBRE_DISC_FILM, out));
+  set_symmetry(model, *out);
+  return DEA_OK;
+}
+
+/* Along the first fibre's axis and halfway between it and the next. */
+static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
+{
+  const struct dea_fibre_disc *p = &model->actuator.plate;
+  struct dea_field_mesh *surface;
+  dea_free(ctx, model->profile);
+  model->profile = NULL;
+  DEA_TRY(ctx, dea_solid_surface(ctx, model->solid, DEA_FIBRE_DISC_FILM, &surface));
+  dea_status status = dea_line_profile(ctx, surface, 0, dea_fibre_disc_angle(p) / p->sectors,
+                                       model->device->pre_stretch, &model->profile, out);
+  dea_field_mesh_destroy(ctx, surface);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
+{
+  const double own[] = {model->voltage_V};
+  *out = (struct dea_state){0};
+  DEA_TRY(ctx, dea_solid_save(ctx, model->solid, out));
+  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "model", own, 1));
+  return DEA_OK;
+}
+
+static dea_status load(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_state *state)
+{
+  const double *own = dea_state_find(state, "model", 1);
+  if (own == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
+  }
+  DEA_TRY(ctx, dea_solid_load(ctx, model->solid, state));
+  model->voltage_V = own[0];
+  return DEA_OK;
+}
+
+static void size(const struct dea_model *model, struct dea_model_size *out)
+{
+  *out = (struct dea_model_size){.elements = model->grid->element_count,
+                                 .nodes = model->grid->node_count,
+                                 .unknowns = 3 * model->grid->node_count};
+}
+
+extern const struct dea_model_type dea_solid_module;
+
+const struct dea_model_type dea_solid_module = {
+    .name = "3d",
+    .long_name = "3D solid",
+    .create = create,
+    .destroy = destroy,
+    .solve = solve,
+    .indent = indent,
+    .modes = modes,
+    .respond = respond,
+    .profile = profile,
+    .fields = fields,
+    .save = save,
+    .load = load,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
+    .size = size,
+};

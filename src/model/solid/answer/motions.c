@@ -1,0 +1,240 @@
+#include "model/solid/answer/motions.h"
+
+#include "model/solid/answer/fields.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/motion/vibration.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Share of the kinetic energy of a mode, v . Mv = 1, that is out of the plane; work: [2][dofs]. */
+static dea_status out_of_plane(struct dea_context *ctx, const struct dea_motions *m,
+                               const double *vector, double *work, double *share)
+{
+  size_t dofs = 3 * m->grid->node_count;
+  for (size_t i = 0; i < dofs; i++) {
+    work[i] = i % 3 == 2 ? vector[i] : 0;
+  }
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, m->solid, work, work + dofs));
+  *share = 0;
+  for (size_t i = 2; i < dofs; i += 3) {
+    *share += work[i] * work[dofs + i];
+  }
+  return DEA_OK;
+}
+
+static double largest(const double *v, size_t dofs)
+{
+  double most = 0;
+  for (size_t i = 0; i < dofs; i += 3) {
+    most = fmax(most, hypot(hypot(v[i], v[i + 1]), v[i + 2]));
+  }
+  return most;
+}
+
+/* Frequencies and where the modes move. A negative frequency: unstable, of that rate. */
+static dea_status fill_points(struct dea_context *ctx, const struct dea_motions *m,
+                              const struct dea_load_point *at, size_t count, const double *square,
+                              const double *vector, double *work, struct dea_load_point *points)
+{
+  size_t dofs = 3 * m->grid->node_count;
+  for (size_t k = 0; k < count; k++) {
+    const double *v = vector + k * dofs;
+    struct dea_load_point *p = &points[k];
+    *p = *at;
+    p->mode = (double)(k + 1);
+    p->frequency_Hz = copysign(sqrt(fabs(square[k])), square[k]) / (2 * pi);
+    p->mode_centre = 0.5 * (v[3 * m->centre + 2] + v[3 * m->centre_twin + 2]) / largest(v, dofs);
+    DEA_TRY(ctx, out_of_plane(ctx, m, v, work, &p->mode_out_of_plane));
+  }
+  return DEA_OK;
+}
+
+/* The film's middle surface, moved by v so little that it is as good as at rest: its displacement
+ * is linear in v. */
+static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+                             const double *v, struct dea_field_mesh **out)
+{
+  static const double little = 1e-9; // of the size of the mesh
+  size_t dofs = 3 * m->grid->node_count;
+  double *u = dea_solid_displacement(m->solid), *keep = dea_alloc(ctx, dofs, sizeof *keep);
+  double scale = little * largest(m->grid->X, dofs) / largest(v, dofs);
+  if (dea_solid_any(keep == NULL)) {
+    dea_free(ctx, keep);
+    return DEA_E_MEMORY;
+  }
+  memcpy(keep, u, dofs * sizeof *u);
+  for (size_t i = 0; i < dofs; i++) {
+    u[i] = scale * v[i];
+  }
+  dea_status status = dea_solid_surface(ctx, m->solid, sheet, out);
+  memcpy(u, keep, dofs * sizeof *u);
+  dea_free(ctx, keep);
+  return status;
+}
+
+/* Adds a mode to the surface as a field, its largest displacement there 1. */
+static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+                            const struct dea_load_point *point, const double *v,
+                            struct dea_field_mesh *mesh)
+{
+  struct dea_mesh_field field = {.unit = "1", .kind = DEA_MESH_VECTOR, .components = 3};
+  struct dea_field_mesh *moved;
+  double *values;
+  snprintf(field.name, sizeof field.name, DEA_SHAPE_FIELD, (int)point->mode);
+  snprintf(field.meaning, sizeof field.meaning,
+           "shape of the mode at %.6g Hz, its largest displacement 1", point->frequency_Hz);
+  DEA_TRY(ctx, surface_of(ctx, m, sheet, v, &moved));
+  dea_status status = dea_field_mesh_add(ctx, mesh, &field, &values);
+  if (status == DEA_OK) {
+    const double *u = dea_field_mesh_find(moved, "displacement_m")->values;
+    double most = largest(u, 3 * mesh->point_count);
+    for (size_t i = 0; i < 3 * mesh->point_count; i++) {
+      values[i] = most > 0 ? u[i] / most : 0;
+    }
+  }
+  dea_field_mesh_destroy(ctx, moved);
+  return status;
+}
+
+static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+                             const struct dea_load_point *at, size_t count, double *memory,
+                             struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  size_t dofs = 3 * m->grid->node_count;
+  double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
+  DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, count, square, vector));
+  DEA_TRY(ctx, fill_points(ctx, m, at, count, square, vector, work, points));
+  DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, sheet, shapes));
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < count && status == DEA_OK; k++) {
+    status = add_shape(ctx, m, sheet, &points[k], vector + k * dofs, *shapes);
+  }
+  return dea_field_mesh_finish(ctx, status, shapes);
+}
+
+dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+                             const struct dea_load_point *at, size_t count,
+                             struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  size_t dofs = 3 * m->grid->node_count;
+  double *memory = dea_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
+  *shapes = NULL;
+  if (dea_solid_any(memory == NULL)) {
+    dea_free(ctx, memory);
+    return DEA_E_MEMORY;
+  }
+  dea_status status = take_modes(ctx, m, sheet, at, count, memory, points, shapes);
+  dea_free(ctx, memory);
+  return status;
+}
+
+/* ---- answers ---- */
+
+void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device)
+{
+  dea_branches_of_device(device, motions->branches);
+  for (int l = 0; l < DEA_CONSTITUENT_COUNT; l++) {
+    motions->viscous = motions->viscous || motions->branches[l].count > 0;
+  }
+}
+
+enum { CENTRE, TWIN, TIP, PROBES };
+
+/* z of the probes by the frequency, real and imaginary part in the third component. */
+typedef double answer[2][3];
+
+static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m,
+                            const struct dea_damping *damping, const double *rad_per_s,
+                            size_t count, const size_t nodes[PROBES], answer *out)
+{
+  struct dea_solid_response *response;
+  double highest = 0;
+  for (size_t i = 0; i < count; i++) {
+    highest = fmax(highest, rad_per_s[i]);
+  }
+  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
+  for (size_t i = 0; i < count * PROBES; i++) {
+    dea_solid_response_at(response, nodes[i % PROBES], rad_per_s[i / PROBES], damping, out[i][0],
+                          out[i][1]);
+  }
+  dea_solid_response_destroy(ctx, response);
+  return DEA_OK;
+}
+
+/* At one frequency there are no modes: the ratio becomes shares of mass and stiffness that make it
+ * at the first resonance and at three times that, 0.87 of it between them and more beyond. */
+static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions *m,
+                               struct dea_damping *damping)
+{
+  static const double spread = 3;
+  double square;
+  if (damping->ratio == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, 1, &square, NULL));
+  if (!(square > 0)) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                    "the equilibrium that the voltage ripples about is unstable");
+  }
+  double first = sqrt(square), sum = (1 + spread) * first;
+  damping->mass_per_s += 2 * damping->ratio * spread * square / sum;
+  damping->stiffness_s += 2 * damping->ratio / sum;
+  return DEA_OK;
+}
+
+static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *m,
+                             const struct dea_damping *damping, const double *rad_per_s,
+                             size_t count, const size_t nodes[PROBES], answer *out)
+{
+  struct dea_damping spread = *damping;
+  DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
+  DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
+                                         nodes, PROBES, out));
+  return DEA_OK;
+}
+
+static void amplitude_of(answer first, answer second, double ripple_V, double *amplitude_m,
+                         double *phase_rad)
+{
+  double re = 0.5 * (first[0][2] + second[0][2]);
+  double im = 0.5 * (first[1][2] + second[1][2]);
+  *amplitude_m = ripple_V * hypot(re, im);
+  *phase_rad = atan2(im, re);
+}
+
+dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,
+                               const struct dea_load_point *at, const struct dea_ripple *ripple,
+                               const double *frequency_Hz, size_t count,
+                               struct dea_load_point *points)
+{
+  const struct dea_damping damping = {ripple->damping_ratio, ripple->damping_mass_per_s,
+                                      ripple->damping_stiffness_s};
+  const size_t nodes[PROBES] = {m->centre, m->centre_twin, m->tip};
+  double *rad_per_s = dea_alloc(ctx, count, sizeof *rad_per_s);
+  answer *out = dea_alloc(ctx, count * PROBES, sizeof *out);
+  dea_status status = dea_solid_any(rad_per_s == NULL || out == NULL) ? DEA_E_MEMORY : DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    rad_per_s[i] = 2 * pi * frequency_Hz[i];
+  }
+  if (status == DEA_OK) {
+    status = (m->viscous ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, nodes, out);
+  }
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    answer *z = out + i * PROBES;
+    struct dea_load_point *p = &points[i];
+    *p = *at;
+    p->frequency_Hz = frequency_Hz[i];
+    p->ripple_V = ripple->amplitude_V;
+    amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
+    if (m->has_tip) {
+      amplitude_of(z[TIP], z[TIP], p->ripple_V, &p->fibre_tip_amplitude_m, &p->fibre_tip_phase_rad);
+    }
+  }
+  dea_free(ctx, rad_per_s);
+  dea_free(ctx, out);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,32 @@
+/* Small motions as a model tells of them (model/model.h): points and shapes. */
+#ifndef DEA_MODEL_SOLID_ANSWER_MOTIONS_H
+#define DEA_MODEL_SOLID_ANSWER_MOTIONS_H
+
+#include "model/model.h"
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/assembly/internal_variables.h"
+
+/* A solid with the nodes that are reported. */
+struct dea_motions {
+  struct dea_solid *solid;
+  const struct dea_grid *grid;
+  size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
+  size_t tip;
+  bool has_tip;
+  bool viscous; // a layer has branches
+  struct dea_branches branches[DEA_CONSTITUENT_COUNT];
+};
+
+/* Sets the branches of film and electrodes. */
+void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device);
+
+/* As `modes` and `respond` of struct dea_model_type; sheet: of the film. */
+dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int sheet,
+                             const struct dea_load_point *at, size_t count,
+                             struct dea_load_point *points, struct dea_field_mesh **shapes);
+dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *motions,
+                               const struct dea_load_point *at, const struct dea_ripple *ripple,
+                               const double *frequency_Hz, size_t count,
+                               struct dea_load_point *points);
+
+#endif

@@ -1,0 +1,40 @@
+#include "model/solid/actuator/actuator.h"
+#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/solid.h"
+
+#include <string.h>
+
+dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
+                                 const struct dea_grid *grid, struct dea_solid **out)
+{
+  bool coupled = actuator->device->solid_field == DEA_FIELD_COUPLED;
+  const struct dea_solid_options options = {
+      .order_z = actuator->plate.order_z,
+      .layer_count = DEA_CONSTITUENT_COUNT,
+      .layers = actuator->layers,
+      .layer_of = dea_actuator_layer,
+      .field = coupled ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
+      .electrode = dea_actuator_electrode,
+      .active = dea_actuator_active,
+      .held = dea_actuator_held,
+      .frame = dea_actuator_frame,
+      .self = actuator,
+  };
+  DEA_TRY(ctx, dea_solid_create(ctx, grid, &options, out));
+  return DEA_OK;
+}
+
+static void set_branches(const struct dea_material *material, struct dea_branches *out)
+{
+  out->count = material->branch_count;
+  memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
+}
+
+void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out)
+{
+  memset(out, 0, DEA_CONSTITUENT_COUNT * sizeof *out);
+  set_branches(&device->film, &out[DEA_CONSTITUENT_FILM]);
+  if (device->electrode_thickness_m > 0) {
+    set_branches(&device->electrode, &out[DEA_CONSTITUENT_ELECTRODE]);
+  }
+}

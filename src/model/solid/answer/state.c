@@ -1,0 +1,87 @@
+#include "model/solid/answer/state.h"
+
+#include "model/solid/assembly/internal.h"
+
+#include <string.h>
+
+enum { LAYER_NUMBERS = 10 }; // beside the parameters of the law
+
+static size_t layer_count(const struct dea_solid *s)
+{
+  size_t count = 0;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    count = count > (size_t)s->layer[e] ? count : (size_t)s->layer[e] + 1;
+  }
+  return count;
+}
+
+/* All numbers that the energy of the layers depends on. */
+static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid *s,
+                                 struct dea_state *out)
+{
+  double *to = out->numbers + out->number_count;
+  size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
+  for (size_t i = 0; i < layer_count(s); i++) {
+    const struct dea_constituent *l = &s->layers[i];
+    const double own[LAYER_NUMBERS] = {l->lame_lambda_Pa, l->lame_mu_Pa,
+                                       l->pre_stretch[0], l->pre_stretch[1],
+                                       l->p0_Pa,          l->kappa_s_Pa,
+                                       l->kappa_Pa,       l->permittivity_F_per_m,
+                                       l->thickness_m,    l->permittivity_slope_F_per_m};
+    size_t params = l->law != NULL ? l->law->param_count : 0;
+    if (count + LAYER_NUMBERS + params > room) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer layers");
+    }
+    memcpy(to + count, own, sizeof own);
+    if (params > 0) {
+      memcpy(to + count + LAYER_NUMBERS, l->param, params * sizeof *to);
+    }
+    count += LAYER_NUMBERS + params;
+  }
+  out->number_count += count;
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "materials", to, count * sizeof *to));
+  return DEA_OK;
+}
+
+dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct dea_state *out)
+{
+  const struct dea_grid *grid = s->grid;
+  struct dea_load_steps *path = &s->path;
+  DEA_TRY(ctx, dea_load_steps_prepare(ctx, s));
+  dea_solid_state_get(s, path->keep);
+  dea_solid_controls_get(s, path->controls);
+  const double own[] = {s->force_largest, s->energy_largest};
+  DEA_TRY(ctx,
+          dea_state_add_mark(ctx, out, "mesh", grid->X, 3 * grid->node_count * sizeof(double)));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
+                                  grid->element_count * DEA_HEX_NODES_MAX * sizeof(int)));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", s->layer,
+                                  grid->element_count * sizeof *s->layer));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "electrodes", s->active,
+                                  grid->element_count * sizeof *s->active));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", s->held, s->dofs));
+  DEA_TRY(ctx, mark_materials(ctx, s, out));
+  DEA_TRY(ctx, dea_state_add(ctx, out, "state", path->keep, path->state_count));
+  DEA_TRY(ctx, dea_state_add(ctx, out, "controls", path->controls, path->control_count));
+  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
+  return DEA_OK;
+}
+
+dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
+                          const struct dea_state *state)
+{
+  struct dea_load_steps *path = &s->path;
+  DEA_TRY(ctx, dea_load_steps_prepare(ctx, s));
+  const double *now = dea_state_find(state, "state", path->state_count);
+  const double *controls = dea_state_find(state, "controls", path->control_count);
+  const double *own = dea_state_find(state, "solid", 2);
+  if (now == NULL || controls == NULL || own == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh and these loads");
+  }
+  dea_solid_state_set(s, now);
+  dea_solid_controls_set(s, controls);
+  memcpy(s->force_goal, s->force, s->dofs * sizeof(double));
+  s->force_largest = own[0];
+  s->energy_largest = own[1];
+  return DEA_OK;
+}

@@ -1,0 +1,156 @@
+/* What an equilibrium is asked for at, as one vector of controls: the voltage, the dead loads and
+ * charges [dofs], the displacements of held components [moves] (0 where free), the parameters of
+ * all loads.
+ * Only what they are differs between them; a step goes a share of the way of all of them alike. */
+#include "model/solid/assembly/internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double rounding = 1e-12; // of a displacement, relative
+
+/* Displacements, without the potentials of a coupled field. */
+static size_t move_count(const struct dea_solid *s)
+{
+  return 3 * s->grid->node_count;
+}
+
+static size_t control_count(const struct dea_solid *s)
+{
+  size_t count = 1 + s->dofs + move_count(s);
+  for (size_t i = 0; i < s->load_count; i++) {
+    count += s->loads[i].parameter_count;
+  }
+  return count;
+}
+
+static size_t state_count(const struct dea_solid *s)
+{
+  size_t count = s->dofs + dea_solid_pressure_count(s);
+  for (size_t i = 0; i < s->load_count; i++) {
+    count += s->loads[i].multiplier_count;
+  }
+  return count;
+}
+
+void dea_load_steps_release(struct dea_context *ctx, struct dea_load_steps *path)
+{
+  double *const memory[] = {path->keep, path->controls, path->controls_from, path->controls_goal,
+                            path->at};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    dea_free(ctx, memory[i]);
+  }
+  *path = (struct dea_load_steps){0};
+}
+
+dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
+{
+  struct dea_load_steps *path = &s->path;
+  size_t states = state_count(s), controls = control_count(s);
+  if (path->state_count == states && path->control_count == controls) {
+    return DEA_OK;
+  }
+  dea_load_steps_release(ctx, path); // a load more: what was before is no guide
+  path->keep = dea_alloc(ctx, states, sizeof(double));
+  path->controls = dea_alloc(ctx, controls, sizeof(double));
+  path->controls_from = dea_alloc(ctx, controls, sizeof(double));
+  path->controls_goal = dea_alloc(ctx, controls, sizeof(double));
+  path->at = dea_alloc(ctx, controls, sizeof(double));
+  if (path->keep == NULL || path->controls == NULL || path->controls_from == NULL ||
+      path->controls_goal == NULL || path->at == NULL) {
+    dea_load_steps_release(ctx, path);
+    return DEA_E_MEMORY;
+  }
+  path->state_count = states;
+  path->control_count = controls;
+  return DEA_OK;
+}
+
+void dea_solid_state_get(const struct dea_solid *s, double *state)
+{
+  size_t pressures = dea_solid_pressure_count(s);
+  memcpy(state, s->u, s->dofs * sizeof *state);
+  memcpy(state += s->dofs, s->multiplier, pressures * sizeof *state);
+  state += pressures;
+  for (size_t i = 0; i < s->load_count; state += s->loads[i].multiplier_count, i++) {
+    if (s->loads[i].multiplier_count > 0) {
+      memcpy(state, s->loads[i].multiplier, s->loads[i].multiplier_count * sizeof *state);
+    }
+  }
+}
+
+void dea_solid_state_set(struct dea_solid *s, const double *state)
+{
+  size_t pressures = dea_solid_pressure_count(s);
+  memcpy(s->u, state, s->dofs * sizeof *state);
+  memcpy(s->multiplier, state += s->dofs, pressures * sizeof *state);
+  state += pressures;
+  for (size_t i = 0; i < s->load_count; state += s->loads[i].multiplier_count, i++) {
+    if (s->loads[i].multiplier_count > 0) {
+      memcpy(s->loads[i].multiplier, state, s->loads[i].multiplier_count * sizeof *state);
+    }
+  }
+}
+
+/* Controls from their parts; parameters as they stand, or those that are wanted. */
+static void pack(const struct dea_solid *s, double voltage_V, const double *force,
+                 const double *place, bool wanted, double *controls)
+{
+  *controls++ = voltage_V;
+  memcpy(controls, force, s->dofs * sizeof *controls);
+  controls += s->dofs;
+  for (size_t i = 0; i < move_count(s); i++) {
+    *controls++ = s->held[i] ? place[i] : 0;
+  }
+  for (size_t i = 0; i < s->load_count; i++) {
+    const struct dea_solid_load *load = &s->loads[i];
+    for (size_t k = 0; k < load->parameter_count; k++) {
+      *controls++ = wanted ? load->goal[k] : load->now[k];
+    }
+  }
+}
+
+void dea_solid_controls_get(struct dea_solid *s, double *controls)
+{
+  memcpy(s->trial, s->u, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->trial);
+  pack(s, s->voltage_V, s->force, s->trial, false, controls);
+}
+
+void dea_solid_controls_goal(struct dea_solid *s, double voltage_V, double *controls)
+{
+  memcpy(s->trial, s->u, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->trial);
+  for (size_t i = 0; i < move_count(s); i++) { // what is only held stays where it is
+    s->trial[i] = s->held[i] == DEA_PRESCRIBED ? s->place[i] : s->trial[i];
+  }
+  pack(s, voltage_V, s->force_goal, s->trial, true, controls);
+}
+
+void dea_solid_controls_set(struct dea_solid *s, const double *controls)
+{
+  s->voltage_V = *controls++;
+  memcpy(s->force, controls, s->dofs * sizeof *controls);
+  controls += s->dofs + move_count(s);
+  for (size_t i = 0; i < s->load_count; i++) {
+    for (size_t k = 0; k < s->loads[i].parameter_count; k++) {
+      s->loads[i].now[k] = *controls++;
+    }
+  }
+}
+
+bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
+{
+  const double *place = controls + 1 + s->dofs;
+  bool any = false;
+  memcpy(s->drive, s->u, s->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->drive);
+  for (size_t i = 0; i < s->dofs; i++) {
+    bool moves = i < move_count(s) && s->held[i];
+    double way = moves ? place[i] - s->drive[i] : 0;
+    s->drive[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
+    any = any || s->drive[i] != 0;
+  }
+  dea_solid_frame_vector(s, true, s->drive);
+  return any;
+}

@@ -1,0 +1,274 @@
+/* The potential of a coupled field: unknowns, electrodes, and the solution at given displacements
+ * (docs/theory/coupled.md). */
+#include "model/solid/assembly/internal.h"
+
+#include "model/solid/element/hex_coupled.h"
+
+#include <math.h>
+#include <string.h>
+
+struct dea_solid_field {
+  double scale_V_per_m; // c: a potential is c psi
+  double permittivity;  // of the first dielectric layer
+  double *share;        // [nodes] of the voltage, of held potentials
+  double *right;        // [nodes]
+  Mat L, factor;        // electric stiffness, held potentials taken out
+  Vec charge, solution;
+};
+
+double dea_solid_field_scale(const struct dea_solid *s)
+{
+  return s->field->scale_V_per_m;
+}
+
+static bool dielectric(const struct dea_solid *s, size_t e)
+{
+  return s->layers[s->layer[e]].permittivity_F_per_m > 0;
+}
+
+/* c and permittivity of the first dielectric layer. */
+static void set_scale(const struct dea_solid *s, size_t layer_count, struct dea_solid_field *field)
+{
+  for (size_t i = 0; i < layer_count && field->permittivity == 0; i++) {
+    const struct dea_constituent *l = &s->layers[i];
+    if (l->permittivity_F_per_m > 0) {
+      field->permittivity = l->permittivity_F_per_m;
+      field->scale_V_per_m = sqrt(dea_constituent_modulus(l) / l->permittivity_F_per_m);
+    }
+  }
+}
+
+/* Held potentials: electrodes, and nodes without dielectric. */
+static dea_status hold_potentials(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_options *options)
+{
+  size_t nodes = s->grid->node_count, electrodes = 0;
+  unsigned char *held = s->held + 3 * nodes;
+  memset(held, 1, nodes);
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    for (int n = 0; n < s->shape.nodes && dielectric(s, e); n++) {
+      held[s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 0;
+    }
+  }
+  for (size_t n = 0; n < nodes; n++) {
+    double share = 0;
+    if (options->electrode != NULL && !held[n] &&
+        options->electrode(options->self, s->grid->X + 3 * n, &share)) {
+      held[n] = 1;
+      s->field->share[n] = share;
+      electrodes++;
+    }
+    s->free_potentials += !held[n];
+  }
+  return electrodes > 0 && s->field->scale_V_per_m > 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_ARGUMENT,
+                        "a coupled field needs a layer with permittivity and electrodes on it");
+}
+
+dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_options *options)
+{
+  size_t nodes = s->grid->node_count;
+  if (options->field == DEA_SOLID_FIELD_THIN) {
+    return DEA_OK;
+  }
+  s->field = dea_alloc(ctx, 1, sizeof *s->field);
+  if (s->field == NULL) {
+    return DEA_E_MEMORY;
+  }
+  s->field->share = dea_alloc(ctx, nodes, sizeof(double));
+  s->field->right = dea_alloc(ctx, nodes, sizeof(double));
+  if (s->field->share == NULL || s->field->right == NULL) {
+    return DEA_E_MEMORY;
+  }
+  set_scale(s, options->layer_count, s->field);
+  for (size_t i = 0; i < options->layer_count; i++) {
+    if (s->layers[i].permittivity_slope_F_per_m != 0) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
+    }
+  }
+  DEA_TRY(ctx, hold_potentials(ctx, s, options));
+  return DEA_OK;
+}
+
+dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s, const PetscInt *own,
+                                  const PetscInt *others)
+{
+  struct dea_solid_field *field = s->field;
+  PetscInt rows = (PetscInt)(s->end_node - s->first_node), all = (PetscInt)s->grid->node_count;
+  if (field == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_solid_petsc(ctx,
+                               MatCreateSBAIJ(PETSC_COMM_WORLD, 1, rows, rows, all, all, 0, own, 0,
+                                              others, &field->L),
+                               "MatCreateSBAIJ"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(field->L, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
+                               "MatSetOption"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCreateVecs(field->L, &field->solution, &field->charge),
+                               "MatCreateVecs"));
+  return DEA_OK;
+}
+
+void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s)
+{
+  if (s->field != NULL) {
+    MatDestroy(&s->field->factor);
+    MatDestroy(&s->field->L);
+    VecDestroy(&s->field->charge);
+    VecDestroy(&s->field->solution);
+    dea_free(ctx, s->field->share);
+    dea_free(ctx, s->field->right);
+    dea_free(ctx, s->field);
+  }
+}
+
+dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double *X,
+                                     const double *u, const double *multiplier, const double *psi,
+                                     enum dea_eval_order level)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  double potential[DEA_HEX_NODES_MAX];
+  for (int n = 0; n < s->shape.nodes; n++) {
+    potential[n] = psi[nodes[n]];
+  }
+  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
+  return dea_hex_coupled_evaluate(&s->shape, &layer, X, u, potential, multiplier,
+                                  s->field->scale_V_per_m, level, s->element);
+}
+
+/* Adds an element to L and what its held potentials ask of the others to the right-hand side. */
+static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, size_t e,
+                               const double *u, const double *psi)
+{
+  double X[DEA_HEX_DOFS_MAX] = {0}, at[DEA_HEX_DOFS_MAX] = {0}, *L = s->element->K;
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  const unsigned char *held = s->held + 3 * s->grid->node_count;
+  PetscInt rows[DEA_HEX_NODES_MAX];
+  int count = s->shape.nodes;
+  for (int n = 0; n < count; n++) {
+    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
+    memcpy(at + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
+    rows[n] = nodes[n];
+  }
+  dea_status status = dea_hex_capacity(&s->shape, &s->layers[s->layer[e]], X, at, L);
+  if (status != DEA_OK) {
+    return status;
+  }
+  for (int a = 0; a < count; a++) {
+    for (int b = 0; b < count && held[nodes[a]]; b++) {
+      if (!held[nodes[b]]) {
+        s->field->right[nodes[b]] -= L[a * count + b] * psi[nodes[a]];
+      }
+      L[a * count + b] = L[b * count + a] = a == b ? L[a * count + a] : 0;
+    }
+  }
+  return dea_solid_petsc(ctx,
+                         MatSetValuesBlocked(s->field->L, count, rows, count, rows, L, ADD_VALUES),
+                         "MatSetValuesBlocked");
+}
+
+/* Keeps the rows of nodes without dielectric from being empty. */
+static dea_status add_pins(struct dea_context *ctx, struct dea_solid *s, size_t e)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  const unsigned char *held = s->held + 3 * s->grid->node_count;
+  const double *a = s->grid->X + 3 * nodes[0], *b = s->grid->X + 3 * nodes[1];
+  double size = fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
+  for (int n = 0; n < s->shape.nodes; n++) {
+    if (held[nodes[n]]) {
+      DEA_TRY(ctx, dea_solid_petsc(ctx,
+                                   MatSetValue(s->field->L, nodes[n], nodes[n],
+                                               s->field->permittivity * size, ADD_VALUES),
+                                   "MatSetValue"));
+    }
+  }
+  return DEA_OK;
+}
+
+/* L and, from the held potentials in psi, its right-hand side. */
+static dea_status assemble(struct dea_context *ctx, struct dea_solid *s, const double *u,
+                           const double *psi)
+{
+  Mat L = s->field->L;
+  dea_status status = DEA_OK;
+  memset(s->field->right, 0, s->grid->node_count * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(L), "MatZeroEntries"));
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    size_t e = s->own[k];
+    status = dielectric(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
+  }
+  status = dea_solid_agree(NULL, s, status);
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, L));
+  if (status != DEA_OK) {
+    return status; // an inverted element: not worth a message in a line search
+  }
+  dea_solid_sum(s, s->field->right, s->grid->node_count);
+  return DEA_OK;
+}
+
+/* field->right becomes L^-1 times itself. */
+static dea_status solve(struct dea_context *ctx, struct dea_solid *s)
+{
+  struct dea_solid_field *field = s->field;
+  size_t first = s->first_node, here = s->end_node - first;
+  PetscScalar *values;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(field->charge, &values), "VecGetArray"));
+  memcpy(values, field->right + first, here * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(field->charge, &values), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_factor(ctx, field->L, &field->factor));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(field->factor, field->charge, field->solution),
+                               "MatSolve"));
+  memset(field->right, 0, s->grid->node_count * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(field->solution, &values), "VecGetArray"));
+  memcpy(field->right + first, values, here * sizeof(double));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(field->solution, &values), "VecRestoreArray"));
+  dea_solid_sum(s, field->right, s->grid->node_count);
+  return DEA_OK;
+}
+
+dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                     double *u)
+{
+  struct dea_solid_field *field = s->field;
+  size_t nodes = s->grid->node_count;
+  if (field == NULL) {
+    return DEA_OK;
+  }
+  double *psi = u + 3 * nodes, c = field->scale_V_per_m;
+  const double *force = s->force + 3 * nodes;
+  const unsigned char *held = s->held + 3 * nodes;
+  for (size_t n = 0; n < nodes; n++) {
+    psi[n] = held[n] ? field->share[n] * voltage_V / c : psi[n];
+  }
+  dea_status status = assemble(ctx, s, u, psi);
+  if (status != DEA_OK) {
+    return status;
+  }
+  for (size_t n = 0; n < nodes; n++) {
+    field->right[n] -= held[n] ? 0 : force[n] / (c * c);
+  }
+  DEA_TRY(ctx, solve(ctx, s));
+  for (size_t n = 0; n < nodes; n++) {
+    psi[n] = held[n] ? psi[n] : field->right[n];
+  }
+  return DEA_OK;
+}
+
+void dea_solid_potential(const struct dea_solid *solid, double *potential_V)
+{
+  size_t nodes = solid->grid->node_count;
+  for (size_t n = 0; n < nodes; n++) {
+    potential_V[n] =
+        solid->field == NULL ? NAN : solid->field->scale_V_per_m * solid->u[3 * nodes + n];
+  }
+}
+
+void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C)
+{
+  size_t nodes = solid->grid->node_count;
+  for (size_t n = 0; n < nodes && solid->field != NULL; n++) {
+    solid->force_goal[3 * nodes + n] = -solid->field->scale_V_per_m * charge_C[n];
+  }
+}

@@ -1,0 +1,242 @@
+#include "model/solid/assembly/internal_variables.h"
+
+#include "model/solid/assembly/internal.h"
+#include "model/solid/element/hex_points.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
+
+#define ELASTIC SIZE_MAX // in place of an element's first point
+
+/* C, C^-1 and reference volume at the points of an element. */
+struct strains {
+  int count;
+  double C[DEA_HEX_GAUSS_MAX][6], inverse[DEA_HEX_GAUSS_MAX][6], volume[DEA_HEX_GAUSS_MAX];
+};
+
+static dea_status find_strains(const struct dea_solid *s, size_t e, struct strains *out)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], F[6];
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  int count = dea_solid_places(s, e, X);
+  for (int n = 0; n < count; n++) {
+    memcpy(u + 3 * n, s->u + 3 * nodes[n], 3 * sizeof *u);
+  }
+  if (s->grid->flat[e]) {
+    double thickness = s->layers[s->layer[e]].thickness_m;
+    out->count = s->flat.gauss;
+    for (int q = 0; q < out->count; q++) {
+      out->volume[q] = thickness * dea_flat_columns(&s->flat, q, X, u, F);
+      if (!(out->volume[q] > 0)) {
+        return DEA_E_DOMAIN;
+      }
+      dea_viscous_strain_flat(F, out->C[q], out->inverse[q]);
+    }
+    return DEA_OK;
+  }
+  dea_status status = dea_hex_find_points(&s->shape, X, u, points);
+  out->count = s->shape.gauss;
+  for (int q = 0; q < out->count && status == DEA_OK; q++) {
+    const struct dea_hex_point *at = &points[q];
+    dea_viscous_strain(at->F, at->cof, at->J, out->C[q], out->inverse[q]);
+    out->volume[q] = at->weight;
+  }
+  return status;
+}
+
+/* ---- memory ---- */
+
+static size_t points_of(const struct dea_solid *s, size_t e)
+{
+  return (size_t)(s->grid->flat[e] ? s->flat.gauss : s->shape.gauss);
+}
+
+/* Gives the elements of layers with branches their points; returns how many. */
+static size_t place_points(const struct dea_solid *s, struct dea_internal_variables *h)
+{
+  size_t count = 0;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    bool viscous = h->branches[s->layer[e]].count > 0;
+    h->first[e] = viscous ? count : ELASTIC;
+    count += viscous ? points_of(s, e) : 0;
+  }
+  return count;
+}
+
+static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_variables *h)
+{
+  dea_status status = DEA_OK;
+  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
+    struct strains strains;
+    if (h->first[e] == ELASTIC) {
+      continue;
+    }
+    status = find_strains(s, e, &strains);
+    for (int q = 0; q < strains.count && status == DEA_OK; q++) {
+      size_t at = h->first[e] + (size_t)q;
+      memcpy(h->inverse[at], strains.inverse[q], TENSOR_BYTES);
+      for (size_t i = 0; i < h->branches[s->layer[e]].count; i++) {
+        memcpy(h->A[at][i], strains.inverse[q], TENSOR_BYTES);
+      }
+    }
+  }
+  return status;
+}
+
+static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
+                          const struct dea_branches *branches, struct dea_internal_variables *h)
+{
+  h->branches = dea_alloc(ctx, s->layer_count, sizeof *h->branches);
+  h->steps = dea_alloc(ctx, s->layer_count, sizeof *h->steps);
+  h->b_Pa = dea_alloc(ctx, s->layer_count, sizeof *h->b_Pa);
+  h->first = dea_alloc(ctx, s->grid->element_count, sizeof *h->first);
+  if (h->branches == NULL || h->steps == NULL || h->b_Pa == NULL || h->first == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(h->branches, branches, s->layer_count * sizeof *branches);
+  size_t points = place_points(s, h);
+  h->B = dea_alloc(ctx, points + 1, TENSOR_BYTES);
+  h->inverse = dea_alloc(ctx, points + 1, TENSOR_BYTES);
+  h->inverse_next = dea_alloc(ctx, points + 1, TENSOR_BYTES);
+  h->A = dea_alloc(ctx, points + 1, sizeof *h->A);
+  if (h->B == NULL || h->inverse == NULL || h->inverse_next == NULL || h->A == NULL) {
+    return DEA_E_MEMORY;
+  }
+  return held_for_long(s, h);
+}
+
+dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *s,
+                                         const struct dea_branches *branches,
+                                         struct dea_internal_variables **out)
+{
+  struct dea_internal_variables *h = dea_alloc(ctx, 1, sizeof *h);
+  *out = NULL;
+  dea_status status = h != NULL ? prepare(ctx, s, branches, h) : DEA_E_MEMORY;
+  status = dea_solid_agree(ctx, s, status);
+  if (status != DEA_OK) {
+    dea_internal_variables_destroy(ctx, h);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = h;
+  return DEA_OK;
+}
+
+void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal_variables *h)
+{
+  if (h != NULL) {
+    dea_free(ctx, h->branches);
+    dea_free(ctx, h->steps);
+    dea_free(ctx, h->first);
+    dea_free(ctx, h->b_Pa);
+    dea_free(ctx, h->B);
+    dea_free(ctx, h->inverse);
+    dea_free(ctx, h->inverse_next);
+    dea_free(ctx, h->A);
+    dea_free(ctx, h);
+  }
+}
+
+/* ---- steps ---- */
+
+struct dea_constituent dea_solid_constituent_at(const struct dea_solid *s, size_t e)
+{
+  const struct dea_internal_variables *h = s->history;
+  struct dea_constituent layer = s->layers[s->layer[e]];
+  if (h != NULL && h->first[e] != ELASTIC) {
+    layer.viscous = h->B + 6 * h->first[e];
+    layer.viscous_Pa = h->b_Pa[s->layer[e]];
+  }
+  return layer;
+}
+
+/* B of the points of an element. */
+static void begin_element(struct dea_internal_variables *h, size_t from, size_t count,
+                          const struct dea_branches *branches, const struct dea_branch_step *steps)
+{
+  for (size_t at = from; at < from + count; at++) {
+    double *B = h->B + 6 * at;
+    memset(B, 0, TENSOR_BYTES);
+    for (size_t i = 0; i < branches->count; i++) {
+      double G = branches->branch[i].modulus_Pa;
+      for (size_t a = 0; a < 6; a++) {
+        B[a] += G * (steps[i].end.e * h->A[at][i][a] + steps[i].end.w0 * h->inverse[at][a]);
+      }
+    }
+  }
+}
+
+void dea_internal_variables_begin(struct dea_internal_variables *h, const struct dea_solid *s,
+                                  double step_s)
+{
+  for (size_t l = 0; l < s->layer_count; l++) {
+    const struct dea_branches *branches = &h->branches[l];
+    struct dea_branch_step *steps = h->steps[l];
+    h->b_Pa[l] = 0;
+    for (size_t i = 0; i < branches->count; i++) {
+      dea_branch_step_set(&branches->branch[i], step_s, &steps[i]);
+      h->b_Pa[l] += branches->branch[i].modulus_Pa * (steps[i].end.e + steps[i].end.w0);
+    }
+    for (size_t e = 0; e < s->grid->element_count; e++) {
+      if ((size_t)s->layer[e] == l && branches->count > 0) {
+        begin_element(h, h->first[e], points_of(s, e), branches, steps);
+      }
+    }
+  }
+}
+
+/* What the branches of a point store at the end of the step and dissipate in it. */
+static void add_energies(const struct dea_internal_variables *h, size_t at,
+                         const struct dea_branches *branches, const struct dea_branch_step *steps,
+                         const double C[6], double volume, struct dea_solid_branch_energies *sum)
+{
+  for (size_t i = 0; i < branches->count; i++) {
+    const struct dea_branch *branch = &branches->branch[i];
+    double A[6];
+    dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at], A);
+    sum->stored += volume * dea_branch_energy(branch->modulus_Pa, A, C);
+    sum->dissipated += volume * dea_branch_dissipation(branch, &steps[i], h->A[at][i],
+                                                       h->inverse[at], h->inverse_next[at]);
+  }
+}
+
+dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_internal_variables *h,
+                                        const struct dea_solid *s,
+                                        struct dea_solid_branch_energies *out)
+{
+  dea_status status = DEA_OK;
+  *out = (struct dea_solid_branch_energies){0};
+  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
+    const struct dea_branches *branches = &h->branches[s->layer[e]];
+    struct strains strains;
+    if (h->first[e] == ELASTIC) {
+      continue;
+    }
+    status = find_strains(s, e, &strains);
+    for (int q = 0; q < strains.count && status == DEA_OK; q++) {
+      size_t at = h->first[e] + (size_t)q;
+      memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
+      add_energies(h, at, branches, h->steps[s->layer[e]], strains.C[q], strains.volume[q], out);
+    }
+  }
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status, "an element is inverted at the end of a step");
+}
+
+void dea_internal_variables_accept(struct dea_internal_variables *h, const struct dea_solid *s)
+{
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    const struct dea_branches *branches = &h->branches[s->layer[e]];
+    const struct dea_branch_step *steps = h->steps[s->layer[e]];
+    size_t from = h->first[e], to = from != ELASTIC ? from + points_of(s, e) : from;
+    for (size_t at = from; at < to; at++) {
+      for (size_t i = 0; i < branches->count; i++) {
+        dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at],
+                          h->A[at][i]);
+      }
+      memcpy(h->inverse[at], h->inverse_next[at], TENSOR_BYTES);
+    }
+  }
+}

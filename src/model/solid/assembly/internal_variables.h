@@ -1,0 +1,58 @@
+/* What the branches of a solid's layers remember, at every Gauss point (docs/theory/time.md).
+ *
+ * Every rank keeps all points: a step costs next to nothing beside its tangents. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
+#define DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
+
+#include "model/solid/assembly/solid.h"
+#include "model/solid/point/viscous.h"
+
+/* Branches of a layer; none: elastic. */
+struct dea_branches {
+  size_t count;
+  struct dea_branch branch[DEA_BRANCHES_MAX];
+};
+
+struct dea_device;
+/* Those of the layers of an actuator: of its film, and of electrodes of a thickness. out:
+ * [DEA_CONSTITUENT_COUNT]. */
+void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out);
+
+struct dea_internal_variables {
+  struct dea_branches *branches; // [layer_count]
+  size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
+  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [layer_count] of the step
+  double *b_Pa;                                      // [layer_count] of the step
+  double *B;                                         // [points][6] of the step
+  double (*inverse)[6];                              // [points] C^-1 at the accepted state
+  double (*inverse_next)[6];                         // at the end of the step that is tried
+  double (*A)[DEA_BRANCHES_MAX][6];                  // [points] at the accepted state
+};
+
+/* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
+ * by the caller, NULL on failure. */
+dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *solid,
+                                         const struct dea_branches *branches,
+                                         struct dea_internal_variables **out);
+void dea_internal_variables_destroy(struct dea_context *ctx,
+                                    struct dea_internal_variables *history);
+
+/* Sets B and b for a step from the last accepted state; step_s 0: the step that takes no time. */
+void dea_internal_variables_begin(struct dea_internal_variables *history,
+                                  const struct dea_solid *solid, double step_s);
+
+/* Energies of the branches, of the grid [J]. */
+struct dea_solid_branch_energies {
+  double stored, dissipated; // at the state; in the step to it
+};
+
+/* At the solid's displacements as the end of the step that has begun. */
+dea_status dea_internal_variables_close(struct dea_context *ctx,
+                                        struct dea_internal_variables *history,
+                                        const struct dea_solid *solid,
+                                        struct dea_solid_branch_energies *out);
+/* The state that was closed is the accepted one. */
+void dea_internal_variables_accept(struct dea_internal_variables *history,
+                                   const struct dea_solid *solid);
+
+#endif

@@ -1,0 +1,124 @@
+/* A solid made of layered hexahedra: assembly, equilibrium at a voltage, count of unstable modes.
+ *
+ * The energy of hex.h is gone down (docs/theory/branches.md): while the tangent K has a negative
+ * pivot of its LDL^T, an equal tension in all directions is added to it. Incompressibility is
+ * brought in by multipliers that follow on the way, until J - 1 has no projection left.
+ *
+ * PETSc must be initialised (dea_solid_start). Under mpirun all ranks make the same calls with the
+ * same arguments and get the same answers; the work is split among them. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
+#define DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
+
+#include "model/solid/load/load.h"
+#include "model/solid/mesh/grid.h"
+
+struct dea_solid;
+struct dea_actuator;
+
+/* Where the field comes from: V/h in every active element, or a potential as a fourth unknown of
+ * every node (docs/theory/coupled.md). */
+enum dea_solid_field_kind { DEA_SOLID_FIELD_THIN, DEA_SOLID_FIELD_COUPLED };
+
+struct dea_solid_options {
+  int order_z;
+  enum dea_solid_field_kind field;
+  size_t layer_count;
+  const struct dea_constituent *layers; // copied
+  /* Layer of an element (NULL: the first of all), and whether it lies between electrodes (NULL:
+   * none does; with a coupled field: for what fields and extremes report by V/h). */
+  int (*layer_of)(const void *self, int region, int sheet);
+  bool (*active)(const void *self, int region, int sheet);
+  /* Components of a node that are held, as bits 1, 2, 4. */
+  int (*held)(const void *self, const double X[3]);
+  /* Local axes of a node as the rows of the orthonormal Q, which `held` then speaks of: for a
+   * mirror plane that is not x = 0 or y = 0. false: the global axes. NULL: they are those of all
+   * nodes. */
+  bool (*frame)(const void *self, const double X[3], double Q[9]);
+  /* Of a coupled field: whether a node is on an electrode, and the share of the voltage that this
+   * one is at (0 on the ground). */
+  bool (*electrode)(const void *self, const double X[3], double *share);
+  const void *self;
+};
+
+/* How a solve went. */
+struct dea_solid_report {
+  int iterations;              // steps with a tangent of their own
+  int corrections;             // steps with the factor that was there
+  int factorisations, shifted; // shifted: of the factorisations
+  int unstable_modes;          // negative pivots of the unshifted tangent at the end
+  bool snapped;                // an unstable equilibrium on the way was left (branch.h)
+  double energy_J, residual;   // residual: relative to the sum of element forces
+  double theta_max;            // largest projected J - 1 left
+  double load_error;           // largest constraint violation of a load over the one it allows
+  double way;                  // share of the way to what was asked for; 1 unless the solve failed
+};
+
+/* PETSc for this process; harmless when it runs already. */
+dea_status dea_solid_start(struct dea_context *ctx);
+void dea_solid_stop(void);
+/* Number of this process among those that mpirun started, from 0. */
+int dea_solid_rank(void);
+/* Whether it is so on any rank; all ranks call it. */
+bool dea_solid_any(bool here);
+
+/* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */
+dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid,
+                            const struct dea_solid_options *options, struct dea_solid **out);
+/* The solid of an actuator on its mesh. actuator, grid: lent, outlive the solid. */
+dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
+                                 const struct dea_grid *grid, struct dea_solid **out);
+void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
+
+/* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
+ * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
+ * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
+ * report->way of the way. */
+dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
+                           struct dea_solid_report *report);
+
+/* Voltage of the last equilibrium. */
+double dea_solid_voltage(const struct dea_solid *solid);
+
+/* Displacements [node_count][3], lent; they may be written to set a start. What the options hold
+ * stays where it is. */
+double *dea_solid_displacement(struct dea_solid *solid);
+
+/* Dead loads on the nodes [node_count][3] [N] that the next solve goes to, lent; at first 0. */
+double *dea_solid_force(struct dea_solid *solid);
+
+/* Potentials [node_count] of a coupled field; NAN of a thin film. */
+void dea_solid_potential(const struct dea_solid *solid, double *potential_V);
+
+/* Free charges on the nodes [node_count] of a coupled field; at first 0. */
+void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C);
+
+/* Holds components (bits 1, 2, 4) of a node; the next solve moves them to these displacements.
+ * Components are those of the node's local axes. */
+dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                               int components, const double displacement_m[3]);
+/* Frees components of a node. */
+dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                             int components);
+/* Forces of the supports on the nodes at the last equilibrium [node_count][3] [N], along the global
+ * axes; 0 along what is free. Lent. */
+const double *dea_solid_reaction(const struct dea_solid *solid);
+
+/* Adds a load for all solves to come; copied. */
+dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
+                              const struct dea_solid_load *load);
+
+/* Capacitance between the electrodes at the last equilibrium: charge over voltage. */
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
+                                 double *capacitance_F);
+
+/* Extremes of the film (elements of layers with a permittivity) at the last equilibrium. */
+struct dea_solid_extremes {
+  double true_field_V_per_m;  // largest V over the current thickness
+  double breakdown_margin;    // smallest; NAN when unknown
+  double min_tension_N_per_m; // smallest principal membrane force per current length
+};
+/* material: of the film, for its breakdown field; pre_stretch: of it. */
+dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,
+                              double pre_stretch, struct dea_solid_extremes *out);
+
+#endif

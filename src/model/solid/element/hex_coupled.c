@@ -1,0 +1,223 @@
+#include "model/solid/element/hex_coupled.h"
+
+#include "model/solid/element/hex_points.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum { ROWS_MAX = 3 * DEA_HEX_GAUSS_MAX };
+
+/* Electric state of a Gauss point. H: rows H_m = F_m x E; A: rows A_k = eps_kmi w_i F_m. */
+struct field_point {
+  double E[3], w[3], H[3][3], A[3][3];
+};
+
+/* Work space of a tangent, rows (q, i) or (q, J). */
+struct field_work {
+  double B[ROWS_MAX][DEA_ELEMENT_DOFS_MAX];    // sqrt(weight) dw_i by the unknowns
+  double turn[3][ROWS_MAX][DEA_HEX_NODES_MAX]; // -eps weight w_i (E x g_a)
+  double mix[3][ROWS_MAX][DEA_HEX_NODES_MAX];  // eps weight c (g_a x A_k)
+  double block[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+};
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void field_at(const struct dea_hex_shape *s, const struct dea_hex_point *at,
+                     double gradient[3][DEA_HEX_NODES_MAX], const double *psi, double scale,
+                     struct field_point *out)
+{
+  for (int J = 0; J < 3; J++) {
+    out->E[J] = 0;
+    for (int n = 0; n < s->nodes; n++) {
+      out->E[J] -= scale * psi[n] * gradient[J][n];
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    out->w[i] = at->cof[3 * i] * out->E[0] + at->cof[3 * i + 1] * out->E[1] +
+                at->cof[3 * i + 2] * out->E[2];
+    cross(at->F + 3 * i, out->E, out->H[i]);
+  }
+  for (int N = 0; N < 3; N++) {
+    const double column[3] = {at->F[N], at->F[3 + N], at->F[6 + N]};
+    double turned[3];
+    cross(column, out->w, turned);
+    for (int k = 0; k < 3; k++) {
+      out->A[k][N] = turned[k];
+    }
+  }
+}
+
+/* Forces: -eps w . dw/du and -eps w . dw/dpsi. */
+static void add_force(const struct dea_hex_shape *s, double eps, double scale,
+                      const struct dea_hex_point *at, double gradient[3][DEA_HEX_NODES_MAX],
+                      const struct field_point *field, double *g)
+{
+  double T[3][3], D[3]; // T_kL = w . dw/dF_kL; D_J = w . cof_J
+  for (int L = 0; L < 3; L++) {
+    const double column[3] = {field->H[0][L], field->H[1][L], field->H[2][L]};
+    double turned[3];
+    cross(column, field->w, turned);
+    for (int k = 0; k < 3; k++) {
+      T[k][L] = turned[k];
+    }
+    D[L] = field->w[0] * at->cof[L] + field->w[1] * at->cof[3 + L] + field->w[2] * at->cof[6 + L];
+  }
+  double f = -eps * at->weight;
+  for (int n = 0; n < s->nodes; n++) {
+    double x = gradient[0][n], y = gradient[1][n], z = gradient[2][n];
+    for (int k = 0; k < 3; k++) {
+      g[4 * n + k] += f * (T[k][0] * x + T[k][1] * y + T[k][2] * z);
+    }
+    g[4 * n + 3] -= f * scale * (D[0] * x + D[1] * y + D[2] * z);
+  }
+}
+
+/* Rows of the work space that belong to one Gauss point. */
+static void tangent_point(const struct dea_hex_shape *s, int q, double eps, double scale,
+                          const struct dea_hex_point *at, double gradient[3][DEA_HEX_NODES_MAX],
+                          const struct field_point *field, struct field_work *work)
+{
+  double root = sqrt(at->weight), f = -eps * at->weight;
+  double(*B)[DEA_ELEMENT_DOFS_MAX] = work->B + 3 * q;
+  for (int n = 0; n < s->nodes; n++) {
+    const double g[3] = {gradient[0][n], gradient[1][n], gradient[2][n]};
+    double h[3], turned[3], mixed[3];
+    cross(field->E, g, turned);
+    for (int m = 0; m < 3; m++) {
+      const double *H = field->H[m], *c = at->cof + 3 * m;
+      h[m] = root * (H[0] * g[0] + H[1] * g[1] + H[2] * g[2]);
+      B[m][4 * n + m] = 0;
+      B[m][4 * n + 3] = -root * scale * (c[0] * g[0] + c[1] * g[1] + c[2] * g[2]);
+    }
+    for (int i = 0; i < 3; i++) { // eps_ikm h_m
+      int k = (i + 1) % 3, m = (i + 2) % 3;
+      B[i][4 * n + k] = h[m];
+      B[i][4 * n + m] = -h[k];
+      cross(g, field->A[i], mixed);
+      for (int J = 0; J < 3; J++) {
+        work->turn[i][3 * q + J][n] = f * field->w[i] * turned[J];
+        work->mix[i][3 * q + J][n] = -f * scale * mixed[J];
+      }
+    }
+  }
+}
+
+/* block = rows^T gradient, [nodes][nodes]. */
+static void contract(const struct dea_hex_shape *s, double (*rows)[DEA_HEX_NODES_MAX],
+                     double (*gradient)[3][DEA_HEX_NODES_MAX], double *block)
+{
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, s->nodes, s->nodes, 3 * s->gauss, 1, rows[0],
+              DEA_HEX_NODES_MAX, gradient[0][0], DEA_HEX_NODES_MAX, 0, block, s->nodes);
+}
+
+static void tangent_collect(const struct dea_hex_shape *s, double eps,
+                            double (*gradient)[3][DEA_HEX_NODES_MAX], struct field_work *work,
+                            double *K)
+{
+  int n = s->nodes, dofs = 4 * n;
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, dofs, dofs, 3 * s->gauss, -eps, work->B[0],
+              DEA_ELEMENT_DOFS_MAX, work->B[0], DEA_ELEMENT_DOFS_MAX, 1, K, dofs);
+  for (int i = 0; i < 3; i++) {
+    int k = (i + 1) % 3, m = (i + 2) % 3;
+    contract(s, work->turn[i], gradient, work->block);
+    for (int a = 0; a < n; a++) {
+      for (int b = 0; b < n; b++) {
+        K[(4 * a + k) * dofs + 4 * b + m] += work->block[a * n + b];
+        K[(4 * a + m) * dofs + 4 * b + k] -= work->block[a * n + b];
+      }
+    }
+    contract(s, work->mix[i], gradient, work->block);
+    for (int a = 0; a < n; a++) {
+      for (int b = 0; b < n; b++) {
+        K[(4 * a + i) * dofs + 4 * b + 3] += work->block[a * n + b];
+        K[(4 * b + 3) * dofs + 4 * a + i] += work->block[a * n + b];
+      }
+    }
+  }
+}
+
+void dea_hex_spread(int nodes, const double *g3, const double *K3, double *g4, double *K4)
+{
+  for (int n = nodes - 1; n >= 0; n--) { // from the end: nothing is written before it is read
+    for (int i = 3; i >= 0; i--) {
+      g4[4 * n + i] = i < 3 ? g3[3 * n + i] : 0;
+    }
+  }
+  for (int row = 4 * nodes - 1; row >= 0 && K3 != NULL; row--) {
+    const double *from = K3 + 3 * nodes * (3 * (row / 4) + row % 4);
+    double *to = K4 + 4 * nodes * row;
+    for (int column = 4 * nodes - 1; column >= 0; column--) {
+      to[column] = row % 4 < 3 && column % 4 < 3 ? from[3 * (column / 4) + column % 4] : 0;
+    }
+  }
+}
+
+dea_status dea_hex_coupled_evaluate(const struct dea_hex_shape *shape,
+                                    const struct dea_constituent *layer, const double *X,
+                                    const double *u, const double *psi, const double *multiplier,
+                                    double scale_V_per_m, enum dea_eval_order level,
+                                    struct dea_element_result *out)
+{
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  struct field_work work;
+  double eps = layer->permittivity_F_per_m;
+  dea_status status = dea_hex_evaluate(shape, layer, X, u, multiplier, 0, level, out);
+  if (status == DEA_OK) {
+    status = dea_hex_kinematics(shape, X, u, gradient, points);
+  }
+  if (status != DEA_OK) {
+    return status;
+  }
+  if (level >= DEA_FORCE) {
+    dea_hex_spread(shape->nodes, out->g, level >= DEA_TANGENT ? out->K : NULL, out->g, out->K);
+  }
+  for (int q = 0; q < shape->gauss; q++) {
+    struct field_point field;
+    field_at(shape, &points[q], gradient[q], psi, scale_V_per_m, &field);
+    const double *w = field.w;
+    out->energy_J -= 0.5 * eps * points[q].weight * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    if (level >= DEA_FORCE) {
+      add_force(shape, eps, scale_V_per_m, &points[q], gradient[q], &field, out->g);
+    }
+    if (level >= DEA_TANGENT) {
+      tangent_point(shape, q, eps, scale_V_per_m, &points[q], gradient[q], &field, &work);
+    }
+  }
+  if (level >= DEA_TANGENT) {
+    tangent_collect(shape, eps, gradient, &work, out->K);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_hex_capacity(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
+                            const double *X, const double *u, double *L)
+{
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
+  double B[ROWS_MAX][DEA_HEX_NODES_MAX]; // sqrt(weight) cof Grad N
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  dea_status status = dea_hex_kinematics(shape, X, u, gradient, points);
+  if (status != DEA_OK) {
+    return status;
+  }
+  for (int q = 0; q < shape->gauss; q++) {
+    double root = sqrt(points[q].weight);
+    for (int i = 0; i < 3; i++) {
+      const double *c = points[q].cof + 3 * i;
+      for (int n = 0; n < shape->nodes; n++) {
+        B[3 * q + i][n] =
+            root * (c[0] * gradient[q][0][n] + c[1] * gradient[q][1][n] + c[2] * gradient[q][2][n]);
+      }
+    }
+  }
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, shape->nodes, shape->nodes, 3 * shape->gauss,
+              layer->permittivity_F_per_m, B[0], DEA_HEX_NODES_MAX, B[0], DEA_HEX_NODES_MAX, 0, L,
+              shape->nodes);
+  return DEA_OK;
+}

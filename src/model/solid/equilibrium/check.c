@@ -1,0 +1,184 @@
+/* What can be said of a solid before anything is solved: elements, laws, supports. */
+#include "model/solid/assembly/internal.h"
+#include "model/solid/element/hex_points.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { RIGID = 6 }; // motions of a rigid body
+
+/* Middle of an element [mm]. */
+static void middle(const struct dea_solid *s, size_t e, double x[3])
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+  x[0] = x[1] = x[2] = 0;
+  for (int n = 0; n < count; n++) {
+    for (int i = 0; i < 3; i++) {
+      x[i] += 1e3 * s->grid->X[3 * nodes[n] + i] / count;
+    }
+  }
+}
+
+static dea_status check_element(struct dea_context *ctx, const struct dea_solid *s, size_t e,
+                                double (*gradient)[3][DEA_HEX_NODES_MAX])
+{
+  static const double rest[DEA_HEX_DOFS_MAX] = {0};
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double X[DEA_HEX_DOFS_MAX], x[3], stiffness[DEA_FLAT_NODES_MAX];
+  for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
+  }
+  if (DEA_OK == (s->grid->flat[e]
+                     ? dea_membrane_stiffness(&s->flat, &s->layers[s->layer[e]], X, stiffness)
+                     : dea_hex_kinematics(&s->shape, X, rest, gradient, points))) {
+    return DEA_OK;
+  }
+  middle(s, e, x);
+  return dea_fail(ctx, DEA_E_ARGUMENT,
+                  "element %zu around (%.4g, %.4g, %.4g) mm is inverted in the mesh: its nodes are "
+                  "in the wrong order or folded over each other",
+                  e, x[0], x[1], x[2]);
+}
+
+static dea_status check_layers(struct dea_context *ctx, const struct dea_solid *s)
+{
+  static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  struct dea_point point;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    const struct dea_constituent *layer = &s->layers[s->layer[e]];
+    if ((e == 0 || s->layer[e] != s->layer[e - 1]) &&
+        dea_constituent_point(layer, one, one, 1, 0, 0, &point) != DEA_OK) {
+      return dea_fail(
+          ctx, DEA_E_DOMAIN,
+          "the law '%s' ends before the pre-stretch %.4g: take a smaller pre-stretch or "
+          "parameters that reach further",
+          layer->law != NULL ? layer->law->name : "neo-hookean", layer->pre_stretch[0]);
+    }
+  }
+  return DEA_OK;
+}
+
+/* ---- supports ---- */
+
+static int root_of(int *parent, int node)
+{
+  while (parent[node] != node) {
+    parent[node] = parent[parent[node]];
+    node = parent[node];
+  }
+  return node;
+}
+
+/* Displacement of a held component (axis q, a unit vector) at X under each rigid motion, with
+ * rotations about `centre` and lengths over `length`. */
+static void rigid_row(const double X[3], const double centre[3], double length, const double q[3],
+                      double row[RIGID])
+{
+  double r[3];
+  for (int i = 0; i < 3; i++) {
+    row[i] = q[i];
+    r[i] = (X[i] - centre[i]) / length;
+  }
+  for (int i = 0; i < 3; i++) { // q . (e_i x r) = e_i . (r x q)
+    row[3 + i] = r[(i + 1) % 3] * q[(i + 2) % 3] - r[(i + 2) % 3] * q[(i + 1) % 3];
+  }
+}
+
+/* Sum of the squares of rigid_row over the held components of one body. */
+static void collect(const struct dea_solid *s, const int *parent, int body, const double centre[3],
+                    double length, double gram[RIGID * RIGID])
+{
+  static const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  memset(gram, 0, RIGID * RIGID * sizeof *gram);
+  for (size_t n = 0; n < s->grid->node_count; n++) {
+    const double *Q = s->frame != NULL && s->frame[n] != 0 ? s->frames[s->frame[n] - 1] : axes;
+    for (int i = 0; i < 3 && parent[n] == body; i++) {
+      double row[RIGID];
+      if (s->held[3 * n + (size_t)i]) {
+        rigid_row(s->grid->X + 3 * n, centre, length, Q + 3 * i, row);
+        for (int a = 0; a < RIGID * RIGID; a++) {
+          gram[a] += row[a / RIGID] * row[a % RIGID];
+        }
+      }
+    }
+  }
+}
+
+/* Whether supports leave a body no rigid motion. */
+static bool is_held(const struct dea_solid *s, const int *parent, int body)
+{
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  double centre[3], length = 0, gram[RIGID * RIGID], values[RIGID];
+  for (size_t n = 0; n < s->grid->node_count; n++) {
+    for (int i = 0; i < 3 && parent[n] == body; i++) {
+      low[i] = fmin(low[i], s->grid->X[3 * n + (size_t)i]);
+      high[i] = fmax(high[i], s->grid->X[3 * n + (size_t)i]);
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    centre[i] = 0.5 * (low[i] + high[i]);
+    length = fmax(length, high[i] - low[i]);
+  }
+  collect(s, parent, body, centre, length, gram);
+  int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', RIGID, gram, RIGID, values);
+  return info == 0 && values[0] > 1e-12 * values[RIGID - 1];
+}
+
+static dea_status check_supports(struct dea_context *ctx, const struct dea_solid *s)
+{
+  int *parent = dea_alloc(ctx, s->grid->node_count, sizeof *parent);
+  dea_status status = DEA_OK;
+  if (parent == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t n = 0; n < s->grid->node_count; n++) {
+    parent[n] = (int)n;
+  }
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    for (int n = 1; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+      parent[root_of(parent, nodes[n])] = root_of(parent, nodes[0]);
+    }
+  }
+  for (size_t n = 0; n < s->grid->node_count; n++) {
+    parent[n] = root_of(parent, (int)n);
+  }
+  for (size_t n = 0; n < s->grid->node_count && status == DEA_OK; n++) {
+    if (parent[n] == (int)n && !is_held(s, parent, (int)n)) {
+      const double *X = s->grid->X + 3 * n;
+      status = dea_fail(ctx, DEA_E_ARGUMENT,
+                        "the body at (%.4g, %.4g, %.4g) mm is not held: it can move or turn as a "
+                        "whole, so there is no one equilibrium; hold more of its nodes, or give it "
+                        "springs",
+                        1e3 * X[0], 1e3 * X[1], 1e3 * X[2]);
+    }
+  }
+  dea_free(ctx, parent);
+  return status;
+}
+
+dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
+{
+  if (s->checked) {
+    return DEA_OK;
+  }
+  double(*gradient)[3][DEA_HEX_NODES_MAX] = dea_alloc(ctx, DEA_HEX_GAUSS_MAX, sizeof *gradient);
+  if (gradient == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
+    status = check_element(ctx, s, e, gradient);
+  }
+  dea_free(ctx, gradient);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, check_layers(ctx, s));
+  if (s->load_count == 0) { // springs and tips may hold what nothing else does
+    DEA_TRY(ctx, check_supports(ctx, s));
+  }
+  s->checked = true;
+  return DEA_OK;
+}

@@ -1,0 +1,309 @@
+/* Equilibrium at fixed controls: a descent on the energy with pressures that follow
+ * (docs/theory/branches.md). */
+#include "model/solid/assembly/internal.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NEWTON_MAX = 80, FREE_MAX = 50, CHORDS_MAX = 8, SHIFTS_MAX = 40, HALVINGS_MAX = 12 };
+
+static const double residual_small = 1e-9; // of the sum of element forces
+static const double step_small = 1e-10;    // of the solid's length
+static const double energy_small = 1e-11;  // of the element energies: what rounding hides
+static const double chord_rate = 0.2;      // at which an old factor is good enough
+static const double uphill = 20;           // rise of the energy over the slope that is let pass
+static const double downhill = 1e-4;       // Armijo
+static const double shift_first = 3e-3;    // of the modulus of the softest layer
+static const double shift_least = 3e-5;    // below which there is none
+static const double shift_up = 4, shift_down = 10;
+
+struct descent {
+  double voltage_V;
+  double shift_Pa;
+  double norm_before; // of g at the last iterate
+  bool chord;         // the next step takes the factor that is there
+  bool start;         // it is that of the last equilibrium: the tangent of the path
+  bool strict;        // the energy falls at fixed pressures
+  int chords;         // in a row
+  int unresolved;     // steps in a row whose change of the energy rounding hides
+  struct dea_solid_report *report;
+};
+
+static double norm(const struct dea_solid *s, const double *v)
+{
+  return sqrt(dea_solid_dot(s, v, v));
+}
+
+static double largest(const struct dea_solid *s, const double *v)
+{
+  double most = 0;
+  for (size_t i = 0; i < s->dofs; i++) {
+    most = fmax(most, fabs(v[i]));
+  }
+  return most;
+}
+
+double dea_solid_theta_max(const struct dea_solid *s)
+{
+  double most = 0;
+  size_t pressures = (size_t)s->shape.pressures;
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    bool projected = s->layers[s->layer[i / pressures]].law != NULL;
+    most = projected ? fmax(most, fabs(s->theta[i])) : most;
+  }
+  return most;
+}
+
+/* Factor of K, shifted by d->shift_Pa or as much more as makes it positive definite. *there: the
+ * shift that K has; the count of unstable modes is set when that is none. */
+static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s,
+                                     struct descent *d, double *there)
+{
+  for (int i = 0; i < SHIFTS_MAX; i++) {
+    int negative;
+    if (d->shift_Pa != *there) {
+      DEA_TRY(ctx, dea_solid_shift(ctx, s, d->shift_Pa - *there));
+      *there = d->shift_Pa;
+    }
+    DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
+    d->report->factorisations++;
+    d->report->shifted += *there > 0;
+    if (*there == 0) {
+      d->report->unstable_modes = negative;
+    }
+    if (negative <= 0) {
+      return DEA_OK;
+    }
+    double more = shift_up * (negative > 20 ? 16 : negative > 5 ? 4 : 1);
+    d->shift_Pa = *there > 0 ? more * *there : shift_first * s->modulus_Pa;
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
+}
+
+bool dea_solid_resolved(const struct dea_solid *s, double change)
+{
+  return fabs(change) > energy_small * s->energy_scale + s->energy_floor;
+}
+
+/* The longest share of the step that the energy lets pass, into s->trial. *rise: of the energy over
+ * the slope's size there, -1/2 where the energy is quadratic. false: none. */
+static bool search(struct dea_context *ctx, struct dea_solid *s, const struct descent *d,
+                   double slope, double *share, double *rise)
+{
+  double energy = d->report->energy_J, allowed = d->strict ? -downhill : uphill, at;
+  *rise = -0.5;
+  *share = 1;
+  for (int i = 0; i < HALVINGS_MAX; i++, *share /= 2) {
+    for (size_t k = 0; k < s->dofs; k++) {
+      s->trial[k] = s->u[k] + *share * s->step[k];
+    }
+    if (dea_solid_solve_potential(ctx, s, d->voltage_V, s->trial) == DEA_OK &&
+        dea_solid_energy(s, s->trial, d->voltage_V, &at) == DEA_OK) {
+      if (!dea_solid_resolved(s, slope)) {
+        return true;
+      }
+      *rise = (at - energy) / (*share * fabs(slope));
+      if (*rise <= allowed) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* The shift of the next step from how this one went. */
+static void adapt(struct dea_solid *s, struct descent *d, double share, double rise)
+{
+  if (share < 1 || rise > 0) {
+    d->shift_Pa = d->shift_Pa > 0 ? d->shift_Pa * (share < 0.2 ? shift_up * shift_up : shift_up)
+                                  : shift_first * s->modulus_Pa;
+  } else if (rise < -0.25) {
+    d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_down * shift_down : shift_down;
+  }
+  if (d->shift_Pa < shift_least * s->modulus_Pa) {
+    d->shift_Pa = 0;
+  }
+}
+
+/* s->step = -K^-1 g with the factor that is there. */
+static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
+{
+  for (size_t k = 0; k < s->dofs; k++) {
+    s->trial[k] = -s->g[k];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  return DEA_OK;
+}
+
+/* Takes the share of the step, with the stresses and the pressures that go with it. */
+static dea_status take(struct dea_context *ctx, struct dea_solid *s, const struct descent *d,
+                       double share, bool stresses)
+{
+  if (!d->strict) {
+    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->step, share, stresses,
+                                   d->shift_Pa <= s->modulus_Pa));
+  }
+  memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
+  return DEA_OK;
+}
+
+/* A step with the factor that is there, close to the equilibrium. */
+static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct descent *d)
+{
+  DEA_TRY(ctx, linear_step(ctx, s));
+  for (size_t k = 0; k < s->dofs; k++) {
+    s->trial[k] = s->u[k] + s->step[k];
+  }
+  dea_status status = dea_solid_solve_potential(ctx, s, d->voltage_V, s->trial);
+  double energy;
+  if (status == DEA_OK) {
+    status = dea_solid_energy(s, s->trial, d->voltage_V, &energy);
+  }
+  if (status != DEA_OK) { // too far: the next step has a tangent of its own
+    d->chord = false;
+    return DEA_OK;
+  }
+  d->chords++;
+  d->report->corrections++;
+  return take(ctx, s, d, 1, false);
+}
+
+/* A step with the tangent at hand, or from the last equilibrium along the tangent of its path.
+ * *done: the step is too small to matter. */
+static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, struct descent *d,
+                              bool *done)
+{
+  double there = 0, share, rise;
+  bool start = d->start;
+  d->start = d->chord = *done = false;
+  for (int i = 0; i < SHIFTS_MAX; i++) {
+    if (!start) {
+      DEA_TRY(ctx, factorise_definite(ctx, s, d, &there));
+      d->report->iterations++;
+    }
+    DEA_TRY(ctx, linear_step(ctx, s));
+    double slope = dea_solid_dot(s, s->g, s->step);
+    if (search(ctx, s, d, slope, &share, &rise)) {
+      bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
+      *done = !start && there == 0 && largest(s, s->step) < step_small * s->length_m;
+      d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
+      DEA_TRY(ctx, take(ctx, s, d, share, !*done));
+      if (start) {
+        return DEA_OK;
+      }
+      adapt(s, d, share, rise);
+      d->chords = 0;
+      d->chord = quadratic && there == 0;
+      return DEA_OK;
+    }
+    if (start) {
+      return DEA_OK; // the next step has a tangent of its own
+    }
+    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : shift_first * s->modulus_Pa;
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
+}
+
+/* Inertia of the tangent at the equilibrium; its factor is the start of the next step. */
+static dea_status finish(struct dea_context *ctx, struct dea_solid *s, struct descent *d,
+                         bool tangent)
+{
+  s->predicted_fits = false;
+  if (!tangent) {
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &d->report->energy_J));
+  }
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
+  d->report->factorisations++;
+  s->factor_fits = d->report->unstable_modes == 0;
+  if (!s->factor_fits) { // of a solid that kappa leaves a little compressible
+    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
+    d->report->factorisations++;
+  }
+  return DEA_OK;
+}
+
+/* Energy, forces and, where the next step needs one, the tangent at s->u. */
+static dea_status look(struct dea_context *ctx, struct dea_solid *s, struct descent *d)
+{
+  struct dea_solid_report *report = d->report;
+  bool chord = d->chord || d->start;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : DEA_TANGENT,
+                                  &report->energy_J));
+  double size = norm(s, s->g);
+  report->residual = size / (s->force_scale > 0 ? s->force_scale : 1);
+  report->theta_max = dea_solid_theta_max(s);
+  if (d->chord && (d->chords == CHORDS_MAX || !(size < chord_rate * d->norm_before)) &&
+      !(report->residual < residual_small)) {
+    d->chord = false;
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &report->energy_J));
+  }
+  d->norm_before = size;
+  return DEA_OK;
+}
+
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              struct dea_solid_report *report)
+{
+  struct descent d = {.voltage_V = voltage_V, .start = s->factor_fits, .report = report};
+  s->factor_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+  for (int i = 0; i < NEWTON_MAX; i++) {
+    bool done = false;
+    if (i == FREE_MAX) {
+      d.strict = true;
+      d.chord = s->predicted_fits = false;
+    }
+    DEA_TRY(ctx, look(ctx, s, &d));
+    bool fits = d.strict || report->theta_max < DEA_SOLID_THETA_SMALL;
+    if (i > 0 && fits && (report->residual < residual_small || d.unresolved > 2)) {
+      return finish(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->predicted_fits);
+    }
+    if (d.chord) {
+      DEA_TRY(ctx, chord_step(ctx, s, &d));
+    } else {
+      DEA_TRY(ctx, newton_step(ctx, s, &d, &done));
+    }
+    if (done && fits) {
+      return finish(ctx, s, &d, false);
+    }
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
+                  NEWTON_MAX, report->residual);
+}
+
+dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
+                                          double voltage_V, struct dea_solid_report *report)
+{
+  struct descent d = {.voltage_V = voltage_V, .report = report};
+  double energy, there = 0;
+  s->factor_fits = s->predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+  s->driven = true;
+  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_TANGENT, &energy);
+  s->driven = false;
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, factorise_definite(ctx, s, &d, &there));
+  DEA_TRY(ctx, linear_step(ctx, s));
+  // where the whole of the linear step leads too far the held components go their way all the same
+  for (double length = 1; length > 0.1; length /= 2) {
+    for (size_t i = 0; i < s->dofs; i++) {
+      s->trial[i] = s->u[i] + s->drive[i] + length * s->step[i];
+    }
+    if (dea_solid_energy(s, s->trial, voltage_V, &energy) == DEA_OK) {
+      for (size_t i = 0; i < s->dofs; i++) {
+        s->step[i] = s->trial[i] - s->u[i];
+      }
+      return take(ctx, s, &d, 1, true);
+    }
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the prescribed displacements invert an element");
+}
+
+void dea_solid_update_multipliers(struct dea_solid *s)
+{
+  size_t pressures = (size_t)s->shape.pressures;
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
+    s->multiplier[i] += layer->law != NULL ? layer->kappa_Pa * s->theta[i] : 0;
+  }
+}

@@ -1,0 +1,43 @@
+/* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
+ * pressure (docs/theory/loads.md). It comes in pieces of a few nodes each: a face of an element,
+ * whose nodes are coupled in the tangent anyway. */
+#ifndef DEA_MODEL_SOLID_LOAD_LOAD_H
+#define DEA_MODEL_SOLID_LOAD_LOAD_H
+
+#include "model/solid/point/constituent.h"
+
+#include <stddef.h>
+
+enum { DEA_PIECE_NODES_MAX = 16, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
+struct dea_piece {
+  int node_count;
+  int nodes[DEA_PIECE_NODES_MAX];
+  double energy_J;
+  double g[DEA_PIECE_DOFS_MAX];                      // [3 node_count]
+  double K[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX]; // [3 node_count][3 node_count], symmetric
+};
+
+struct dea_solid_load {
+  void *self; // lent, outlives the solid
+  size_t piece_count;
+  /* A piece at displacements u [node_count of the solid][3] up to the level; node_count 0 when
+   * there is nothing. Each by itself, in any order. DEA_E_DOMAIN where the energy is not defined.
+   */
+  dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_eval_order level,
+                         struct dea_piece *out);
+
+  /* Numbers by which the load stands, such as its size or the place of a tip. A solve leads them
+   * from now to goal, by itself in steps; both are lent, and 0 of them is fine. */
+  size_t parameter_count;
+  double *now;
+  const double *goal;
+
+  /* Multipliers of an augmented Lagrangian, lent. update, NULL where there are none, moves them at
+   * a minimum u of the energy; it looks at all pieces. Returns the largest violation of the
+   * constraint over the one that is allowed: up to 1 it is settled. */
+  size_t multiplier_count;
+  double *multiplier;
+  double (*update)(void *self, const double *u);
+};
+
+#endif

@@ -1,0 +1,135 @@
+/* Follower pressure: E = (p/3) int r . (x,1 x x,2) dxi, r = x - o. */
+#include "model/solid/load/loads.h"
+
+#include <string.h>
+
+struct dea_pressure {
+  const struct dea_surface *surface;
+  struct dea_face_shape shape;
+  double origin[3], now, goal; // o, p [Pa]
+};
+
+dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
+                               const double origin_m[3], struct dea_pressure **out)
+{
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->surface = surface;
+  memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
+  dea_face_shape_create(surface, DEA_FACE_GAUSS, &(*out)->shape);
+  return DEA_OK;
+}
+
+void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure)
+{
+  dea_free(ctx, pressure);
+}
+
+void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa)
+{
+  pressure->goal = pressure_Pa;
+}
+
+double dea_pressure_get(const struct dea_pressure *pressure)
+{
+  return pressure->now;
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    out[i] = a[j] * b[k] - a[k] * b[j];
+  }
+}
+
+/* r and its slopes at a point of a face. */
+struct place {
+  double r[3], A[3], B[3];
+};
+
+static void place_at(const struct dea_pressure *p, int q, const double *x, struct place *out)
+{
+  const struct dea_face_shape *s = &p->shape;
+  memset(out, 0, sizeof *out);
+  for (int n = 0; n < s->nodes; n++) {
+    for (int i = 0; i < 3; i++) {
+      out->r[i] += s->value[q][n] * (x[3 * n + i] - p->origin[i]);
+      out->A[i] += s->slope[q][0][n] * x[3 * n + i];
+      out->B[i] += s->slope[q][1][n] * x[3 * n + i];
+    }
+  }
+}
+
+/* K_ni,mj += f eps_ijk c_k. */
+static void add_tangent(const struct dea_face_shape *s, int q, double f, const struct place *at,
+                        int dofs, double *K)
+{
+  for (int n = 0; n < s->nodes; n++) {
+    double N = s->value[q][n], N1 = s->slope[q][0][n], N2 = s->slope[q][1][n];
+    for (int m = 0; m < s->nodes; m++) {
+      double M = s->value[q][m], M1 = s->slope[q][0][m], M2 = s->slope[q][1][m];
+      for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double c = f * ((N * M1 - N1 * M) * at->B[k] + (N2 * M - N * M2) * at->A[k] +
+                        (N1 * M2 - N2 * M1) * at->r[k]);
+        K[(3 * n + i) * dofs + 3 * m + j] += c;
+        K[(3 * n + j) * dofs + 3 * m + i] -= c;
+      }
+    }
+  }
+}
+
+static dea_status evaluate(const void *self, size_t piece, const double *u,
+                           enum dea_eval_order level, struct dea_piece *out)
+{
+  const struct dea_pressure *p = self;
+  const struct dea_face_shape *s = &p->shape;
+  int dofs = 3 * s->nodes;
+  double x[3 * DEA_FACE_NODES_MAX], X[3 * DEA_FACE_NODES_MAX];
+  out->node_count = p->now != 0 ? s->nodes : 0;
+  if (p->now == 0) {
+    return DEA_OK;
+  }
+  memcpy(out->nodes, p->surface->nodes + piece * DEA_FACE_NODES_MAX,
+         (size_t)s->nodes * sizeof *out->nodes);
+  dea_face_gather(p->surface, piece, p->surface->grid->X, X);
+  dea_face_gather(p->surface, piece, u, x);
+  for (int i = 0; i < dofs; i++) {
+    x[i] += X[i];
+  }
+  out->energy_J = 0;
+  memset(out->g, 0, (size_t)dofs * sizeof *out->g);
+  memset(out->K, 0, level >= DEA_TANGENT ? (size_t)(dofs * dofs) * sizeof *out->K : 0);
+  for (int q = 0; q < s->points; q++) {
+    struct place at;
+    double AB[3], Br[3], rA[3], f = p->now / 3 * s->weight[q];
+    place_at(p, q, x, &at);
+    cross(at.A, at.B, AB);
+    cross(at.B, at.r, Br);
+    cross(at.r, at.A, rA);
+    for (int i = 0; i < 3; i++) {
+      out->energy_J += f * at.r[i] * AB[i];
+      for (int n = 0; n < s->nodes; n++) {
+        out->g[3 * n + i] +=
+            f * (s->value[q][n] * AB[i] + s->slope[q][0][n] * Br[i] + s->slope[q][1][n] * rA[i]);
+      }
+    }
+    if (level >= DEA_TANGENT) {
+      add_tangent(s, q, f, &at, dofs, out->K);
+    }
+  }
+  return DEA_OK;
+}
+
+struct dea_solid_load dea_pressure_load(struct dea_pressure *pressure)
+{
+  return (struct dea_solid_load){.self = pressure,
+                                 .piece_count = pressure->surface->face_count,
+                                 .evaluate = evaluate,
+                                 .parameter_count = 1,
+                                 .now = &pressure->now,
+                                 .goal = &pressure->goal};
+}

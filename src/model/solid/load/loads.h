@@ -1,0 +1,77 @@
+/* Loads on a solid (docs/theory/loads.md). Dead ones are added to nodal forces, as
+ * dea_solid_force lends them; the others are objects whose dea_solid_load goes to
+ * dea_solid_add_load and that outlive the solid. Surfaces are lent and outlive the objects. */
+#ifndef DEA_MODEL_SOLID_LOAD_LOADS_H
+#define DEA_MODEL_SOLID_LOAD_LOADS_H
+
+#include "model/solid/load/indenter.h"
+#include "model/solid/load/load.h"
+#include "model/solid/mesh/surface.h"
+
+/* ---- dead loads; force: [node_count][3] [N], added to ---- */
+
+/* Weight. shape: of the grid's elements; density of each region and sheet, in the stretched flat
+ * film, of a flat sheet its mass per area [kg/m^2]; acceleration: of free fall. */
+void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *shape,
+                      double (*density_kg_per_m3)(const void *self, int region, int sheet),
+                      const void *self, const double acceleration_m_per_s2[3], double *force);
+/* Force per reference area in a fixed direction. A total force over a patch: that over
+ * dea_surface_area. */
+void dea_load_traction(const struct dea_surface *surface, const double traction_Pa[3],
+                       double *force);
+/* A force on the node nearest to a place X. DEA_E_ARGUMENT when that is further than within_m. */
+dea_status dea_load_point(struct dea_context *ctx, const struct dea_grid *grid, const double X_m[3],
+                          double within_m, const double force_N[3], double *force);
+
+/* ---- springs toward the reference place ---- */
+
+struct dea_foundation;
+/* stiffness: along the three axes, each 0 or more, per reference area. out: owned by the caller. */
+dea_status dea_foundation_create(struct dea_context *ctx, const struct dea_surface *surface,
+                                 const double stiffness_Pa_per_m[3], struct dea_foundation **out);
+void dea_foundation_destroy(struct dea_context *ctx, struct dea_foundation *foundation);
+struct dea_solid_load dea_foundation_load(struct dea_foundation *foundation);
+
+/* ---- pressure that follows the surface ---- */
+
+struct dea_pressure;
+/* The boundary of the surface must be held, or stay in planes through origin_m: symmetry planes, or
+ * one on which it slides. At first 0 Pa. out: owned by the caller. */
+dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
+                               const double origin_m[3], struct dea_pressure **out);
+void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure);
+/* Pressure that the next solve goes to, positive into the body. */
+void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
+/* As it stands: the last goal, or how far a solve came. */
+double dea_pressure_get(const struct dea_pressure *pressure);
+struct dea_solid_load dea_pressure_load(struct dea_pressure *pressure);
+
+/* ---- contact with a rigid tip, without friction ---- */
+
+struct dea_contact;
+struct dea_contact_options {
+  struct dea_indenter tip;
+  double place_m[3]; // of the tip at first, see dea_indenter_distance
+  /* Penalty: the answer does not depend on it, the number of rounds does. Some ten times the
+   * stiffness per area behind the surface is good: a modulus over an element's size. */
+  double stiffness_Pa_per_m;
+  double tolerance; // of the pressure, relative, in the mean over the contact; 0: 1e-3
+};
+/* out: owned by the caller. DEA_E_ARGUMENT for a tip that cannot be. */
+dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface *surface,
+                              const struct dea_contact_options *options, struct dea_contact **out);
+void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact);
+/* Where the next solve brings the tip. */
+void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
+/* Where it is. */
+void dea_contact_place(const struct dea_contact *contact, double place_m[3]);
+/* Of the surface on the tip at the last equilibrium, u: its displacements. */
+void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3]);
+/* Reference area in contact [m^2]. */
+double dea_contact_area(const struct dea_contact *contact);
+/* Contact pressures per reference area [face_count][points], at the nodes of each face of the
+ * surface in their order; lent. */
+const double *dea_contact_pressure(const struct dea_contact *contact);
+struct dea_solid_load dea_contact_load(struct dea_contact *contact);
+
+#endif

@@ -1,0 +1,13 @@
+/* Cuts of a line into elements whose size grows from its ends. */
+#ifndef DEA_MODEL_SOLID_MESH_CUTS_H
+#define DEA_MODEL_SOLID_MESH_CUTS_H
+
+#include <stddef.h>
+
+/* Cuts of [0, 1] for a line of `length`: elements that are about `first` and `last` wide at its two
+ * ends, grow by a factor of about two from one to the next, and are not wider than `widest`. cuts:
+ * [at most max + 1], ascending from 0 to 1. Returns the number of elements, 0 for more than max. */
+size_t dea_cuts_graded(double length, double first, double last, double widest, size_t max,
+                       double *cuts);
+
+#endif

@@ -1,0 +1,406 @@
+/* Blocks and sheets of a plate. In a sector the lines l = 0, 1, ... go from the core to the frame:
+ *
+ *     polar blocks     between two circles, and between two lines or across a fibre
+ *     ring blocks      from the outline of the core to the first circle
+ *     core             one quadrilateral O A G B a wedge, O the centre, A and B on the wedge's
+ *                      edges, G between them: three blocks meet at G, and none has an angle of 0 or
+ *                      180 degrees however thin the wedge is
+ *
+ * A sector of more than 90 degrees (one fibre) has two wedges. */
+#include "model/solid/mesh/fibre_disc.h"
+
+#include "model/solid/mesh/cuts.h"
+#include "model/solid/mesh/fibre_disc_lines.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+  WEDGES_MAX = 2,
+  RINGS_MAX = 2 * WEDGES_MAX,
+  POLARS_MAX = 2 * (DEA_FIBRE_DISC_CIRCLES_MAX - 1)
+};
+enum { SECTOR_BLOCKS_MAX = WEDGES_MAX + RINGS_MAX + POLARS_MAX };
+
+static const double pi = 3.14159265358979323846;
+static const double same = 1e-9; // of the frame's radius: one place
+
+double dea_fibre_disc_angle(const struct dea_fibre_disc *plate)
+{
+  return plate->sectors * pi / (plate->fibres > 0 ? plate->fibres : 4);
+}
+
+int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate)
+{
+  return 2 * (plate->fibres > 0 ? plate->fibres : 4);
+}
+
+/* ---- maps of one sector ---- */
+
+/* Between two circles and two lines, straight from circle to circle. */
+struct polar {
+  const struct dea_fibre_disc_lines *lines;
+  double inner, outer, from, to; // radii, lines
+};
+
+static void map_polar(const void *self, double s, double t, double x[2])
+{
+  const struct polar *b = self;
+  double l = b->from + t * (b->to - b->from), in[2], out[2];
+  dea_fibre_disc_line_point(b->lines, l, b->inner, in);
+  dea_fibre_disc_line_point(b->lines, l, b->outer, out);
+  x[0] = (1 - s) * in[0] + s * out[0];
+  x[1] = (1 - s) * in[1] + s * out[1];
+}
+
+/* From a straight edge of the core to the first circle. */
+struct ring {
+  const struct dea_fibre_disc_lines *lines;
+  double from, to; // lines
+  double start[2], end[2];
+};
+
+static void map_ring(const void *self, double s, double t, double x[2])
+{
+  const struct ring *b = self;
+  double out[2];
+  dea_fibre_disc_line_point(b->lines, b->from + t * (b->to - b->from), b->lines->circle[0], out);
+  for (int i = 0; i < 2; i++) {
+    x[i] = (1 - s) * ((1 - t) * b->start[i] + t * b->end[i]) + s * out[i];
+  }
+}
+
+/* Quadrilateral O A G B: s along O A, t along O B. */
+struct core {
+  double A[2], G[2], B[2];
+};
+
+static void map_core(const void *self, double s, double t, double x[2])
+{
+  const struct core *b = self;
+  for (int i = 0; i < 2; i++) {
+    x[i] = s * (1 - t) * b->A[i] + s * t * b->G[i] + (1 - s) * t * b->B[i];
+  }
+}
+
+/* ---- the sectors of the domain ---- */
+
+/* A block in the k-th sector: turned there, or mirrored (and its axes swapped, so that it keeps its
+ * sense). */
+struct copy {
+  const struct dea_block *block;
+  double turn;
+  bool mirrored;
+};
+
+static void map_copy(const void *self, double s, double t, double x[2])
+{
+  const struct copy *c = self;
+  double at[2], cosine = cos(c->turn), sine = sin(c->turn);
+  c->block->map(c->block->self, c->mirrored ? t : s, c->mirrored ? s : t, at);
+  double y = c->mirrored ? -at[1] : at[1];
+  x[0] = cosine * at[0] - sine * y;
+  x[1] = sine * at[0] + cosine * y;
+}
+
+static struct dea_block copied(const struct dea_block *block, const struct copy *copy)
+{
+  struct dea_block out = *block;
+  out.map = map_copy;
+  out.self = copy;
+  if (copy->mirrored) {
+    out.cuts_s = block->cuts_t;
+    out.cuts_t = block->cuts_s;
+    out.count_s = block->count_t;
+    out.count_t = block->count_s;
+  }
+  return out;
+}
+
+/* ---- building ---- */
+
+struct builder {
+  struct dea_fibre_disc_lines lines;
+  struct polar polars[POLARS_MAX];
+  struct ring rings[RINGS_MAX];
+  struct core cores[WEDGES_MAX];
+  double even[DEA_FIBRE_DISC_LINE_MAX + 1][DEA_FIBRE_DISC_LINE_MAX + 1]; // [count]: its even cuts
+  double radial[DEA_FIBRE_DISC_CIRCLES_MAX][DEA_FIBRE_DISC_LINE_MAX + 1];
+  struct dea_block blocks[SECTOR_BLOCKS_MAX];
+  size_t polar_count, ring_count, core_count, block_count;
+};
+
+/* Cuts of [0, 1] into `count` equal parts. */
+static const double *even_cuts(struct builder *b, size_t count)
+{
+  for (size_t i = 0; i <= count; i++) {
+    b->even[count][i] = (double)i / (double)count;
+  }
+  return b->even[count];
+}
+
+static void add_block(struct builder *b, void (*map)(const void *, double, double, double[2]),
+                      const void *self, const double *cuts_s, size_t count_s, size_t count_t,
+                      int region)
+{
+  b->blocks[b->block_count++] =
+      (struct dea_block){map, self, cuts_s, even_cuts(b, count_t), count_s, count_t, region};
+}
+
+static dea_status too_many(struct dea_context *ctx)
+{
+  return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes at most %d elements in a row",
+                  DEA_FIBRE_DISC_LINE_MAX);
+}
+
+/* Size of elements at a circle: fine where something ends there. */
+static double size_at(const struct dea_fibre_disc *p, double radius)
+{
+  double close = same * p->frame_radius;
+  bool end =
+      fabs(radius - p->electrode_radius) < close ||
+      (p->fibres > 0 && fabs(radius - p->tip_radius) < close) ||
+      (p->fibres > 0 && fabs(radius - p->outer_radius) < close && radius < p->frame_radius - close);
+  return end ? fmin(p->edge, p->size) : 2 * p->size;
+}
+
+/* Between the circles i and i + 1: a block across the fibre and one between fibres. */
+static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t i)
+{
+  const struct dea_fibre_disc_lines *lines = &b->lines;
+  const struct dea_fibre_disc *p = lines->plate;
+  double inner = lines->circle[i], outer = lines->circle[i + 1], close = same * p->frame_radius;
+  bool electrode = outer < p->electrode_radius + close;
+  size_t count =
+      dea_cuts_graded(outer - inner, size_at(p, inner), size_at(p, outer),
+                      electrode ? p->size : 2 * p->size, DEA_FIBRE_DISC_LINE_MAX, b->radial[i]);
+  if (count == 0) {
+    return too_many(ctx);
+  }
+  bool fibre = p->fibres > 0 && inner > p->tip_radius - close && outer < p->outer_radius + close;
+  double ends[3] = {0, (double)lines->across, (double)lines->count};
+  for (int k = lines->across > 0 ? 0 : 1; k < 2; k++) {
+    struct polar *polar = &b->polars[b->polar_count++];
+    *polar = (struct polar){lines, inner, outer, ends[k], ends[k + 1]};
+    add_block(b, map_polar, polar, b->radial[i], count, (size_t)(ends[k + 1] - ends[k]),
+              (electrode ? DEA_FIBRE_DISC_ELECTRODE : 0) |
+                  (fibre && k == 0 ? DEA_FIBRE_DISC_FIBRE : 0));
+  }
+  return DEA_OK;
+}
+
+/* The wedge between the lines from and to; its edge A has `along` elements from O. rho: distance of
+ * A and B from O; cuts: of the rings. */
+static void add_wedge(struct builder *b, size_t from, size_t to, size_t along, double rho,
+                      const double *cuts, size_t count)
+{
+  const struct dea_fibre_disc_lines *lines = &b->lines;
+  size_t middle = to - along;
+  double first = lines->circle[0],
+         angle[3] = {dea_fibre_disc_line_angle(lines, (double)from, first),
+                     dea_fibre_disc_line_angle(lines, (double)middle, first),
+                     dea_fibre_disc_line_angle(lines, (double)to, first)};
+  // far enough out that the corner at G is as open in a thin wedge as in a wide one
+  double far = rho * fmax(1.1, 1.4 * cos(0.5 * (angle[2] - angle[0])));
+  struct core *core = &b->cores[b->core_count++];
+  *core = (struct core){{rho * cos(angle[0]), rho * sin(angle[0])},
+                        {far * cos(angle[1]), far * sin(angle[1])},
+                        {rho * cos(angle[2]), rho * sin(angle[2])}};
+  for (int k = 0; k < 2; k++) {
+    const double *start = k == 0 ? core->A : core->G, *end = k == 0 ? core->G : core->B;
+    size_t begins = k == 0 ? from : middle, ends = k == 0 ? middle : to;
+    struct ring *ring = &b->rings[b->ring_count++];
+    *ring =
+        (struct ring){lines, (double)begins, (double)ends, {start[0], start[1]}, {end[0], end[1]}};
+    add_block(b, map_ring, ring, cuts, count, ends - begins, DEA_FIBRE_DISC_ELECTRODE);
+  }
+  add_block(b, map_core, core, even_cuts(b, to - middle), to - middle, middle - from,
+            DEA_FIBRE_DISC_ELECTRODE);
+}
+
+/* Everything inside the first circle, which is that of the electrodes or of the tips on them. */
+static dea_status add_inside(struct dea_context *ctx, struct builder *b)
+{
+  const struct dea_fibre_disc_lines *lines = &b->lines;
+  const struct dea_fibre_disc *p = lines->plate;
+  double first = lines->circle[0], *cuts = b->radial[DEA_FIBRE_DISC_CIRCLES_MAX - 1];
+  bool one = lines->alpha <= 0.51 * pi;
+  double rho = 0.55 * first * fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
+  size_t count = dea_cuts_graded(first - rho, p->size, size_at(p, first), p->size,
+                                 DEA_FIBRE_DISC_LINE_MAX, cuts);
+  if (count == 0) {
+    return too_many(ctx);
+  }
+  if (one) {
+    add_wedge(b, 0, lines->count, lines->count / 2, rho, cuts, count);
+    return DEA_OK;
+  }
+  size_t half = 2; // the line nearest to half the angle; two lines at least on both sides
+  while (half + 2 < lines->count &&
+         dea_fibre_disc_line_angle(lines, (double)half + 0.5, first) < 0.5 * lines->alpha) {
+    half++;
+  }
+  size_t shared = (half < lines->count - half ? half : lines->count - half) / 2;
+  add_wedge(b, 0, half, half - shared, rho, cuts, count);
+  add_wedge(b, half, lines->count, shared, rho, cuts, count);
+  return DEA_OK;
+}
+
+/* ---- sheets ---- */
+
+/* Which regions have which sheets: fibres beside the electrodes or without electrode layers, ... */
+static bool present_beside(int region, int sheet)
+{
+  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
+  return sheet == DEA_FIBRE_DISC_FILM || (sheet <= DEA_FIBRE_DISC_TOP ? electrode : fibre);
+}
+
+/* ... or on an electrode layer, which a filler then continues. */
+static bool present_on_top(int region, int sheet)
+{
+  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
+  return sheet == DEA_FIBRE_DISC_FILM || (sheet == DEA_FIBRE_DISC_BOTTOM ? electrode
+                                          : sheet == DEA_FIBRE_DISC_TOP  ? electrode || fibre
+                                                                         : fibre);
+}
+
+/* With a membrane: all but film and electrodes is under fibres. */
+static bool present_membrane(int region, int sheet)
+{
+  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
+  return sheet == DEA_FIBRE_DISC_FILM || (sheet == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
+}
+
+/* Sheets of a thickness have one element through it. */
+static struct dea_ply sheet_of(const struct dea_fibre_disc *p, double thickness)
+{
+  return (struct dea_ply){thickness, thickness > 0 ? 1 : 0, p->order_z};
+}
+
+static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *p,
+                          const struct dea_block *blocks, size_t block_count, struct dea_grid **out)
+{
+  bool fibres = p->fibres > 0;
+  bool on_top = fibres && p->tip_radius < p->electrode_radius - same * p->frame_radius;
+  struct dea_ply sheets[DEA_FIBRE_DISC_SHEETS] = {
+      [DEA_FIBRE_DISC_BOTTOM] = sheet_of(p, p->electrode_thickness),
+      [DEA_FIBRE_DISC_FILM] = sheet_of(p, p->film_thickness),
+      [DEA_FIBRE_DISC_BOND] = sheet_of(p, p->membrane && fibres ? 0.5 * p->film_thickness : 0),
+      [DEA_FIBRE_DISC_TOP] = sheet_of(p, p->electrode_thickness),
+      [DEA_FIBRE_DISC_GLUE] = sheet_of(p, fibres ? p->glue_thickness : 0),
+      [DEA_FIBRE_DISC_FIBRE_SHEET] = sheet_of(p, fibres ? p->fibre_thickness : 0),
+  };
+  const size_t skips[DEA_FIBRE_DISC_SHEETS] = {[DEA_FIBRE_DISC_GLUE] = on_top ? 0 : 1};
+  double bottom = -0.5 * p->film_thickness - p->electrode_thickness;
+  if (p->membrane) {
+    sheets[DEA_FIBRE_DISC_BOTTOM].thickness_m = sheets[DEA_FIBRE_DISC_FILM].thickness_m = bottom =
+        0;
+    sheets[DEA_FIBRE_DISC_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
+  }
+  DEA_TRY(ctx, dea_grid_create_skipping(ctx, p->order, blocks, block_count, sheets,
+                                        DEA_FIBRE_DISC_SHEETS, skips,
+                                        p->membrane ? present_membrane
+                                        : on_top    ? present_on_top
+                                                    : present_beside,
+                                        bottom, p->frame_radius, out));
+  return DEA_OK;
+}
+
+/* Copies the blocks of the first sector into all of the domain. */
+static dea_status spread(struct dea_context *ctx, const struct builder *b, struct dea_grid **out)
+{
+  const struct dea_fibre_disc *p = b->lines.plate;
+  size_t count = b->block_count * (size_t)p->sectors;
+  struct copy *copies = dea_alloc(ctx, count, sizeof *copies);
+  struct dea_block *blocks = dea_alloc(ctx, count, sizeof *blocks);
+  dea_status status = copies != NULL && blocks != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    size_t sector = i / b->block_count;
+    bool mirrored = sector % 2 == 1;
+    copies[i] = (struct copy){&b->blocks[i % b->block_count],
+                              b->lines.alpha * (double)(sector + mirrored), mirrored};
+    blocks[i] = copied(copies[i].block, &copies[i]);
+  }
+  if (status == DEA_OK) {
+    status = extrude(ctx, p, blocks, count, out);
+  }
+  dea_free(ctx, blocks);
+  dea_free(ctx, copies);
+  return status;
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                        struct builder *b, struct dea_grid **out)
+{
+  DEA_TRY(ctx, dea_fibre_disc_lines_create(ctx, plate, &b->lines));
+  DEA_TRY(ctx, add_inside(ctx, b));
+  for (size_t i = 0; i + 1 < b->lines.circle_count; i++) {
+    DEA_TRY(ctx, add_polars(ctx, b, i));
+  }
+  DEA_TRY(ctx, spread(ctx, b, out));
+  return DEA_OK;
+}
+
+dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                 struct dea_grid **out)
+{
+  *out = NULL;
+  struct builder *b = dea_alloc(ctx, 1, sizeof *b);
+  if (b == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = build(ctx, plate, b, out);
+  dea_free(ctx, b);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* ---- supports ---- */
+
+int dea_fibre_disc_edges(const struct dea_fibre_disc *p, const double X[3])
+{
+  double close = same * p->frame_radius, beta = dea_fibre_disc_angle(p);
+  if (p->sectors == dea_fibre_disc_sectors(p)) {
+    return 0;
+  }
+  bool centre = hypot(X[0], X[1]) < close;
+  bool first = centre || (fabs(X[1]) < close && X[0] > 0);
+  double across = -sin(beta) * X[0] + cos(beta) * X[1], along = cos(beta) * X[0] + sin(beta) * X[1];
+  bool last = centre || (fabs(across) < close && along > 0);
+  return (first ? 1 : 0) | (last ? 2 : 0);
+}
+
+/* A plane x = 0 or y = 0 needs no axes of its own. */
+static bool is_global(double beta)
+{
+  double quarters = beta / (0.5 * pi);
+  return fabs(quarters - floor(quarters + 0.5)) < same;
+}
+
+int dea_fibre_disc_held(const struct dea_fibre_disc *p, const double X[3])
+{
+  bool frame = hypot(X[0], X[1]) > p->frame_radius * (1 - same);
+  double top = 0.5 * p->film_thickness * (1 + 1e-6); // of the film, which the frame holds always
+  if (frame && (p->end == DEA_FIBRE_DISC_CLAMPED || X[2] < top)) {
+    return 1 | 2 | 4;
+  }
+  double beta = dea_fibre_disc_angle(p);
+  bool even = fmod(floor(beta / (0.5 * pi) + 0.5), 2) == 0; // the last plane is y = 0 as well
+  int edges = dea_fibre_disc_edges(p, X), last = !is_global(beta) ? 1 : even ? 2 : 1;
+  if (edges == 3) { // the centre
+    return is_global(beta) && even ? 2 : 1 | 2;
+  }
+  return (edges & 1 ? 2 : 0) | (edges & 2 ? last : 0);
+}
+
+bool dea_fibre_disc_frame(const struct dea_fibre_disc *p, const double X[3], double Q[9])
+{
+  double beta = dea_fibre_disc_angle(p), c = cos(beta), s = sin(beta);
+  if (dea_fibre_disc_edges(p, X) != 2 || is_global(beta)) {
+    return false;
+  }
+  const double axes[9] = {-s, c, 0, -c, -s, 0, 0, 0, 1};
+  for (int i = 0; i < 9; i++) {
+    Q[i] = axes[i];
+  }
+  return true;
+}

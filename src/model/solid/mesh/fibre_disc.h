@@ -1,0 +1,72 @@
+/* Mesh of an actuator: a disc of film in its frame, electrodes, radial fibres on the upper face
+ * (docs/theory/mesh.md). Lengths in m, of the stretched flat film; its middle plane is z = 0 and
+ * the axis of the first fibre is y = 0, x > 0. */
+#ifndef DEA_MODEL_SOLID_MESH_FIBRE_DISC_H
+#define DEA_MODEL_SOLID_MESH_FIBRE_DISC_H
+
+#include "device/device.h"
+#include "model/solid/mesh/grid.h"
+
+/* How the frame holds the outer ends of fibres that reach it. */
+enum dea_fibre_disc_end { DEA_FIBRE_DISC_CLAMPED, DEA_FIBRE_DISC_HINGED };
+
+struct dea_fibre_disc {
+  int order, order_z; // of the elements
+  bool membrane;      // the film is a surface at z = 0 (docs/theory/membrane.md)
+  int fibres;         // N, evenly spread; 0: none
+  /* Domain: so many sectors of pi/N (pi/4 without fibres) from the first fibre's axis; each second
+   * one is the mirror image of that before it. 2 N (8): the whole disc. Less: its two straight
+   * edges lie on mirror planes. */
+  int sectors;
+  double electrode_radius, frame_radius;
+  double tip_radius, outer_radius; // ends of the fibres: arcs about the centre; outer <= frame
+  double tip_width, outer_width;   // there; the long edges are straight
+  double film_thickness, electrode_thickness, glue_thickness, fibre_thickness; // last three: or 0
+  enum dea_fibre_disc_end end; // what holds at the frame when outer_radius is frame_radius
+  double
+      size; // of elements in the plane, up to which they grow; twice of that outside the electrode
+  double
+      edge; // of elements at the electrode edge and the ends of fibres; about doubling from there
+  double beside; // of elements between two fibres, along the electrode edge; 0: size
+};
+
+/* Bits of an element's region: inside the electrode circle, under a fibre. */
+enum { DEA_FIBRE_DISC_ELECTRODE = 1, DEA_FIBRE_DISC_FIBRE = 2 };
+
+/* Sheets from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
+ * DEA_FIBRE_DISC_TOP then goes on under the rest of the fibre as a filler of glue or fibre, so that
+ * the fibre is flat.
+ *
+ * With a membrane, film and DEA_FIBRE_DISC_BOTTOM (both electrodes then) are surfaces of one place;
+ * DEA_FIBRE_DISC_BOND and DEA_FIBRE_DISC_TOP are there under fibres only. */
+enum {
+  DEA_FIBRE_DISC_BOTTOM, // electrode below
+  DEA_FIBRE_DISC_FILM,
+  DEA_FIBRE_DISC_BOND, // the upper half of a membrane's film
+  DEA_FIBRE_DISC_TOP,  // electrode above
+  DEA_FIBRE_DISC_GLUE,
+  DEA_FIBRE_DISC_FIBRE_SHEET,
+  DEA_FIBRE_DISC_SHEETS
+};
+
+/* Angle of the domain, from 0 to 2 pi. */
+double dea_fibre_disc_angle(const struct dea_fibre_disc *plate);
+/* Sectors of the whole disc. */
+int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate);
+
+/* DEA_E_ARGUMENT for parts that do not fit together, or more than DEA_FIBRE_DISC_LINE_MAX elements
+ * in a row. out: owned by the caller (dea_grid_destroy), NULL on failure. */
+dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                 struct dea_grid **out);
+enum { DEA_FIBRE_DISC_LINE_MAX = 256 };
+
+/* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at
+ * dea_fibre_disc_angle. 0 in the whole disc. */
+int dea_fibre_disc_edges(const struct dea_fibre_disc *plate, const double X[3]);
+/* Components of a node that frame and mirror planes hold, as bits 1, 2, 4 of its local axes. */
+int dea_fibre_disc_held(const struct dea_fibre_disc *plate, const double X[3]);
+/* Local axes of a node as the rows of Q: normal of its mirror plane, along it, z. false where the
+ * global axes do; Q is not touched then. */
+bool dea_fibre_disc_frame(const struct dea_fibre_disc *plate, const double X[3], double Q[9]);
+
+#endif

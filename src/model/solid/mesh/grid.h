@@ -1,0 +1,85 @@
+/* Structured meshes of layered plates: mapped blocks of quadrilaterals, extruded through layers. */
+#ifndef DEA_MODEL_SOLID_MESH_GRID_H
+#define DEA_MODEL_SOLID_MESH_GRID_H
+
+#include "model/solid/element/hex.h"
+
+#include "base/context.h"
+
+/* A block of a plate: [0, 1]^2 mapped into the plane. */
+struct dea_block {
+  void (*map)(const void *self, double s, double t, double x[2]);
+  const void *self;
+  const double *cuts_s, *cuts_t; // ascending from 0 to 1, [count_s + 1], [count_t + 1]
+  size_t count_s, count_t;       // elements
+  int region;                    // of its elements
+};
+
+/* One layer of a stack, from bottom to top. A sheet of thickness 0 is a surface: flat elements of
+ * (order + 1)^2 nodes at its level, whose nodes are those of the solid elements there. */
+struct dea_ply {
+  double thickness_m;
+  size_t count; // elements through it, 1 of a surface; 0: the sheet is not there
+  int order_z;
+};
+
+struct dea_grid {
+  int order;
+  size_t node_count, element_count;
+  double *X;           // [node_count][3]
+  int *nodes;          // [element_count][DEA_HEX_NODES_MAX], the first shape.nodes of each used
+  int *region, *sheet; // [element_count]
+  bool *flat;          // [element_count] of (order + 1)^2 nodes
+};
+
+/* Nodes of an element; solid: those of a hexahedron. */
+int dea_grid_nodes_of(const struct dea_grid *grid, size_t element, int solid);
+
+/* Plate of blocks (joined where their edge nodes coincide) through sheets that start at z =
+ * bottom_m. All sheets have the same order_z. present: whether a region has a sheet; NULL: all have
+ * all. length_m: a typical length of the plate, nodes closer than 1e-9 of it are one. out: owned by
+ * the caller, NULL on failure. */
+dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
+                           size_t block_count, const struct dea_ply *sheets, size_t sheet_count,
+                           bool (*present)(int region, int sheet), double bottom_m, double length_m,
+                           struct dea_grid **out);
+/* The same where a sheet need not lie on the one before it in the list: skips[] says how many it
+ * passes over, [sheet_count]; NULL: none. */
+dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
+                                    const struct dea_block *blocks, size_t block_count,
+                                    const struct dea_ply *sheets, size_t sheet_count,
+                                    const size_t *skips, bool (*present)(int region, int sheet),
+                                    double bottom_m, double length_m, struct dea_grid **out);
+void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
+
+/* The node nearest to a place [m]. */
+size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
+
+/* Least of all elements' smallest Jacobian in the plane (at the nodes) over the mean one of the
+ * element: 1 for a parallelogram, 0 or less for an element that is folded. */
+double dea_grid_smallest_jacobian(const struct dea_grid *grid);
+
+/* Quarter (x, y >= 0) of a film in a ring, its middle plane at z = 0, with electrodes inside the
+ * circle a and fibres from there to the frame, on top of the film: with 4 half a fibre along each
+ * axis, with 8 a whole one on the diagonal as well. Lengths in m. */
+struct dea_quarter {
+  int order, order_z;
+  double a, b;           // electrode radius, frame radius
+  double film_thickness; // h
+  int fibres;            // of the whole actuator: 0, 4 or 8
+  double fibre_width, fibre_thickness;
+  size_t fine;   // elements along an eighth of the circle a, beside those of the fibres
+  size_t across; // elements across half a fibre
+  double edge;   // width of the elements on both sides of the circle a, from where they double
+                 // up to about square; 0 for no grading
+  bool membrane; // the film is a surface, see the sheets below
+};
+enum { DEA_REGION_ELECTRODE, DEA_REGION_FILM, DEA_REGION_FIBRE };
+enum { DEA_SHEET_FILM, DEA_SHEET_FIBRE };
+/* The sheets with a membrane: the film as a surface at z = 0; under fibres only the layer from
+ * there to h/2 that joins them to it (dea_membrane_bond); fibres. */
+enum { DEA_SHEET_SURFACE, DEA_SHEET_BOND, DEA_SHEET_FIBRE_ON_BOND };
+dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *quarter,
+                            struct dea_grid **out);
+
+#endif

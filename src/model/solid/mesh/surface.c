@@ -1,0 +1,204 @@
+#include "model/solid/mesh/surface.h"
+
+#include "base/quadrature.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Local nodes of a side of an element, [face nodes]. The axes after that of the side, in cyclic
+ * order, turn right around it: that is outwards at its high end, and the other way round at its low
+ * one. */
+static void side_nodes(const struct dea_hex_shape *shape, enum dea_face side, int order[2],
+                       int *nodes)
+{
+  const int orders[3] = {shape->order, shape->order, shape->order_z};
+  const int stride[3] = {1, shape->order + 1, (shape->order + 1) * (shape->order + 1)};
+  int axis = (int)side / 2, high = (int)side % 2;
+  int first = (axis + (high ? 1 : 2)) % 3, second = (axis + (high ? 2 : 1)) % 3;
+  order[0] = orders[first];
+  order[1] = orders[second];
+  for (int j = 0; j <= order[1]; j++) {
+    for (int i = 0; i <= order[0]; i++) {
+      *nodes++ = high * orders[axis] * stride[axis] + i * stride[first] + j * stride[second];
+    }
+  }
+}
+
+static void middle_of(const struct dea_surface *surface, size_t face, double middle[3])
+{
+  double X[3 * DEA_FACE_NODES_MAX];
+  dea_face_gather(surface, face, surface->grid->X, X);
+  for (int i = 0; i < 3; i++) {
+    middle[i] = 0;
+    for (int n = 0; n < surface->face_nodes; n++) {
+      middle[i] += X[3 * n + i] / surface->face_nodes;
+    }
+  }
+}
+
+dea_status dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid,
+                              const struct dea_hex_shape *shape, enum dea_face side,
+                              bool (*select)(const void *self, int region, int sheet,
+                                             const double middle[3]),
+                              const void *self, struct dea_surface **out)
+{
+  int local[DEA_FACE_NODES_MAX];
+  *out = NULL;
+  struct dea_surface *s = dea_alloc(ctx, 1, sizeof *s);
+  if (s == NULL) {
+    return DEA_E_MEMORY;
+  }
+  s->grid = grid;
+  s->nodes = dea_alloc(ctx, grid->element_count, DEA_FACE_NODES_MAX * sizeof *s->nodes);
+  s->element = dea_alloc(ctx, grid->element_count, sizeof *s->element);
+  if (s->nodes == NULL || s->element == NULL) {
+    dea_surface_destroy(ctx, s);
+    return DEA_E_MEMORY;
+  }
+  side_nodes(shape, side, s->order, local);
+  s->face_nodes = (s->order[0] + 1) * (s->order[1] + 1);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    double middle[3];
+    if (grid->flat[e] && side != DEA_FACE_BOTTOM && side != DEA_FACE_TOP) {
+      continue;
+    }
+    for (int n = 0; n < s->face_nodes; n++) {
+      int node = grid->flat[e] ? local[n] % s->face_nodes : local[n];
+      s->nodes[s->face_count * DEA_FACE_NODES_MAX + (size_t)n] =
+          grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)node];
+    }
+    middle_of(s, s->face_count, middle);
+    if (select == NULL || select(self, grid->region[e], grid->sheet[e], middle)) {
+      s->element[s->face_count++] = (int)e;
+    }
+  }
+  if (s->face_count == 0) {
+    dea_surface_destroy(ctx, s);
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no face of the mesh belongs to the surface of a load");
+  }
+  *out = s;
+  return DEA_OK;
+}
+
+void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface)
+{
+  if (surface != NULL) {
+    dea_free(ctx, surface->nodes);
+    dea_free(ctx, surface->element);
+    dea_free(ctx, surface);
+  }
+}
+
+/* Points and weights of a rule along one axis of a face; returns their number. */
+static size_t line_rule(int order, enum dea_face_rule rule, double *x, double *w)
+{
+  size_t count = (size_t)order + 1, gauss = (3 * (size_t)order + 1) / 2;
+  double at[DEA_HEX_ORDER_MAX + 2], weight[DEA_HEX_ORDER_MAX + 2];
+  double value[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
+  dea_gauss_rule(gauss, at, weight);
+  if (rule == DEA_FACE_GAUSS) {
+    memcpy(x, at, gauss * sizeof *x);
+    memcpy(w, weight, gauss * sizeof *w);
+    return gauss;
+  }
+  dea_lobatto_nodes((size_t)order, x);
+  memset(w, 0, count * sizeof *w);
+  for (size_t q = 0; q < gauss; q++) { // integrals of the nodes' polynomials
+    dea_lagrange(count, x, at[q], value, slope);
+    for (size_t i = 0; i < count; i++) {
+      w[i] += weight[q] * value[i];
+    }
+  }
+  return count;
+}
+
+void dea_face_shape_create(const struct dea_surface *surface, enum dea_face_rule rule,
+                           struct dea_face_shape *out)
+{
+  double x[2][DEA_HEX_ORDER_MAX + 2], w[2][DEA_HEX_ORDER_MAX + 2];
+  double nodes[2][DEA_HEX_ORDER_MAX + 1];
+  double value[2][DEA_HEX_ORDER_MAX + 1], slope[2][DEA_HEX_ORDER_MAX + 1];
+  size_t count[2];
+  for (int a = 0; a < 2; a++) {
+    count[a] = line_rule(surface->order[a], rule, x[a], w[a]);
+    dea_lobatto_nodes((size_t)surface->order[a], nodes[a]);
+  }
+  out->nodes = surface->face_nodes;
+  out->points = (int)(count[0] * count[1]);
+  for (size_t p = 0; p < count[0] * count[1]; p++) {
+    const size_t at[2] = {p % count[0], p / count[0]};
+    for (int a = 0; a < 2; a++) {
+      dea_lagrange((size_t)surface->order[a] + 1, nodes[a], x[a][at[a]], value[a], slope[a]);
+    }
+    for (int n = 0; n < out->nodes; n++) {
+      int i = n % (surface->order[0] + 1), j = n / (surface->order[0] + 1);
+      out->value[p][n] = value[0][i] * value[1][j];
+      out->slope[p][0][n] = slope[0][i] * value[1][j];
+      out->slope[p][1][n] = value[0][i] * slope[1][j];
+    }
+    out->weight[p] = w[0][at[0]] * w[1][at[1]];
+  }
+}
+
+void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out)
+{
+  const int *nodes = surface->nodes + face * DEA_FACE_NODES_MAX;
+  for (int n = 0; n < surface->face_nodes; n++) {
+    memcpy(out + 3 * n, v + 3 * nodes[n], 3 * sizeof *out);
+  }
+}
+
+void dea_face_normal(const struct dea_face_shape *shape, int point, const double *X,
+                     double normal[3])
+{
+  double t[2][3] = {{0, 0, 0}, {0, 0, 0}};
+  for (int a = 0; a < 2; a++) {
+    for (int n = 0; n < shape->nodes; n++) {
+      for (int i = 0; i < 3; i++) {
+        t[a][i] += shape->slope[point][a][n] * X[3 * n + i];
+      }
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    normal[i] = t[0][j] * t[1][k] - t[0][k] * t[1][j];
+  }
+}
+
+/* Reference area of a point of a face, X at its nodes. */
+static double point_area(const struct dea_face_shape *shape, int point, const double *X)
+{
+  double n[3];
+  dea_face_normal(shape, point, X, n);
+  return shape->weight[point] * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+double *dea_surface_weights(struct dea_context *ctx, const struct dea_surface *surface,
+                            const struct dea_face_shape *shape)
+{
+  size_t points = (size_t)shape->points;
+  double *weights = dea_alloc(ctx, surface->face_count * points, sizeof *weights);
+  for (size_t f = 0; f < surface->face_count && weights != NULL; f++) {
+    double X[3 * DEA_FACE_NODES_MAX];
+    dea_face_gather(surface, f, surface->grid->X, X);
+    for (size_t q = 0; q < points; q++) {
+      weights[f * points + q] = point_area(shape, (int)q, X);
+    }
+  }
+  return weights;
+}
+
+double dea_surface_area(const struct dea_surface *surface)
+{
+  struct dea_face_shape shape;
+  double area = 0;
+  dea_face_shape_create(surface, DEA_FACE_GAUSS, &shape);
+  for (size_t f = 0; f < surface->face_count; f++) {
+    double X[3 * DEA_FACE_NODES_MAX];
+    dea_face_gather(surface, f, surface->grid->X, X);
+    for (int q = 0; q < shape.points; q++) {
+      area += point_area(&shape, q, X);
+    }
+  }
+  return area;
+}

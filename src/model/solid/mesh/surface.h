@@ -1,0 +1,66 @@
+/* Surfaces of a solid: faces of its elements, on which loads act (docs/theory/loads.md). */
+#ifndef DEA_MODEL_SOLID_MESH_SURFACE_H
+#define DEA_MODEL_SOLID_MESH_SURFACE_H
+
+#include "model/solid/mesh/grid.h"
+
+/* Sides of an element: both ends of its first and second local axis, and of the thickness. */
+enum dea_face {
+  DEA_FACE_FIRST_LOW,
+  DEA_FACE_FIRST_HIGH,
+  DEA_FACE_SECOND_LOW,
+  DEA_FACE_SECOND_HIGH,
+  DEA_FACE_BOTTOM,
+  DEA_FACE_TOP,
+};
+
+enum { DEA_FACE_NODES_MAX = 16, DEA_FACE_POINTS_MAX = 25 };
+
+/* Faces of one side of elements. Nodes: first local axis of the face fastest; the axes run so that
+ * X,1 x X,2 points out of the element. */
+struct dea_surface {
+  const struct dea_grid *grid; // lent
+  size_t face_count;
+  int order[2];   // along the axes of the face
+  int face_nodes; // (order[0] + 1) (order[1] + 1)
+  int *nodes;     // [face_count][DEA_FACE_NODES_MAX], the first face_nodes used
+  int *element;   // [face_count]
+};
+
+/* The side of all elements that `select` wants, by their region and sheet and the middle of the
+ * face's nodes; NULL: of all. A flat element is its own bottom and top and has no other. shape: of
+ * the grid's elements. DEA_E_ARGUMENT when there is none. out: owned by the caller, NULL on
+ * failure; the grid outlives it. */
+dea_status dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid,
+                              const struct dea_hex_shape *shape, enum dea_face side,
+                              bool (*select)(const void *self, int region, int sheet,
+                                             const double middle[3]),
+                              const void *self, struct dea_surface **out);
+void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface);
+
+/* Basis of a face at points of a rule. */
+struct dea_face_shape {
+  int nodes, points;
+  double value[DEA_FACE_POINTS_MAX][DEA_FACE_NODES_MAX];
+  double slope[DEA_FACE_POINTS_MAX][2][DEA_FACE_NODES_MAX];
+  double weight[DEA_FACE_POINTS_MAX];
+};
+/* Gauss: exact for products of three displacements and two of their slopes less. Nodes: the
+ * Gauss-Lobatto points, at which the nodes are. */
+enum dea_face_rule { DEA_FACE_GAUSS, DEA_FACE_AT_NODES };
+void dea_face_shape_create(const struct dea_surface *surface, enum dea_face_rule rule,
+                           struct dea_face_shape *out);
+
+/* Values of a field v [node_count of the grid][3] at the nodes of a face, [face_nodes][3]. */
+void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out);
+/* X,1 x X,2 at a point of a face from its nodes' places [face_nodes][3]. */
+void dea_face_normal(const struct dea_face_shape *shape, int point, const double *X,
+                     double normal[3]);
+/* Reference area of each point times its weight [face_count][points]; owned by the caller
+ * (dea_free), NULL for want of memory. */
+double *dea_surface_weights(struct dea_context *ctx, const struct dea_surface *surface,
+                            const struct dea_face_shape *shape);
+/* Reference area [m^2]. */
+double dea_surface_area(const struct dea_surface *surface);
+
+#endif

@@ -1,0 +1,204 @@
+/* Answer to a ripple of the voltage: superposition of modes, and a series for those that are higher
+ * (docs/theory/vibration.md). */
+#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/motion/vibration.h"
+
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+/* Modes that there are at least, where there are so many: what is far below the first one still has
+ * its damping from them. */
+enum { MODES_LEAST = 8, DOUBLINGS = 12 };
+enum { TERMS = 5 };                    // of the series
+static const double beyond = 2;        // modes up to so many times the highest frequency
+static const double part_of_V2 = 1e-3; // step of V^2, which forces are linear in
+
+struct dea_solid_response {
+  size_t count, dofs;     // modes; 3 node_count
+  double *square, *shape; // [count], [count][dofs]
+  double *push;           // [count] work of the electric force per volt on each mode
+  double *rest;           // [TERMS][dofs] what the modes leave, a series
+};
+
+void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *r)
+{
+  if (r != NULL) {
+    dea_free(ctx, r->square);
+    dea_free(ctx, r->shape);
+    dea_free(ctx, r->push);
+    dea_free(ctx, r->rest);
+    dea_free(ctx, r);
+  }
+}
+
+/* -dg/dV = -2 V dg/d(V^2). */
+dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, double *force)
+{
+  double energy, square = s->voltage_V * s->voltage_V, step = part_of_V2 * square;
+  memset(force, 0, s->dofs * sizeof *force);
+  for (int side = -1; side <= 1 && step > 0; side += 2) {
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(square + side * step), DEA_FORCE, &energy));
+    for (size_t i = 0; i < s->dofs; i++) {
+      force[i] -= side * s->voltage_V / step * s->g[i];
+    }
+  }
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  return DEA_OK;
+}
+
+/* Takes the modes out of v: v -= phi (phi . Mv); work: [dofs]. */
+static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
+                        const struct dea_solid_response *r, double *v, double *work)
+{
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, v, work));
+  for (size_t k = 0; k < r->count; k++) {
+    const double *phi = r->shape + k * r->dofs;
+    double amount = 0;
+    for (size_t i = 0; i < r->dofs; i++) {
+      amount += phi[i] * work[i];
+    }
+    for (size_t i = 0; i < r->dofs; i++) {
+      v[i] -= amount * phi[i];
+    }
+  }
+  return DEA_OK;
+}
+
+/* The rest by powers: r_0 = K^-1 f and r_k = K^-1 M r_k-1, each without the modes. */
+static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
+                            struct dea_solid_response *r, double *force)
+{
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->K, &s->factor));
+  for (size_t k = 0; k < TERMS; k++) {
+    double *term = r->rest + k * r->dofs;
+    DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, force, s->trial));
+    memcpy(term, s->trial, r->dofs * sizeof *term);
+    DEA_TRY(ctx, purge(ctx, s, r, term, s->step));
+    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, term, force));
+    dea_solid_release_held(s, force);
+  }
+  return DEA_OK;
+}
+
+static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, size_t count,
+                            struct dea_solid_response *r)
+{
+  r->count = count;
+  r->dofs = 3 * s->grid->node_count;
+  r->square = dea_alloc(ctx, count + 1, sizeof *r->square);
+  r->push = dea_alloc(ctx, count + 1, sizeof *r->push);
+  r->shape = dea_alloc(ctx, count * r->dofs + 1, sizeof *r->shape);
+  r->rest = dea_alloc(ctx, TERMS * r->dofs, sizeof *r->rest);
+  bool all = r->square != NULL && r->push != NULL && r->shape != NULL && r->rest != NULL;
+  return dea_solid_any(!all) ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* How many modes are needed; none of them may be unstable. */
+static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, double highest,
+                              size_t *count)
+{
+  size_t unstable;
+  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, 0, &unstable));
+  if (unstable > 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                    "the equilibrium that the voltage ripples about is unstable (%zu modes)",
+                    unstable);
+  }
+  double range = beyond * highest;
+  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
+  if (*count > DEA_VIBRATIONS_MAX) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "%zu modes lie below %g times the highest frequency, more than %d", *count,
+                    beyond, DEA_VIBRATIONS_MAX);
+  }
+  for (int i = 0; i < DOUBLINGS && *count < MODES_LEAST; i++) {
+    range *= 2;
+    DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
+    *count = *count < MODES_LEAST ? *count : MODES_LEAST;
+  }
+  return DEA_OK;
+}
+
+static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double highest,
+                       struct dea_solid_response *r, double *force)
+{
+  size_t count;
+  DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
+  DEA_TRY(ctx, make_room(ctx, s, count, r));
+  DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, force));
+  if (count > 0) { // K stays there for the rest
+    DEA_TRY(ctx, dea_solid_vibrations(ctx, s, count, r->square, r->shape));
+  }
+  for (size_t k = 0; k < count; k++) {
+    for (size_t i = 0; i < r->dofs; i++) {
+      r->push[k] += r->shape[k * r->dofs + i] * force[i];
+    }
+  }
+  DEA_TRY(ctx, find_rest(ctx, s, r, force));
+  return DEA_OK;
+}
+
+dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *s,
+                                     double highest_rad_per_s, struct dea_solid_response **out)
+{
+  *out = NULL;
+  if (s->field != NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the answer to a ripple of the voltage needs the field V/h, not a coupled one");
+  }
+  double *force = dea_alloc(ctx, s->dofs, sizeof *force);
+  struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
+  dea_status status = dea_solid_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK) {
+    status = fill(ctx, s, highest_rad_per_s, r, force);
+  }
+  s->factor_fits = s->predicted_fits = false;
+  dea_free(ctx, force);
+  if (status != DEA_OK) {
+    dea_solid_response_destroy(ctx, r);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = r;
+  return DEA_OK;
+}
+
+size_t dea_solid_response_modes(const struct dea_solid_response *r)
+{
+  return r->count;
+}
+
+/* The rest at s: 1/c sum s^k r_k solves c K q - w^2 M q + i w (mass) M q = f beside the modes, with
+ * c = 1 + i w (stiffness) and s = (w^2 - i w (mass))/c. */
+static void add_rest(const struct dea_solid_response *r, size_t node, double w,
+                     const struct dea_damping *damping, double complex q[3])
+{
+  double complex c = 1 + _Complex_I * (w * damping->stiffness_s);
+  double complex step = (w * w - _Complex_I * (w * damping->mass_per_s)) / c, power = 1 / c;
+  for (size_t k = 0; k < TERMS; k++, power *= step) {
+    for (size_t i = 0; i < 3; i++) {
+      q[i] += power * r->rest[k * r->dofs + 3 * node + i];
+    }
+  }
+}
+
+void dea_solid_response_at(const struct dea_solid_response *r, size_t node, double rad_per_s,
+                           const struct dea_damping *damping, double real[3], double imaginary[3])
+{
+  double w = rad_per_s;
+  double complex q[3] = {0, 0, 0};
+  add_rest(r, node, w, damping, q);
+  for (size_t k = 0; k < r->count; k++) {
+    double loss = 2 * damping->ratio * sqrt(r->square[k]) + damping->mass_per_s +
+                  damping->stiffness_s * r->square[k];
+    double complex amplitude = r->push[k] / (r->square[k] - w * w + _Complex_I * (w * loss));
+    for (size_t i = 0; i < 3; i++) {
+      q[i] += amplitude * r->shape[k * r->dofs + 3 * node + i];
+    }
+  }
+  for (size_t i = 0; i < 3; i++) {
+    real[i] = creal(q[i]);
+    imaginary[i] = cimag(q[i]);
+  }
+}

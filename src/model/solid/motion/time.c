@@ -1,0 +1,372 @@
+#include "model/solid/motion/time_state.h"
+
+#include "model/solid/assembly/inertia.h"
+#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/equilibrium/branch.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Forces of everything but inertia at the solid's displacements, supports included. */
+static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t, double *F)
+{
+  struct dea_solid *s = t->solid;
+  double energy;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  for (size_t i = 0; i < t->count; i++) {
+    F[i] = s->g[i] + s->reaction[i];
+  }
+  return DEA_OK;
+}
+
+/* ---- creation ---- */
+
+static dea_status allocate(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  double **const memory[] = {&t->v,
+                             &t->a,
+                             &t->F,
+                             &t->v_next,
+                             &t->F_next,
+                             &t->a_next,
+                             &t->work,
+                             &t->u_before,
+                             &t->first,
+                             &t->inertia.around,
+                             &t->inertia.constant,
+                             &t->inertia.away,
+                             &t->inertia.force};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    *memory[i] = dea_alloc(ctx, t->count, sizeof(double));
+    if (*memory[i] == NULL) {
+      return DEA_E_MEMORY;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status prepare(struct dea_context *ctx, struct dea_solid_time *t,
+                          const struct dea_solid_time_options *options)
+{
+  struct dea_solid *s = t->solid;
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, allocate(ctx, t)));
+  if (options->branches != NULL) {
+    DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->history));
+    dea_internal_variables_begin(t->history, s, 0);
+    s->history = t->history;
+  }
+  if (t->inertial) {
+    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, s->u, t->work)); // from here on it cannot fail
+  }
+  memcpy(t->first, s->u, t->count * sizeof *t->first);
+  DEA_TRY(ctx, find_forces(ctx, t, t->F));
+  DEA_TRY(ctx, dea_time_find_stored(ctx, t, &t->first_J, &t->capacitance_F));
+  return DEA_OK;
+}
+
+dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *solid,
+                                 const struct dea_solid_time_options *options,
+                                 struct dea_solid_time **out)
+{
+  *out = NULL;
+  if (!(options->spectral_radius >= 0 && options->spectral_radius <= 1)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a spectral radius lies between 0 and 1");
+  }
+  struct dea_solid_time *t = dea_alloc(ctx, 1, sizeof *t);
+  if (dea_solid_any(t == NULL)) {
+    dea_free(ctx, t);
+    return DEA_E_MEMORY;
+  }
+  t->solid = solid;
+  t->inertial = options->inertia;
+  t->alpha = dea_alpha_of(options->spectral_radius);
+  t->count = 3 * solid->grid->node_count;
+  t->stiffened = 1;
+  t->stay = solid->stay;
+  solid->stay = t->stay || t->inertial; // inertia decides where a film goes
+  dea_status status = prepare(ctx, t, options);
+  if (status != DEA_OK) {
+    dea_solid_time_destroy(ctx, t);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = t;
+  return DEA_OK;
+}
+
+/* Back to the accepted state. */
+static void go_back(struct dea_solid_time *t)
+{
+  struct dea_solid *s = t->solid;
+  t->open = false;
+  s->inertia = NULL;
+  dea_solid_state_set(s, t->keep);
+  dea_solid_controls_set(s, t->controls);
+  s->factor_fits = false;
+}
+
+void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  if (t == NULL) {
+    return;
+  }
+  if (t->open) {
+    go_back(t);
+  }
+  t->solid->history = NULL;
+  t->solid->inertia = NULL;
+  t->solid->stay = t->stay;
+  dea_solid_scale_bulk_modulus(t->solid, 1 / t->stiffened);
+  dea_internal_variables_destroy(ctx, t->history);
+  double *const memory[] = {t->first,
+                            t->v,
+                            t->F_next,
+                            t->a,
+                            t->F,
+                            t->v_next,
+                            t->a_next,
+                            t->work,
+                            t->u_before,
+                            t->inertia.around,
+                            t->inertia.constant,
+                            t->keep,
+                            t->controls,
+                            t->inertia.away,
+                            t->inertia.force};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    dea_free(ctx, memory[i]);
+  }
+  dea_free(ctx, t);
+}
+
+double *dea_solid_velocity(struct dea_solid_time *time)
+{
+  return time->v;
+}
+
+/* ---- steps ---- */
+
+/* The accepted state, to come back to. */
+static dea_status keep(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  struct dea_solid *s = t->solid;
+  const struct dea_load_steps *path = &s->path;
+  if (t->open) {
+    go_back(t);
+  }
+  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_load_steps_prepare(ctx, s)));
+  if (t->keep_count != path->state_count || t->control_count != path->control_count) {
+    double *state = dea_resize(ctx, t->keep, path->state_count, sizeof *state);
+    t->keep = state != NULL ? state : t->keep;
+    double *controls = dea_resize(ctx, t->controls, path->control_count, sizeof *controls);
+    t->controls = controls != NULL ? controls : t->controls;
+    if (dea_solid_any(state == NULL || controls == NULL)) {
+      return DEA_E_MEMORY;
+    }
+    t->keep_count = path->state_count;
+    t->control_count = path->control_count;
+  }
+  dea_solid_state_get(s, t->keep);
+  dea_solid_controls_get(s, t->controls);
+  t->open = true;
+  return DEA_OK;
+}
+
+/* kappa in proportion to the shear modulus that the step has, to the next power of 2: the pressures
+ * would follow slowly otherwise where branches are much stiffer than the law. */
+static void follow_stiffness(struct dea_solid_time *t)
+{
+  struct dea_solid *s = t->solid;
+  double most = 0;
+  for (size_t l = 0; l < s->layer_count && t->history != NULL; l++) {
+    const struct dea_constituent *layer = &s->layers[l];
+    if (layer->law != NULL) {
+      most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(layer));
+    }
+  }
+  double factor = exp2(round(log2(1 + most)));
+  if (factor != t->stiffened) {
+    dea_solid_scale_bulk_modulus(s, factor / t->stiffened);
+    t->stiffened = factor;
+    s->factor_fits = false;
+  }
+}
+
+/* u* and d of generalised-alpha. */
+static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t, double h)
+{
+  const struct dea_alpha *alpha = &t->alpha;
+  struct dea_solid_inertia *inertia = &t->inertia;
+  const double *u = t->solid->u;
+  double share = alpha->f / (1 - alpha->f), mass = alpha->m / (1 - alpha->f);
+  inertia->factor = (1 - alpha->m) / ((1 - alpha->f) * alpha->beta * h * h);
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, t->solid, t->a, t->work));
+  for (size_t i = 0; i < t->count; i++) {
+    inertia->around[i] = u[i] + h * t->v[i] + h * h * (0.5 - alpha->beta) * t->a[i];
+    inertia->constant[i] = mass * t->work[i] + share * t->F[i];
+  }
+  return DEA_OK;
+}
+
+/* The minimum of the potential that has been set up; the solid as it was when there is none. */
+static dea_status minimise(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                           struct dea_solid_report *report)
+{
+  struct dea_solid *s = t->solid;
+  follow_stiffness(t);
+  s->inertia = t->inertial ? &t->inertia : NULL;
+  dea_status status = dea_solid_solve(ctx, s, voltage_V, report);
+  s->inertia = NULL;
+  if (status != DEA_OK) {
+    go_back(t);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+/* Acceleration and pressures that go with the forces at once: those of a small implicit step, which
+ * is then taken back but for them. */
+static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_time *t,
+                                    double step_s, struct dea_solid_report *report)
+{
+  struct dea_solid *s = t->solid;
+  struct dea_solid_inertia *inertia = &t->inertia;
+  double h = 0.1 * step_s;
+  memcpy(inertia->around, s->u, t->count * sizeof *s->u);
+  inertia->factor = 1 / (h * h);
+  for (size_t i = 0; i < t->count; i++) {
+    inertia->around[i] += h * t->v[i];
+    inertia->constant[i] = 0;
+  }
+  s->factor_fits = false;
+  DEA_TRY(ctx, minimise(ctx, t, s->voltage_V, report));
+  for (size_t i = 0; i < t->count; i++) {
+    t->a[i] = (s->u[i] - inertia->around[i]) / (h * h);
+  }
+  memcpy(s->u, t->keep, s->dofs * sizeof *s->u);
+  s->factor_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->voltage_V, s->u));
+  DEA_TRY(ctx, find_forces(ctx, t, t->F));
+  dea_solid_state_get(s, t->keep); // with its pressures
+  return DEA_OK;
+}
+
+dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                               double step_s, struct dea_solid_report *report)
+{
+  struct dea_solid *s = t->solid;
+  double h = step_s;
+  DEA_TRY(ctx, keep(ctx, t));
+  if (t->history != NULL) {
+    dea_internal_variables_begin(t->history, s, h);
+  }
+  if (t->start) {
+    DEA_TRY(ctx, find_acceleration(ctx, t, h, report));
+  }
+  if (t->inertial) {
+    DEA_TRY(ctx, set_inertia(ctx, t, h));
+  }
+  t->start_next = false;
+  s->factor_fits = s->factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
+  t->step_s = h;
+  DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+  return DEA_OK;
+}
+
+dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                                struct dea_solid_report *report)
+{
+  if (t->inertial && !(t->step_s > 0)) {
+    return dea_solid_time_jump(ctx, t, voltage_V, report);
+  }
+  DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+  return DEA_OK;
+}
+
+void dea_solid_time_reject(struct dea_solid_time *time)
+{
+  if (time->open) {
+    go_back(time);
+  }
+}
+
+/* What goes with the state that has been found, so that taking it cannot fail. */
+static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  dea_status status = find_forces(ctx, t, t->F_next);
+  if (status == DEA_OK) {
+    status = dea_time_find_energies(ctx, t);
+  }
+  if (status != DEA_OK) {
+    go_back(t);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *t, double *error_m)
+{
+  const struct dea_alpha *alpha = &t->alpha;
+  double h = t->step_s;
+  for (size_t i = 0; i < t->count && t->inertial && h > 0; i++) {
+    t->a_next[i] = (t->solid->u[i] - t->inertia.around[i]) / (alpha->beta * h * h);
+    t->v_next[i] = t->v[i] + h * ((1 - alpha->gamma) * t->a[i] + alpha->gamma * t->a_next[i]);
+  }
+  DEA_TRY(ctx, close_step(ctx, t));
+  if (error_m != NULL) {
+    *error_m = h > 0 ? dea_time_step_error(t) : 0;
+  }
+  return DEA_OK;
+}
+
+static void swap(double **a, double **b)
+{
+  double *first = *a;
+  *a = *b;
+  *b = first;
+}
+
+void dea_solid_time_accept(struct dea_solid_time *t)
+{
+  if (t->history != NULL) {
+    dea_internal_variables_accept(t->history, t->solid);
+  }
+  swap(&t->F, &t->F_next);
+  swap(&t->v, &t->v_next);
+  swap(&t->a, &t->a_next);
+  memcpy(t->u_before, t->keep, t->count * sizeof *t->u_before);
+  t->step_before_s = t->step_s;
+  t->sums = t->sums_next;
+  t->start = t->start_next;
+  t->open = false;
+  t->capacitance_F = t->capacitance_next_F;
+}
+
+/* ---- jumps ---- */
+
+/* With inertia the film stays where it is and is accelerated from then on. */
+dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                               struct dea_solid_report *report)
+{
+  struct dea_solid *s = t->solid;
+  DEA_TRY(ctx, keep(ctx, t));
+  t->step_s = 0;
+  t->start_next = t->inertial;
+  if (t->history != NULL) {
+    dea_internal_variables_begin(t->history, s, 0);
+  }
+  if (t->inertial) {
+    memcpy(t->v_next, t->v, t->count * sizeof *t->v);
+    memcpy(t->a_next, t->a, t->count * sizeof *t->a);
+    s->voltage_V = voltage_V;
+    DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+  } else {
+    DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+  }
+  return DEA_OK;
+}
+
+struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time, bool tried)
+{
+  return tried ? time->sums_next : time->sums;
+}

@@ -1,0 +1,309 @@
+/* Answer of a solid with branches to a ripple of the voltage: its stiffness is complex and depends
+ * on the frequency, so that the system is solved at each (docs/theory/vibration.md). */
+#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/motion/vibration.h"
+
+#include <complex.h>
+#include <string.h>
+
+enum {
+  PARTS = 2,
+  LAYERS_MAX = 16
+}; // of K: without branches, and M; then one part a layer with branches
+
+struct system {
+  struct dea_solid *solid;
+  const struct dea_branches *branches;
+  size_t part_count; // PARTS + layers with branches
+  Mat *part;         // K, M, then what each layer's branches add at infinite frequency
+  size_t *layer;     // [part_count] of those
+  Mat A, factor;     // two rows a row of K: real and imaginary part
+  Vec right, answer;
+};
+
+/* A matrix of K's rows with the tangent as it stands now. */
+static dea_status copy_tangent(struct dea_context *ctx, struct system *y, Mat *out)
+{
+  DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, y->solid));
+  DEA_TRY(ctx,
+          dea_solid_petsc(ctx, MatDuplicate(y->solid->K, MAT_COPY_VALUES, out), "MatDuplicate"));
+  return DEA_OK;
+}
+
+/* What the branches of one layer add to K when they are rigid dashpots. */
+static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t layer,
+                                 struct dea_branches *only, Mat *out)
+{
+  struct dea_solid *s = y->solid;
+  struct dea_internal_variables *history;
+  memset(only, 0, s->layer_count * sizeof *only);
+  only[layer] = y->branches[layer];
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &history));
+  dea_internal_variables_begin(history, s, 0);
+  s->history = history;
+  dea_status status = copy_tangent(ctx, y, out);
+  s->history = NULL;
+  dea_internal_variables_destroy(ctx, history);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx,
+          dea_solid_petsc(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN), "MatAXPY"));
+  return DEA_OK;
+}
+
+/* Without branches: what they add makes a film that buckles only slow to do so. */
+static dea_status check_stable(struct dea_context *ctx, struct dea_solid *s)
+{
+  int negative;
+  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
+  return negative == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                        "the equilibrium that the voltage ripples about is unstable (%d modes)",
+                        negative);
+}
+
+static dea_status make_parts(struct dea_context *ctx, struct system *y, struct dea_branches *only)
+{
+  DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
+  DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
+  y->part_count = PARTS;
+  for (size_t l = 0; l < y->solid->layer_count; l++) {
+    if (y->branches[l].count > 0) {
+      y->layer[y->part_count] = l;
+      DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
+    }
+  }
+  return DEA_OK;
+}
+
+/* The share of a layer's branches that has not followed, 0 slow to 1 fast. */
+static double complex share_at(const struct dea_branches *b, double w)
+{
+  double complex sum = 0;
+  double whole = 0;
+  for (size_t i = 0; i < b->count; i++) {
+    double complex x = _Complex_I * (w * b->branch[i].time_s);
+    sum += b->branch[i].modulus_Pa * x / (1 + x);
+    whole += b->branch[i].modulus_Pa;
+  }
+  return whole > 0 ? sum / whole : 0;
+}
+
+/* What each part counts in the matrix at a frequency. */
+static void set_factors(const struct system *y, double w, const struct dea_damping *damping,
+                        double complex *factor)
+{
+  factor[0] = 1 + _Complex_I * (w * damping->stiffness_s);
+  factor[1] = -w * w + _Complex_I * (w * damping->mass_per_s);
+  for (size_t p = PARTS; p < y->part_count; p++) {
+    factor[p] = share_at(&y->branches[y->layer[p]], w);
+  }
+}
+
+/* Rows of the parts are read one by one: all have the columns of K. */
+static PetscErrorCode begin_rows(const struct system *y, PetscErrorCode (*set)(Mat))
+{
+  PetscErrorCode code = 0;
+  for (size_t p = 0; p < y->part_count && code == 0; p++) {
+    code = set(y->part[p]);
+  }
+  return code;
+}
+
+/* Adds a row to A: (a_r + i a_i)(q_r + i q_i) = f + 0 i as the symmetric
+ * [a_r, -a_i; -a_i, -a_r] [q_r; q_i] = [f; 0]. */
+static PetscErrorCode add_row(const struct system *y, PetscInt row, const double complex *factor,
+                              double complex *sum)
+{
+  PetscInt count = 0;
+  const PetscInt *columns;
+  const PetscScalar *values;
+  PetscErrorCode code = 0;
+  for (size_t p = 0; p < y->part_count && code == 0; p++) {
+    code = MatGetRow(y->part[p], row, &count, &columns, &values);
+    for (PetscInt k = 0; k < count && code == 0; k++) {
+      sum[k] = (p == 0 ? 0 : sum[k]) + factor[p] * values[k];
+    }
+    for (PetscInt k = 0; k < count && code == 0 && p + 1 == y->part_count; k++) {
+      double re = creal(sum[k]), im = cimag(sum[k]);
+      const PetscScalar block[4] = {re, -im, -im, -re};
+      code = MatSetValuesBlocked(y->A, 1, &row, 1, &columns[k], block, INSERT_VALUES);
+    }
+    code = code == 0 ? MatRestoreRow(y->part[p], row, &count, &columns, &values) : code;
+  }
+  return code;
+}
+
+/* Lengths of this rank's rows of K, upper triangle; count[2][rows]: columns here and on others. */
+static PetscErrorCode count_rows(const struct system *y, PetscInt from, PetscInt end,
+                                 PetscInt *here, PetscInt *others, PetscInt *longest)
+{
+  Mat K = y->part[0];
+  PetscErrorCode code = MatGetRowUpperTriangular(K);
+  *longest = 0;
+  for (PetscInt row = from; row < end && code == 0; row++) {
+    PetscInt count;
+    const PetscInt *columns;
+    code = MatGetRow(K, row, &count, &columns, NULL);
+    here[row - from] = others[row - from] = 0;
+    for (PetscInt k = 0; k < count && code == 0; k++) {
+      (columns[k] < end ? here : others)[row - from]++;
+    }
+    *longest = count > *longest ? count : *longest;
+    code = code == 0 ? MatRestoreRow(K, row, &count, &columns, NULL) : code;
+  }
+  return code == 0 ? MatRestoreRowUpperTriangular(K) : code;
+}
+
+static PetscErrorCode create_matrix(struct system *y, PetscInt rows, const PetscInt *here,
+                                    const PetscInt *others)
+{
+  PetscErrorCode code = MatCreateSBAIJ(PETSC_COMM_WORLD, 2, 2 * rows, 2 * rows, PETSC_DETERMINE,
+                                       PETSC_DETERMINE, 0, here, 0, others, &y->A);
+  return code == 0 ? MatCreateVecs(y->A, &y->answer, &y->right) : code;
+}
+
+static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, double complex **sum)
+{
+  PetscInt from, end, longest = 0;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatGetOwnershipRange(y->part[0], &from, &end),
+                               "MatGetOwnershipRange"));
+  size_t rows = (size_t)(end - from);
+  PetscInt *lengths = dea_alloc(ctx, 2 * rows + 1, sizeof *lengths);
+  dea_status status = dea_solid_any(lengths == NULL) ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK) {
+    status = dea_solid_petsc(ctx, count_rows(y, from, end, lengths, lengths + rows, &longest),
+                             "MatGetRow");
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_petsc(ctx, create_matrix(y, end - from, lengths, lengths + rows),
+                             "MatCreateSBAIJ");
+  }
+  dea_free(ctx, lengths);
+  DEA_TRY(ctx, status);
+  *sum = dea_alloc(ctx, (size_t)longest + 1, sizeof **sum);
+  return dea_solid_any(*sum == NULL) ? DEA_E_MEMORY : DEA_OK;
+}
+
+static PetscErrorCode fill_matrix(const struct system *y, const double complex *factor,
+                                  double complex *sum)
+{
+  PetscInt from, end;
+  PetscErrorCode code = MatGetOwnershipRange(y->part[0], &from, &end);
+  code = code == 0 ? MatZeroEntries(y->A) : code;
+  code = code == 0 ? begin_rows(y, MatGetRowUpperTriangular) : code;
+  for (PetscInt row = from; row < end && code == 0; row++) {
+    code = add_row(y, row, factor, sum);
+  }
+  return code == 0 ? begin_rows(y, MatRestoreRowUpperTriangular) : code;
+}
+
+/* Between a vector of K's rows and every second entry of one of A's. */
+static dea_status interleave(struct dea_context *ctx, Vec rows, Vec pairs, int offset, bool back)
+{
+  PetscInt count;
+  PetscScalar *a, *b;
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetLocalSize(rows, &count), "VecGetLocalSize"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(rows, &a), "VecGetArray"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(pairs, &b), "VecGetArray"));
+  for (PetscInt i = 0; i < count; i++) {
+    if (back) {
+      a[i] = b[2 * i + offset];
+    } else {
+      b[2 * i + offset] = a[i];
+    }
+  }
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(pairs, &b), "VecRestoreArray"));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(rows, &a), "VecRestoreArray"));
+  return DEA_OK;
+}
+
+/* One frequency: q_r and q_i of the whole, [dofs] each. */
+static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
+                           const struct dea_damping *damping, double complex *sum, double *real,
+                           double *imaginary)
+{
+  struct dea_solid *s = y->solid;
+  double complex factor[PARTS + LAYERS_MAX];
+  double *out[2] = {real, imaginary};
+  set_factors(y, w, damping, factor);
+  dea_status status = dea_solid_petsc(ctx, fill_matrix(y, factor, sum), "MatSetValuesBlocked");
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, y->A));
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_factor(ctx, y->A, &y->factor));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(y->factor, y->right, y->answer), "MatSolve"));
+  for (int c = 0; c < 2; c++) {
+    DEA_TRY(ctx, interleave(ctx, s->solution, y->answer, c, true));
+    DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out[c]));
+  }
+  return DEA_OK;
+}
+
+/* The force per volt as the right side; force: [dofs], changed. */
+static dea_status set_right(struct dea_context *ctx, struct system *y, double *force)
+{
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->right));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, VecSet(y->right, 0), "VecSet"));
+  DEA_TRY(ctx, interleave(ctx, y->solid->right, y->right, 0, false));
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *ctx, struct system *y,
+                          const struct dea_damping *damping, const double *rad_per_s, size_t count,
+                          const size_t *nodes, size_t node_count, double (*out)[2][3])
+{
+  struct dea_solid *s = y->solid;
+  double complex *sum = NULL;
+  double *memory = dea_alloc(ctx, 3 * s->dofs, sizeof *memory);
+  struct dea_branches *only = dea_alloc(ctx, s->layer_count, sizeof *only);
+  dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
+  status = status == DEA_OK ? check_stable(ctx, s) : status;
+  status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, memory) : status;
+  status = status == DEA_OK ? make_parts(ctx, y, only) : status;
+  status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
+  status = status == DEA_OK ? set_right(ctx, y, memory) : status;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    double *real = memory + s->dofs, *imaginary = real + s->dofs;
+    if (dea_solid_any(dea_interrupted(ctx))) {
+      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at frequency %zu of %zu", i, count);
+      break;
+    }
+    status = solve_at(ctx, y, rad_per_s[i], damping, sum, real, imaginary);
+    for (size_t n = 0; n < node_count && status == DEA_OK; n++) {
+      memcpy(out[i * node_count + n][0], real + 3 * nodes[n], 3 * sizeof *real);
+      memcpy(out[i * node_count + n][1], imaginary + 3 * nodes[n], 3 * sizeof *real);
+    }
+  }
+  dea_free(ctx, sum);
+  dea_free(ctx, only);
+  dea_free(ctx, memory);
+  return status;
+}
+
+dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
+                                     const struct dea_branches *branches,
+                                     const struct dea_damping *damping, const double *rad_per_s,
+                                     size_t count, const size_t *nodes, size_t node_count,
+                                     double (*out)[2][3])
+{
+  Mat parts[PARTS + LAYERS_MAX] = {NULL};
+  size_t layers[PARTS + LAYERS_MAX] = {0};
+  struct system y = {.solid = s, .branches = branches, .part = parts, .layer = layers};
+  if (s->field != NULL || s->layer_count > LAYERS_MAX) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the answer to a ripple of the voltage needs the field V/h, and at most %d "
+                    "layers",
+                    LAYERS_MAX);
+  }
+  dea_status status = respond(ctx, &y, damping, rad_per_s, count, nodes, node_count, out);
+  for (size_t p = 0; p < PARTS + LAYERS_MAX; p++) {
+    MatDestroy(&parts[p]);
+  }
+  MatDestroy(&y.A);
+  MatDestroy(&y.factor);
+  VecDestroy(&y.right);
+  VecDestroy(&y.answer);
+  s->factor_fits = s->predicted_fits = false;
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,227 @@
+#include "model/solid/point/constituent.h"
+
+#include <math.h>
+
+double dea_cofactors(const double F[9], double cof[9])
+{
+  cof[0] = F[4] * F[8] - F[5] * F[7];
+  cof[1] = F[5] * F[6] - F[3] * F[8];
+  cof[2] = F[3] * F[7] - F[4] * F[6];
+  cof[3] = F[2] * F[7] - F[1] * F[8];
+  cof[4] = F[0] * F[8] - F[2] * F[6];
+  cof[5] = F[1] * F[6] - F[0] * F[7];
+  cof[6] = F[1] * F[5] - F[2] * F[4];
+  cof[7] = F[2] * F[3] - F[0] * F[5];
+  cof[8] = F[0] * F[4] - F[1] * F[3];
+  return F[0] * cof[0] + F[1] * cof[1] + F[2] * cof[2];
+}
+
+/* A += f d2J/dF2: eps_ikm eps_JLN F_mN. */
+static void add_second_of_J(double f, const double F[9], double A[81])
+{
+  for (int i = 0; i < 3; i++) {
+    int k1 = (i + 1) % 3, k2 = (i + 2) % 3;
+    for (int J = 0; J < 3; J++) {
+      int L1 = (J + 1) % 3, L2 = (J + 2) % 3;
+      double *row = A + 9 * (3 * i + J);
+      row[3 * k1 + L1] += f * F[3 * k2 + L2];
+      row[3 * k1 + L2] -= f * F[3 * k2 + L1];
+      row[3 * k2 + L1] -= f * F[3 * k1 + L2];
+      row[3 * k2 + L2] += f * F[3 * k1 + L1];
+    }
+  }
+}
+
+double dea_constituent_pointwise(const struct dea_constituent *layer, double J, double *slope,
+                                 double *curvature)
+{
+  double k = 0.5 * layer->kappa_s_Pa, excess = J - 1;
+  *slope = k * (J - 1 / J);
+  *curvature = k * (1 + 1 / (J * J));
+  return k * (0.5 * excess * (excess + 2) - log1p(excess));
+}
+
+/* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. From the displacement gradient D = F - 1, so that
+ * at small strains no difference of numbers near 3 hides the energy from a line search: I1 - 3 = 2
+ * tr D + D:D, J - 1 = tr D + (tr^2 D - D:D^T)/2 + det D. */
+static void compressible(const struct dea_constituent *layer, const double F[9],
+                         const double cof[9], double J, bool tangent, struct dea_point *out)
+{
+  double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, D[9], none[9], inverse[9];
+  double trace = 0, square = 0, crossed = 0;
+  for (int a = 0; a < 9; a++) {
+    D[a] = F[a] - (a % 4 == 0 ? 1 : 0);
+    inverse[a] = cof[a] / J; // F^-T
+  }
+  for (int a = 0; a < 9; a++) {
+    trace += a % 4 == 0 ? D[a] : 0;
+    square += D[a] * D[a];
+    crossed += D[a] * D[3 * (a % 3) + a / 3];
+  }
+  double excess = trace + 0.5 * (trace * trace - crossed) + dea_cofactors(D, none);
+  double l = log1p(excess);
+  out->W = mu * (trace + 0.5 * square - l) + 0.5 * lambda * l * l;
+  for (int a = 0; a < 9; a++) {
+    out->P[a] = mu * (F[a] - inverse[a]) + lambda * l * inverse[a];
+    for (int b = 0; b < 9 && tangent; b++) {
+      int crossed_a = 3 * (a / 3) + b % 3, crossed_b = 3 * (b / 3) + a % 3;
+      out->A[9 * a + b] = (a == b ? mu : 0) + lambda * inverse[a] * inverse[b] +
+                          (mu - lambda * l) * inverse[crossed_a] * inverse[crossed_b];
+    }
+  }
+}
+
+/* -(E^2/2) eps(q) q, q = |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns.
+ * With eps = e0 + e1 q^(1/4) its derivative by q is -k/2, k = E^2 (e0 + (5/4) e1 q^(1/4)). */
+static void add_electric(const struct dea_constituent *layer, double E, const double F[9],
+                         bool tangent, struct dea_point *out)
+{
+  double c[2][3], m[2][2], slope[2][3]; // columns, their products, dq/dc / 2
+  for (int J = 0; J < 2; J++) {
+    for (int i = 0; i < 3; i++) {
+      c[J][i] = F[3 * i + J];
+    }
+  }
+  for (int J = 0; J < 2; J++) {
+    for (int L = 0; L < 2; L++) {
+      m[J][L] = c[J][0] * c[L][0] + c[J][1] * c[L][1] + c[J][2] * c[L][2];
+    }
+  }
+  double q = m[0][0] * m[1][1] - m[0][1] * m[0][1], e1 = layer->permittivity_slope_F_per_m;
+  double e0 = layer->permittivity_F_per_m - e1, root = e1 != 0 ? sqrt(sqrt(q)) : 0;
+  double k = E * E * (e0 + 1.25 * e1 * root);
+  double second = e1 != 0 ? -(5.0 / 32) * E * E * e1 * root / q : 0; // d2W/dq2
+  out->W -= 0.5 * E * E * (e0 + e1 * root) * q;
+  for (int J = 0; J < 2; J++) {
+    for (int i = 0; i < 3; i++) {
+      slope[J][i] = m[1 - J][1 - J] * c[J][i] - m[0][1] * c[1 - J][i];
+    }
+  }
+  for (int J = 0; J < 2; J++) {
+    int O = 1 - J; // the other column
+    for (int i = 0; i < 3; i++) {
+      out->P[3 * i + J] -= k * slope[J][i];
+      double *row = out->A + 9 * (3 * i + J);
+      for (int p = 0; p < 3 && tangent; p++) {
+        row[3 * p + J] -= k * ((i == p ? m[O][O] : 0) - c[O][i] * c[O][p]);
+        row[3 * p + O] -= k * (2 * c[J][i] * c[O][p] - c[O][i] * c[J][p] - (i == p ? m[0][1] : 0));
+        row[3 * p + J] += 4 * second * slope[J][i] * slope[J][p];
+        row[3 * p + O] += 4 * second * slope[J][i] * slope[O][p];
+      }
+    }
+  }
+}
+
+/* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
+static dea_status elastic(const struct dea_constituent *layer, const double F[9],
+                          const double cof[9], double J, bool tangent, struct dea_point *out)
+{
+  if (layer->law == NULL) {
+    compressible(layer, F, cof, J, tangent, out);
+    return DEA_OK;
+  }
+  static const double fibre[3] = {1, 0, 0};
+  const double *G = layer->pre_stretch;
+  double FG[9];
+  for (int a = 0; a < 9; a++) {
+    FG[a] = F[a] * G[a % 3];
+  }
+  dea_status status = tangent ? dea_point_elastic(layer->law, layer->param, FG, fibre, out)
+                              : dea_point_stress(layer->law, layer->param, FG, fibre, out);
+  for (int a = 0; a < 9 && status == DEA_OK; a++) {
+    out->P[a] *= G[a % 3];
+    for (int b = 0; b < 9 && tangent; b++) {
+      out->A[9 * a + b] *= G[a % 3] * G[b % 3];
+    }
+  }
+  return status;
+}
+
+double dea_constituent_modulus(const struct dea_constituent *layer)
+{
+  return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
+}
+
+dea_status dea_constituent_relax(struct dea_constituent *layer)
+{
+  static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  struct dea_point point;
+  layer->p0_Pa = 0;
+  if (layer->law == NULL) {
+    return DEA_OK;
+  }
+  dea_status status = elastic(layer, one, one, 1, false, &point);
+  layer->p0_Pa = -point.P[8];
+  layer->kappa_s_Pa =
+      0.5 * fabs(layer->p0_Pa); // above the third that it takes, docs/theory/solid.md
+  return status;
+}
+
+static dea_status evaluate(const struct dea_constituent *layer, const double F[9],
+                           const double cof[9], double J, double pressure, double field_V_per_m,
+                           bool tangent, struct dea_point *point)
+{
+  dea_status status = elastic(layer, F, cof, J, tangent, point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  if (layer->law != NULL) {
+    double slope, curvature;
+    point->W += layer->p0_Pa * (J - 1) + dea_constituent_pointwise(layer, J, &slope, &curvature);
+    double p = layer->p0_Pa + slope + pressure;
+    for (int a = 0; a < 9; a++) {
+      point->P[a] += p * cof[a];
+      for (int b = 0; b < 9 && tangent; b++) {
+        point->A[9 * a + b] += curvature * cof[a] * cof[b];
+      }
+    }
+    if (tangent) {
+      add_second_of_J(p, F, point->A);
+    }
+  }
+  if (field_V_per_m != 0 && layer->permittivity_F_per_m > 0) {
+    add_electric(layer, field_V_per_m, F, tangent, point);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_constituent_point(const struct dea_constituent *layer, const double F[9],
+                                 const double cof[9], double J, double pressure,
+                                 double field_V_per_m, struct dea_point *point)
+{
+  return evaluate(layer, F, cof, J, pressure, field_V_per_m, true, point);
+}
+
+dea_status dea_constituent_stress(const struct dea_constituent *layer, const double F[9],
+                                  const double cof[9], double J, double pressure,
+                                  double field_V_per_m, struct dea_point *point)
+{
+  return evaluate(layer, F, cof, J, pressure, field_V_per_m, false, point);
+}
+
+void dea_constituent_second_stress(const double cof[9], double J, const double P[9], double S[9])
+{
+  for (int A = 0; A < 3; A++) { // F^-1 = cof^T / J
+    for (int B = 0; B < 3; B++) {
+      S[3 * A + B] = (cof[A] * P[B] + cof[3 + A] * P[3 + B] + cof[6 + A] * P[6 + B]) / J;
+    }
+  }
+}
+
+void dea_constituent_restress(const double F[9], const double cof[9], double J, double pressure,
+                              const double S[6], struct dea_point *point)
+{
+  static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
+  double P[9], now[9];
+  for (int a = 0; a < 9; a++) {
+    P[a] = point->P[a] + pressure * cof[a];
+  }
+  add_second_of_J(pressure, F, point->A);
+  dea_constituent_second_stress(cof, J, P, now);
+  for (int JL = 0; JL < 9; JL++) {
+    double change = S[place[JL]] - now[JL];
+    for (int i = 0; i < 3; i++) {
+      point->A[9 * (3 * i + JL / 3) + 3 * i + JL % 3] += change;
+    }
+  }
+}

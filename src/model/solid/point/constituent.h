@@ -1,0 +1,71 @@
+/* What an element is made of, and its energy, stress and tangent at a point.
+ *
+ * Energy per volume of the stretched flat film (docs/theory/solid.md), a film or glue with a law:
+ *
+ *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) - (eps/2) E^2 |F_1 x F_2|^2
+ *
+ * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md),
+ * and a compressible neo-Hookean solid (fibre) without one. */
+#ifndef DEA_MODEL_SOLID_POINT_CONSTITUENT_H
+#define DEA_MODEL_SOLID_POINT_CONSTITUENT_H
+
+#include "material/material.h"
+#include "material/point.h"
+
+/* How much of an energy is wanted; each level has those before it. */
+enum dea_eval_order { DEA_ENERGY, DEA_FORCE, DEA_TANGENT };
+
+struct dea_constituent {
+  const struct dea_law *law; // NULL: compressible neo-Hookean solid of the two Lame constants
+  const double *param;
+  double lame_lambda_Pa, lame_mu_Pa;
+  double pre_stretch[3];       // diagonal of G, det G = 1
+  double p0_Pa, kappa_s_Pa;    // dea_constituent_relax sets them
+  double kappa_Pa;             // bulk modulus of the projected part, of the element
+  double permittivity_F_per_m; // eps of the flat layer, 0: no electric energy
+  /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
+  double permittivity_slope_F_per_m;
+  double thickness_m;       // h, over which the voltage stands
+  double density_kg_per_m3; // 0 for a part without mass
+  bool relaxed;             // flat elements wrinkle instead of taking pressure (tension.h)
+  /* Of a step in time (viscous.h): B [points of the element][6], lent, NULL: none; and b. */
+  const double *viscous;
+  double viscous_Pa;
+};
+
+/* Shear modulus of the ground state [Pa]. */
+double dea_constituent_modulus(const struct dea_constituent *layer);
+
+/* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
+ * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
+dea_status dea_constituent_relax(struct dea_constituent *layer);
+
+/* Energy, stress and tangent by F, at cofactors cof and determinant J of F. pressure: added as
+ * p dJ/dF (only with a law; its energy is the caller's). field_V_per_m: reference field E between
+ * the electrodes, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
+dea_status dea_constituent_point(const struct dea_constituent *layer, const double F[9],
+                                 const double cof[9], double J, double pressure,
+                                 double field_V_per_m, struct dea_point *point);
+
+/* The same without the tangent: point->A is not set. */
+dea_status dea_constituent_stress(const struct dea_constituent *layer, const double F[9],
+                                  const double cof[9], double J, double pressure,
+                                  double field_V_per_m, struct dea_point *point);
+
+/* The pointwise part kappa_s/2 ((J^2 - 1)/2 - ln J) and its derivatives by J: kappa_s/2 (J - 1)^2
+ * near 1, and a barrier before J = 0. */
+double dea_constituent_pointwise(const struct dea_constituent *layer, double J, double *slope,
+                                 double *curvature);
+
+/* Second Piola-Kirchhoff stress S = F^-1 P from the first one. */
+void dea_constituent_second_stress(const double cof[9], double J, const double P[9], double S[9]);
+
+/* Puts other stresses into a tangent: `pressure` more as p dJ/dF, and then S (11 22 33 23 13 12) in
+ * place of F^-1 P in its geometric part. P stays. */
+void dea_constituent_restress(const double F[9], const double cof[9], double J, double pressure,
+                              const double S[6], struct dea_point *point);
+
+/* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
+double dea_cofactors(const double F[9], double cof[9]);
+
+#endif

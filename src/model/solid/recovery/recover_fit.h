@@ -1,0 +1,31 @@
+/* From values at Gauss points to values at nodes, for the files that recover elements. */
+#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_FIT_H
+#define DEA_MODEL_SOLID_RECOVERY_RECOVER_FIT_H
+
+#include "model/solid/recovery/recover.h"
+
+enum {
+  DEA_FIT_LINE_MAX = DEA_HEX_ORDER_MAX + 1,
+  DEA_FIT_VALUES = 17, // of a point: F 9, stress 6, elastic energy, field
+};
+
+/* The polynomials nearest to the values at the Gauss points, in the mean square: in the plane one
+ * degree below the displacements; through the thickness too, but at least linear, since a plate
+ * that bends has stresses linear in z. Along each axis the value at node i is the sum over the
+ * Gauss points q of fit[i][q] times theirs. */
+struct dea_fit {
+  int n, nz; // nodes, and Gauss points, along the axes; nz 1: flat
+  double plane[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX], z[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX];
+};
+
+/* order_z: 0 for a flat element. */
+void dea_fit_create(int order, int order_z, struct dea_fit *out);
+/* Values at a node from those at the Gauss points, [gauss][DEA_FIT_VALUES]. Both are numbered first
+ * axis fastest. */
+void dea_fit_node(const struct dea_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
+                  double out[DEA_FIT_VALUES]);
+/* Numbers of nodes, and F, stress, energy and field of all of them. */
+void dea_recovered_set(const struct dea_fit *fit, double (*at)[DEA_FIT_VALUES],
+                       struct dea_recovered *out);
+
+#endif

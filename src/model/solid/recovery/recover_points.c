@@ -1,0 +1,178 @@
+#include "model/solid/recovery/recover_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct dea_mesh_field dea_recover_displacement = {
+    .name = "displacement_m",
+    .unit = "m",
+    .meaning = "displacement from the stretched flat film",
+    .kind = DEA_MESH_VECTOR,
+    .components = 3,
+};
+const struct dea_mesh_field dea_recover_plane_stretch = {
+    .name = "plane_stretch",
+    .unit = "1",
+    .meaning = "stretch from the unstretched film: larger and smaller in its plane, thickness",
+    .components = 3,
+};
+const struct dea_mesh_field dea_recover_tension = {
+    .name = "tension_N_per_m",
+    .unit = "N/m",
+    .meaning =
+        "true stress through the thickness of the layer, per current length: larger, smaller",
+    .components = 2,
+};
+const struct dea_mesh_field dea_recover_true_field = {
+    .name = "true_field_V_per_m",
+    .unit = "V/m",
+    .meaning = "voltage over the current thickness; 0 outside of the electrodes",
+    .components = 1,
+};
+
+/* ---- columns ---- */
+
+static int by_place(const void *a, const void *b)
+{
+  const struct dea_stacked *p = a, *q = b;
+  if (p->x != q->x) {
+    return p->x < q->x ? -1 : 1;
+  }
+  if (p->y != q->y) {
+    return p->y < q->y ? -1 : 1;
+  }
+  if (p->sheet != q->sheet) {
+    return p->sheet < q->sheet ? -1 : 1;
+  }
+  return (p->z > q->z) - (p->z < q->z);
+}
+
+struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_recover_input *in)
+{
+  const struct dea_grid *grid = in->grid;
+  int plane_nodes = (grid->order + 1) * (grid->order + 1);
+  struct dea_stacked *stack = dea_alloc(ctx, grid->element_count, sizeof *stack);
+  for (size_t e = 0; stack != NULL && e < grid->element_count; e++) {
+    stack[e].element = e;
+    stack[e].sheet = grid->sheet[e];
+    for (int n = 0; n < plane_nodes; n++) {
+      const double *X = grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+      stack[e].x += X[0];
+      stack[e].y += X[1];
+      stack[e].z += X[2];
+    }
+  }
+  if (stack != NULL) {
+    qsort(stack, grid->element_count, sizeof *stack, by_place);
+  }
+  return stack;
+}
+
+size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
+                              bool by_sheet)
+{
+  size_t end = from + 1;
+  while (end < count && stack[end].x == stack[from].x && stack[end].y == stack[from].y &&
+         (!by_sheet || stack[end].sheet == stack[from].sheet)) {
+    end++;
+  }
+  return end;
+}
+
+/* ---- elements ---- */
+
+int dea_recover_levels(const struct dea_recover_input *in, size_t element)
+{
+  return in->grid->flat[element] ? 1 : in->shape->order_z + 1;
+}
+
+dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
+                               struct dea_recovered *out)
+{
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential_V[DEA_HEX_NODES_MAX];
+  const struct dea_grid *grid = in->grid;
+  const struct dea_constituent *layer = &in->layers[in->layer[element]];
+  const int *nodes = grid->nodes + element * DEA_HEX_NODES_MAX;
+  for (int n = 0; n < dea_grid_nodes_of(grid, element, in->shape->nodes); n++) {
+    memcpy(X + 3 * n, grid->X + 3 * nodes[n], 3 * sizeof *X);
+    memcpy(u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *u);
+    potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
+  }
+  double voltage_V = in->active[element] ? in->voltage_V : 0;
+  if (grid->flat[element]) {
+    return dea_flat_recover(in->flat, layer, X, u, voltage_V, out);
+  }
+  return dea_hex_recover(in->shape, layer, X, u,
+                         in->multiplier + element * (size_t)in->shape->pressures, voltage_V,
+                         in->potential_V != NULL ? potential_V : NULL, out);
+}
+
+double dea_recover_height(const struct dea_recover_input *in, size_t element, int level)
+{
+  int plane_nodes = (in->grid->order + 1) * (in->grid->order + 1);
+  int node = in->grid->nodes[element * DEA_HEX_NODES_MAX + (size_t)(level * plane_nodes)];
+  return in->grid->X[3 * node + 2];
+}
+
+/* ---- state in the plane ---- */
+
+double dea_recover_pre_stretch(const struct dea_constituent *layer, int axis)
+{
+  return layer->law == NULL ? 1 : layer->pre_stretch[axis];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Eigenvalues of a symmetric 2 x 2 matrix, the larger first. */
+static void principal(double xx, double yy, double xy, double out[2])
+{
+  double mean = 0.5 * (xx + yy), radius = hypot(0.5 * (xx - yy), xy);
+  out[0] = mean + radius;
+  out[1] = mean - radius;
+}
+
+void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
+                       const double force[6], struct dea_plane_state *out)
+{
+  const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
+  const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                            a[0] * b[1] - a[1] * b[0]};
+  double e[2][3], T[2][2], squares[2], cof[9];
+  double gx = dea_recover_pre_stretch(layer, 0), gy = dea_recover_pre_stretch(layer, 1);
+  double length = sqrt(dot(a, a));
+  out->area = sqrt(dot(normal, normal));
+  principal(gx * gx * dot(a, a), gy * gy * dot(b, b), gx * gy * dot(a, b), squares);
+  out->stretch[0] = sqrt(squares[0]);
+  out->stretch[1] = sqrt(fmax(squares[1], 0));
+  out->stretch[2] = dea_recover_pre_stretch(layer, 2) * dea_cofactors(F, cof) / out->area;
+  for (int i = 0; i < 3; i++) { // an orthonormal basis of the current tangent plane
+    e[0][i] = a[i] / length;
+  }
+  for (int i = 0; i < 3; i++) {
+    e[1][i] = (normal[(i + 1) % 3] * e[0][(i + 2) % 3] - normal[(i + 2) % 3] * e[0][(i + 1) % 3]) /
+              out->area;
+  }
+  for (int r = 0; r < 2; r++) { // T = N F^T / area
+    for (int c = 0; c < 2; c++) {
+      double ea = dot(e[c], a), eb = dot(e[c], b);
+      T[r][c] = 0;
+      for (int i = 0; i < 3; i++) {
+        T[r][c] += e[r][i] * (force[2 * i] * ea + force[2 * i + 1] * eb) / out->area;
+      }
+    }
+  }
+  principal(T[0][0], T[1][1], 0.5 * (T[0][1] + T[1][0]), out->tension);
+}
+
+void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                     const struct dea_mesh_field *field, double **values, dea_status *status)
+{
+  *values = NULL;
+  if (*status == DEA_OK) {
+    *status = dea_field_mesh_add(ctx, mesh, field, values);
+  }
+}

@@ -1,0 +1,48 @@
+/* What recovery on a volume and on a surface share: columns of elements, sums at points. */
+#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_POINTS_H
+#define DEA_MODEL_SOLID_RECOVERY_RECOVER_POINTS_H
+
+#include "model/solid/recovery/recover.h"
+
+/* Elements by column (those above each other), sheet and height. A column has the same x and y, the
+ * sum over the nodes of one level, to the bit. */
+struct dea_stacked {
+  double x, y, z;
+  int sheet;
+  size_t element;
+};
+/* [element_count], owned by the caller; NULL for want of memory. */
+struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_recover_input *in);
+/* First element after `from` of another column, or of another sheet with by_sheet. */
+size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
+                              bool by_sheet);
+
+/* One element of any kind. */
+dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
+                               struct dea_recovered *out);
+/* Levels of nodes through the thickness of an element, and the height of one. */
+int dea_recover_levels(const struct dea_recover_input *in, size_t element);
+double dea_recover_height(const struct dea_recover_input *in, size_t element, int level);
+
+/* In the plane of the film at a point: F, membrane force as in struct dea_recovered. */
+struct dea_plane_state {
+  double stretch[3]; // principal, from the unstretched film: larger, smaller, through the thickness
+  double tension[2]; // principal, per current length: larger, smaller [N/m]
+  double area;       // |F_1 x F_2|
+};
+void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
+                       const double force[6], struct dea_plane_state *out);
+
+/* Pre-stretch of a layer; 1 for what is bonded free of stress. */
+double dea_recover_pre_stretch(const struct dea_constituent *layer, int axis);
+
+/* Adds a field and writes where its values go; after a failure *status stays and *values is NULL.
+ */
+void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                     const struct dea_mesh_field *field, double **values, dea_status *status);
+
+/* Fields that volume and surface have in common. */
+extern const struct dea_mesh_field dea_recover_displacement, dea_recover_plane_stretch,
+    dea_recover_tension, dea_recover_true_field;
+
+#endif

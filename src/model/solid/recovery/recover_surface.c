@@ -1,0 +1,256 @@
+/* The middle surface of a sheet with its fields. */
+#include "model/solid/recovery/recover_points.h"
+
+#include "base/quadrature.h"
+
+#include <string.h>
+
+// displacement 3, F 9, field, height, membrane force 6
+enum { SUMS = 20, FIELD = 12, HEIGHT = 13, FORCE = 14, GROUPS = 4 };
+
+struct work {
+  struct dea_context *ctx;
+  const struct dea_recover_input *in;
+  int sheet;
+  struct dea_stacked *stack;
+  struct dea_recovered *at;
+  size_t column_count, point_count;
+  int *point;      // of a group's bottom node, [GROUPS][node_count], counted from 1; 0: none
+  int *nodes;      // points of a column, [column_count][plane_nodes]
+  int *group;      // of a column
+  size_t *element; // of a point, one that has it
+  int *node;       // of a point: the bottom node of its column
+  double (*sum)[SUMS];
+  double *weight;
+};
+
+static void release(struct work *w)
+{
+  void *const memory[] = {w->stack,   w->at,   w->point, w->nodes, w->group,
+                          w->element, w->node, w->sum,   w->weight};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    dea_free(w->ctx, memory[i]);
+  }
+}
+
+static dea_status prepare(struct work *w)
+{
+  const struct dea_grid *grid = w->in->grid;
+  size_t per = (size_t)((grid->order + 1) * (grid->order + 1)), count = grid->element_count;
+  w->stack = dea_recover_stack(w->ctx, w->in);
+  w->at = dea_alloc(w->ctx, 1, sizeof *w->at);
+  w->point = dea_alloc(w->ctx, GROUPS * grid->node_count, sizeof *w->point);
+  w->nodes = dea_alloc(w->ctx, count * per, sizeof *w->nodes);
+  w->group = dea_alloc(w->ctx, count, sizeof *w->group);
+  w->element = dea_alloc(w->ctx, count * per, sizeof *w->element);
+  w->node = dea_alloc(w->ctx, count * per, sizeof *w->node);
+  w->sum = dea_alloc(w->ctx, count * per, sizeof *w->sum);
+  w->weight = dea_alloc(w->ctx, count * per, sizeof *w->weight);
+  return w->stack == NULL || w->at == NULL || w->point == NULL || w->nodes == NULL ||
+                 w->group == NULL || w->element == NULL || w->node == NULL || w->sum == NULL ||
+                 w->weight == NULL
+             ? DEA_E_MEMORY
+             : DEA_OK;
+}
+
+/* Numbers the points of a column. Those of its bottom nodes stand for it in its group. */
+static int *number_column(struct work *w, size_t element, int group)
+{
+  const struct dea_grid *grid = w->in->grid;
+  int per = (grid->order + 1) * (grid->order + 1);
+  int *nodes = w->nodes + w->column_count * (size_t)per;
+  for (int n = 0; n < per; n++) {
+    int node = grid->nodes[element * DEA_HEX_NODES_MAX + (size_t)n];
+    int *point = &w->point[(size_t)group * grid->node_count + (size_t)node];
+    if (*point == 0) {
+      w->element[w->point_count] = element;
+      w->node[w->point_count] = node;
+      *point = (int)++w->point_count;
+    }
+    nodes[n] = *point - 1;
+  }
+  w->group[w->column_count++] = group;
+  return nodes;
+}
+
+/* Displacement, F and field at the height z of an element, added to the points of its column. */
+static void add_level(struct work *w, size_t element, double z, const int *points)
+{
+  const struct dea_recover_input *in = w->in;
+  const struct dea_recovered *at = w->at;
+  int levels = dea_recover_levels(in, element);
+  double bottom = dea_recover_height(in, element, 0);
+  double top = dea_recover_height(in, element, levels - 1);
+  double places[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
+  double value[DEA_HEX_ORDER_MAX + 1] = {1}; // of a flat element
+  if (levels > 1) {
+    dea_lobatto_nodes((size_t)levels - 1, places);
+    dea_lagrange((size_t)levels, places, 2 * (z - bottom) / (top - bottom) - 1, value, slope);
+  }
+  for (int n = 0; n < at->nodes; n++) {
+    double *sum = w->sum[points[n % at->plane_nodes]];
+    double share = at->volume_m3 * value[n / at->plane_nodes];
+    const double *u = in->u + 3 * in->grid->nodes[element * DEA_HEX_NODES_MAX + (size_t)n];
+    for (int i = 0; i < 3; i++) {
+      sum[i] += share * u[i];
+    }
+    for (int i = 0; i < 9; i++) {
+      sum[3 + i] += share * at->F[n][i];
+    }
+    sum[FIELD] += share * at->field[n];
+  }
+}
+
+/* The elements of the sheet in one column, from below: the membrane forces of all, the rest from
+ * the one that has the middle. */
+static dea_status add_column(struct work *w, size_t from, size_t end, bool covered)
+{
+  const struct dea_recover_input *in = w->in;
+  size_t last = w->stack[end - 1].element;
+  double bottom = dea_recover_height(in, w->stack[from].element, 0);
+  double middle = 0.5 * (bottom + dea_recover_height(in, last, dea_recover_levels(in, last) - 1));
+  int group = (in->active[w->stack[from].element] ? 1 : 0) + (covered ? 2 : 0);
+  int *points = number_column(w, w->stack[from].element, group);
+  double force[DEA_RECOVER_PLANE_MAX][6] = {{0}}, weight = 0;
+  for (size_t k = from; k < end; k++) {
+    size_t e = w->stack[k].element;
+    dea_status status = dea_recover_element(in, e, w->at);
+    if (status != DEA_OK) {
+      return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", e);
+    }
+    for (int n = 0; n < w->at->plane_nodes; n++) {
+      for (int i = 0; i < 6; i++) {
+        force[n][i] += w->at->force[n][i];
+      }
+    }
+    double z = dea_recover_height(in, e, 0);
+    double top = dea_recover_height(in, e, dea_recover_levels(in, e) - 1);
+    if (weight == 0 && (k + 1 == end || top > middle - 1e-9 * (top - z))) {
+      weight = w->at->volume_m3;
+      add_level(w, e, middle, points);
+    }
+  }
+  for (int n = 0; n < w->at->plane_nodes; n++) {
+    w->weight[points[n]] += weight;
+    for (int i = 0; i < 6; i++) {
+      w->sum[points[n]][FORCE + i] += weight * force[n][i];
+    }
+    w->sum[points[n]][HEIGHT] += weight * middle;
+  }
+  return DEA_OK;
+}
+
+/* Whether a part without a law, a fibre, stands in a column. */
+static bool has_fibre(const struct work *w, size_t from, size_t end)
+{
+  bool any = false;
+  for (size_t k = from; k < end; k++) {
+    const struct dea_constituent *layer = &w->in->layers[w->in->layer[w->stack[k].element]];
+    any = any || (layer->law == NULL && w->stack[k].sheet != w->sheet);
+  }
+  return any;
+}
+
+static dea_status add_columns(struct work *w)
+{
+  size_t count = w->in->grid->element_count;
+  for (size_t from = 0; from < count;) {
+    size_t end = dea_recover_column_end(w->stack, count, from, false);
+    for (size_t first = from; first < end;) {
+      size_t last = dea_recover_column_end(w->stack, count, first, true);
+      if (w->stack[first].sheet == w->sheet) {
+        DEA_TRY(w->ctx, add_column(w, first, last, has_fibre(w, from, end)));
+      }
+      first = last;
+    }
+    from = end;
+  }
+  return DEA_OK;
+}
+
+/* Where the values of the fields go. */
+struct fields {
+  double *displacement, *stretch, *tension, *field, *between, *under;
+};
+
+static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                             struct fields *out)
+{
+  static const struct dea_mesh_field between = {"between_electrodes",
+                                                "1",
+                                                "1 where the film lies between electrodes",
+                                                DEA_MESH_VALUES,
+                                                1,
+                                                true,
+                                                NULL},
+                                     under = {"under_fibre",
+                                              "1",
+                                              "1 where a fibre lies on the film",
+                                              DEA_MESH_VALUES,
+                                              1,
+                                              true,
+                                              NULL};
+  dea_status status = DEA_OK;
+  dea_recover_add(ctx, mesh, &dea_recover_displacement, &out->displacement, &status);
+  dea_recover_add(ctx, mesh, &dea_recover_plane_stretch, &out->stretch, &status);
+  dea_recover_add(ctx, mesh, &dea_recover_tension, &out->tension, &status);
+  dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
+  dea_recover_add(ctx, mesh, &between, &out->between, &status);
+  dea_recover_add(ctx, mesh, &under, &out->under, &status);
+  return status;
+}
+
+static void fill_point(const struct work *w, size_t p, double *X, const struct fields *to)
+{
+  const struct dea_recover_input *in = w->in;
+  size_t e = w->element[p];
+  const struct dea_constituent *layer = &in->layers[in->layer[e]];
+  struct dea_plane_state plane;
+  double mean[SUMS];
+  for (int i = 0; i < SUMS; i++) {
+    mean[i] = w->sum[p][i] / w->weight[p];
+  }
+  memcpy(X, in->grid->X + 3 * w->node[p], 2 * sizeof *X);
+  X[2] = mean[HEIGHT];
+  memcpy(to->displacement + 3 * p, mean, 3 * sizeof *mean);
+  dea_recover_plane(layer, mean + 3, mean + FORCE, &plane);
+  memcpy(to->stretch + 3 * p, plane.stretch, sizeof plane.stretch);
+  memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
+  to->field[p] = mean[FIELD];
+}
+
+static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
+{
+  int order = w->in->grid->order, *nodes;
+  struct fields to;
+  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, order, 0, w->column_count, &nodes));
+  DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
+  memcpy(nodes, w->nodes, w->column_count * (size_t)((order + 1) * (order + 1)) * sizeof *nodes);
+  for (size_t c = 0; c < w->column_count; c++) {
+    to.between[c] = w->group[c] % 2;
+    to.under[c] = w->group[c] / 2;
+  }
+  for (size_t p = 0; p < w->point_count; p++) {
+    fill_point(w, p, mesh->X + 3 * p, &to);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in,
+                               int sheet, struct dea_field_mesh **out)
+{
+  struct work work = {.ctx = ctx, .in = in, .sheet = sheet};
+  *out = NULL;
+  dea_status status = prepare(&work);
+  if (status == DEA_OK) {
+    status = add_columns(&work);
+  }
+  if (status == DEA_OK) {
+    status = dea_field_mesh_create(ctx, work.point_count, out);
+  }
+  if (status == DEA_OK) {
+    status = fill_mesh(&work, *out);
+  }
+  release(&work);
+  return dea_field_mesh_finish(ctx, status, out);
+}

@@ -1,0 +1,321 @@
+/* All elements of a solid with their fields. */
+#include "model/solid/recovery/recover_points.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 6
+
+/* Points while sums are taken. A group is a sheet in a region. */
+struct work {
+  struct dea_context *ctx;
+  const struct dea_recover_input *in;
+  struct dea_stacked *stack;
+  int sheet_count, region_count;
+  size_t point_count;
+  int *point;      // of a group's node, [groups][node_count], counted from 1; 0: none
+  int *node;       // of a point
+  size_t *element; // one that has the point
+  double (*sum)[SUMS];
+  double *weight; // of a point
+  double *volume; // of an element [m^3]
+  double *error;  // of an element: largest |J - 1|
+};
+
+static void release(struct work *w)
+{
+  void *const memory[] = {w->stack, w->point,  w->node,   w->element,
+                          w->sum,   w->weight, w->volume, w->error};
+  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
+    dea_free(w->ctx, memory[i]);
+  }
+}
+
+static int *points_of(const struct work *w, size_t element)
+{
+  const struct dea_grid *grid = w->in->grid;
+  size_t group = (size_t)(grid->sheet[element] * w->region_count + grid->region[element]);
+  return w->point + group * grid->node_count;
+}
+
+static int point_of(const struct work *w, size_t element, int node)
+{
+  int at = w->in->grid->nodes[element * DEA_HEX_NODES_MAX + (size_t)node];
+  return points_of(w, element)[at] - 1;
+}
+
+/* Numbers the points in the order of the elements. */
+static dea_status number_points(struct work *w)
+{
+  const struct dea_grid *grid = w->in->grid;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    w->sheet_count = w->sheet_count > grid->sheet[e] ? w->sheet_count : grid->sheet[e] + 1;
+    w->region_count = w->region_count > grid->region[e] ? w->region_count : grid->region[e] + 1;
+  }
+  size_t groups = (size_t)(w->sheet_count * w->region_count), per = (size_t)w->in->shape->nodes;
+  w->point = dea_alloc(w->ctx, groups * grid->node_count, sizeof *w->point);
+  w->node = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->node);
+  w->element = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->element);
+  if (w->point == NULL || w->node == NULL || w->element == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t e = 0; e < grid->element_count; e++) {
+    int *points = points_of(w, e);
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, w->in->shape->nodes); n++) {
+      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+      if (points[node] == 0) {
+        w->node[w->point_count] = node;
+        w->element[w->point_count] = e;
+        points[node] = (int)++w->point_count;
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+/* Takes the elements of one sheet in one column; their membrane forces add up. */
+static dea_status add_column(struct work *w, size_t from, size_t end)
+{
+  double force[DEA_RECOVER_PLANE_MAX][6] = {{0}};
+  struct dea_recovered *at = dea_alloc(w->ctx, 1, sizeof *at);
+  if (at == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t k = from; k < end; k++) {
+    size_t e = w->stack[k].element;
+    dea_status status = dea_recover_element(w->in, e, at);
+    if (status != DEA_OK) {
+      dea_free(w->ctx, at);
+      return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", e);
+    }
+    w->volume[e] = at->volume_m3;
+    w->error[e] = at->volume_error;
+    for (int n = 0; n < at->nodes; n++) {
+      int p = point_of(w, e, n);
+      w->weight[p] += at->volume_m3;
+      for (int i = 0; i < 9; i++) {
+        w->sum[p][i] += at->volume_m3 * at->F[n][i];
+      }
+      for (int i = 0; i < 6; i++) {
+        w->sum[p][9 + i] += at->volume_m3 * at->stress[n][i];
+      }
+      w->sum[p][15] += at->volume_m3 * at->energy[n];
+      w->sum[p][16] += at->volume_m3 * at->field[n];
+    }
+    for (int n = 0; n < at->plane_nodes; n++) {
+      for (int i = 0; i < 6; i++) {
+        force[n][i] += at->force[n][i];
+      }
+    }
+  }
+  for (size_t k = from; k < end; k++) {
+    size_t e = w->stack[k].element;
+    for (int n = 0; n < at->nodes; n++) {
+      int p = point_of(w, e, n);
+      for (int i = 0; i < 6; i++) {
+        w->sum[p][FORCE + i] += w->volume[e] * force[n % at->plane_nodes][i];
+      }
+    }
+  }
+  dea_free(w->ctx, at);
+  return DEA_OK;
+}
+
+static dea_status take_means(struct work *w)
+{
+  size_t count = w->in->grid->element_count;
+  w->stack = dea_recover_stack(w->ctx, w->in);
+  w->sum = dea_alloc(w->ctx, w->point_count, sizeof *w->sum);
+  w->weight = dea_alloc(w->ctx, w->point_count, sizeof *w->weight);
+  w->volume = dea_alloc(w->ctx, count, sizeof *w->volume);
+  w->error = dea_alloc(w->ctx, count, sizeof *w->error);
+  if (w->stack == NULL || w->sum == NULL || w->weight == NULL || w->volume == NULL ||
+      w->error == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t from = 0; from < count;) {
+    size_t end = dea_recover_column_end(w->stack, count, from, true);
+    DEA_TRY(w->ctx, add_column(w, from, end));
+    from = end;
+  }
+  for (size_t p = 0; p < w->point_count; p++) {
+    for (int i = 0; i < SUMS; i++) {
+      w->sum[p][i] /= w->weight[p];
+    }
+  }
+  return DEA_OK;
+}
+
+/* Eigenvalues of a symmetric matrix xx yy zz xy yz zx, the largest first, and their directions. */
+static void principal(const double m[6], double value[3], double axis[3][3])
+{
+  double A[9] = {m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2]}, rising[3] = {NAN, NAN, NAN};
+  double work[32];
+  LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', 3, A, 3, rising, work, 32);
+  for (int k = 0; k < 3; k++) {
+    value[k] = rising[2 - k];
+    memcpy(axis[k], A + 3 * (2 - k), sizeof axis[k]);
+  }
+}
+
+/* Principal stretches of F G. */
+static void principal_stretch(const struct dea_constituent *layer, const double F[9], double out[3])
+{
+  static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+  double C[6] = {0}, axis[3][3];
+  for (int m = 0; m < 6; m++) {
+    for (int i = 0; i < 3; i++) {
+      C[m] += F[3 * i + row[m]] * F[3 * i + column[m]];
+    }
+    C[m] *= dea_recover_pre_stretch(layer, row[m]) * dea_recover_pre_stretch(layer, column[m]);
+  }
+  principal(C, out, axis);
+  for (int k = 0; k < 3; k++) {
+    out[k] = sqrt(fmax(out[k], 0));
+  }
+}
+
+/* Where the values of the fields go. */
+struct fields {
+  double *displacement, *stretch, *plane, *stress, *axis[3], *tension, *field, *energy;
+  double *error, *sheet, *region;
+};
+
+static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                             struct fields *out)
+{
+  static const struct dea_mesh_field
+      stretch = {"principal_stretch",
+                 "1",
+                 "principal stretches from the unstretched state",
+                 DEA_MESH_VALUES,
+                 3,
+                 false,
+                 NULL},
+      stress = {"principal_stress_Pa",
+                "Pa",
+                "principal true stresses, elastic, pressure and Maxwell together, largest first",
+                DEA_MESH_VALUES,
+                3,
+                false,
+                NULL},
+      axes[3] = {{"stress_axis_1", "1", "direction of the largest principal stress", DEA_MESH_AXIS,
+                  3, false, NULL},
+                 {"stress_axis_2", "1", "direction of the second principal stress", DEA_MESH_AXIS,
+                  3, false, NULL},
+                 {"stress_axis_3", "1", "direction of the smallest principal stress", DEA_MESH_AXIS,
+                  3, false, NULL}},
+      energy = {"energy_J_per_m3",
+                "J/m3",
+                "elastic energy per volume of the stretched flat film, pre-stretch included",
+                DEA_MESH_VALUES,
+                1,
+                false,
+                NULL},
+      error = {"volume_error", "1", "largest |J - 1| in the element", DEA_MESH_VALUES, 1,
+               true,           NULL},
+      sheet = {"sheet", "1", "number of the layer, from below", DEA_MESH_VALUES, 1, true, NULL},
+      region = {"region", "1", "number of the region in the plane", DEA_MESH_VALUES, 1, true, NULL};
+  dea_status status = DEA_OK;
+  dea_recover_add(ctx, mesh, &dea_recover_displacement, &out->displacement, &status);
+  dea_recover_add(ctx, mesh, &stretch, &out->stretch, &status);
+  dea_recover_add(ctx, mesh, &dea_recover_plane_stretch, &out->plane, &status);
+  dea_recover_add(ctx, mesh, &stress, &out->stress, &status);
+  for (int k = 0; k < 3; k++) {
+    dea_recover_add(ctx, mesh, &axes[k], &out->axis[k], &status);
+  }
+  dea_recover_add(ctx, mesh, &dea_recover_tension, &out->tension, &status);
+  dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
+  dea_recover_add(ctx, mesh, &energy, &out->energy, &status);
+  dea_recover_add(ctx, mesh, &error, &out->error, &status);
+  dea_recover_add(ctx, mesh, &sheet, &out->sheet, &status);
+  dea_recover_add(ctx, mesh, &region, &out->region, &status);
+  return status;
+}
+
+static void fill_point(const struct work *w, size_t p, const struct fields *to)
+{
+  const struct dea_recover_input *in = w->in;
+  size_t e = w->element[p];
+  const struct dea_constituent *layer = &in->layers[in->layer[e]];
+  const double *sum = w->sum[p];
+  struct dea_plane_state plane;
+  double axis[3][3];
+  memcpy(to->displacement + 3 * p, in->u + 3 * w->node[p], 3 * sizeof(double));
+  principal_stretch(layer, sum, to->stretch + 3 * p);
+  principal(sum + 9, to->stress + 3 * p, axis);
+  for (int k = 0; k < 3; k++) {
+    memcpy(to->axis[k] + 3 * p, axis[k], sizeof axis[k]);
+  }
+  to->energy[p] = sum[15];
+  dea_recover_plane(layer, sum, sum + FORCE, &plane);
+  memcpy(to->plane + 3 * p, plane.stretch, sizeof plane.stretch);
+  memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
+  to->field[p] = sum[16];
+}
+
+/* A block of the solid elements or of the flat ones, if there are any. */
+static dea_status add_block(struct work *w, struct dea_field_mesh *mesh, bool flat)
+{
+  const struct dea_grid *grid = w->in->grid;
+  const struct dea_hex_shape *shape = w->in->shape;
+  size_t count = 0;
+  int *nodes;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    count += grid->flat[e] == flat;
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, shape->order, flat ? 0 : shape->order_z,
+                                           count, &nodes));
+  for (size_t e = 0; e < grid->element_count; e++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e, shape->nodes) && grid->flat[e] == flat; n++) {
+      *nodes++ = point_of(w, e, n);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
+{
+  const struct dea_grid *grid = w->in->grid;
+  struct fields to;
+  DEA_TRY(w->ctx, add_block(w, mesh, false));
+  DEA_TRY(w->ctx, add_block(w, mesh, true));
+  DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
+  for (int flat = 0; flat <= 1; flat++) { // block by block
+    for (size_t e = 0; e < grid->element_count; e++) {
+      if (grid->flat[e] == (flat == 1)) {
+        *to.error++ = w->error[e];
+        *to.sheet++ = grid->sheet[e];
+        *to.region++ = grid->region[e];
+      }
+    }
+  }
+  for (size_t p = 0; p < w->point_count; p++) {
+    memcpy(mesh->X + 3 * p, grid->X + 3 * w->node[p], 3 * sizeof(double));
+    fill_point(w, p, &to);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_input *in,
+                              struct dea_field_mesh **out)
+{
+  struct work work = {.ctx = ctx, .in = in};
+  *out = NULL;
+  dea_status status = number_points(&work);
+  if (status == DEA_OK) {
+    status = take_means(&work);
+  }
+  if (status == DEA_OK) {
+    status = dea_field_mesh_create(ctx, work.point_count, out);
+  }
+  if (status == DEA_OK) {
+    status = fill_mesh(&work, *out);
+  }
+  release(&work);
+  return dea_field_mesh_finish(ctx, status, out);
+}
