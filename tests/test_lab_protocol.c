@@ -137,6 +137,12 @@ static void test_errors_have_places(void **state)
   } wrong[] = {
       {PROTOCOL_HEAD, "lacks what is to be played", 1, 1},
       {"title: x\ndea: 1\nfilm: {thickness: 1 mm}\n", "this is a design, not a protocol", 2, 1},
+      {PROTOCOL_HEAD "sequence: [{pause: 1 s}]\n", "section 'sequence[0]' lacks 'waveform'", 5, 12},
+      {PROTOCOL_HEAD "sequence: [x]\n", "sequence must be a section with keys of its own", 5, 12},
+      {PROTOCOL_HEAD "sequence: [{waveform: {kind: constant, voltage: 1 V}, repeat: x}]\n",
+       "repeat: 'x' is not a number", 5, 63},
+      {PROTOCOL_HEAD "waveform: {kind: ramp, to: 8000, duration: 1 s}\n",
+       "'8000' has no unit: a voltage is due; write for example '8000 V'", 5, 28},
       {PROTOCOL_HEAD SQUARE "rat: 2 kHz\n", "did you mean 'rate'?", 6, 1},
       {PROTOCOL_HEAD SQUARE "gain: 1000\n", "belongs into a section such as 'amplifier'", 6, 1},
       {PROTOCOL_HEAD SQUARE "rate: 1000\n", "has no unit", 6, 7},
@@ -189,6 +195,26 @@ static void test_errors_have_places(void **state)
                wrong[i].text);
     }
   }
+}
+
+/* Errors beyond those that are kept still end the reading: nothing is made of what is left out. */
+static void test_many_errors(void **state)
+{
+  (void)state;
+  struct dea_text text = {.ctx = ctx};
+  struct dea_protocol *p;
+  dea_finding_clear(ctx);
+  dea_text_add(&text, PROTOCOL_HEAD "sequence:\n");
+  for (int i = 0; i < 150; i++) {
+    dea_text_add(&text, "  - {waveform: {kind: square, high: x, frequency: 1 Hz}}\n");
+  }
+  assert_int_equal(protocol_of(ctx, dea_text_get(&text), &p), DEA_E_DESIGN);
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 150);
+  assert_null(find_error(ctx, "takes no time"));
+  // and the same file anew, whose errors are known already
+  assert_int_equal(protocol_of(ctx, PROTOCOL_HEAD "sequence: [{pause: 1 s}]\n", &p), DEA_E_DESIGN);
+  assert_int_equal(protocol_of(ctx, PROTOCOL_HEAD "sequence: [{pause: 1 s}]\n", &p), DEA_E_DESIGN);
+  dea_text_free(&text);
 }
 
 /* Errors of the design stand in the design, and the protocol is not read. */
@@ -252,6 +278,7 @@ int main(void)
       cmocka_unit_test(test_corners),
       cmocka_unit_test(test_waveform_alone_and_overrides),
       cmocka_unit_test(test_errors_have_places),
+      cmocka_unit_test(test_many_errors),
       cmocka_unit_test(test_wrong_design),
       cmocka_unit_test(test_channels),
       cmocka_unit_test(test_memory),

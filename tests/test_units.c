@@ -47,6 +47,9 @@ static void test_refuses_with_a_reason(void **state)
     const char *text, *unit, *example, *why;
   } bad[] = {
       {"100", "m", "100 um", "'100' has no unit: a length is due; write for example '100 um'"},
+      {"8000", "V", "8 kV", "'8000' has no unit: a voltage is due; write for example '8000 V'"},
+      {"-100", "V", "8 kV", "'-100' has no unit: a voltage is due; write for example '-100 V'"},
+      {"8", "V", "8 kV", "'8' has no unit: a voltage is due; write for example '8 V' or '8 kV'"},
       {"3 kV", "m", "2 mm", "'3 kV' is a voltage, but a length is due, such as '2 mm'"},
       {"1.5 mm", "1", "1.5", "'1.5 mm' is a length, but a number without a unit is due"},
       {"150 %", "1", "1.5", "'150 %' is a percentage, but a number without a unit is due"},

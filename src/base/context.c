@@ -20,6 +20,7 @@ struct dea_context {
   char chain[CHAIN_MAX];
   struct dea_finding *findings;
   size_t finding_count, finding_room;
+  size_t errors, errors_kept; // all that were added; those among the findings
   char **names;
   size_t name_count, name_room;
   struct kept_object kept[KEPT_MAX];
@@ -176,6 +177,20 @@ static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *ro
   return moved;
 }
 
+static bool is_known(const struct dea_context *ctx, enum dea_severity severity,
+                     struct dea_location location, const char *text)
+{
+  for (size_t i = 0; i < ctx->finding_count; i++) {
+    const struct dea_finding *old = &ctx->findings[i];
+    if (old->severity == severity && old->location.file == location.file &&
+        old->location.line == location.line && old->location.column == location.column &&
+        strcmp(old->text, text) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
                            struct dea_location location, const char *format, ...)
 {
@@ -184,13 +199,10 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  for (size_t i = 0; i < ctx->finding_count; i++) {
-    const struct dea_finding *old = &ctx->findings[i];
-    if (old->severity == severity && old->location.file == location.file &&
-        old->location.line == location.line && old->location.column == location.column &&
-        strcmp(old->text, text) == 0) {
-      return DEA_OK;
-    }
+  bool error = severity == DEA_ERROR;
+  ctx->errors += error; // also of what is not kept: callers stop when the number has grown
+  if ((error && ctx->errors_kept == DEA_ERRORS_KEPT) || is_known(ctx, severity, location, text)) {
+    return DEA_OK;
   }
   void *items =
       grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room, sizeof *ctx->findings);
@@ -203,14 +215,18 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
     return DEA_E_MEMORY;
   }
   ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, location, copy};
-  return DEA_OK;
+  ctx->errors_kept += error;
+  return error && ctx->errors_kept == DEA_ERRORS_KEPT
+             ? dea_finding_add(ctx, DEA_NOTE, location, "errors after the first %d are not shown",
+                               DEA_ERRORS_KEPT)
+             : DEA_OK;
 }
 
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least)
 {
-  size_t count = 0;
+  size_t count = ctx->errors;
   for (size_t i = 0; i < ctx->finding_count; i++) {
-    count += ctx->findings[i].severity >= at_least;
+    count += ctx->findings[i].severity >= at_least && ctx->findings[i].severity < DEA_ERROR;
   }
   return count;
 }
@@ -226,7 +242,7 @@ void dea_finding_clear(struct dea_context *ctx)
   for (size_t i = 0; i < ctx->finding_count; i++) {
     dea_free(ctx, ctx->findings[i].text);
   }
-  ctx->finding_count = 0;
+  ctx->finding_count = ctx->errors = ctx->errors_kept = 0;
 }
 
 const char *dea_intern(struct dea_context *ctx, const char *text)

@@ -91,9 +91,13 @@ void dea_context_clear(struct dea_context *ctx);
     }                                                                                              \
   } while (0)
 
-/* Adds a finding (printf style); the same one is kept once. Fails only for want of memory. */
+/* Adds a finding (printf style); the same one is kept once, and of errors the first ones. Fails
+ * only for want of memory. */
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
                            struct dea_location location, const char *format, ...) DEA_PRINTF(4, 5);
+enum { DEA_ERRORS_KEPT = 100 };
+/* Findings of that severity and above; of errors every one that was added, kept or not, so that a
+ * number that has not grown means that there was none. */
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least);
 /* All findings in the order they were added; lent until the next dea_finding_add. */
 const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count);

@@ -71,11 +71,11 @@ struct dea_reader {
 };
 
 /* Reads a section into the struct at base, which is zeroed memory. path: its dotted path, "" for
- * the file itself. Errors are findings (at most DEA_SCHEMA_ERRORS_MAX are kept); the status is
- * DEA_OK also then, and only other failures (memory, unit database) come back. */
+ * the file itself. Errors are findings; the status is DEA_OK also then, and only
+ * other failures (memory, unit database) come back. What an error left out is NAN, -1 or NULL: a
+ * caller goes on only when the number of errors has not grown. */
 dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_record *record,
                            const struct dea_node *node, const char *path, void *base);
-enum { DEA_SCHEMA_ERRORS_MAX = 100 };
 
 /* Adds a value to the reader's list. text: lent for as long as the list. */
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,

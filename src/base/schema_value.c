@@ -12,22 +12,12 @@ enum { MESSAGE_SIZE = 800 };
 dea_status dea_schema_error(const struct dea_reader *reader, struct dea_location location,
                             const char *format, ...)
 {
-  size_t count = dea_finding_count(reader->ctx, DEA_ERROR);
-  if (count >= DEA_SCHEMA_ERRORS_MAX) {
-    return DEA_OK;
-  }
   char text[MESSAGE_SIZE];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, location, "%s", text));
-  if (count + 1 == DEA_SCHEMA_ERRORS_MAX) {
-    DEA_TRY(reader->ctx,
-            dea_finding_add(reader->ctx, DEA_NOTE, location,
-                            "errors after the first %d are not shown", DEA_SCHEMA_ERRORS_MAX));
-  }
-  return DEA_OK;
+  return dea_finding_add(reader->ctx, DEA_ERROR, location, "%s", text);
 }
 
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,

@@ -15,7 +15,7 @@ struct dea_schema_value {
   const char *path;
 };
 
-/* Adds an error as a finding, up to DEA_SCHEMA_ERRORS_MAX of them. */
+/* Adds an error as a finding. */
 dea_status dea_schema_error(const struct dea_reader *reader, struct dea_location location,
                             const char *format, ...) DEA_PRINTF(3, 4);
 /* Reads one value into the member at target and lists it. */

@@ -220,6 +220,22 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
   return converter != NULL;
 }
 
+/* Says that a number lacks its unit. Of a voltage who follows the advice is safe: V comes first,
+ * and a bare 8000 is not made 8000 kV. */
+static void explain_bare(const char *text, double value, const struct dea_measure *due,
+                         char why[DEA_WHY_SIZE])
+{
+  static const double least_V = 100; // below it a number may have been meant in kV
+  const char *unit = example_unit(due);
+  bool voltage = strcmp(due->unit, "V") == 0, other = voltage && fabs(value) < least_V;
+  int length =
+      snprintf(why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %s'",
+               text, dimension_name(due->unit), text, voltage ? "V" : unit);
+  if (other && strcmp(unit, "V") != 0) {
+    snprintf(why + length, DEA_WHY_SIZE - (size_t)length, " or '%.40s %s'", text, unit);
+  }
+}
+
 bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measure due, double *si,
                     char why[DEA_WHY_SIZE])
 {
@@ -234,8 +250,7 @@ bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measur
       *si = value;
       return true;
     }
-    snprintf(why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %s'",
-             text, dimension_name(due.unit), text, example_unit(&due));
+    explain_bare(text, value, &due, why);
     return false;
   }
   if (!is_plain_unit(unit)) {

@@ -86,6 +86,10 @@ struct dea_protocol {
 dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
                              const struct dea_override *overrides, size_t override_count,
                              struct dea_protocol **out);
+/* The same of a text; file: its name, for places and for what it names beside it. */
+dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, const char *text,
+                                    size_t length, const struct dea_override *overrides,
+                                    size_t override_count, struct dea_protocol **out);
 void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol);
 extern const struct dea_record dea_protocol_record;
 

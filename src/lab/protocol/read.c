@@ -200,12 +200,13 @@ static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *r
   return DEA_OK;
 }
 
-static dea_status take_sequence(const struct dea_reader *reader, struct dea_protocol_raw *raw)
+/* errors: their number before the file was read. */
+static dea_status take_sequence(const struct dea_reader *reader, struct dea_protocol_raw *raw,
+                                size_t errors)
 {
   struct dea_context *ctx = reader->ctx;
   struct dea_protocol *protocol = &raw->protocol;
   const struct dea_node *root = dea_yaml_root(protocol->document);
-  size_t errors = dea_finding_count(ctx, DEA_ERROR);
   if (raw->waveform != NULL) {
     protocol->step_count = 1;
     raw->steps[0] = (struct dea_protocol_step){
@@ -234,6 +235,7 @@ static dea_status take_sequence(const struct dea_reader *reader, struct dea_prot
       DEA_TRY(ctx, count_cycles(ctx, &raw->steps[i]));
     }
   }
+  // A step may lack its waveform, or a number of it.
   return dea_finding_count(ctx, DEA_ERROR) == errors ? take_clock(ctx, raw) : DEA_OK;
 }
 
@@ -339,17 +341,18 @@ static dea_status copy_lists(struct dea_context *ctx, struct dea_protocol_raw *r
 }
 
 /* Fills *raw; what it owns is in raw->protocol and in its steps, also after a failure. */
-static dea_status read_raw(struct dea_context *ctx, const char *file,
-                           const struct dea_override *overrides, size_t override_count,
-                           struct dea_protocol_raw *raw)
+static dea_status read_raw(struct dea_context *ctx, const char *file, const char *text,
+                           size_t length, const struct dea_override *overrides,
+                           size_t override_count, struct dea_protocol_raw *raw)
 {
   struct dea_protocol *protocol = &raw->protocol;
-  size_t errors = dea_finding_count(ctx, DEA_ERROR), length;
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
   protocol->file = dea_intern(ctx, file);
-  if (protocol->file == NULL) {
+  protocol->text = dea_alloc(ctx, length + 1, 1);
+  if (protocol->file == NULL || protocol->text == NULL) {
     return DEA_E_MEMORY;
   }
-  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &protocol->text, &length));
+  memcpy(protocol->text, text, length);
   DEA_TRY(ctx, parse(ctx, protocol, length, overrides, override_count));
   DEA_TRY(ctx, complete_sim(ctx, protocol->document));
   const struct dea_node *root = dea_yaml_root(protocol->document);
@@ -364,7 +367,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *file,
   }
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_protocol_record, root, "", raw));
   if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, take_sequence(&reader, raw));
+    DEA_TRY(ctx, take_sequence(&reader, raw, errors));
     DEA_TRY(ctx, take_inputs(&reader, raw));
     DEA_TRY(ctx, take_amplifier(ctx, protocol));
     DEA_TRY(ctx, take_instruments(ctx, protocol));
@@ -397,16 +400,16 @@ static void clear_steps(struct dea_protocol_step *steps, size_t count)
   }
 }
 
-dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
-                             const struct dea_override *overrides, size_t override_count,
-                             struct dea_protocol **out)
+dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, const char *text,
+                                    size_t length, const struct dea_override *overrides,
+                                    size_t override_count, struct dea_protocol **out)
 {
   *out = NULL;
   struct dea_protocol_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
   if (raw == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = read_raw(ctx, file, overrides, override_count, raw);
+  dea_status status = read_raw(ctx, file, text, length, overrides, override_count, raw);
   if (status == DEA_OK) {
     *out = dea_alloc(ctx, 1, sizeof **out);
     status = *out != NULL ? DEA_OK : DEA_E_MEMORY;
@@ -419,6 +422,20 @@ dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
   }
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
+                             const struct dea_override *overrides, size_t override_count,
+                             struct dea_protocol **out)
+{
+  char *text;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &text, &length));
+  dea_status status =
+      dea_protocol_read_memory(ctx, file, text, length, overrides, override_count, out);
+  dea_free(ctx, text);
+  return status;
 }
 
 void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol)

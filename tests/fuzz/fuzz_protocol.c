@@ -1,0 +1,40 @@
+/* Fuzz target: reading a protocol and its instruments' sections, and checking what it would play,
+ * without playing it. Its paths count from examples/bench, where a design is. */
+#include "lab/instrument/instrument.h"
+
+#include <stdint.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void look(struct dea_context *ctx, const char *text, size_t length)
+{
+  struct dea_protocol *protocol;
+  dea_status status = dea_protocol_read_memory(ctx, DEA_SOURCE_DIR "/examples/bench/fuzz.yaml",
+                                               text, length, NULL, 0, &protocol);
+  if (status == DEA_E_DESIGN && dea_finding_count(ctx, DEA_ERROR) == 0) {
+    __builtin_trap(); // an error that nobody is told about
+  }
+  if (status == DEA_OK && dea_instrument_check(ctx, protocol) == DEA_OK &&
+      dea_finding_count(ctx, DEA_ERROR) == 0) {
+    struct dea_protocol_plan plan;
+    status = dea_protocol_check(ctx, protocol, &plan);
+    if (status == DEA_OK && (plan.highest_V > protocol->amplifier.highest_V.si * (1 + 1e-9) ||
+                             plan.lowest_V < protocol->amplifier.lowest_V.si * (1 + 1e-9))) {
+      __builtin_trap(); // more than the amplifier's largest voltage would be played
+    }
+  }
+  dea_protocol_destroy(ctx, protocol);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+  // One context for all inputs: reading the unit table takes longer than reading a protocol.
+  static struct dea_context *ctx;
+  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
+    return 0;
+  }
+  look(ctx, (const char *)data, size);
+  dea_finding_clear(ctx);
+  dea_context_clear(ctx);
+  return 0;
+}
