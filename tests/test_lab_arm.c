@@ -70,8 +70,47 @@ static void test_comedi(void **state)
   check("comedi", 1.01 * 20.0 / 65535);
 }
 
+/* A protocol from elsewhere that brings its own library: its code does not run, armed or not. */
+static void test_library_that_nobody_listed(void **state)
+{
+  (void)state;
+  static const char *const wrong[] = {"libraries: [other.so]\n", "libraries: [./own.so]\n",
+                                      "libraries: x\n", ""};
+  char text[4096], list[2048];
+  snprintf(text, sizeof text, "cp '%s/fake_comedi.so' '%s/own.so'", DEA_FAKE_FOLDER,
+           command_folder);
+  assert_int_equal(system(text), 0);
+  snprintf(text, sizeof text, "mkdir -p '%s/config/dea'", command_folder);
+  assert_int_equal(system(text), 0);
+  snprintf(text, sizeof text, "%s/config", command_folder);
+  assert_int_equal(setenv("XDG_CONFIG_HOME", text, 1), 0);
+  snprintf(text, sizeof text, protocol, "9 uA", "comedi", ".", "comedi");
+  char *name = strstr(text, "./fake_comedi.so");
+  snprintf(name, sizeof text - (size_t)(name - text), "%s/own.so}\n", command_folder);
+  command_write("p.yaml", text);
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    command_write("config/dea/instruments.yaml", wrong[i]);
+    assert_int_equal(command_run("drive p.yaml --arm -f -o none.h5"), 3);
+    assert_non_null(strstr(command_err, "is neither libcomedi.so.0 nor on your own list"));
+    assert_non_null(strstr(command_err, "/config/dea/instruments.yaml"));
+    assert_int_equal(command_run("recording none.h5"), 5);
+  }
+  assert_int_equal(command_run("drive p.yaml"), 3); // nobody has to arm to hear of it
+  snprintf(list, sizeof list, "libraries: ['%s/own.so']\n", command_folder);
+  command_write("config/dea/instruments.yaml", list);
+  if (command_run("drive p.yaml --arm -f -o r.h5") != 0) {
+    fail_msg("%s%s", command_out, command_err);
+  }
+  assert_int_equal(setenv("XDG_CONFIG_HOME", DEA_FAKE_FOLDER "/config", 1), 0);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nidaqmx), cmocka_unit_test(test_comedi)};
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_nidaqmx),
+      cmocka_unit_test(test_comedi),
+      cmocka_unit_test(test_library_that_nobody_listed),
+  };
+  return setenv("XDG_CONFIG_HOME", DEA_FAKE_FOLDER "/config", 1) != 0 ||
+         cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -22,8 +22,11 @@ struct dea_daq_raw {
           struct dea_daq_raw, queue_s, "queue",                                                    \
           "of the output that is held ready; as long it takes until a stop is heard of", "0.25 s", \
           60),                                                                                     \
-      DEA_INSTRUMENT_LABEL(struct dea_daq_raw, library, "library", "file of the library",          \
-                           library_usual, .default_text = library_usual)
+      DEA_INSTRUMENT_LABEL(                                                                        \
+          struct dea_daq_raw, library, "library",                                                  \
+          "file of the library; another than the usual one must be on the user's "                 \
+          "own list",                                                                              \
+          library_usual, .default_text = library_usual)
 
 /* Longest time that a driver may take for what should be done at once. */
 #define DEA_DAQ_PATIENCE_S 2.0

@@ -7,6 +7,7 @@
 #include "lab/instrument/comedi_library.h"
 #include "lab/instrument/daq.h"
 #include "lab/instrument/instrument_make.h"
+#include "lab/instrument/library.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -21,10 +22,11 @@ enum { RECEIVE_SIZE = 16384, TESTS = 4, CHANNELS_MAX = DEA_PROTOCOL_INPUTS_MAX }
 
 static const double rate_least_Hz = 0.25; // a period is 32 bits of ns
 
+#define USUAL_LIBRARY "libcomedi.so.0"
 static const char *const wirings[] = {"referenced", "non_referenced", "differential", NULL};
 
 static const struct dea_field fields[] = {
-    DEA_DAQ_FIELDS("comedi", "its file", "/dev/comedi0", wirings, "differential", "libcomedi.so.0"),
+    DEA_DAQ_FIELDS("comedi", "its file", "/dev/comedi0", wirings, "differential", USUAL_LIBRARY),
 };
 const struct dea_record dea_instrument_comedi_record = {
     "comedi", "plays and measures with a DAQ that Linux has a driver for", fields,
@@ -77,7 +79,8 @@ static dea_status check(const struct dea_reader *reader, const void *data,
                         const struct dea_protocol *protocol)
 {
   const struct dea_label *output = &protocol->amplifier.terminal;
-  (void)data;
+  const struct dea_daq_raw *raw = data;
+  DEA_TRY(reader->ctx, dea_library_check(reader, &raw->library, USUAL_LIBRARY));
   if (protocol->rate_Hz.si < rate_least_Hz) {
     DEA_TRY(reader->ctx, dea_schema_error(reader, protocol->rate_Hz.location,
                                           "comedi's clocks have at least %g Hz", rate_least_Hz));

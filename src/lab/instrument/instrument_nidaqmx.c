@@ -65,6 +65,7 @@ static const struct dea_library_symbol symbols[] = {
 #undef SYMBOL
 };
 
+#define USUAL_LIBRARY "libnidaqmx.so.1"
 static const char *const wirings[] = {"default",      "referenced",         "non_referenced",
                                       "differential", "pseudodifferential", NULL};
 static const int32_t wiring_values[] = {DEFAULT, REFERENCED, NON_REFERENCED, DIFFERENTIAL,
@@ -72,7 +73,7 @@ static const int32_t wiring_values[] = {DEFAULT, REFERENCED, NON_REFERENCED, DIF
 
 static const struct dea_field fields[] = {
     DEA_DAQ_FIELDS("nidaqmx", "its name in NI MAX or `nilsdev`", "Dev1", wirings, "default",
-                   "libnidaqmx.so.1"),
+                   USUAL_LIBRARY),
 };
 const struct dea_record dea_instrument_nidaqmx_record = {
     "nidaqmx", "plays and measures with a DAQ of National Instruments", fields,
@@ -86,6 +87,14 @@ struct nidaqmx {
   const struct dea_protocol *protocol;
   void *output, *input; // tasks; NULL: none
 };
+
+static dea_status check(const struct dea_reader *reader, const void *data,
+                        const struct dea_protocol *protocol)
+{
+  const struct dea_daq_raw *raw = data;
+  (void)protocol;
+  return dea_library_check(reader, &raw->library, USUAL_LIBRARY);
+}
 
 /* Passes a negative code on with the library's own sentence; positive ones are warnings. */
 static dea_status judge(struct dea_context *ctx, const struct nidaqmx *n, int32_t code,
@@ -321,6 +330,7 @@ const struct dea_instrument_type dea_instrument_nidaqmx = {
     .record = &dea_instrument_nidaqmx_record,
     .raw_size = sizeof(struct dea_daq_raw),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
+    .check = check,
     .open = open_it,
     .start = start,
     .put = put,
