@@ -78,7 +78,7 @@ static void test_answer_to_a_slow_ripple(void **state)
   (void)state;
   struct dea_device d = test_star(4);
   struct dea_load_point at, less, more, points[2];
-  const struct dea_ripple ripple = {.amplitude_V = 50, .damping_ratio = 0.02};
+  const struct dea_ac_excitation excitation = {.amplitude_V = 50, .damping_ratio = 0.02};
   const double frequency_Hz[] = {0.01, 300};
   d.film.density_kg_per_m3 = 970;
   d.fibre.density_kg_per_m3 = 1375;
@@ -86,7 +86,7 @@ static void test_answer_to_a_slow_ripple(void **state)
   assert_int_equal(dea_solid_module.solve(ctx, model, 3980, &less), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4020, &more), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4000, &at), DEA_OK);
-  if (dea_solid_module.respond(ctx, model, &at, &ripple, frequency_Hz, 2, points) != DEA_OK) {
+  if (dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 2, points) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   double centre = 50 * (more.centre_z_m - less.centre_z_m) / 40;
@@ -103,7 +103,7 @@ static void test_answer_to_a_slow_ripple(void **state)
 static void test_answer_of_a_viscous_film(void **state)
 {
   (void)state;
-  const struct dea_ripple ripple = {.amplitude_V = 1};
+  const struct dea_ac_excitation excitation = {.amplitude_V = 1};
   const double frequency_Hz[] = {1e-4, 1, 20};
   struct dea_device d = test_star(4);
   struct dea_load_point at, elastic[3], viscous[3];
@@ -112,7 +112,7 @@ static void test_answer_of_a_viscous_film(void **state)
   for (int k = 0; k < 2; k++) {
     struct dea_model *model = create(&d);
     assert_int_equal(dea_solid_module.solve(ctx, model, 3000, &at), DEA_OK);
-    if (dea_solid_module.respond(ctx, model, &at, &ripple, frequency_Hz, 3,
+    if (dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 3,
                                  k == 0 ? elastic : viscous) != DEA_OK) {
       fail_msg("%s", dea_context_message(ctx));
     }

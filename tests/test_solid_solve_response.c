@@ -1,5 +1,5 @@
-/* Answer of a solid to a ripple of the voltage: a body of one degree of freedom in closed form, and
- * a bender against static solves with the inertia as a load. */
+/* Response of a solid to an AC excitation of the voltage: a body of one degree of freedom in closed
+ * form, and a bender against static solves with the inertia as a load. */
 // ctest: solid
 #include "devices.h"
 #include "material/plane.h"
@@ -221,7 +221,7 @@ static void at_rest(size_t dofs, double voltage_V, const double *force, double s
 }
 
 /* (K - w^2 M + i w d M) q = f says K q_r = f + w^2 M q_r + w d M q_i and K q_i = w^2 M q_i - w d M
- * q_r: the static answers to a ripple with these loads, and to these loads alone. */
+ * q_r: the static responses to an AC excitation with these loads, and to these loads alone. */
 static void check_at(const struct dea_solid_response *response, double w, double d)
 {
   const struct dea_damping damping = {.mass_per_s = d};

@@ -209,7 +209,7 @@ static void test_voltage_takes_tension_away(void **state)
     const struct dea_damping none = {0};
     double out[1][2][3], w = sqrt(rest[0]);
     const size_t node = 0;
-    assert_int_equal( // no ripple about what does not stand
+    assert_int_equal( // no excitation about what does not stand
         dea_solid_respond_viscous(ctx, solid, &branches, &none, &w, 1, &node, 1, out),
         left > 0 ? DEA_OK : DEA_E_NOT_CONVERGED);
   }

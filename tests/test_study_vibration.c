@@ -71,18 +71,19 @@ static dea_status modes(struct dea_context *context, struct dea_model *model,
 }
 
 static dea_status respond(struct dea_context *context, struct dea_model *model,
-                          const struct dea_load_point *at, const struct dea_ripple *ripple,
-                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+                          const struct dea_load_point *at,
+                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                          size_t count, struct dea_load_point *points)
 {
   (void)context;
   double square = square_Hz2(model->voltage_V);
   for (size_t i = 0; i < count; i++) {
     double f = frequency_Hz[i], gap = 1 - f * f / square;
-    double loss = 2 * ripple->damping_ratio * f / sqrt(square);
+    double loss = 2 * excitation->damping_ratio * f / sqrt(square);
     points[i] = *at;
     points[i].frequency_Hz = f;
-    points[i].ripple_V = ripple->amplitude_V;
-    points[i].centre_amplitude_m = push * ripple->amplitude_V / hypot(gap, loss);
+    points[i].ripple_V = excitation->amplitude_V;
+    points[i].centre_amplitude_m = push * excitation->amplitude_V / hypot(gap, loss);
     points[i].centre_phase_rad = pi - atan2(loss, gap);
   }
   return DEA_OK;

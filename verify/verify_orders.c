@@ -2,7 +2,7 @@
 #include "manufactured.h"
 
 #include "model/model.h"
-#include "model/solid/answer/state.h"
+#include "model/solid/adapter/state.h"
 
 static struct dea_context *ctx;
 static const double pi = 3.14159265358979323846;

@@ -2,7 +2,7 @@
 #include "bodies.h"
 
 #include "model/model.h"
-#include "model/solid/answer/state.h"
+#include "model/solid/adapter/state.h"
 #include "model/solid/motion/vibration.h"
 
 static bool small;

@@ -1,5 +1,5 @@
-/* Vibrations and the answer to a ripple against closed forms and a published measurement, and what
- * the paper's actuators do. */
+/* Vibrations and the response to an AC excitation against closed forms and a published measurement,
+ * and what the paper's actuators do. */
 #include "runs.h"
 
 #include "material/plane.h"
@@ -305,15 +305,16 @@ static void whole_disc(void)
   puts("");
 }
 
-/* ---- answer to a ripple ---- */
+/* ---- response to an AC excitation ---- */
 
-/* Slow ripple against the slope of the static answer, and what 5, 10 and 100 Hz make of it. */
-static void ripple(void)
+/* Slow excitation against the slope of the static answer, and what 5, 10 and 100 Hz make of it. */
+static void excitation(void)
 {
   static const double Hz[] = {0.01, 5, 10, 100, 250}, step_V = 10;
   static const struct variant elastic = {{{"film.viscosity", "none"}}};
-  const struct dea_ripple one = {.amplitude_V = 1, .damping_ratio = 0.02};
-  puts("## Ripple of the voltage\n\nz of the centre per volt of a ripple about a bias, damping "
+  const struct dea_ac_excitation one = {.amplitude_V = 1, .damping_ratio = 0.02};
+  puts("## AC excitation of the voltage\n\nz of the centre per volt of an AC excitation about a "
+       "bias, damping "
        "0.02 of the "
        "critical one for each mode. Slope: of static solves 10 V to both sides. Last columns: "
        "amplitude\nat "
@@ -351,7 +352,8 @@ int main(int argc, char **argv)
   if (dea_context_create(NULL, &ctx) != DEA_OK || dea_solid_start(ctx) != DEA_OK) {
     return 1;
   }
-  puts("# Small vibrations, and the answer to a ripple of the voltage\n\nMade by `scripts/verify "
+  puts("# Small vibrations, and the response to an AC excitation of the voltage\n\nMade by "
+       "`scripts/verify "
        "vibration`; not to be edited. Theory: [vibration.md](../theory/vibration.md).\n");
   rectangles();
   softening();
@@ -360,7 +362,7 @@ int main(int argc, char **argv)
   if (!small) {
     whole_disc();
   }
-  ripple();
+  excitation();
   dea_context_destroy(ctx);
   return verify_end();
 }

@@ -131,7 +131,7 @@ struct dea_design {
       struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: 0 and quarters of the highest
       size_t voltage_count;
     } modal;
-    struct { // study of the answer to a ripple; without a bias nothing is computed
+    struct { // study of the response to an AC excitation; without a bias nothing is computed
       struct dea_quantity biases_V[DEA_DESIGN_STOPS_MAX];
       size_t bias_count;
       struct dea_quantity ripple_V, from_Hz, to_Hz, points;

@@ -43,7 +43,7 @@ static const struct dea_field frequency_fields[] = {
      .list_max = DEA_DESIGN_STOPS_MAX,
      .element_size = sizeof(struct dea_quantity),
      .count_offset = AT(frequency.bias_count),
-     .doc = "voltages that the ripple lies upon, in the order to be computed",
+     .doc = "voltages that the excitation lies upon, in the order to be computed",
      .example = "[4 kV, 6 kV]"},
     {.key = "ripple",
      .kind = DEA_FIELD_NUMBER,
@@ -52,7 +52,7 @@ static const struct dea_field frequency_fields[] = {
      .above_min = true,
      .max = 1e6,
      .default_text = "1 V",
-     .doc = "amplitude of the ripple: small against the bias",
+     .doc = "amplitude of the excitation: small against the bias",
      .example = "100 V"},
     {.key = "from",
      .kind = DEA_FIELD_NUMBER,
@@ -109,5 +109,5 @@ static const struct dea_field frequency_fields[] = {
 };
 
 const struct dea_record dea_frequency_record = {
-    "frequency", "answer to a ripple of the voltage", frequency_fields,
+    "frequency", "response to an AC excitation of the voltage", frequency_fields,
     sizeof frequency_fields / sizeof frequency_fields[0]};

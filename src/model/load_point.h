@@ -56,13 +56,14 @@
     "share of the mode's kinetic energy that is out of the plane")                                 \
   X(mode_centre, "1", "%", 100.0, "centre",                                                        \
     "displacement of the centre out of the plane over the mode's largest one")                     \
-  X(ripple_V, "V", "V", 1.0, "ripple", "amplitude of the ripple upon the voltage")                 \
-  X(centre_amplitude_m, "m", "nm", 1e9, "amplitude centre", "of the centre's z, by the ripple")    \
+  X(ripple_V, "V", "V", 1.0, "ripple", "amplitude of the excitation upon the voltage")             \
+  X(centre_amplitude_m, "m", "nm", 1e9, "amplitude centre",                                        \
+    "of the centre's z, by the excitation")                                                        \
   X(centre_phase_rad, "rad", "deg", 57.29577951308232, "phase centre",                             \
-    "of the centre's z against the ripple")                                                        \
+    "of the centre's z against the excitation")                                                    \
   X(fibre_tip_amplitude_m, "m", "nm", 1e9, "amplitude fibre tip", "of the fibre tip's z")          \
   X(fibre_tip_phase_rad, "rad", "deg", 57.29577951308232, "phase fibre tip",                       \
-    "of the fibre tip's z against the ripple")
+    "of the fibre tip's z against the excitation")
 
 struct dea_load_point {
 #define DEA_LOAD_POINT_MEMBER(member, si, display, factor, header, meaning) double member;

@@ -61,9 +61,9 @@ struct dea_probe {
   bool from_fibre_side; // comes from +z
 };
 
-/* A small ripple of the voltage upon a bias, and the viscous damping of what it moves: a share of
- * the critical damping of each mode, and shares of mass and stiffness. */
-struct dea_ripple {
+/* A small excitation of the voltage upon a bias, and the viscous damping of what it moves: a share
+ * of the critical damping of each mode, and shares of mass and stiffness. */
+struct dea_ac_excitation {
   double amplitude_V;
   double damping_ratio, damping_mass_per_s, damping_stiffness_s;
 };
@@ -116,10 +116,10 @@ struct dea_model_type {
   dea_status (*modes)(struct dea_context *ctx, struct dea_model *model,
                       const struct dea_load_point *at, size_t count, struct dea_load_point *points,
                       struct dea_field_mesh **shapes);
-  /* Answer to a ripple upon the voltage of the last point solved, `at`, which has to be stable:
-   * copies of it with the keys of an answer, [count]. NULL as above. */
+  /* Response to an AC excitation upon the voltage of the last point solved, `at`, which has to be
+   * stable: copies of it with the keys of an answer, [count]. NULL as above. */
   dea_status (*respond)(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_load_point *at, const struct dea_ripple *ripple,
+                        const struct dea_load_point *at, const struct dea_ac_excitation *excitation,
                         const double *frequency_Hz, size_t count, struct dea_load_point *points);
   /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
    * (dea_field_mesh_destroy), NULL on failure. */

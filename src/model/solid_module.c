@@ -85,10 +85,12 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
 }
 
 static dea_status respond(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_load_point *at, const struct dea_ripple *ripple,
-                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+                          const struct dea_load_point *at,
+                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                          size_t count, struct dea_load_point *points)
 {
-  DEA_TRY(ctx, model->type->respond(ctx, model->inner, at, ripple, frequency_Hz, count, points));
+  DEA_TRY(ctx,
+          model->type->respond(ctx, model->inner, at, excitation, frequency_Hz, count, points));
   return DEA_OK;
 }
 

@@ -1,4 +1,5 @@
-/* Answer to a ripple of the voltage: amplitude and phase against the frequency, for each bias. */
+/* Response to an AC excitation of the voltage: amplitude and phase against the frequency, for each
+ * bias. */
 #include "output/figure.h"
 
 #include <math.h>
@@ -107,6 +108,6 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 
 const struct dea_figure dea_figure_bode = {
     .name = "bode",
-    .caption = "displacement that a small ripple of the voltage makes, and its phase",
+    .caption = "displacement that a small AC excitation of the voltage makes, and its phase",
     .build = build,
 };

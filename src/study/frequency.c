@@ -1,5 +1,5 @@
-/* Study "frequency": amplitude and phase of the displacements that a small ripple of the voltage
- * makes about a bias. */
+/* Study "frequency": amplitude and phase of the displacements that a small AC excitation of the
+ * voltage makes about a bias. */
 #include "study/study.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   const struct dea_design *design = result->design;
   size_t count = (size_t)design->compute.frequency.points.si;
   double from = design->compute.frequency.from_Hz.si, to = design->compute.frequency.to_Hz.si;
-  const struct dea_ripple ripple = {
+  const struct dea_ac_excitation excitation = {
       .amplitude_V = design->compute.frequency.ripple_V.si,
       .damping_ratio = design->compute.frequency.damping.si,
       .damping_mass_per_s = design->compute.frequency.damping_mass_per_s.si,
@@ -25,7 +25,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
     frequency_Hz[i] = from * pow(to / from, (double)i / (double)(count - 1));
   }
   if (status == DEA_OK) {
-    status = type->respond(ctx, model, at, &ripple, frequency_Hz, count, points);
+    status = type->respond(ctx, model, at, &excitation, frequency_Hz, count, points);
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = dea_curve_add_point(ctx, curve, &points[i]);

@@ -289,7 +289,7 @@ static size_t add_frequency(struct dea_text *out, const struct dea_result *resul
     }
     double left = left_at_touch(points, first, end);
     if (isfinite(left)) {
-      dea_text_add(out, "%s about ", said++ > 0 ? ";" : " Of a small ripple of the voltage");
+      dea_text_add(out, "%s about ", said++ > 0 ? ";" : " Of a small AC excitation of the voltage");
       dea_html_number(out, 1e-3 * points[first].voltage_V, 3);
       dea_text_add(out, " kV the centre follows at 10 Hz by ");
       dea_html_number(out, left, 4);

@@ -1,5 +1,5 @@
-/* Answer to a ripple of the voltage: superposition of modes, and a series for those that are higher
- * (docs/theory/vibration.md). */
+/* Response to an AC excitation of the voltage: superposition of modes, and a series for those that
+ * are higher (docs/theory/vibration.md). */
 #include "model/solid/assembly/internal.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/motion/vibration.h"
@@ -103,7 +103,7 @@ static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, doub
   DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, 0, &unstable));
   if (unstable > 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                    "the equilibrium that the voltage ripples about is unstable (%zu modes)",
+                    "the equilibrium that the voltage oscillates about is unstable (%zu modes)",
                     unstable);
   }
   double range = beyond * highest;
@@ -145,8 +145,9 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
 {
   *out = NULL;
   if (s->field != NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "the answer to a ripple of the voltage needs the field V/h, not a coupled one");
+    return dea_fail(
+        ctx, DEA_E_UNSUPPORTED,
+        "the response to an AC excitation of the voltage needs the field V/h, not a coupled one");
   }
   double *force = dea_alloc(ctx, s->dofs, sizeof *force);
   struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);

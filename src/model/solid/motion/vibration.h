@@ -1,5 +1,6 @@
 /* Small motions of a solid about its last equilibrium (docs/theory/vibration.md): K v = omega^2 M v
- * with the tangent K there and the consistent mass M, and the answer to a ripple of the voltage. */
+ * with the tangent K there and the consistent mass M, and the response to an AC excitation of the
+ * voltage. */
 #ifndef DEA_MODEL_SOLID_MOTION_VIBRATION_H
 #define DEA_MODEL_SOLID_MOTION_VIBRATION_H
 
@@ -19,7 +20,7 @@ dea_status dea_solid_vibrations(struct dea_context *ctx, struct dea_solid *solid
 dea_status dea_solid_vibration_count(struct dea_context *ctx, struct dea_solid *solid,
                                      double square, size_t *count);
 
-/* ---- answer to a ripple of the voltage ---- */
+/* ---- response to an AC excitation of the voltage ---- */
 
 /* Viscous damping: a matrix mass M + stiffness K, and for each mode this ratio of its critical one,
  * which those above the modes of the response do without. */
@@ -39,8 +40,8 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
                                      double highest_rad_per_s, struct dea_solid_response **out);
 void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *response);
 
-/* Displacements of a node per volt of the ripple dV exp(i omega t) [m/V]: real and imaginary part.
- * omega 0: slope of the static displacement. */
+/* Displacements of a node per volt of the excitation dV exp(i omega t) [m/V]: real and imaginary
+ * part. omega 0: slope of the static displacement. */
 void dea_solid_response_at(const struct dea_solid_response *response, size_t node, double rad_per_s,
                            const struct dea_damping *damping, double real[3], double imaginary[3]);
 

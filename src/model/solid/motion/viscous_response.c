@@ -1,5 +1,5 @@
-/* Answer of a solid with branches to a ripple of the voltage: its stiffness is complex and depends
- * on the frequency, so that the system is solved at each (docs/theory/vibration.md). */
+/* Response of a solid with branches to an AC excitation of the voltage: its stiffness is complex
+ * and depends on the frequency, so that the system is solved at each (docs/theory/vibration.md). */
 #include "model/solid/assembly/internal.h"
 #include "model/solid/assembly/internal_variables.h"
 #include "model/solid/motion/vibration.h"
@@ -59,7 +59,7 @@ static dea_status check_stable(struct dea_context *ctx, struct dea_solid *s)
   return negative == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                        "the equilibrium that the voltage ripples about is unstable (%d modes)",
+                        "the equilibrium that the voltage oscillates about is unstable (%d modes)",
                         negative);
 }
 
@@ -291,10 +291,11 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
   size_t layers[PARTS + LAYERS_MAX] = {0};
   struct system y = {.solid = s, .branches = branches, .part = parts, .layer = layers};
   if (s->field != NULL || s->layer_count > LAYERS_MAX) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "the answer to a ripple of the voltage needs the field V/h, and at most %d "
-                    "layers",
-                    LAYERS_MAX);
+    return dea_fail(
+        ctx, DEA_E_UNSUPPORTED,
+        "the response to an AC excitation of the voltage needs the field V/h, and at most %d "
+        "layers",
+        LAYERS_MAX);
   }
   dea_status status = respond(ctx, &y, damping, rad_per_s, count, nodes, node_count, out);
   for (size_t p = 0; p < PARTS + LAYERS_MAX; p++) {

@@ -1,8 +1,8 @@
 /* A solid between electrodes in time: its steps together with those of the supply's circuit
  * (docs/theory/time.md). The voltage of a step is that of the circuit for the capacitance which the
  * film then has. */
-#ifndef DEA_MODEL_SOLID_ANSWER_CIRCUIT_STEP_H
-#define DEA_MODEL_SOLID_ANSWER_CIRCUIT_STEP_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_CIRCUIT_STEP_H
+#define DEA_MODEL_SOLID_ADAPTER_CIRCUIT_STEP_H
 
 #include "model/model.h"
 #include "model/solid/actuator/actuator.h"

@@ -1,4 +1,4 @@
-#include "model/solid/answer/state.h"
+#include "model/solid/adapter/state.h"
 
 #include "model/solid/assembly/internal.h"
 

@@ -1,8 +1,8 @@
 /* State of a solid between two solves: displacements, multipliers, voltage, dead loads, places of
  * held nodes and parameters of loads, and those of the equilibrium before, from which the next one
  * is predicted. Prescribed displacements and goals of loads are asked for anew after a load. */
-#ifndef DEA_MODEL_SOLID_ANSWER_STATE_H
-#define DEA_MODEL_SOLID_ANSWER_STATE_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_STATE_H
+#define DEA_MODEL_SOLID_ADAPTER_STATE_H
 
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"

@@ -1,6 +1,6 @@
 /* A rigid probe against the middle of the actuator, as study "force" presses it. */
-#ifndef DEA_MODEL_SOLID_ANSWER_INDENT_H
-#define DEA_MODEL_SOLID_ANSWER_INDENT_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_INDENT_H
+#define DEA_MODEL_SOLID_ADAPTER_INDENT_H
 
 #include "model/model.h"
 #include "model/solid/actuator/actuator.h"

@@ -1,6 +1,6 @@
 /* Small motions as a model tells of them (model/model.h): points and shapes. */
-#ifndef DEA_MODEL_SOLID_ANSWER_MOTIONS_H
-#define DEA_MODEL_SOLID_ANSWER_MOTIONS_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
+#define DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
 
 #include "model/model.h"
 #include "model/solid/actuator/actuator.h"
@@ -25,7 +25,8 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
                              const struct dea_load_point *at, size_t count,
                              struct dea_load_point *points, struct dea_field_mesh **shapes);
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *motions,
-                               const struct dea_load_point *at, const struct dea_ripple *ripple,
+                               const struct dea_load_point *at,
+                               const struct dea_ac_excitation *excitation,
                                const double *frequency_Hz, size_t count,
                                struct dea_load_point *points);
 

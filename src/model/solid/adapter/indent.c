@@ -1,4 +1,4 @@
-#include "model/solid/answer/indent.h"
+#include "model/solid/adapter/indent.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* The side that a film without tension has buckled to (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_ANSWER_BUCKLING_BRANCH_H
-#define DEA_MODEL_SOLID_ANSWER_BUCKLING_BRANCH_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_BUCKLING_BRANCH_H
+#define DEA_MODEL_SOLID_ADAPTER_BUCKLING_BRANCH_H
 
 #include "model/solid/assembly/solid.h"
 #include "model/solid/mesh/fibre_disc.h"

@@ -1,6 +1,6 @@
-#include "model/solid/answer/motions.h"
+#include "model/solid/adapter/motions.h"
 
-#include "model/solid/answer/fields.h"
+#include "model/solid/adapter/fields.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/motion/vibration.h"
 
@@ -178,7 +178,7 @@ static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions
   DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, 1, &square, NULL));
   if (!(square > 0)) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                    "the equilibrium that the voltage ripples about is unstable");
+                    "the equilibrium that the voltage oscillates about is unstable");
   }
   double first = sqrt(square), sum = (1 + spread) * first;
   damping->mass_per_s += 2 * damping->ratio * spread * square / sum;
@@ -207,12 +207,13 @@ static void amplitude_of(answer first, answer second, double ripple_V, double *a
 }
 
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,
-                               const struct dea_load_point *at, const struct dea_ripple *ripple,
+                               const struct dea_load_point *at,
+                               const struct dea_ac_excitation *excitation,
                                const double *frequency_Hz, size_t count,
                                struct dea_load_point *points)
 {
-  const struct dea_damping damping = {ripple->damping_ratio, ripple->damping_mass_per_s,
-                                      ripple->damping_stiffness_s};
+  const struct dea_damping damping = {excitation->damping_ratio, excitation->damping_mass_per_s,
+                                      excitation->damping_stiffness_s};
   const size_t nodes[PROBES] = {m->centre, m->centre_twin, m->tip};
   double *rad_per_s = dea_alloc(ctx, count, sizeof *rad_per_s);
   answer *out = dea_alloc(ctx, count * PROBES, sizeof *out);
@@ -228,7 +229,7 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
     struct dea_load_point *p = &points[i];
     *p = *at;
     p->frequency_Hz = frequency_Hz[i];
-    p->ripple_V = ripple->amplitude_V;
+    p->ripple_V = excitation->amplitude_V;
     amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
     if (m->has_tip) {
       amplitude_of(z[TIP], z[TIP], p->ripple_V, &p->fibre_tip_amplitude_m, &p->fibre_tip_phase_rad);

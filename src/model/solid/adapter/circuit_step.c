@@ -1,4 +1,4 @@
-#include "model/solid/answer/circuit_step.h"
+#include "model/solid/adapter/circuit_step.h"
 
 #include <math.h>
 

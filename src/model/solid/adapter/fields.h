@@ -1,6 +1,6 @@
 /* Fields of a solid at its last equilibrium (recover.h). */
-#ifndef DEA_MODEL_SOLID_ANSWER_FIELDS_H
-#define DEA_MODEL_SOLID_ANSWER_FIELDS_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_FIELDS_H
+#define DEA_MODEL_SOLID_ADAPTER_FIELDS_H
 
 #include "model/field_mesh.h"
 #include "model/solid/assembly/solid.h"

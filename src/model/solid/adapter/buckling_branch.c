@@ -1,4 +1,4 @@
-#include "model/solid/answer/buckling_branch.h"
+#include "model/solid/adapter/buckling_branch.h"
 
 #include "model/solid/equilibrium/branch.h"
 

@@ -1,4 +1,4 @@
-#include "model/solid/answer/fields.h"
+#include "model/solid/adapter/fields.h"
 
 #include "model/solid/assembly/internal.h"
 #include "model/solid/recovery/recover.h"

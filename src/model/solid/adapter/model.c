@@ -2,12 +2,12 @@
  * It is the whole of the loadable module that model/solid_module.c opens. */
 #include "model/make.h"
 #include "model/solid/actuator/actuator.h"
-#include "model/solid/answer/buckling_branch.h"
-#include "model/solid/answer/circuit_step.h"
-#include "model/solid/answer/fields.h"
-#include "model/solid/answer/indent.h"
-#include "model/solid/answer/motions.h"
-#include "model/solid/answer/state.h"
+#include "model/solid/adapter/buckling_branch.h"
+#include "model/solid/adapter/circuit_step.h"
+#include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/indent.h"
+#include "model/solid/adapter/motions.h"
+#include "model/solid/adapter/state.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/recovery/line_profile.h"
 
@@ -403,12 +403,13 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
 }
 
 static dea_status respond(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_load_point *at, const struct dea_ripple *ripple,
-                          const double *frequency_Hz, size_t count, struct dea_load_point *points)
+                          const struct dea_load_point *at,
+                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                          size_t count, struct dea_load_point *points)
 {
   struct dea_motions motions;
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, ripple, frequency_Hz, count, points));
+  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points));
   return DEA_OK;
 }
 
