@@ -1,0 +1,23 @@
+#!/bin/sh
+# Files of the source that the docs name exist, and so do files that they link to.
+set -eu
+cd "$1"
+list=$(
+  for page in *.md docs/*.md docs/*/*.md; do
+    [ "$page" = CHANGELOG.md ] && continue # it tells the past
+    grep -oE '(src|tests|verify|scripts|examples|cmake|web)/[A-Za-z0-9_./-]*[*<]?' "$page" |
+      grep -v '[*<]$' | sed "s|[.-]*\$||; s|^|$page .|; s| \\.| |" || true
+    grep -oE '\]\([^)#: ]+[)#]' "$page" | sed "s/^](//; s/[)#]\$//; s|^|$page $(dirname "$page")/|" || true
+  done | sort -u
+)
+[ -n "$list" ] || { echo "no path found: the check is broken"; exit 1; }
+printf '%s\n' "$list" | {
+  bad=0
+  while read -r page path; do
+    if [ ! -e "$path" ]; then
+      echo "$page: $path is not there"
+      bad=1
+    fi
+  done
+  exit $bad
+}
