@@ -39,6 +39,7 @@ extern "C" {
 #include "lab/import/import.h"
 #include "lab/import/mat.h"
 #include "lab/instrument/drive.h"
+#include "lab/instrument/zero.h"
 #include "lab/protocol/export.h"
 #include "lab/protocol/protocol.h"
 #include "lab/recording/recorder.h"

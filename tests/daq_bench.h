@@ -14,7 +14,7 @@ struct daq_bench {
   struct dea_protocol protocol;
   struct dea_protocol_input inputs[2];
   struct dea_instrument *instrument;
-  struct emulator_intake intake;
+  struct emulator_sink sink;
   char text[1024];
 };
 
@@ -38,7 +38,7 @@ static inline void daq_bench_begin(struct daq_bench *b, const char *library)
   b->fake = get();
   memset(b->fake, 0, sizeof *b->fake);
   b->fake->level_V = 3; // of whoever was here before
-  b->intake.channels = 2;
+  b->sink.channels = 2;
   b->protocol.rate_Hz.si = 1000;
   b->protocol.amplifier.control_V.si = 10;
   strcpy(b->protocol.amplifier.terminal.text, "ao1");
@@ -64,16 +64,16 @@ static inline void daq_bench_play(struct dea_context *context, struct daq_bench 
     if (i == 100) {
       assert_int_equal(type->start(context, b->instrument), DEA_OK);
     }
-    assert_int_equal(emulator_get(context, b->instrument, &b->intake, 0, 0, i >= 100 ? i : 0),
+    assert_int_equal(emulator_get(context, b->instrument, &b->sink, 0, 0, i >= 100 ? i : 0),
                      DEA_OK);
   }
-  assert_int_equal(emulator_get(context, b->instrument, &b->intake, 0, 0, count), DEA_OK);
-  assert_int_equal(b->intake.samples, count);
+  assert_int_equal(emulator_get(context, b->instrument, &b->sink, 0, 0, count), DEA_OK);
+  assert_int_equal(b->sink.samples, count);
   for (size_t i = 0; i < count; i++) {
     double wanted = 1e-3 * (double)i - 0.5;
     assert_close(b->fake->played[i], wanted, 0, tolerance_V);
-    assert_close(b->intake.volts[2 * i], wanted, 0, 2 * tolerance_V);
-    assert_close(b->intake.volts[2 * i + 1], 2 * wanted, 0, 3 * tolerance_V);
+    assert_close(b->sink.volts[2 * i], wanted, 0, 2 * tolerance_V);
+    assert_close(b->sink.volts[2 * i + 1], 2 * wanted, 0, 3 * tolerance_V);
   }
 }
 
@@ -82,7 +82,7 @@ static inline void daq_bench_end(struct dea_context *context, struct daq_bench *
   if (b->instrument != NULL) {
     emulator_close(context, b->instrument);
   }
-  free(b->intake.volts);
+  free(b->sink.volts);
   assert_int_equal(b->fake->tasks, 0); // everything was given back
 }
 

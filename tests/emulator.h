@@ -3,7 +3,7 @@
 #ifndef DEA_TESTS_EMULATOR_H
 #define DEA_TESTS_EMULATOR_H
 
-#include "lab/instrument/clock.h"
+#include "base/clock.h"
 #include "lab/instrument/instrument.h"
 #include "testing.h"
 
@@ -150,7 +150,7 @@ static inline void emulator_close(struct dea_context *ctx, struct dea_instrument
 }
 
 /* What an instrument hands over, kept. */
-struct emulator_intake {
+struct emulator_sink {
   size_t readings, profiles, samples, channels; // channels: of the samples
   struct {
     size_t reading;
@@ -164,49 +164,48 @@ struct emulator_intake {
 
 static inline dea_status emulator_reading(void *user, size_t reading, double time_s, double value)
 {
-  struct emulator_intake *intake = user;
-  if (intake->readings < 256) {
-    intake->reading[intake->readings].reading = reading;
-    intake->reading[intake->readings].time_s = time_s;
-    intake->reading[intake->readings].value = value;
+  struct emulator_sink *sink = user;
+  if (sink->readings < 256) {
+    sink->reading[sink->readings].reading = reading;
+    sink->reading[sink->readings].time_s = time_s;
+    sink->reading[sink->readings].value = value;
   }
-  intake->readings++;
+  sink->readings++;
   return DEA_OK;
 }
 
 static inline dea_status emulator_profile(void *user, double time_s, const double *z_m)
 {
-  struct emulator_intake *intake = user;
-  if (intake->profiles < 256) {
-    intake->profile_time_s[intake->profiles] = time_s;
+  struct emulator_sink *sink = user;
+  if (sink->profiles < 256) {
+    sink->profile_time_s[sink->profiles] = time_s;
   }
-  for (size_t i = 0; intake->profiles < 64 && i < intake->points && i < 64; i++) {
-    intake->z_m[intake->profiles][i] = z_m[i];
+  for (size_t i = 0; sink->profiles < 64 && i < sink->points && i < 64; i++) {
+    sink->z_m[sink->profiles][i] = z_m[i];
   }
-  intake->profiles++;
+  sink->profiles++;
   return DEA_OK;
 }
 
 static inline dea_status emulator_samples(void *user, const double *volts, size_t count)
 {
-  struct emulator_intake *intake = user;
-  size_t n = intake->channels;
-  intake->volts = realloc(intake->volts, (intake->samples + count) * n * sizeof *volts);
-  memcpy(intake->volts + intake->samples * n, volts, count * n * sizeof *volts);
-  intake->samples += count;
+  struct emulator_sink *sink = user;
+  size_t n = sink->channels;
+  sink->volts = realloc(sink->volts, (sink->samples + count) * n * sizeof *volts);
+  memcpy(sink->volts + sink->samples * n, volts, count * n * sizeof *volts);
+  sink->samples += count;
   return DEA_OK;
 }
 
 /* Gets for at most `seconds`, until the test finds what it wants; the first failure comes back. */
 static inline dea_status emulator_get(struct dea_context *ctx, struct dea_instrument *instrument,
-                                      struct emulator_intake *intake, size_t readings,
-                                      size_t profiles, size_t samples)
+                                      struct emulator_sink *sink, size_t readings, size_t profiles,
+                                      size_t samples)
 {
-  const struct dea_intake to = {intake, emulator_samples, emulator_profile, emulator_reading};
+  const struct dea_sink to = {sink, emulator_samples, emulator_profile, emulator_reading};
   // By time, not by calls: what comes byte by byte takes one for each.
   for (double until_s = dea_clock_s() + 8; dea_clock_s() < until_s;) {
-    if (intake->readings >= readings && intake->profiles >= profiles &&
-        intake->samples >= samples) {
+    if (sink->readings >= readings && sink->profiles >= profiles && sink->samples >= samples) {
       return DEA_OK;
     }
     dea_status status = instrument->type->get(ctx, instrument, 0.02, &to);

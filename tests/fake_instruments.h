@@ -90,7 +90,7 @@ static inline void fake_read(const struct fake_daq *daq, size_t i, double *volts
 }
 
 static inline dea_status fake_get(struct dea_context *context, struct dea_instrument *instrument,
-                                  double timeout_s, const struct dea_intake *intake)
+                                  double timeout_s, const struct dea_sink *sink)
 {
   struct fake_daq *daq = (struct fake_daq *)instrument;
   const struct fake_script *s = &daq->script;
@@ -110,7 +110,7 @@ static inline dea_status fake_get(struct dea_context *context, struct dea_instru
       break;
     }
     fake_read(daq, daq->got++, volts);
-    dea_status status = intake->samples(intake->user, volts, 1);
+    dea_status status = sink->samples(sink->user, volts, 1);
     if (status != DEA_OK) {
       return status;
     }
@@ -118,10 +118,12 @@ static inline dea_status fake_get(struct dea_context *context, struct dea_instru
   return DEA_OK;
 }
 
-static inline void fake_stop(struct dea_context *context, struct dea_instrument *instrument)
+static inline struct dea_zero fake_stop(struct dea_context *context,
+                                        struct dea_instrument *instrument)
 {
   (void)context;
   ((struct fake_daq *)instrument)->stops++;
+  return (struct dea_zero){DEA_ZERO_COMMANDED, (double)NAN};
 }
 
 static inline void fake_close(struct dea_context *context, struct dea_instrument *instrument)
@@ -140,7 +142,7 @@ static inline dea_status fake_sensor_start(struct dea_context *context,
 
 static inline dea_status fake_sensor_get(struct dea_context *context,
                                          struct dea_instrument *instrument, double timeout_s,
-                                         const struct dea_intake *intake)
+                                         const struct dea_sink *sink)
 {
   struct fake_sensor *sensor = (struct fake_sensor *)instrument;
   double rate_Hz = 1000, now_s = (double)sensor->daq->got / rate_Hz;
@@ -151,16 +153,18 @@ static inline dea_status fake_sensor_get(struct dea_context *context,
       return fake_fail(context, "sensor");
     }
     bool wrong = (long)sensor->frames++ == sensor->wrong_frame;
-    intake->profile(intake->user, wrong ? 0 : time_s, z_m);
-    intake->reading(intake->user, 0, time_s, 300 + time_s);
+    sink->profile(sink->user, wrong ? 0 : time_s, z_m);
+    sink->reading(sink->user, 0, time_s, 300 + time_s);
   }
   return DEA_OK;
 }
 
-static inline void fake_sensor_stop(struct dea_context *context, struct dea_instrument *instrument)
+static inline struct dea_zero fake_sensor_stop(struct dea_context *context,
+                                               struct dea_instrument *instrument)
 {
   (void)context;
   ((struct fake_sensor *)instrument)->stops++;
+  return (struct dea_zero){DEA_ZERO_NONE, (double)NAN};
 }
 
 static const struct dea_instrument_type fake_daq_type = {.name = "fake DAQ",

@@ -57,7 +57,7 @@ static void test_starts_with_first_sample(void **state)
   assert_int_equal(b.fake->running, 0);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_OK);
   assert_int_equal(b.fake->running, 1);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 0, 300), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, 300), DEA_OK);
   // Never beyond the range, whatever is asked.
   assert_close(b.fake->played[1], -10, 0, step_V);
   assert_close(b.fake->played[2], 10, 0, step_V);
@@ -75,8 +75,8 @@ static void test_runs_dry(void **state)
   b.fake->dry_after = 100;
   assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 100), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 0, 100), DEA_OK);
-  assert_int_equal(b.intake.samples, 100);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, 100), DEA_OK);
+  assert_int_equal(b.sink.samples, 100);
   signal(SIGPIPE, SIG_IGN); // the fake's file is a socket; a board's gives no signal
   assert_message(b.instrument->type->put(ctx, b.instrument, volts, 50), DEA_E_INSTRUMENT,
                  "the computer was too slow");
@@ -108,7 +108,7 @@ static void test_errors(void **state)
   static const char *const later[] = {"trigger", "command", "unplug"};
   for (size_t i = 0; i < 3; i++) {
     static const double volts[50] = {1};
-    const struct dea_intake to = {&b.intake, emulator_samples, NULL, NULL};
+    const struct dea_sink to = {&b.sink, emulator_samples, NULL, NULL};
     daq_bench_begin(&b, library);
     assert_int_equal(begin(&b), DEA_OK);
     strcpy(b.fake->fails, later[i]);

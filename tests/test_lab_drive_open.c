@@ -14,7 +14,9 @@ static void serve(struct emulator *e, int connection)
     const char *at = bytes, *line;
     while ((line = dea_line_next(&reader, &at, &length)) != NULL) {
       if (strchr(line, '?') != NULL) {
-        const char *text = line[0] == '*' ? "ACME,Supply\n" : "0,\"No error\"\n";
+        const char *text = strcmp(line, "*OPC?") == 0 ? "1\n"
+                           : line[0] == '*'           ? "ACME,Supply\n"
+                                                      : "0,\"No error\"\n";
         emulator_send(e, connection, text, strlen(text));
       }
     }
@@ -43,7 +45,9 @@ static void test_stops_what_was_opened(void **state)
   assert_non_null(strstr(supply.log, "OUTP ON\n"));
   const char *end = strstr(supply.log, "SYST:ERR?\n");
   assert_non_null(end);
-  assert_string_equal(end, "SYST:ERR?\nVOLT 0\nOUTP OFF\n");
+  assert_string_equal(end, "SYST:ERR?\nVOLT 0\n*OPC?\nOUTP OFF\n");
+  assert_int_equal(report.zero.state, DEA_ZERO_COMMANDED); // it has no 'measure'
+  assert_non_null(strstr(dea_context_message(ctx), "Connection refused"));
   dea_protocol_destroy(ctx, p);
 }
 

@@ -1,9 +1,9 @@
 // The Gocator's messages and its connection, against an emulator on the loopback interface.
 #define _POSIX_C_SOURCE 200809L // sockets
+#include "base/clock.h"
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "gocator_bytes.h"
-#include "lab/instrument/clock.h"
 
 #include "message_fixture.h"
 
@@ -64,7 +64,7 @@ struct bench {
   struct sensor sensor;
   struct dea_protocol protocol;
   struct dea_instrument *instrument;
-  struct emulator_intake intake;
+  struct emulator_sink sink;
   struct gocator_bytes frames[8];
   char text[1024];
 };
@@ -86,7 +86,7 @@ static dea_status begin(struct bench *b, const char *section,
   emulator_start(&b->control, serve_control, &b->sensor);
   snprintf(b->text, sizeof b->text, section, b->data.port, b->control.port);
   dea_finding_clear(ctx);
-  b->intake.points = GOCATOR_WIDTH;
+  b->sink.points = GOCATOR_WIDTH;
   dea_status status = emulator_open(ctx, &b->protocol, b->text, &b->instrument);
   if (status == DEA_OK) {
     status = b->instrument->type->start(ctx, b->instrument);
@@ -126,20 +126,20 @@ static void test_frames(void **state)
     for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
       assert_close(b.instrument->x_m[i], -20e-6 + 10e-6 * (double)i, 1e-12, 1e-18);
     }
-    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 6, 3, 0), DEA_OK);
-    assert_int_equal(b.intake.profiles, 3);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 6, 3, 0), DEA_OK);
+    assert_int_equal(b.sink.profiles, 3);
     assert_int_equal(b.instrument->lost, 3);
-    assert_true(b.intake.profile_time_s[0] >= 0 && b.intake.profile_time_s[0] < 21);
+    assert_true(b.sink.profile_time_s[0] >= 0 && b.sink.profile_time_s[0] < 21);
     // The sensor's clock, whenever the frames came.
-    assert_close(b.intake.profile_time_s[1] - b.intake.profile_time_s[0], 0.03, 0, 1e-9);
-    assert_close(b.intake.profile_time_s[2] - b.intake.profile_time_s[0], 0.15, 0, 1e-9);
+    assert_close(b.sink.profile_time_s[1] - b.sink.profile_time_s[0], 0.03, 0, 1e-9);
+    assert_close(b.sink.profile_time_s[2] - b.sink.profile_time_s[0], 0.15, 0, 1e-9);
     for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
-      assert_close(b.intake.z_m[2][i], 1e-3 + 0.5e-6 * (double)(i + 1), 1e-12, 0);
+      assert_close(b.sink.z_m[2][i], 1e-3 + 0.5e-6 * (double)(i + 1), 1e-12, 0);
     }
-    assert_int_equal(b.intake.readings, 6);
-    assert_close(b.intake.reading[0].value, 1e-3, 1e-12, 0); // 1 mm
-    assert_close(b.intake.reading[1].value, -5e-6, 1e-12, 0);
-    assert_close(b.intake.reading[4].time_s, b.intake.profile_time_s[2], 0, 1e-9);
+    assert_int_equal(b.sink.readings, 6);
+    assert_close(b.sink.reading[0].value, 1e-3, 1e-12, 0); // 1 mm
+    assert_close(b.sink.reading[1].value, -5e-6, 1e-12, 0);
+    assert_close(b.sink.reading[4].time_s, b.sink.profile_time_s[2], 0, 1e-9);
     end(&b);
   }
 }
@@ -164,14 +164,14 @@ static void test_invalid_and_other_grid(void **state)
   }
   b.sensor.count = 4;
   assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 3, 0), DEA_OK);
-  assert_int_equal(b.intake.profiles, 3);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 3, 0), DEA_OK);
+  assert_int_equal(b.sink.profiles, 3);
   // Positions -20, -10, 0, 10, 20 um; units of 0.5 um.
   static const double wanted[3][GOCATOR_WIDTH] = {
       {0, 20, 40, 60, 80}, {5, 10, 15, 20, NAN}, {0, 20, 40, 60, 80}};
   for (size_t k = 0; k < 3; k++) {
     for (size_t i = 0; i < GOCATOR_WIDTH; i++) {
-      double z = b.intake.z_m[k][i] / 0.5e-6;
+      double z = b.sink.z_m[k][i] / 0.5e-6;
       if (isnan(wanted[k][i]) != isnan(z) || fabs(z - wanted[k][i]) > 1e-6) {
         fail_msg("frame %zu, point %zu: %g, wanted %g", k, i, z, wanted[k][i]);
       }
@@ -228,7 +228,7 @@ static void test_goes_silent(void **state)
   b.sensor.frames[0] = &b.frames[0];
   b.sensor.count = 1; // one, and no more
   assert_int_equal(begin(&b, hasty, serve_data), DEA_OK);
-  assert_message(emulator_get(ctx, b.instrument, &b.intake, 0, 1, 0), DEA_E_INSTRUMENT,
+  assert_message(emulator_get(ctx, b.instrument, &b.sink, 0, 1, 0), DEA_E_INSTRUMENT,
                  "for 0.25 s; look at its laser");
   end(&b);
 }
@@ -251,9 +251,9 @@ static void test_hangs_up(void **state)
     b.sensor.count = 2;
     b.sensor.cut = cut;
     assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
-    assert_message(emulator_get(ctx, b.instrument, &b.intake, 0, 2, 0), DEA_E_INSTRUMENT,
+    assert_message(emulator_get(ctx, b.instrument, &b.sink, 0, 2, 0), DEA_E_INSTRUMENT,
                    "the connection to the Gocator at 127.0.0.1");
-    assert_int_equal(b.intake.profiles, cut == length ? 1 : 0);
+    assert_int_equal(b.sink.profiles, cut == length ? 1 : 0);
     end(&b);
   }
 }
@@ -280,7 +280,7 @@ static void test_garbage(void **state)
   b.sensor.count = 3;
   assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 1, 0), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 1, 0), DEA_OK);
   assert_true(b.instrument->lost >= 1);
   end(&b);
 }
@@ -332,14 +332,14 @@ static void test_polled(void **state)
     b.sensor.text[1] = "\x01garbage\r\nOK,M00,03,VINVALID,D2,M01,07,V-1,D0,M01,09,V5,D0\r\n";
     b.sensor.text[2] = "ERROR,Specified measurement ID not found. Please verify your input\r\n";
     assert_int_equal(begin(&b, polled, serve_text), DEA_OK);
-    assert_message(emulator_get(ctx, b.instrument, &b.intake, 9, 0, 0), DEA_E_INSTRUMENT,
+    assert_message(emulator_get(ctx, b.instrument, &b.sink, 9, 0, 0), DEA_E_INSTRUMENT,
                    "answers: Specified measurement ID not found");
-    assert_int_equal(b.intake.readings, 4);
-    assert_close(b.intake.reading[0].value, 0.15129, 1e-12, 0);
-    assert_close(b.intake.reading[1].value, 0.01852, 1e-12, 0);
-    assert_true(isnan(b.intake.reading[2].value));
-    assert_close(b.intake.reading[3].value, -1e-6, 1e-12, 0);
-    assert_true(b.intake.reading[2].time_s > b.intake.reading[0].time_s);
+    assert_int_equal(b.sink.readings, 4);
+    assert_close(b.sink.reading[0].value, 0.15129, 1e-12, 0);
+    assert_close(b.sink.reading[1].value, 0.01852, 1e-12, 0);
+    assert_true(isnan(b.sink.reading[2].value));
+    assert_close(b.sink.reading[3].value, -1e-6, 1e-12, 0);
+    assert_true(b.sink.reading[2].time_s > b.sink.reading[0].time_s);
     assert_int_equal(b.instrument->lost, 2); // the garbage and the invalid one
     assert_true(strncmp(b.data.log, "Result,3,7\r\nResult,3,7\r\n", 24) == 0);
     end(&b);
@@ -358,9 +358,9 @@ static void test_text(void **state)
     b.sensor.text[i] = "M00,03,V250,D0\r";
   }
   assert_int_equal(begin(&b, text, serve_text), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 2, 0, 0), DEA_OK);
-  assert_close(b.intake.reading[0].value, 250e-6, 1e-12, 0);
-  assert_message(emulator_get(ctx, b.instrument, &b.intake, 9, 0, 0), DEA_E_INSTRUMENT,
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 2, 0, 0), DEA_OK);
+  assert_close(b.sink.reading[0].value, 250e-6, 1e-12, 0);
+  assert_message(emulator_get(ctx, b.instrument, &b.sink, 9, 0, 0), DEA_E_INSTRUMENT,
                  "no measurement came from the Gocator's text");
   emulator_close(ctx, b.instrument);
   b.instrument = NULL;

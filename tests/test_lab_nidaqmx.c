@@ -78,9 +78,9 @@ static void test_runs_dry(void **state)
   assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 100), DEA_OK);
   // The end of a sequence: all inputs still come.
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 0, 0, 100), DEA_OK);
-  assert_int_equal(b.intake.samples, 100);
-  const struct dea_intake to = {&b.intake, emulator_samples, NULL, NULL};
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, 100), DEA_OK);
+  assert_int_equal(b.sink.samples, 100);
+  const struct dea_sink to = {&b.sink, emulator_samples, NULL, NULL};
   assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0, &to), DEA_OK);
   // But one that was to go on has a gap.
   assert_message(b.instrument->type->put(ctx, b.instrument, volts, 1), DEA_E_INSTRUMENT,
@@ -117,7 +117,7 @@ static void test_errors(void **state)
   static const char *const later[] = {"StartTask", "Write", "Avail", "Read"};
   for (size_t i = 0; i < 4; i++) {
     static const double volts[50] = {1};
-    const struct dea_intake to = {&b.intake, emulator_samples, NULL, NULL};
+    const struct dea_sink to = {&b.sink, emulator_samples, NULL, NULL};
     daq_bench_begin(&b, library);
     assert_int_equal(begin(&b), DEA_OK);
     strcpy(b.fake->fails, later[i]);

@@ -24,6 +24,8 @@ static void answer(struct emulator *e, int connection, const char *question)
   char line[8192];
   if (strcmp(question, "*IDN?") == 0) {
     text = b->identity;
+  } else if (strcmp(question, "*OPC?") == 0) {
+    text = "1";
   } else if (strcmp(question, "SYST:ERR?") == 0) {
     text = b->error;
   } else if (strcmp(question, "MEAS:FORC?") == 0) {
@@ -72,7 +74,7 @@ struct bench {
   struct behaviour behaviour;
   struct dea_protocol protocol;
   struct dea_instrument *instrument;
-  struct emulator_intake intake;
+  struct emulator_sink sink;
   char text[2048];
 };
 
@@ -153,16 +155,16 @@ static void test_reads(void **state)
     assert_int_equal(b.instrument->reading_count, 2);
     assert_string_equal(b.instrument->readings[1].name, "load");
     assert_int_equal(b.instrument->readings[1].kind, DEA_CHANNEL_FORCE);
-    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 8, 0, 0), DEA_OK);
-    assert_true(b.intake.readings >= 8);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 8, 0, 0), DEA_OK);
+    assert_true(b.sink.readings >= 8);
     for (size_t i = 0; i < 8; i++) {
-      assert_int_equal(b.intake.reading[i].reading, i % 2);
-      assert_close(b.intake.reading[i].value, i % 2 == 0 ? 2.5e-9 : 1.25, 1e-12, 0);
-      assert_true(b.intake.reading[i].time_s >= 0 && b.intake.reading[i].time_s < 2);
-      assert_true(i == 0 || b.intake.reading[i].time_s > b.intake.reading[i - 1].time_s);
+      assert_int_equal(b.sink.reading[i].reading, i % 2);
+      assert_close(b.sink.reading[i].value, i % 2 == 0 ? 2.5e-9 : 1.25, 1e-12, 0);
+      assert_true(b.sink.reading[i].time_s >= 0 && b.sink.reading[i].time_s < 2);
+      assert_true(i == 0 || b.sink.reading[i].time_s > b.sink.reading[i - 1].time_s);
     }
     // Three intervals of 5 ms, never less; half an answer's way may be missing.
-    assert_true(b.intake.reading[6].time_s - b.intake.reading[0].time_s > 0.01);
+    assert_true(b.sink.reading[6].time_s - b.sink.reading[0].time_s > 0.01);
     assert_int_equal(b.instrument->lost, 0);
     end(&b);
     assert_true(strncmp(b.emulator.log, "*IDN?\n*CLS\nFUNC 'CURR'\nZCOR ON\nSYST:ERR?\n", 40) == 0);
@@ -179,6 +181,8 @@ static void test_plays(void **state)
   static struct bench b;
   double volts[60];
   b.protocol.rate_Hz.si = 1000;
+  b.protocol.amplifier.gain.si = 1;
+  b.protocol.safety.zero_time_s.si = 2;
   assert_int_equal(begin(&b, &usual, plays), DEA_OK);
   assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT);
   for (size_t i = 0; i < 60; i++) {
@@ -187,14 +191,15 @@ static void test_plays(void **state)
   // 60 ms do not fit into a queue of 20 ms: this waits until the first 40 have been played.
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 60), DEA_OK);
   for (int i = 0; i < 20 && strstr(b.emulator.log, "-3") == NULL; i++) {
-    const struct dea_intake nothing = {0};
+    const struct dea_sink nothing = {0};
     assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0.01, &nothing), DEA_OK);
   }
   end(&b);
   const char *log = strstr(b.emulator.log, "SOUR:VOLT 0\n");
   assert_non_null(log);
-  assert_string_equal(log, "SOUR:VOLT 0\nSYST:ERR?\nSOUR:VOLT 0.25\nSOUR:VOLT 0.5\n"
-                           "SOUR:VOLT -3\nSOUR:VOLT 0\n");
+  assert_string_equal(log, "SOUR:VOLT 0\n*CLS\nSOUR:VOLT 0\n*OPC?\nSYST:ERR?\n"
+                           "SOUR:VOLT 0.25\n*OPC?\nSOUR:VOLT 0.5\n*OPC?\nSOUR:VOLT -3\n*OPC?\n"
+                           "SOUR:VOLT 0\n*OPC?\n");
 }
 
 static void test_makes_no_sense(void **state)
@@ -210,10 +215,10 @@ static void test_makes_no_sense(void **state)
     behaviour.current = answers[i];
     behaviour.then = "7";
     assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 3, 0, 0), DEA_OK);
-    assert_true(isnan(b.intake.reading[0].value)); // lost, and the next is good again
-    assert_close(b.intake.reading[1].value, 1.25, 1e-12, 0);
-    assert_close(b.intake.reading[2].value, 7, 1e-12, 0);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 3, 0, 0), DEA_OK);
+    assert_true(isnan(b.sink.reading[0].value)); // lost, and the next is good again
+    assert_close(b.sink.reading[1].value, 1.25, 1e-12, 0);
+    assert_close(b.sink.reading[2].value, 7, 1e-12, 0);
     assert_int_equal(b.instrument->lost, 1);
     end(&b);
   }
@@ -232,9 +237,9 @@ static void test_changes_its_unit(void **state)
     behaviour.current = answers[i][0];
     behaviour.then = answers[i][1];
     assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-    assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 3, 0, 0), DEA_OK);
-    assert_close(b.intake.reading[0].value, i == 0 ? 950 : 1e-9, 1e-12, 0);
-    assert_true(isnan(b.intake.reading[2].value));
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 3, 0, 0), DEA_OK);
+    assert_close(b.sink.reading[0].value, i == 0 ? 950 : 1e-9, 1e-12, 0);
+    assert_true(isnan(b.sink.reading[2].value));
     assert_true(b.instrument->lost > 0);
     end(&b);
   }
@@ -255,8 +260,8 @@ static void test_speaks_unasked(void **state)
   behaviour.current = "1\r\n2\r\n\r\n3"; // the first is the answer
   memset(&b, 0, sizeof b);
   assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0), DEA_OK);
-  assert_close(b.intake.reading[0].value, 1, 1e-12, 0);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0), DEA_OK);
+  assert_close(b.sink.reading[0].value, 1, 1e-12, 0);
   assert_true(b.instrument->lost == 0 || b.instrument->lost == 2);
   end(&b);
 }
@@ -269,7 +274,7 @@ static void test_goes_silent(void **state)
   behaviour.current = NULL;
   memset(&b, 0, sizeof b);
   assert_int_equal(begin(&b, &behaviour, hasty), DEA_OK);
-  dea_status status = emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0);
+  dea_status status = emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0);
   assert_message(status, DEA_E_INSTRUMENT, "did not answer 'MEAS:CURR?' within 0.15 s");
   end(&b);
   memset(&b, 0, sizeof b);
@@ -287,10 +292,10 @@ static void test_hangs_up(void **state)
     memset(&b, 0, sizeof b);
     behaviour.current_length = n;
     assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-    dea_status status = emulator_get(ctx, b.instrument, &b.intake, 1, 0, 0);
+    dea_status status = emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0);
     assert_message(status, DEA_E_INSTRUMENT, "the connection to the instrument at 127.0.0.1");
-    assert_int_equal(b.intake.readings, 0); // half a number is none
-    end(&b);                                // writes to it twice, without SIGPIPE
+    assert_int_equal(b.sink.readings, 0); // half a number is none
+    end(&b);                              // writes to it twice, without SIGPIPE
   }
 }
 
@@ -368,7 +373,7 @@ static struct bench memory_bench;
 static void work(struct dea_context *context)
 {
   struct dea_instrument *instrument;
-  struct dea_protocol protocol = {.rate_Hz.si = 100};
+  struct dea_protocol protocol = {.rate_Hz.si = 100, .safety.zero_time_s.si = 2};
   dea_status status = emulator_open(context, &protocol, memory_bench.text, &instrument);
   failing_check(context, status);
   if (status == DEA_OK) {

@@ -69,7 +69,7 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
 {
   struct dea_instrument *bench;
   size_t count = (size_t)ceil(dea_protocol_duration_s(p) * p->rate_Hz.si);
-  const struct dea_intake intake = {r, take_samples, take_profile, NULL};
+  const struct dea_sink sink = {r, take_samples, take_profile, NULL};
   *r = (struct record){.inputs = p->input_count};
   dea_status status = dea_instrument_open(context, &p->sim, p, &bench);
   if (status != DEA_OK) {
@@ -90,7 +90,7 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
     }
     status = bench->type->put(context, bench, volts, now);
     if (status == DEA_OK) {
-      status = bench->type->get(context, bench, 0.1, &intake);
+      status = bench->type->get(context, bench, 0.1, &sink);
     }
   }
   r->lost = bench->lost;
@@ -380,17 +380,17 @@ static void test_real_pace(void **state)
   r.volts = room;
   r.z_m = z_m;
   r.frame_s = frame_s;
-  const struct dea_intake intake = {&r, take_samples, take_profile, NULL};
+  const struct dea_sink sink = {&r, take_samples, take_profile, NULL};
   assert_int_equal(dea_instrument_open(ctx, &p->sim, p, &bench), DEA_OK);
   assert_int_equal(bench->type->start(ctx, bench), DEA_OK);
   assert_int_equal(bench->type->put(ctx, bench, volts, 50), DEA_OK);
   size_t calls = 0;
   while (r.samples < 50 && calls < 1000) {
-    assert_int_equal(bench->type->get(ctx, bench, 0.02, &intake), DEA_OK);
+    assert_int_equal(bench->type->get(ctx, bench, 0.02, &sink), DEA_OK);
     calls++;
   }
   assert_true(r.samples == 50 && calls > 1);
-  assert_int_equal(bench->type->get(ctx, bench, 0.001, &intake), DEA_OK); // nothing is left
+  assert_int_equal(bench->type->get(ctx, bench, 0.001, &sink), DEA_OK); // nothing is left
   assert_int_equal(r.samples, 50);
   bench->type->stop(ctx, bench);
   bench->type->close(ctx, bench);

@@ -262,7 +262,9 @@ static json_t *report_json(const struct dea_drive_report *report, const char *fi
   dea_json_put(json, "played_s", report->played_s);
   json_object_set_new(json, "cycles", json_integer((json_int_t)report->cycles));
   json_object_set_new(json, "lost", json_integer((json_int_t)report->lost));
-  json_object_set_new(json, "reached_zero", json_boolean(report->reached_zero));
+  dea_json_put_text(json, "output", dea_zero_name(report->zero.state));
+  dea_json_put(json, "output_V", report->zero.volts);
+  json_object_set_new(json, "reached_zero", json_boolean(report->zero.state == DEA_ZERO_READ_BACK));
   dea_json_put(json, "largest_current_A", report->largest_current_A);
   dea_json_put_text(json, "ended", report->ended);
   return json;
@@ -277,8 +279,10 @@ static void print_report(const struct dea_drive_report *report, const char *file
   if (!isnan(report->largest_current_A)) {
     printf("  %-16s  %.4g uA\n", "largest current", 1e6 * report->largest_current_A);
   }
-  printf("  %-16s  %s\n", "output",
-         report->reached_zero ? "at 0 V" : "NOT KNOWN TO BE AT 0 V: switch the amplifier off");
+  char zero[DEA_ZERO_TEXT_SIZE];
+  dea_zero_text(report->zero, zero);
+  bool unknown = report->zero.state == DEA_ZERO_UNKNOWN;
+  printf("  %-16s  %s%s\n", "output", unknown ? "SWITCH THE SUPPLY OFF: it is " : "", zero);
   if (report->ended[0] != '\0') {
     printf("  %-16s  %s\n", "ended early", report->ended);
   }

@@ -133,6 +133,9 @@ static void print_text(const struct dea_recording *recording)
 {
   printf("%-14s %s\n", "title", recording->title[0] != '\0' ? recording->title : "(none)");
   printf("%-14s %s%s\n", "complete", recording->complete ? "yes" : "no: ", recording->ended);
+  if (recording->output[0] != '\0') {
+    printf("%-14s %s\n", "output", recording->output);
+  }
   printf("%-14s %zu\n", "channels", recording->channel_count);
   for (size_t c = 0; c < recording->channel_count; c++) {
     print_channel(&recording->channels[c]);
@@ -187,6 +190,7 @@ static void print_json(const struct dea_recording *recording)
   dea_json_put_text(json, "title", recording->title);
   json_object_set_new(json, "complete", json_boolean(recording->complete));
   dea_json_put_text(json, "ended", recording->ended);
+  dea_json_put_text(json, "output", recording->output);
   for (size_t c = 0; c < recording->channel_count; c++) {
     json_array_append_new(channels, json_of_channel(&recording->channels[c]));
   }

@@ -38,7 +38,7 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
 {
   struct dea_protocol_plan plan;
   struct opened opened = {.count = 0};
-  *out = (struct dea_drive_report){.largest_current_A = NAN};
+  *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   DEA_TRY(ctx, dea_protocol_check(ctx, protocol, &plan));
   dea_status status = open_all(ctx, protocol, options->simulate, &opened);
   if (status == DEA_OK) {
@@ -46,9 +46,11 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
                                     settle_s + (isfinite(plan.rise_s) ? 2 * plan.rise_s : 0),
                                     stall_s};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
-  } else { // what is set up already must not stay as it is: a supply's output may be on
+  } else {
+    out->zero.state = status == DEA_E_INTERLOCK ? DEA_ZERO_UNKNOWN : DEA_ZERO_NONE;
+    // what is set up already must not stay as it is: a supply's output may be on
     for (size_t i = 0; i < opened.count; i++) {
-      opened.instruments[i]->type->stop(ctx, opened.instruments[i]);
+      dea_drive_take_zero(protocol, dea_instrument_stop(ctx, opened.instruments[i]), out);
     }
   }
   for (size_t i = opened.count; i-- > 0;) {

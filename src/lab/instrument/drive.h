@@ -3,6 +3,7 @@
 #define DEA_LAB_INSTRUMENT_DRIVE_H
 
 #include "base/context.h"
+#include "lab/instrument/zero.h"
 
 struct dea_protocol;
 
@@ -15,7 +16,7 @@ struct dea_drive_report {
   double played_s;          // of the protocol's sequence
   size_t cycles;            // played to their end, and recorded
   size_t lost;              // samples, frames and replies that did not arrive
-  bool reached_zero;        // the output went to 0 V as it should: by the protocol, or by the ramp
+  struct dea_zero zero;     // what is known of the output; volts: at the amplifier's output
   double largest_current_A; // by amount; NAN: no channel of it
   char ended[256];          // why it ended early; ""
 };
@@ -23,8 +24,9 @@ struct dea_drive_report {
 /* Checks the protocol (DEA_E_INTERLOCK, and nothing is played), opens the instruments, and plays.
  * Where it ends early the output goes to 0 V along the protocol's ramp, still being recorded, and
  * the recording stays readable: DEA_E_INTERRUPTED after a signal (a second one changes nothing),
- * DEA_E_INTERLOCK after a limit was exceeded, DEA_E_INSTRUMENT when an instrument failed, DEA_E_IO
- * when the recording could not be written. out is filled in all cases. */
+ * DEA_E_INTERLOCK after a limit was exceeded, DEA_E_INSTRUMENT when an instrument failed or the
+ * output is not known to be at 0 V, DEA_E_IO when the recording could not be written. out is filled
+ * in all cases. */
 dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *protocol,
                          const struct dea_drive_options *options, struct dea_drive_report *out);
 

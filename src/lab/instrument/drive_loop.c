@@ -3,7 +3,7 @@
  * the playing instrument has failed, is stopped at once. */
 #include "lab/instrument/drive_loop.h"
 
-#include "lab/instrument/clock.h"
+#include "base/clock.h"
 #include "lab/instrument/drive_output.h"
 #include "lab/instrument/drive_watch.h"
 
@@ -17,11 +17,12 @@
 static const double block_s = 0.05, ahead_s = 0.3;
 static const double wait_s = 0.05;         // for what arrives
 static const double last_frame_wait_s = 1; // for the profile that ends the last cycle
+static const double monitor_s = 0.02;      // mean of a voltage channel that shows 0 V
 static const double rounding = 1e-6;       // of a sample's distance to the next
 
 struct loop;
 /* Who gives what arrives. */
-struct giver {
+struct source {
   struct loop *loop;
   struct dea_instrument *instrument;
   size_t first_channel; // of its readings
@@ -30,12 +31,22 @@ struct giver {
   bool failed;
 };
 
+/* The voltage channels once all was played: samples that are not recorded. */
+struct drive_monitor {
+  size_t settle, window; // samples that are waited for, and of a mean
+  size_t seen;           // behind the end
+  double sum_V[DEA_PROTOCOL_INPUTS_MAX];
+  size_t count[DEA_PROTOCOL_INPUTS_MAX];
+  bool zero;
+  double volts; // mean of the last window, of the channel farthest from 0; NAN: none yet
+};
+
 struct loop {
   struct dea_context *ctx;
   const struct dea_protocol *protocol;
-  struct giver givers[DEA_PROTOCOL_INSTRUMENTS_MAX + 1];
+  struct source sources[DEA_PROTOCOL_INSTRUMENTS_MAX + 1];
   size_t count;
-  struct giver *player, *reader, *sensor; // of givers; NULL: none
+  struct source *player, *reader, *sensor; // of sources; NULL: none
   struct dea_recorder *recorder;
   struct dea_drive_output output;
   struct dea_drive_watch watch;
@@ -44,6 +55,9 @@ struct loop {
   size_t block, ahead;       // samples
   double *asked, *volts;     // [room] of the samples on their way, by number; [block]
   size_t room;
+  struct drive_monitor monitor;
+  bool held;       // the output stood still for a stall: what the inputs read of it has come late
+  double held_V;   // where
   double *columns; // [channels on the clock][block]: samples to be recorded
   size_t columns_used;
   double last_frame_s, frame_interval_s;
@@ -73,13 +87,26 @@ static void end_early(struct loop *loop, dea_status status, const char *format, 
   dea_drive_output_ramp(&loop->output);
 }
 
-static void instrument_failed(struct loop *loop, struct giver *giver)
+static void resume(struct loop *loop, double volts);
+
+/* One that only held its output can be ramped. */
+static void instrument_failed(struct loop *loop, struct source *source)
 {
-  giver->failed = true;
-  if (giver == loop->reader) {
+  double volts;
+  const struct dea_instrument_type *type = source->instrument->type;
+  if (source == loop->player && type->hold != NULL &&
+      dea_context_status(loop->ctx) == DEA_E_INTERLOCK) {
+    end_early(loop, DEA_E_INTERLOCK, "%s: %s", type->name, dea_context_message(loop->ctx));
+    if (type->hold(loop->ctx, source->instrument, &volts) == DEA_OK) {
+      resume(loop, volts);
+      return;
+    }
+  }
+  source->failed = true;
+  if (source == loop->reader) {
     loop->lost_reader_s = dea_clock_s();
   }
-  end_early(loop, DEA_E_INSTRUMENT, "%s: %s", giver->instrument->type->name,
+  end_early(loop, DEA_E_INSTRUMENT, "%s: %s", source->instrument->type->name,
             dea_context_message(loop->ctx));
 }
 
@@ -139,33 +166,84 @@ static void take_sample(struct loop *loop, const double *volts)
   }
 }
 
-/* The functions of the intake never fail: what goes wrong with the recording is no fault of the
+/* A sample of 0 V behind the end. */
+static void take_behind_end(struct loop *loop, const double *volts)
+{
+  struct drive_monitor *m = &loop->monitor;
+  if (m->window == 0 || m->seen++ < m->settle) {
+    return;
+  }
+  bool ends = (m->seen - m->settle) % m->window == 0, all = true;
+  double farthest_V = 0;
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &loop->protocol->inputs[i];
+    double value = volts[i] * input->per_volt + input->at_zero;
+    if (input->kind.value != DEA_CHANNEL_VOLTAGE) {
+      continue;
+    }
+    if (!isnan(value)) {
+      m->sum_V[i] += value;
+      m->count[i]++;
+    }
+    if (ends) {
+      double mean_V = m->count[i] > 0 ? m->sum_V[i] / (double)m->count[i] : (double)NAN;
+      all = all && fabs(mean_V) <= loop->protocol->safety.at_zero_V.si; // false for NAN
+      farthest_V = fabs(mean_V) > fabs(farthest_V) || isnan(mean_V) ? mean_V : farthest_V;
+      m->sum_V[i] = 0;
+      m->count[i] = 0;
+    }
+  }
+  if (ends) {
+    m->zero = all;
+    m->volts = farthest_V;
+  }
+}
+
+/* A sample of an output that stands still. */
+static void hold_sample(struct loop *loop)
+{
+  loop->asked[loop->put++ % loop->room] = loop->held_V;
+}
+
+/* The functions of the sink never fail: what goes wrong with the recording is no fault of the
  * instrument. */
 static dea_status take_samples(void *user, const double *volts, size_t count)
 {
-  struct giver *giver = user;
-  struct loop *loop = giver->loop;
-  for (size_t i = 0; i < count && giver == loop->reader; i++) {
-    if (loop->got == loop->put) {
-      if (!loop->output.over) {
-        end_early(loop, DEA_E_INSTRUMENT,
-                  "%s: the inputs are ahead of the output, which ran dry: the computer is too slow "
-                  "for this rate, or busy",
-                  giver->instrument->type->name);
-      }
-      break; // after the end
+  struct source *source = user;
+  struct loop *loop = source->loop;
+  for (size_t i = 0; i < count && source == loop->reader; i++) {
+    const double *sample = volts + i * loop->protocol->input_count;
+    if (loop->got == loop->put && loop->held) {
+      hold_sample(loop);
     }
-    take_sample(loop, volts + i * loop->protocol->input_count);
+    if (loop->got == loop->put && loop->output.over) {
+      take_behind_end(loop, sample);
+      continue;
+    }
+    if (loop->got == loop->put) {
+      end_early(loop, DEA_E_INSTRUMENT,
+                "%s: the inputs are ahead of the output, which ran dry: the computer is too slow "
+                "for this rate, or busy",
+                source->instrument->type->name);
+      break;
+    }
+    take_sample(loop, sample);
   }
-  giver->heard_s = count > 0 ? dea_clock_s() : giver->heard_s;
+  source->heard_s = count > 0 ? dea_clock_s() : source->heard_s;
   return DEA_OK;
+}
+
+/* What comes while only the voltage channels are looked at is not recorded. */
+static bool is_behind_end(const struct loop *loop, double time_s)
+{
+  return loop->monitor.seen > 0 && time_s * loop->protocol->rate_Hz.si > (double)loop->put;
 }
 
 static dea_status take_profile(void *user, double time_s, const double *z_m)
 {
-  struct giver *giver = user;
-  struct loop *loop = giver->loop;
-  if (giver != loop->sensor || !isfinite(time_s) || time_s <= loop->last_frame_s) {
+  struct source *source = user;
+  struct loop *loop = source->loop;
+  if (source != loop->sensor || !isfinite(time_s) || time_s <= loop->last_frame_s) {
     loop->report->lost++;
     return DEA_OK;
   }
@@ -173,42 +251,48 @@ static dea_status take_profile(void *user, double time_s, const double *z_m)
     loop->frame_interval_s = time_s - loop->last_frame_s;
   }
   loop->last_frame_s = time_s;
-  giver->heard_s = dea_clock_s();
-  check_recorder(loop, dea_recorder_add_profile(loop->recorder, time_s, z_m));
+  source->heard_s = dea_clock_s();
+  if (!is_behind_end(loop, time_s)) {
+    check_recorder(loop, dea_recorder_add_profile(loop->recorder, time_s, z_m));
+  }
   return DEA_OK;
 }
 
 static dea_status take_reading(void *user, size_t reading, double time_s, double value)
 {
-  struct giver *giver = user;
-  struct loop *loop = giver->loop;
-  if (reading >= giver->instrument->reading_count || !isfinite(time_s) ||
-      time_s <= giver->last_s[reading]) {
+  struct source *source = user;
+  struct loop *loop = source->loop;
+  if (reading >= source->instrument->reading_count || !isfinite(time_s) ||
+      time_s <= source->last_s[reading]) {
     loop->report->lost++;
     return DEA_OK;
   }
-  giver->last_s[reading] = time_s;
-  check_recorder(loop, dea_recorder_add_timed(loop->recorder, giver->first_channel + reading,
+  source->last_s[reading] = time_s;
+  if (is_behind_end(loop, time_s)) {
+    return DEA_OK;
+  }
+  check_recorder(loop, dea_recorder_add_timed(loop->recorder, source->first_channel + reading,
                                               &time_s, &value, 1));
   return DEA_OK;
 }
 
-static void get_from(struct loop *loop, struct giver *giver, double timeout_s)
+static void get_from(struct loop *loop, struct source *source, double timeout_s)
 {
-  const struct dea_intake intake = {giver, take_samples, take_profile, take_reading};
-  const struct dea_instrument_type *type = giver->instrument->type;
-  if (!giver->failed && type->get != NULL &&
-      type->get(loop->ctx, giver->instrument, timeout_s, &intake) != DEA_OK) {
-    instrument_failed(loop, giver);
+  const struct dea_sink sink = {source, take_samples, take_profile, take_reading};
+  const struct dea_instrument_type *type = source->instrument->type;
+  if (!source->failed && type->get != NULL &&
+      type->get(loop->ctx, source->instrument, timeout_s, &sink) != DEA_OK) {
+    instrument_failed(loop, source);
   }
 }
 
 /* Who has been silent for too long has failed. */
-static void check_heard(struct loop *loop, struct giver *giver, double longest_s, const char *what)
+static void check_heard(struct loop *loop, struct source *source, double longest_s,
+                        const char *what)
 {
-  if (giver != NULL && !giver->failed && dea_clock_s() - giver->heard_s > longest_s) {
+  if (source != NULL && !source->failed && dea_clock_s() - source->heard_s > longest_s) {
     dea_fail(loop->ctx, DEA_E_INSTRUMENT, "no %s has come for %.3g s", what, longest_s);
-    instrument_failed(loop, giver);
+    instrument_failed(loop, source);
   }
 }
 
@@ -218,49 +302,6 @@ static void record_asked(struct loop *loop)
   while (!reads(loop) && !loop->player->failed && loop->recorded < loop->put) {
     record_sample(loop, NULL);
     loop->report->lost += loop->reader != NULL;
-  }
-}
-
-/* From all; waits for the one that reads the inputs, or else for the one that plays. */
-static void get_all(struct loop *loop, double timeout_s)
-{
-  struct giver *waited = reads(loop) ? loop->reader : loop->player;
-  double before_s = dea_clock_s();
-  get_from(loop, waited, timeout_s);
-  for (size_t i = 0; i < loop->count; i++) {
-    if (&loop->givers[i] != waited) {
-      get_from(loop, &loop->givers[i], 0);
-    }
-  }
-  record_asked(loop);
-  record_columns(loop);
-  check_heard(loop, loop->reader, loop->put > loop->got ? loop->stall_s : INFINITY, "sample");
-  check_heard(loop, loop->sensor, fmax(loop->stall_s, 5 * loop->frame_interval_s), "profile");
-  if (!reads(loop)) { // nothing that would keep the loop from turning idly
-    dea_clock_wait(fmin(timeout_s, 0.01) - (dea_clock_s() - before_s));
-  }
-}
-
-// What is played ---------------------------------------------------------------------------------
-
-static void put_block(struct loop *loop)
-{
-  double asked_V[64];
-  size_t filled = 0;
-  while (filled < loop->block && !loop->output.over) {
-    size_t room = loop->block - filled < 64 ? loop->block - filled : 64;
-    size_t n = dea_drive_output_next(&loop->output, room, asked_V);
-    for (size_t i = 0; i < n; i++) {
-      loop->asked[(loop->put + filled) % loop->room] = asked_V[i];
-      loop->volts[filled++] = asked_V[i] / loop->protocol->amplifier.gain.si;
-    }
-  }
-  struct giver *player = loop->player;
-  if (filled > 0 &&
-      player->instrument->type->put(loop->ctx, player->instrument, loop->volts, filled) != DEA_OK) {
-    instrument_failed(loop, player);
-  } else {
-    loop->put += filled;
   }
 }
 
@@ -276,6 +317,99 @@ static double gone_out(const struct loop *loop)
     return (double)loop->got + (dea_clock_s() - loop->lost_reader_s) * rate_Hz;
   }
   return (dea_clock_s() - loop->started_s) * rate_Hz;
+}
+
+/* Goes on with the ramp after a stall, from where the output stands. What is recorded of the
+ * meantime is that it stood there. */
+static void resume(struct loop *loop, double volts)
+{
+  size_t before, dropped = loop->ahead + loop->block; // at most
+  double until_s = dea_clock_s() + last_frame_wait_s;
+  loop->held_V = volts * loop->protocol->amplifier.gain.si;
+  loop->held = true;
+  dea_drive_output_ramp_from(&loop->output, loop->held_V);
+  loop->output.played = loop->output.played > dropped ? loop->output.played - dropped : 0;
+  if (reads(loop)) {
+    for (size_t i = loop->got; i < loop->put; i++) { // never played
+      loop->asked[i % loop->room] = loop->held_V;
+    }
+    do {
+      before = loop->got;
+      get_from(loop, loop->reader, 0);
+    } while (loop->got > before && dea_clock_s() < until_s);
+  }
+  while ((double)loop->put < gone_out(loop)) {
+    hold_sample(loop);
+    record_asked(loop);
+  }
+  loop->held = false;
+}
+
+/* From all; waits for the one that reads the inputs, or else for the one that plays. */
+static void get_all(struct loop *loop, double timeout_s)
+{
+  struct source *waited = reads(loop) ? loop->reader : loop->player;
+  double before_s = dea_clock_s();
+  get_from(loop, waited, timeout_s);
+  for (size_t i = 0; i < loop->count; i++) {
+    if (&loop->sources[i] != waited) {
+      get_from(loop, &loop->sources[i], 0);
+    }
+  }
+  record_asked(loop);
+  record_columns(loop);
+  check_heard(loop, loop->reader, loop->put > loop->got ? loop->stall_s : INFINITY, "sample");
+  check_heard(loop, loop->sensor, fmax(loop->stall_s, 5 * loop->frame_interval_s), "profile");
+  if (!reads(loop)) { // nothing that would keep the loop from turning idly
+    dea_clock_wait(fmin(timeout_s, 0.01) - (dea_clock_s() - before_s));
+  }
+}
+
+// What is played ---------------------------------------------------------------------------------
+
+/* False: the player has failed, or has dropped it after a stall. */
+static bool put_all(struct loop *loop, const double *volts, size_t count)
+{
+  struct source *player = loop->player;
+  if (player->instrument->type->put(loop->ctx, player->instrument, volts, count) != DEA_OK) {
+    instrument_failed(loop, player);
+    return false;
+  }
+  return true;
+}
+
+/* 0 V for as long as the voltage channels need to show it. */
+static void put_behind_end(struct loop *loop)
+{
+  struct drive_monitor *m = &loop->monitor;
+  memset(loop->volts, 0, loop->block * sizeof *loop->volts);
+  for (size_t left = m->window > 0 ? m->settle + m->window : 0; left > 0;) {
+    size_t part = left < loop->block ? left : loop->block;
+    if (!put_all(loop, loop->volts, part)) {
+      return;
+    }
+    left -= part;
+  }
+}
+
+static void put_block(struct loop *loop)
+{
+  double asked_V[64];
+  size_t filled = 0;
+  while (filled < loop->block && !loop->output.over) {
+    size_t room = loop->block - filled < 64 ? loop->block - filled : 64;
+    size_t n = dea_drive_output_next(&loop->output, room, asked_V);
+    for (size_t i = 0; i < n; i++) {
+      loop->asked[(loop->put + filled) % loop->room] = asked_V[i];
+      loop->volts[filled++] = asked_V[i] / loop->protocol->amplifier.gain.si;
+    }
+  }
+  if (filled == 0 || put_all(loop, loop->volts, filled)) {
+    loop->put += filled;
+    if (loop->output.over) {
+      put_behind_end(loop);
+    }
+  }
 }
 
 /* The clocks of a computer and of a DAQ agree to some ten parts in a million. */
@@ -365,44 +499,98 @@ static void start_all(struct loop *loop)
 {
   loop->started_s = dea_clock_s();
   for (size_t i = 0; i < loop->count && !loop->ending; i++) { // the one that plays comes last
-    struct giver *giver = &loop->givers[i];
-    giver->heard_s = dea_clock_s();
-    if (giver->instrument->type->start(loop->ctx, giver->instrument) != DEA_OK) {
-      instrument_failed(loop, giver);
+    struct source *source = &loop->sources[i];
+    source->heard_s = dea_clock_s();
+    if (source->instrument->type->start(loop->ctx, source->instrument) != DEA_OK) {
+      instrument_failed(loop, source);
     }
   }
 }
 
+void dea_drive_take_zero(const struct dea_protocol *protocol, struct dea_zero known,
+                         struct dea_drive_report *report)
+{
+  if (known.state != DEA_ZERO_NONE) {
+    report->zero = (struct dea_zero){known.state, known.volts * protocol->amplifier.gain.si};
+  }
+}
+
+/* What the voltage channels show, until it is 0 V, nothing comes any more, or the time is over. */
+static void read_monitor(struct loop *loop, double until_s)
+{
+  while (loop->monitor.window > 0 && reads(loop) && !loop->monitor.zero &&
+         dea_clock_s() < fmin(until_s, loop->reader->heard_s + loop->stall_s)) {
+    get_from(loop, loop->reader, wait_s);
+  }
+}
+
+/* Brings all to their end, the one that plays first, and finds out where its output is. */
 static void stop_all(struct loop *loop)
 {
-  for (size_t i = loop->count; i-- > 0;) { // the one that plays comes first
-    struct dea_instrument *instrument = loop->givers[i].instrument;
-    instrument->type->stop(loop->ctx, instrument);
+  double until_s = dea_clock_s() + loop->protocol->safety.zero_time_s.si;
+  struct drive_monitor *m = &loop->monitor;
+  struct dea_zero *zero = &loop->report->zero;
+  if (!loop->player->failed && loop->output.over) {
+    read_monitor(loop, until_s);
+  }
+  bool apart = loop->reader != loop->player;
+  for (size_t i = loop->count; i-- > 0;) {
+    struct dea_instrument *instrument = loop->sources[i].instrument;
+    struct dea_zero known = dea_instrument_stop(loop->ctx, instrument);
     loop->report->lost += instrument->lost;
+    if (&loop->sources[i] != loop->player) {
+      continue;
+    }
+    dea_drive_take_zero(loop->protocol, known, loop->report);
+    if (apart && loop->output.over) { // it measures on
+      m->seen = 0;
+      m->zero = false;
+      read_monitor(loop, until_s);
+    }
+  }
+  if (m->window == 0 || loop->output.played == 0 || zero->state == DEA_ZERO_UNKNOWN) {
+    return;
+  }
+  if (m->zero) {
+    *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts};
+  } else if (zero->state == DEA_ZERO_COMMANDED || isfinite(m->volts)) { // the channel is to show it
+    *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts};
   }
 }
 
 // Set up -----------------------------------------------------------------------------------------
 
-static dea_status set_givers(struct loop *loop, const struct dea_drive_bench *bench)
+static dea_status set_sources(struct loop *loop, const struct dea_drive_bench *bench)
 {
   struct dea_drive_roles roles;
   DEA_TRY(loop->ctx, dea_drive_find_roles(loop->ctx, loop->protocol, bench, &roles));
   size_t channel = loop->protocol->input_count + 1;
   for (size_t i = 0, k = 0; i < bench->count; i++) {
     struct dea_instrument *instrument = bench->instruments[i];
-    struct giver *giver = &loop->givers[instrument == roles.player ? bench->count - 1 : k++];
-    *giver = (struct giver){.loop = loop, .instrument = instrument, .first_channel = channel};
+    struct source *source = &loop->sources[instrument == roles.player ? bench->count - 1 : k++];
+    *source = (struct source){.loop = loop, .instrument = instrument, .first_channel = channel};
     channel += instrument->reading_count;
     for (size_t r = 0; r < DEA_CHANNELS_MAX; r++) {
-      giver->last_s[r] = -INFINITY;
+      source->last_s[r] = -INFINITY;
     }
-    loop->player = instrument == roles.player ? giver : loop->player;
-    loop->reader = instrument == roles.reader ? giver : loop->reader;
-    loop->sensor = instrument == roles.sensor ? giver : loop->sensor;
+    loop->player = instrument == roles.player ? source : loop->player;
+    loop->reader = instrument == roles.reader ? source : loop->reader;
+    loop->sensor = instrument == roles.sensor ? source : loop->sensor;
   }
   loop->count = bench->count;
   return DEA_OK;
+}
+
+static void set_monitor(struct loop *loop, double settle_s)
+{
+  double rate_Hz = loop->protocol->rate_Hz.si;
+  loop->monitor.volts = NAN;
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    if (loop->protocol->inputs[i].kind.value == DEA_CHANNEL_VOLTAGE) {
+      loop->monitor.settle = (size_t)ceil(settle_s * rate_Hz) + 1; // one shows what was before it
+      loop->monitor.window = (size_t)fmax(ceil(monitor_s * rate_Hz), 4);
+    }
+  }
 }
 
 static dea_status set_rooms(struct loop *loop)
@@ -441,15 +629,21 @@ static dea_status finish(struct loop *loop)
   struct dea_drive_report *report = loop->report;
   report->played_s = fmin((double)loop->output.played / loop->protocol->rate_Hz.si,
                           dea_protocol_duration_s(loop->protocol));
-  report->reached_zero = !loop->player->failed || loop->output.played == 0;
   report->largest_current_A = loop->watch.largest_current_A;
+  char zero[DEA_ZERO_TEXT_SIZE];
+  dea_zero_text(report->zero, zero);
+  dea_recorder_set_output(loop->recorder, zero);
   dea_status finished = dea_recorder_finish(loop->recorder, report->ended);
   dea_status noted = note_ranges(loop);
   finished = finished == DEA_OK ? noted : finished;
-  if (loop->status != DEA_OK) {
-    return dea_fail(loop->ctx, loop->status, "the measurement ended after %.4g s: %s%s",
-                    report->played_s, report->ended,
-                    report->reached_zero ? "" : "; the output was stopped at once");
+  bool unknown = report->zero.state == DEA_ZERO_UNKNOWN;
+  if (loop->status != DEA_OK || unknown) {
+    return dea_fail(loop->ctx,
+                    unknown && loop->status != DEA_E_INTERLOCK ? DEA_E_INSTRUMENT : loop->status,
+                    "the measurement %s%.4g s%s%s; the output is %s%s",
+                    loop->status != DEA_OK ? "ended after " : "was played to its end at ",
+                    report->played_s, loop->status != DEA_OK ? ": " : "", report->ended, zero,
+                    unknown ? ": switch the supply off" : "");
   }
   return finished;
 }
@@ -459,9 +653,9 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
                           struct dea_drive_report *out)
 {
   struct loop loop = {.ctx = ctx, .protocol = protocol, .report = out, .stall_s = bench->stall_s};
-  *out = (struct dea_drive_report){.largest_current_A = NAN};
+  *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   loop.last_frame_s = -INFINITY;
-  dea_status status = set_givers(&loop, bench);
+  dea_status status = set_sources(&loop, bench);
   status = status == DEA_OK ? set_rooms(&loop) : status;
   if (status == DEA_OK) {
     const struct dea_instrument *sensor = loop.sensor != NULL ? loop.sensor->instrument : NULL;
@@ -473,6 +667,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     dea_context_set_interrupt(ctx, NULL);
     dea_drive_output_start(&loop.output, protocol);
     dea_drive_watch_start(&loop.watch, protocol, bench->settle_s);
+    set_monitor(&loop, bench->settle_s);
     start_all(&loop);
     if (!loop.ending) {
       play(&loop, interrupt);
@@ -483,7 +678,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     status = finish(&loop);
   } else {
     for (size_t i = 0; i < bench->count; i++) {
-      bench->instruments[i]->type->stop(ctx, bench->instruments[i]);
+      dea_drive_take_zero(protocol, dea_instrument_stop(ctx, bench->instruments[i]), out);
     }
   }
   dea_free(ctx, loop.asked);

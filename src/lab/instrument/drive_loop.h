@@ -19,6 +19,10 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
                           const struct dea_drive_bench *bench, const char *file,
                           struct dea_drive_report *out);
 
+/* Puts what an instrument says after its stop into the report; nothing of one without output. */
+void dea_drive_take_zero(const struct dea_protocol *protocol, struct dea_zero known,
+                         struct dea_drive_report *report);
+
 /* Who does what; lent. */
 struct dea_drive_roles {
   struct dea_instrument *player; // of the output

@@ -48,3 +48,10 @@ void dea_drive_output_ramp(struct dea_drive_output *output)
 {
   output->ramping = true; // one that is over has ended with 0 V
 }
+
+void dea_drive_output_ramp_from(struct dea_drive_output *output, double volts)
+{
+  output->ramping = true;
+  output->over = false;
+  output->last_V = volts;
+}

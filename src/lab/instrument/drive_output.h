@@ -19,5 +19,7 @@ void dea_drive_output_start(struct dea_drive_output *output, const struct dea_pr
 size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, double *asked_V);
 /* From here on a ramp from the last voltage to 0 V; nothing more for one that is over. */
 void dea_drive_output_ramp(struct dea_drive_output *output);
+/* The same from another voltage, also of one that is over. */
+void dea_drive_output_ramp_from(struct dea_drive_output *output, double volts);
 
 #endif

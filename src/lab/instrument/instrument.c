@@ -4,6 +4,8 @@
 #include "base/schema_value.h"
 #include "lab/instrument/instrument_make.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const struct dea_instrument_type *const types[] = {
@@ -84,6 +86,40 @@ dea_status dea_instrument_open(struct dea_context *ctx,
   dea_status status = type->open(ctx, raw, protocol, out);
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  char message[1024];
+  dea_status status = dea_context_status(ctx);
+  const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
+  snprintf(message, sizeof message, "%s", dea_context_message(ctx));
+  dea_context_set_interrupt(ctx, NULL);
+  struct dea_zero zero = instrument->type->stop(ctx, instrument);
+  dea_context_set_interrupt(ctx, interrupt);
+  if (status != DEA_OK) {
+    dea_fail(ctx, status, "%s", message);
+  }
+  return zero;
+}
+
+dea_status dea_instrument_zero(struct dea_context *ctx,
+                               const struct dea_protocol_instrument *section,
+                               const struct dea_protocol *protocol, struct dea_zero *out)
+{
+  const struct dea_instrument_type *type;
+  void *raw;
+  *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
+  DEA_TRY(ctx, read_section(ctx, section, protocol, &type, &raw));
+  if (raw == NULL) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the section %s of %s has errors", section->path,
+                    protocol->file);
+  }
+  if (type->zero != NULL) {
+    *out = type->zero(ctx, raw, protocol);
+  }
+  dea_free(ctx, raw);
+  return DEA_OK;
 }
 
 dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol)

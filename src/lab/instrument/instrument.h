@@ -8,6 +8,7 @@
 #ifndef DEA_LAB_INSTRUMENT_INSTRUMENT_H
 #define DEA_LAB_INSTRUMENT_INSTRUMENT_H
 
+#include "lab/instrument/zero.h"
 #include "lab/protocol/protocol.h"
 
 enum dea_instrument_role {
@@ -26,7 +27,7 @@ struct dea_instrument_reading {
 
 /* Where what arrives goes to; what a function returns other than DEA_OK is passed on. Times are on
  * the recording's clock: 0 at start. */
-struct dea_intake {
+struct dea_sink {
   void *user;
   /* volts: [count][inputs of the protocol]; NAN: lost. */
   dea_status (*samples)(void *user, const double *volts, size_t count);
@@ -58,7 +59,7 @@ struct dea_instrument_type {
   /* raw: as read, lent for the call; protocol: lent, outlives the instrument. Connects, sets up,
    * and waits for what it has to know (a sensor's first profile). The output stays at 0 V.
    * DEA_E_INSTRUMENT with what is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's
-   * library is not there. */
+   * library is not there; DEA_E_INTERLOCK when its output is not known to be at 0 V. */
   dea_status (*open)(struct dea_context *ctx, const void *raw, const struct dea_protocol *protocol,
                      struct dea_instrument **out);
   /* Starts the clock. */
@@ -72,9 +73,19 @@ struct dea_instrument_type {
   /* Hands over what has arrived; waits up to timeout_s for something. A lost connection is
    * DEA_E_INSTRUMENT. NULL when it only plays. */
   dea_status (*get)(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
-                    const struct dea_intake *intake);
-  /* Ends at once with the output at 0 V; called also after failures, and never twice. */
-  void (*stop)(struct dea_context *ctx, struct dea_instrument *instrument);
+                    const struct dea_sink *sink);
+  /* After `put` or `get` has answered DEA_E_INTERLOCK, because the computer was away for longer
+   * than the queue: drops the queue, so that what is put next is played from now on. *volts: where
+   * the output is. NULL for one that never answers that. */
+  dea_status (*hold)(struct dea_context *ctx, struct dea_instrument *instrument, double *volts);
+  /* Ends at once with the output at 0 V, and says what is known of that, within the protocol's
+   * safety.zero_time (volts: control voltage); called also after failures, and never twice: by
+   * dea_instrument_stop. */
+  struct dea_zero (*stop)(struct dea_context *ctx, struct dea_instrument *instrument);
+  /* The same for one that is not open, by a connection of its own over which nothing else is sent.
+   * NULL when it never plays. */
+  struct dea_zero (*zero)(struct dea_context *ctx, const void *raw,
+                          const struct dea_protocol *protocol);
   void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
 };
 
@@ -89,6 +100,13 @@ extern const struct dea_record *const dea_instrument_records[];
 dea_status dea_instrument_open(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_instrument **out);
+/* Stops it. What the context holds of a failure stays, and no interruption shortens it. */
+struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument);
+/* Brings the output of a section's instrument to 0 V, without opening the instrument otherwise.
+ * DEA_ZERO_NONE for one that plays nothing. */
+dea_status dea_instrument_zero(struct dea_context *ctx,
+                               const struct dea_protocol_instrument *section,
+                               const struct dea_protocol *protocol, struct dea_zero *out);
 /* Reads the sections of all instruments without opening any: wrong keys become findings. */
 dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol);
 

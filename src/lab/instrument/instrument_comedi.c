@@ -2,8 +2,8 @@
  * opened. Output and inputs are commands with timers of the same board; both are armed and then
  * triggered one right after the other, inputs first. Not tried with a board. */
 #define _POSIX_C_SOURCE 200809L // read, write, poll
+#include "base/clock.h"
 #include "base/schema_value.h"
-#include "lab/instrument/clock.h"
 #include "lab/instrument/comedi_library.h"
 #include "lab/instrument/daq.h"
 #include "lab/instrument/instrument_make.h"
@@ -226,7 +226,8 @@ static bool set_zero(struct comedi *c)
                                number_of(c, channel, 0)) >= 0;
 }
 
-static dea_status set_up(struct dea_context *ctx, struct comedi *c)
+/* Opens the device and puts 0 V out. */
+static dea_status open_output(struct dea_context *ctx, struct comedi *c)
 {
   const struct dea_protocol *p = c->protocol;
   c->device = c->library.open(c->name);
@@ -238,9 +239,13 @@ static dea_status set_up(struct dea_context *ctx, struct comedi *c)
           add_channel(ctx, c, &c->output, DEA_COMEDI_FROM_PHYSICAL,
                       channel_number(p->amplifier.terminal.text, "ao"), p->amplifier.control_V.si));
   c->opened = true;
-  if (!set_zero(c)) {
-    return failed(ctx, c, "put 0 V out");
-  }
+  return set_zero(c) ? DEA_OK : failed(ctx, c, "put 0 V out");
+}
+
+static dea_status set_up(struct dea_context *ctx, struct comedi *c)
+{
+  const struct dea_protocol *p = c->protocol;
+  DEA_TRY(ctx, open_output(ctx, c));
   if (p->input_count > 0) {
     DEA_TRY(ctx, find_part(ctx, c, DEA_COMEDI_INPUT, &c->input));
   }
@@ -261,17 +266,19 @@ static dea_status set_up(struct dea_context *ctx, struct comedi *c)
                                                                 : failed(ctx, c, "play on a clock");
 }
 
-static void stop(struct dea_context *ctx, struct dea_instrument *instrument)
+static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct comedi *c = (struct comedi *)instrument;
+  bool zero = true; // what was not opened was left as it is
   (void)ctx;
   if (c->opened) {
     c->library.cancel(c->device, c->output.subdevice);
-    (void)set_zero(c);
+    zero = set_zero(c);
   }
   if (c->daq.running && c->input.count > 0) {
     c->library.cancel(c->device, c->input.subdevice);
   }
+  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -305,12 +312,31 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     status = set_up(ctx, c);
   }
   if (status != DEA_OK) {
-    stop(ctx, &c->base);
+    (void)dea_instrument_stop(ctx, &c->base);
     close_it(ctx, &c->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   *out = &c->base;
   return DEA_OK;
+}
+
+static struct dea_zero zero(struct dea_context *ctx, const void *data,
+                            const struct dea_protocol *protocol)
+{
+  const struct dea_daq_raw *raw = data;
+  struct dea_zero result = {DEA_ZERO_UNKNOWN, NAN};
+  struct comedi *c = dea_alloc(ctx, 1, sizeof *c);
+  if (c == NULL) {
+    return result;
+  }
+  c->protocol = protocol;
+  snprintf(c->name, sizeof c->name, "%s", raw->device.text);
+  if (dea_comedi_open(ctx, raw->library.text, &c->library) == DEA_OK &&
+      open_output(ctx, c) == DEA_OK) {
+    result.state = DEA_ZERO_COMMANDED;
+  }
+  close_it(ctx, &c->base);
+  return result;
 }
 
 /* Inputs first, so that none of the output is missed. */
@@ -418,8 +444,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
 }
 
 /* Hands over the whole scans among what was received. */
-static dea_status hand_over(struct dea_context *ctx, struct comedi *c,
-                            const struct dea_intake *intake)
+static dea_status hand_over(struct dea_context *ctx, struct comedi *c, const struct dea_sink *sink)
 {
   size_t n = c->input.count, size = c->input.sample_size, used = 0, scans;
   while ((scans = (c->received_length - used) / (n * size)) > 0) {
@@ -431,7 +456,7 @@ static dea_status hand_over(struct dea_context *ctx, struct comedi *c,
       c->daq.scans[i] =
           c->library.to_physical(size == 4 ? number : half, &c->input.channels[i % n].converter);
     }
-    DEA_TRY(ctx, intake->samples(intake->user, c->daq.scans, scans));
+    DEA_TRY(ctx, sink->samples(sink->user, c->daq.scans, scans));
   }
   c->received_length -= used;
   memmove(c->received, c->received + used, c->received_length);
@@ -439,7 +464,7 @@ static dea_status hand_over(struct dea_context *ctx, struct comedi *c,
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
-                      const struct dea_intake *intake)
+                      const struct dea_sink *sink)
 {
   struct comedi *c = (struct comedi *)instrument;
   if (!c->daq.running || c->input.count == 0) {
@@ -453,7 +478,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
                      sizeof c->received - c->received_length);
   if (got > 0) {
     c->received_length += (size_t)got;
-    return hand_over(ctx, c, intake);
+    return hand_over(ctx, c, sink);
   }
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
     return DEA_OK;
@@ -474,5 +499,6 @@ const struct dea_instrument_type dea_instrument_comedi = {
     .put = put,
     .get = get,
     .stop = stop,
+    .zero = zero,
     .close = close_it,
 };

@@ -1,7 +1,7 @@
 /* Instrument "gocator": a line profile sensor of LMI Technologies, by its data stream (profiles and
  * measurements) or by text (measurements). See gocator_parse.h for what is sent. */
+#include "base/clock.h"
 #include "base/schema_value.h"
-#include "lab/instrument/clock.h"
 #include "lab/instrument/gocator_frames.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/line_reader.h"
@@ -185,19 +185,19 @@ static dea_status silent(struct dea_context *ctx, const struct gocator *g)
 
 /* A value of a measurement, if it is one that is wanted; NAN counts as lost. */
 static dea_status take_value(struct gocator *g, long id, double thousandths, double clock_s,
-                             const struct dea_intake *intake)
+                             const struct dea_sink *sink)
 {
   for (size_t i = 0; i < g->raw.measurement_count; i++) {
     const struct raw_measurement *m = &g->raw.measurements[i];
     if ((long)m->id.si == id) {
       g->heard_s = dea_clock_s();
       double time_s = clock_s - g->start_s;
-      if (intake == NULL || !(time_s >= 0)) {
+      if (sink == NULL || !(time_s >= 0)) {
         return DEA_OK;
       }
       g->frames.anchored = true;
       g->base.lost += isnan(thousandths) ? 1 : 0;
-      return intake->reading(intake->user, i, time_s, thousandths * m->factor.si);
+      return sink->reading(sink->user, i, time_s, thousandths * m->factor.si);
     }
   }
   return DEA_OK;
@@ -205,7 +205,7 @@ static dea_status take_value(struct gocator *g, long id, double thousandths, dou
 
 /* The group's profiles: the first one makes the grid, those after the start are handed over. */
 static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, double arrived_s,
-                                const struct dea_intake *intake)
+                                const struct dea_sink *sink)
 {
   const struct dea_gdp_profiles *p = &g->stream.profiles;
   if (g->raw.mode.value != PROFILES) {
@@ -220,7 +220,7 @@ static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, doub
   }
   g->heard_s = arrived_s;
   size_t count = p->count == g->stream.stamp_count ? p->count : 1;
-  for (size_t k = 0; k < count && intake != NULL; k++) {
+  for (size_t k = 0; k < count && sink != NULL; k++) {
     // Without a stamp the time of arrival must do.
     const struct dea_gdp_stamp arrival = {g->frames.last_frame + 1, (uint64_t)(1e6 * arrived_s)};
     const struct dea_gdp_stamp *stamp = g->stream.stamp_count > 0 ? &g->stream.stamps[k] : &arrival;
@@ -228,7 +228,7 @@ static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, doub
     dea_gocator_frames_see(&g->frames, stamp, arrived_s);
     if (dea_gocator_frames_time(&g->frames, stamp, g->start_s, &time_s, &g->base.lost)) {
       dea_gocator_frames_place(&g->frames, p, k);
-      DEA_TRY(ctx, intake->profile(intake->user, time_s, g->frames.z_m));
+      DEA_TRY(ctx, sink->profile(sink->user, time_s, g->frames.z_m));
     }
   }
   if (g->frames.other_grid && !g->noted_grid) {
@@ -247,9 +247,9 @@ static double group_clock_s(const struct gocator *g, double arrived_s)
                                    : arrived_s;
 }
 
-/* intake NULL: before the start, nothing is handed over. */
+/* sink NULL: before the start, nothing is handed over. */
 static dea_status take_data(struct dea_context *ctx, struct gocator *g, const unsigned char *bytes,
-                            size_t length, const struct dea_intake *intake)
+                            size_t length, const struct dea_sink *sink)
 {
   double arrived_s = dea_clock_s();
   for (;;) {
@@ -261,14 +261,14 @@ static dea_status take_data(struct dea_context *ctx, struct gocator *g, const un
       dea_gocator_frames_see(&g->frames, &g->stream.stamps[0], arrived_s);
       break;
     case DEA_GDP_PROFILES:
-      DEA_TRY(ctx, take_profiles(ctx, g, arrived_s, intake));
+      DEA_TRY(ctx, take_profiles(ctx, g, arrived_s, sink));
       break;
     case DEA_GDP_MEASUREMENT:
       DEA_TRY(ctx, take_value(g, (long)m->id, m->valid ? (double)m->thousandths : (double)NAN,
-                              group_clock_s(g, arrived_s), intake));
+                              group_clock_s(g, arrived_s), sink));
       break;
     case DEA_GDP_ODD:
-      g->base.lost += intake != NULL;
+      g->base.lost += sink != NULL;
       if (!g->noted_odd) {
         g->noted_odd = true;
         DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
@@ -286,7 +286,7 @@ static dea_status take_data(struct dea_context *ctx, struct gocator *g, const un
 }
 
 static dea_status take_text(struct dea_context *ctx, struct gocator *g, const char *bytes,
-                            size_t length, const struct dea_intake *intake)
+                            size_t length, const struct dea_sink *sink)
 {
   const char *line, *reason;
   size_t dropped = g->lines.dropped;
@@ -301,21 +301,21 @@ static dea_status take_text(struct dea_context *ctx, struct gocator *g, const ch
       g->asked_s = NAN;
     }
     while (dea_gocator_value_next(&line, &value)) {
-      DEA_TRY(ctx, take_value(g, value.id, value.thousandths, time_s, intake));
+      DEA_TRY(ctx, take_value(g, value.id, value.thousandths, time_s, sink));
     }
   }
-  g->base.lost += intake != NULL ? g->lines.dropped - dropped : 0;
+  g->base.lost += sink != NULL ? g->lines.dropped - dropped : 0;
   return DEA_OK;
 }
 
 /* Reads what is there once, waiting up to timeout_s. */
 static dea_status receive(struct dea_context *ctx, struct gocator *g, double timeout_s,
-                          const struct dea_intake *intake, size_t *length)
+                          const struct dea_sink *sink, size_t *length)
 {
   unsigned char bytes[RECEIVE_SIZE];
   DEA_TRY(ctx, dea_socket_read(ctx, &g->data, timeout_s, bytes, sizeof bytes, length));
-  return is_text(g) ? take_text(ctx, g, (const char *)bytes, *length, intake)
-                    : take_data(ctx, g, bytes, *length, intake);
+  return is_text(g) ? take_text(ctx, g, (const char *)bytes, *length, sink)
+                    : take_data(ctx, g, bytes, *length, sink);
 }
 
 /* Asks for all measurements when it is time; *wait_s gets shorter until the next time. */
@@ -341,7 +341,7 @@ static dea_status poll_it(struct dea_context *ctx, struct gocator *g, double *wa
   return dea_socket_write(ctx, &g->data, g->raw.timeout_s.si, text, length);
 }
 
-static void stop(struct dea_context *ctx, struct dea_instrument *instrument)
+static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   static const char text[] = "Stop\r\n";
   struct gocator *g = (struct gocator *)instrument;
@@ -353,6 +353,7 @@ static void stop(struct dea_context *ctx, struct dea_instrument *instrument)
     dea_gocator_command(DEA_GOCATOR_STOP, command);
     dea_socket_write_if_possible(&g->control, command, sizeof command);
   }
+  return (struct dea_zero){DEA_ZERO_NONE, NAN};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -440,7 +441,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   }
   dea_status status = set_up(ctx, g);
   if (status != DEA_OK) {
-    stop(ctx, &g->base);
+    (void)stop(ctx, &g->base);
     close_it(ctx, &g->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -460,7 +461,7 @@ static dea_status start(struct dea_context *ctx, struct dea_instrument *instrume
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
-                      const struct dea_intake *intake)
+                      const struct dea_sink *sink)
 {
   struct gocator *g = (struct gocator *)instrument;
   double until_s = dea_clock_s() + timeout_s, left_s = timeout_s;
@@ -469,7 +470,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     double wait_s = fmax(left_s, 0);
     DEA_TRY(ctx, poll_it(ctx, g, &wait_s));
     wait_s = fmin(wait_s, fmax(g->heard_s + g->raw.timeout_s.si - dea_clock_s(), 0));
-    DEA_TRY(ctx, receive(ctx, g, wait_s, intake, &length));
+    DEA_TRY(ctx, receive(ctx, g, wait_s, sink, &length));
     if (dea_clock_s() - g->heard_s > g->raw.timeout_s.si) {
       return silent(ctx, g);
     }

@@ -2,7 +2,7 @@
  * it is opened. The output is played from a queue without repetition; the inputs start with it, by
  * its start trigger, and both have the device's clock. The few prototypes and numbers below are
  * those of the "NI-DAQmx C Reference". Not tried with a device. */
-#include "lab/instrument/clock.h"
+#include "base/clock.h"
 #include "lab/instrument/daq.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/library.h"
@@ -196,12 +196,13 @@ static dea_status set_up(struct dea_context *ctx, struct nidaqmx *n, int32_t wir
   return make_input(ctx, n, wiring);
 }
 
-static void stop(struct dea_context *ctx, struct dea_instrument *instrument)
+static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   clear(n, &n->output);
   clear(n, &n->input);
-  (void)set_zero(ctx, n);
+  bool zero = set_zero(ctx, n) == DEA_OK;
+  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -211,6 +212,24 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
   clear(n, &n->input);
   dea_daq_free(ctx, &n->daq);
   dea_free(ctx, n);
+}
+
+static dea_status load(struct dea_context *ctx, const struct dea_daq_raw *raw, struct nidaqmx *n)
+{
+  snprintf(n->device, sizeof n->device, "%s", raw->device.text);
+  return dea_library_open(ctx, raw->library.text, "NI-DAQmx",
+                          "it is installed from ni.com for PCIe and PXI devices; Linux has no "
+                          "driver for USB devices, so play on Windows with the scripts of 'dea "
+                          "drive --export'",
+                          symbols, DEA_INSTRUMENT_COUNT(symbols), &n->driver);
+}
+
+static struct dea_zero zero(struct dea_context *ctx, const void *data,
+                            const struct dea_protocol *protocol)
+{
+  struct nidaqmx n = {.protocol = protocol};
+  bool good = load(ctx, data, &n) == DEA_OK && set_zero(ctx, &n) == DEA_OK;
+  return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
 }
 
 static dea_status open_it(struct dea_context *ctx, const void *data,
@@ -224,14 +243,9 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   n->base.type = &dea_instrument_nidaqmx;
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;
-  snprintf(n->device, sizeof n->device, "%s", raw->device.text);
   dea_status status = dea_daq_begin(ctx, protocol, raw->queue_s.si, &n->daq);
   if (status == DEA_OK) {
-    status = dea_library_open(ctx, raw->library.text, "NI-DAQmx",
-                              "it is installed from ni.com for PCIe and PXI devices; Linux has no "
-                              "driver for USB devices, so play on Windows with the scripts of 'dea "
-                              "drive --export'",
-                              symbols, DEA_INSTRUMENT_COUNT(symbols), &n->driver);
+    status = load(ctx, raw, n);
   }
   if (status == DEA_OK) {
     status = set_up(ctx, n, wiring_values[raw->wiring.value]);
@@ -300,7 +314,7 @@ static dea_status look_at_output(struct dea_context *ctx, struct nidaqmx *n)
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
-                      const struct dea_intake *intake)
+                      const struct dea_sink *sink)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   uint32_t ready = 0;
@@ -321,7 +335,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   if (code != NOT_YET_AVAILABLE) {
     DEA_TRY(ctx, judge(ctx, n, code, "measure on"));
   }
-  return got > 0 && (size_t)got <= wanted ? intake->samples(intake->user, n->daq.scans, (size_t)got)
+  return got > 0 && (size_t)got <= wanted ? sink->samples(sink->user, n->daq.scans, (size_t)got)
                                           : DEA_OK;
 }
 
@@ -336,5 +350,6 @@ const struct dea_instrument_type dea_instrument_nidaqmx = {
     .put = put,
     .get = get,
     .stop = stop,
+    .zero = zero,
     .close = close_it,
 };

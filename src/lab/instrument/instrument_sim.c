@@ -3,7 +3,7 @@
  * to that in sim_noise.h. */
 #include "lab/instrument/instrument_sim.h"
 
-#include "lab/instrument/clock.h"
+#include "base/clock.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/sim_noise.h"
 
@@ -311,7 +311,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
 
 /* One sample into its place, and the frame that is due then. */
 static dea_status sample(struct sim *s, double control_V, double *volts,
-                         const struct dea_intake *intake)
+                         const struct dea_sink *sink)
 {
   struct dea_sim_state state;
   dea_status status = dea_sim_bench_sample(s->bench, control_V, &state);
@@ -327,11 +327,11 @@ static dea_status sample(struct sim *s, double control_V, double *volts,
   s->frames++;
   dea_sim_read_profile(s->bench, &s->noise, state.time_s, &s->random, s->x_m,
                        s->base.profile_points, s->z_m);
-  return intake->profile(intake->user, state.time_s, s->z_m);
+  return sink->profile(sink->user, state.time_s, s->z_m);
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
-                      const struct dea_intake *intake)
+                      const struct dea_sink *sink)
 {
   static const double glance_s = 0.005;
   struct sim *s = (struct sim *)instrument;
@@ -347,10 +347,10 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   while (status == DEA_OK && taken < left) {
     size_t count = 0;
     while (status == DEA_OK && count < BLOCK_SAMPLES && taken < left) {
-      status = sample(s, s->queue[taken++], s->volts + count++ * inputs, intake);
+      status = sample(s, s->queue[taken++], s->volts + count++ * inputs, sink);
     }
     if (status == DEA_OK) {
-      status = intake->samples(intake->user, s->volts, count);
+      status = sink->samples(sink->user, s->volts, count);
     }
   }
   s->done += taken;
@@ -361,10 +361,11 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   return status;
 }
 
-static void stop(struct dea_context *ctx, struct dea_instrument *instrument)
+static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   (void)ctx;
   ((struct sim *)instrument)->stopped = true;
+  return (struct dea_zero){DEA_ZERO_COMMANDED, NAN};
 }
 
 const struct dea_instrument_type dea_instrument_sim = {

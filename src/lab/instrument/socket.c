@@ -1,7 +1,7 @@
 #define _POSIX_C_SOURCE 200809L // sockets, poll, MSG_NOSIGNAL
 #include "lab/instrument/socket.h"
 
-#include "lab/instrument/clock.h"
+#include "base/clock.h"
 
 #include <errno.h>
 #include <fcntl.h>

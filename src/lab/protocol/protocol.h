@@ -71,6 +71,7 @@ struct dea_protocol {
     struct dea_quantity trip_current_A, trip_time_s; // a current above it for that long ends it
     struct dea_quantity voltage_error_V;             // largest |measured - asked| once settled
     struct dea_quantity ramp_V_per_s;                // to 0 V, when it ends early
+    struct dea_quantity at_zero_V, zero_time_s;      // what is 0 V, read back, and by when
   } safety;
 
   struct dea_protocol_instrument instruments[DEA_PROTOCOL_INSTRUMENTS_MAX];

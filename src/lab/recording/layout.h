@@ -3,6 +3,7 @@
  *   attributes format, version
  *   title, protocol, design, design_name, provenance   whole texts, where there are any
  *   state               text of STATE_SIZE bytes, overwritten in place at the end
+ *   output              the same size: what is known of the output at the end; "" while it runs
  *   channels/KEY        attributes name, quantity, unit, index, start_s, interval_s, filter_Hz, and
  *                       lowest, highest where the range is known
  *     values [n]        and, where interval_s is 0, time [n]

@@ -42,6 +42,15 @@ static void get_state(struct h5 *h, hid_t file, struct dea_recording *recording)
   dea_free(h->ctx, state);
 }
 
+static void get_output(struct h5 *h, hid_t file, struct dea_recording *recording)
+{
+  char *output = dea_h5_get_long_text(h, file, "output");
+  if (output != NULL) {
+    snprintf(recording->output, sizeof recording->output, "%s", output);
+  }
+  dea_free(h->ctx, output);
+}
+
 static bool find_kind(const char *name, enum dea_channel_kind *kind)
 {
   for (int k = 0; k < DEA_CHANNEL_KINDS; k++) {
@@ -234,6 +243,7 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
                          h->path, version, DEA_RECORDING_VERSION);
   }
   get_state(h, file, recording);
+  get_output(h, file, recording);
   get_cycles(h, file, recording, &cut); // before the samples: a program may be adding to both
   get_channels(h, file, recording, &cut);
   get_profiles(h, file, &recording->profiles, &cut);

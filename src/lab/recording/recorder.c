@@ -1,7 +1,7 @@
 #include "lab/recording/recorder.h"
 
+#include "base/clock.h"
 #include "base/write_file.h"
-#include "lab/instrument/clock.h"
 #include "lab/recording/disk.h"
 #include "lab/recording/layout.h"
 #include "lab/recording/series.h"
@@ -29,7 +29,8 @@ struct dea_recorder {
   size_t channel_count;
   struct dea_series frame_time, frames, cycles;
   double last_frame_s;
-  double flush_s, flushed_s; // longest time between flushes, time of the last one
+  char output[DEA_OUTPUT_SIZE]; // what is known of it at the end
+  double flush_s, flushed_s;    // longest time between flushes, time of the last one
 };
 
 // Making the file --------------------------------------------------------------------------------
@@ -165,16 +166,19 @@ static void make_texts(struct h5 *h, hid_t file, const struct dea_recorder_optio
   memset(state, ' ', sizeof state);
   state[sizeof state - 1] = '\0'; // as long as what comes to stand there
   dea_h5_put_long_text(h, file, "state", state);
+  dea_h5_put_long_text(h, file, "output", state);
 }
 
-static void set_state(struct h5 *h, const struct dea_recorder *recorder, const char *text)
+/* Overwrites a text of a fixed size. */
+static void set_text(struct h5 *h, const struct dea_recorder *recorder, const char *name,
+                     const char *text)
 {
   if (h->status != DEA_OK) {
     return;
   }
   char state[DEA_STATE_SIZE] = "";
   snprintf(state, sizeof state, "%s", text);
-  hid_t set = dea_h5_array_open(h, recorder->file, "state");
+  hid_t set = dea_h5_array_open(h, recorder->file, name);
   hid_t type = set >= 0 ? H5Dget_type(set) : H5I_INVALID_HID;
   if (type < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, state) < 0 ||
       H5Dflush(set) < 0) {
@@ -246,7 +250,8 @@ static void make_objects(struct h5 *h, struct dea_recorder *recorder,
   make_profiles(h, file, options);
   dea_series_make(h, file, "cycles", DEA_CYCLE_WIDTH, 1024, "1",
                   "completed cycles: step, number in it, start (s), end (s), level (V)");
-  set_state(h, recorder, DEA_STATE_RUNNING);
+  set_text(h, recorder, "state", DEA_STATE_RUNNING);
+  set_text(h, recorder, "output", "");
   if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) {
     dea_h5_fail(h, cannot_write);
   }
@@ -460,6 +465,13 @@ dea_status dea_recorder_flush(struct dea_recorder *recorder)
   return end(recorder, &h);
 }
 
+void dea_recorder_set_output(struct dea_recorder *recorder, const char *text)
+{
+  if (recorder != NULL) {
+    snprintf(recorder->output, sizeof recorder->output, "%s", text);
+  }
+}
+
 dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended)
 {
   if (recorder == NULL) {
@@ -472,7 +484,8 @@ dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended)
   struct h5 h;
   begin(recorder, &h);
   flush_samples(&h, recorder);
-  set_state(&h, recorder, state);
+  set_text(&h, recorder, "output", recorder->output);
+  set_text(&h, recorder, "state", state);
   if (h.status == DEA_OK && H5Fflush(recorder->file, H5F_SCOPE_GLOBAL) < 0) {
     dea_h5_fail(&h, cannot_write);
   }

@@ -49,6 +49,8 @@ dea_status dea_recorder_add_profile(struct dea_recorder *recorder, double time_s
 dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
                                   const struct dea_recorded_cycle *cycle);
 dea_status dea_recorder_flush(struct dea_recorder *recorder);
+/* What is known of the output at the end ("at 0 V (2 V read back)"); for dea_recorder_finish. */
+void dea_recorder_set_output(struct dea_recorder *recorder, const char *text);
 /* Ends the file and frees the recorder, also after a failure; NULL is fine. ended: why it ended
  * early, NULL or "" when it came to its end. */
 dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended);

@@ -34,7 +34,7 @@ extern const struct dea_channel_meaning dea_channel_meanings[DEA_CHANNEL_KINDS];
 /* NULL-terminated names, for choices of a schema. */
 extern const char *const dea_channel_names[DEA_CHANNEL_KINDS + 1];
 
-enum { DEA_CHANNEL_NAME_SIZE = 64, DEA_CHANNELS_MAX = 32 };
+enum { DEA_CHANNEL_NAME_SIZE = 64, DEA_CHANNELS_MAX = 32, DEA_OUTPUT_SIZE = 128 };
 
 /* Samples at start_s + i interval_s, or, when interval_s is 0, at time_s[i], which rise. */
 struct dea_channel {
@@ -71,6 +71,7 @@ struct dea_recording {
   char *provenance;                      // JSON; NULL
   bool complete;                         // ended by its program, not by a crash
   char ended[256];                       // why it ended early; ""
+  char output[DEA_OUTPUT_SIZE];          // what is known of the output at the end; "" nothing
   struct dea_channel channels[DEA_CHANNELS_MAX];
   size_t channel_count;
   struct dea_profiles profiles; // count 0 without

@@ -51,6 +51,7 @@ dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recordi
   DEA_TRY(ctx, dea_recorder_create(ctx, file, &options, &recorder));
   dea_status status = add_all(recorder, recording);
   const char *ended = recording->ended[0] != '\0' ? recording->ended : "for an unknown reason";
+  dea_recorder_set_output(recorder, recording->output);
   dea_status finished = dea_recorder_finish(recorder, recording->complete ? NULL : ended);
   status = status != DEA_OK ? status : finished;
   if (status != DEA_OK) {

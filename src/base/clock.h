@@ -1,6 +1,6 @@
-/* The computer's clock, for instruments that have none of their own. */
-#ifndef DEA_LAB_INSTRUMENT_CLOCK_H
-#define DEA_LAB_INSTRUMENT_CLOCK_H
+/* The computer's clock. */
+#ifndef DEA_BASE_CLOCK_H
+#define DEA_BASE_CLOCK_H
 
 /* Seconds of a clock that only goes forward, from an unknown start. */
 double dea_clock_s(void);

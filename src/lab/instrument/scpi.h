@@ -1,0 +1,119 @@
+/* Inside of the instrument "scpi": its keys, its connection, and its output.
+ *
+ * At most one question is open at a time, so that an answer can belong to nothing else. A voltage
+ * of the output counts as set once the question `confirm`, which is sent behind it, was answered;
+ * until then no other is sent. So a supply can never have more to do than one voltage, and one that
+ * takes longer than `behind` for it has failed. */
+#ifndef DEA_LAB_INSTRUMENT_SCPI_H
+#define DEA_LAB_INSTRUMENT_SCPI_H
+
+#include "lab/instrument/instrument_make.h"
+#include "lab/instrument/line_reader.h"
+#include "lab/instrument/scpi_parse.h"
+#include "lab/instrument/socket.h"
+
+enum { DEA_SCPI_COMMANDS_MAX = 16, DEA_SCPI_COMMAND_SIZE = DEA_TITLE_SIZE + 40 };
+
+struct dea_scpi_raw_reading {
+  struct dea_label name, query, unit;
+  struct dea_choice quantity;
+  struct dea_quantity factor, offset;
+};
+
+struct dea_scpi_raw {
+  struct dea_label kind, address, identity;
+  struct dea_quantity port, timeout_s, interval_s;
+  struct dea_label setup[DEA_SCPI_COMMANDS_MAX], at_stop[DEA_SCPI_COMMANDS_MAX];
+  size_t setup_count, at_stop_count;
+  struct dea_scpi_raw_reading readings[DEA_INSTRUMENT_READINGS_MAX];
+  size_t reading_count;
+  // of the output
+  struct dea_label output, output_off, confirm, measure;
+  struct dea_quantity output_factor, output_interval_s, queue_s, behind_s;
+  struct {
+    struct dea_label arm, feed, disarm;
+    struct dea_quantity period_s;
+  } watchdog;
+};
+
+/* A connection; zero-initialise, and the socket's descriptor to -1. */
+struct dea_scpi_link {
+  struct dea_socket socket;
+  struct dea_line_reader lines;
+};
+
+enum dea_scpi_question { DEA_SCPI_NOTHING, DEA_SCPI_READING, DEA_SCPI_CONFIRM, DEA_SCPI_MEASURE };
+
+struct dea_scpi_output {
+  double *queue; // [room], a ring; owned. NULL: it plays nothing
+  size_t room, first, count;
+  size_t played;           // samples taken out of the queue since clock_s
+  double rate_Hz, clock_s; // sample 0 is at clock_s, by the computer's clock; NAN: not started
+  double wanted_V, sent_V; // what the output should be, and the last that was sent; control volts
+  double sent_s,
+      waiting_s; // when that was; since when `wanted_V` waits to be sent, NAN: it does not
+  double fed_s, measured_s; // when the watchdog was fed, and the voltage measured, last
+  /* Lowest and highest voltage sent in this window and the one before, each `behind` long. */
+  double lowest_V[2], highest_V[2], window_s;
+  size_t deviations; // measured voltages in a row that were none of these
+  double turned_s;   // when it was played last
+};
+
+struct dea_scpi {
+  struct dea_instrument base;
+  struct dea_scpi_raw raw;
+  const struct dea_protocol *protocol; // lent
+  struct dea_scpi_link link;
+  char name[DEA_SOCKET_NAME_SIZE + 8];
+  double start_s;                            // computer's clock at start; NAN before
+  double due_s[DEA_INSTRUMENT_READINGS_MAX]; // of the readings, on the computer's clock
+  /* What stood behind the first number of each: its unit, which must stay; valid when `known`. */
+  char suffix[DEA_INSTRUMENT_READINGS_MAX][DEA_SCPI_SUFFIX_SIZE];
+  bool known[DEA_INSTRUMENT_READINGS_MAX], noted_suffix;
+  enum dea_scpi_question asked; // what is waited for
+  size_t asked_reading;
+  double asked_s;
+  bool broken; // an answer made no sense: which question the next one belongs to is not known
+  struct dea_scpi_output output;
+};
+
+dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
+                            double timeout_s, struct dea_scpi_link *link);
+dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_scpi_link *link,
+                         double timeout_s, const char *command);
+/* Sends what goes without waiting. */
+void dea_scpi_send_if_possible(const struct dea_scpi_link *link, const char *command);
+/* Waits for a line, *out, lent until the next; NULL: none in time. */
+dea_status dea_scpi_wait(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
+                         const char **out);
+/* Sends a question and waits for its answer. */
+dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
+                        const char *question, const char **out);
+dea_status dea_scpi_no_answer(struct dea_context *ctx, const struct dea_scpi *s,
+                              const char *question, double timeout_s);
+
+/* The output's command with a control voltage in it; numbers have a point in any locale. */
+void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
+                             char out[DEA_SCPI_COMMAND_SIZE]);
+/* Whether an answer confirms that what was sent before is done. */
+bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *answer);
+dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s);
+/* Sets 0 V before anything is played and looks whether it is there. */
+dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s);
+dea_status dea_scpi_output_start(struct dea_context *ctx, struct dea_scpi *s);
+dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
+                               size_t count);
+/* Does what is due: takes samples out of the queue, sends the last of them, measures, feeds the
+ * watchdog. *next_s: clock at which there is something to do. DEA_E_INTERLOCK after a stall. */
+dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, double *next_s);
+dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *instrument,
+                                double *volts);
+/* An answer to the open question of the output. */
+dea_status dea_scpi_output_answer(struct dea_context *ctx, struct dea_scpi *s, const char *answer);
+
+/* Of the instrument's type. */
+struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument);
+struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *raw,
+                              const struct dea_protocol *protocol);
+
+#endif

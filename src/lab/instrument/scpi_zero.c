@@ -1,0 +1,146 @@
+/* How a supply that speaks SCPI is brought to 0 V, and what is known of it then.
+ *
+ * Its output is switched off, then set to 0 V, then synchronised, and its voltage is read back
+ * until it has been at 0 V for `behind`: what a supply may still have had to do is done then. An
+ * answer that does not come or makes no sense leaves it open to which question the next one
+ * belongs: nothing more is believed of that connection, and all begins anew on another one. */
+#include "lab/instrument/scpi.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double poll_s = 0.05, again_s = 0.1;
+/* Of the time left: how long an answer is waited for, so that there is time for another try. */
+static const double share = 0.4;
+
+/* Sends what brings the output to 0 V, without waiting. */
+static void command_zero(const struct dea_scpi_link *link, const struct dea_scpi_raw *raw)
+{
+  char command[DEA_SCPI_COMMAND_SIZE];
+  if (raw->output_off.origin != DEA_ABSENT) {
+    dea_scpi_send_if_possible(link, raw->output_off.text);
+  }
+  dea_scpi_output_command(raw, 0, command);
+  dea_scpi_send_if_possible(link, command);
+}
+
+static void command_end(const struct dea_scpi_link *link, const struct dea_scpi_raw *raw, bool zero)
+{
+  if (zero && raw->watchdog.disarm.origin != DEA_ABSENT) { // else it is to do its work
+    dea_scpi_send_if_possible(link, raw->watchdog.disarm.text);
+  }
+  for (size_t i = 0; i < raw->at_stop_count; i++) {
+    dea_scpi_send_if_possible(link, raw->at_stop[i].text);
+  }
+}
+
+/* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
+static bool read_back(struct dea_context *ctx, struct dea_scpi_link *link,
+                      const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
+                      double until_s, struct dea_zero *zero)
+{
+  double since_s = NAN;
+  for (;;) {
+    const char *answer;
+    double asked_s = dea_clock_s(), value;
+    if (asked_s >= until_s) {
+      return true;
+    }
+    if (dea_scpi_ask(ctx, link, fmax(share * (until_s - asked_s), poll_s), raw->measure.text,
+                     &answer) != DEA_OK ||
+        answer == NULL || !dea_scpi_number(answer, &value) || isnan(value)) {
+      return false;
+    }
+    zero->volts = value / raw->output_factor.si;
+    if (fabs(zero->volts * protocol->amplifier.gain.si) > protocol->safety.at_zero_V.si) {
+      since_s = NAN;
+    } else if (isnan(since_s)) {
+      since_s = asked_s;
+    } else if (asked_s - since_s >= raw->behind_s.si) {
+      zero->state = DEA_ZERO_READ_BACK;
+      return true;
+    }
+    dea_clock_wait(poll_s);
+  }
+}
+
+/* After command_zero: what is known. False: this connection is good for nothing. */
+static bool find_out(struct dea_context *ctx, struct dea_scpi_link *link,
+                     const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
+                     double until_s, struct dea_zero *zero)
+{
+  const char *answer;
+  double left_s = until_s - dea_clock_s();
+  if (!(left_s > 0) ||
+      dea_scpi_ask(ctx, link, share * left_s, raw->confirm.text, &answer) != DEA_OK ||
+      answer == NULL || !dea_scpi_confirms(raw, answer)) {
+    return false;
+  }
+  if (raw->measure.origin == DEA_ABSENT) {
+    zero->state = DEA_ZERO_COMMANDED;
+    return true;
+  }
+  return read_back(ctx, link, raw, protocol, until_s, zero);
+}
+
+/* On connections of its own, until one has said something or the time is over. */
+static struct dea_zero zero_anew(struct dea_context *ctx, const struct dea_scpi_raw *raw,
+                                 const struct dea_protocol *protocol, double until_s)
+{
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  bool told = false;
+  for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
+    struct dea_scpi_link link;
+    if (dea_scpi_connect(ctx, raw, left_s, &link) == DEA_OK) {
+      command_zero(&link, raw);
+      told = find_out(ctx, &link, raw, protocol, until_s, &zero);
+      command_end(&link, raw, zero.state != DEA_ZERO_UNKNOWN);
+      dea_socket_close(&link.socket);
+    }
+    left_s = until_s - dea_clock_s();
+    if (!told) {
+      dea_clock_wait(fmin(again_s, left_s));
+    }
+  }
+  return zero;
+}
+
+struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct dea_scpi *s = (struct dea_scpi *)instrument;
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  double now_s = dea_clock_s(), until_s = now_s + s->protocol->safety.zero_time_s.si;
+  bool told = false;
+  if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0) {
+    command_end(&s->link, &s->raw, true);
+    return (struct dea_zero){DEA_ZERO_NONE, NAN};
+  }
+  if (s->link.socket.descriptor >= 0) {
+    const char *answer = NULL;
+    command_zero(&s->link, &s->raw);
+    bool failed = s->broken;
+    if (!failed &&
+        s->asked != DEA_SCPI_NOTHING) { // what comes next belongs to the question from before
+      failed = dea_scpi_wait(ctx, &s->link, share * (until_s - now_s), &answer) != DEA_OK ||
+               answer == NULL;
+    }
+    told = !failed && find_out(ctx, &s->link, &s->raw, s->protocol, until_s, &zero);
+    command_end(&s->link, &s->raw, zero.state != DEA_ZERO_UNKNOWN);
+  }
+  if (told) {
+    return zero;
+  }
+  dea_socket_close(&s->link.socket); // some supplies have one connection only
+  return zero_anew(ctx, &s->raw, s->protocol, until_s);
+}
+
+struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
+                              const struct dea_protocol *protocol)
+{
+  const struct dea_scpi_raw *raw = data;
+  return raw->output.origin == DEA_ABSENT
+             ? (struct dea_zero){DEA_ZERO_NONE, NAN}
+             : zero_anew(ctx, raw, protocol, dea_clock_s() + protocol->safety.zero_time_s.si);
+}

@@ -1,0 +1,25 @@
+/* What is known of an output that was brought to 0 V. "At 0 V" is what was read back, and nothing
+ * else. */
+#ifndef DEA_LAB_INSTRUMENT_ZERO_H
+#define DEA_LAB_INSTRUMENT_ZERO_H
+
+enum dea_zero_state {
+  DEA_ZERO_NONE,      // there is no output, or it was never armed
+  DEA_ZERO_READ_BACK, // its voltage was measured, and is 0 V
+  DEA_ZERO_COMMANDED, // 0 V was commanded and taken; nothing has measured it
+  DEA_ZERO_UNKNOWN    // it is not known to be at 0 V
+};
+
+struct dea_zero {
+  enum dea_zero_state state;
+  double volts; // that was measured last; NAN: none
+};
+
+enum { DEA_ZERO_TEXT_SIZE = 128 };
+
+/* "at 0 V", "commanded to 0 V, not read back", "not known to be at 0 V", "not armed". */
+const char *dea_zero_name(enum dea_zero_state state);
+/* The same with the voltage: "at 0 V (2.1 V read back)". volts: at the output. */
+void dea_zero_text(struct dea_zero zero, char out[DEA_ZERO_TEXT_SIZE]);
+
+#endif
