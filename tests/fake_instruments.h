@@ -3,7 +3,7 @@
 #ifndef DEA_TESTS_FAKE_INSTRUMENTS_H
 #define DEA_TESTS_FAKE_INSTRUMENTS_H
 
-#include "lab/instrument/drive_loop.h"
+#include "lab/drive/drive_loop.h"
 #include "testing.h"
 
 #include <signal.h>

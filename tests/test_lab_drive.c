@@ -1,4 +1,4 @@
-/* lab/instrument/drive: what is played and recorded is the protocol; whatever fails, the output
+/* lab/drive/drive: what is played and recorded is the protocol; whatever fails, the output
  * comes down to 0 V within the ramp, every instrument is stopped once, and the recording is
  * readable. */
 #define _GNU_SOURCE

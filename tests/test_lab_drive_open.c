@@ -1,7 +1,7 @@
 /* dea_drive_run: an instrument that cannot be opened leaves none of the others as it was set up. */
 #define _GNU_SOURCE
 #include "emulator.h"
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 #include "lab/instrument/line_reader.h"
 #include "protocol_text.h"
 

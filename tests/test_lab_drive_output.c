@@ -1,8 +1,8 @@
-/* lab/instrument/drive_output and drive_watch: what is asked of the amplifier, sample by sample,
+/* lab/drive/drive_output and drive_watch: what is asked of the amplifier, sample by sample,
  * and what of its answer ends a measurement. */
 #define _GNU_SOURCE
-#include "lab/instrument/drive.h"
-#include "lab/instrument/drive_output.h"
+#include "lab/drive/drive.h"
+#include "lab/drive/drive_output.h"
 #include "lab/instrument/drive_watch.h"
 #include "protocol_text.h"
 

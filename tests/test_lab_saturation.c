@@ -2,7 +2,7 @@
  * measured, and left out where it was cut off. */
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 #include "lab/protocol/protocol.h"
 #include "lab/reduce/reduce.h"
 #include "own_folder.h"

@@ -2,7 +2,7 @@
  * reduced; what comes out is laid beside what the film does by study "transient" of model lumped,
  * which knows nothing of the bench. */
 #include "base/file.h"
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 #include "lab/protocol/protocol.h"
 #include "lab/reduce/output.h"
 #include "output/compare_set.h"

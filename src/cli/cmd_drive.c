@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/write_file.h"
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 #include "lab/instrument/instrument.h"
 #include "lab/protocol/export.h"
 

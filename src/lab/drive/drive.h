@@ -1,6 +1,6 @@
 /* Plays a protocol through its instruments into a recording, and always comes back to 0 V. */
-#ifndef DEA_LAB_INSTRUMENT_DRIVE_H
-#define DEA_LAB_INSTRUMENT_DRIVE_H
+#ifndef DEA_LAB_DRIVE_DRIVE_H
+#define DEA_LAB_DRIVE_DRIVE_H
 
 #include "base/context.h"
 #include "lab/instrument/zero.h"

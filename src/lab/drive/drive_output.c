@@ -1,4 +1,4 @@
-#include "lab/instrument/drive_output.h"
+#include "lab/drive/drive_output.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 /* Plays a protocol. Whatever happens, the loop goes on until the output has come to 0 V: a fault
  * only changes what is asked from the sequence to the ramp. What cannot be played any more, because
  * the playing instrument has failed, is stopped at once. */
-#include "lab/instrument/drive_loop.h"
+#include "lab/drive/drive_loop.h"
 
 #include "base/clock.h"
-#include "lab/instrument/drive_output.h"
+#include "lab/drive/drive_output.h"
 #include "lab/instrument/drive_watch.h"
 
 #include <math.h>

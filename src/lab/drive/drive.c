@@ -1,6 +1,6 @@
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 
-#include "lab/instrument/drive_loop.h"
+#include "lab/drive/drive_loop.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* What is asked of the amplifier, sample after sample: the protocol's sequence, and from any of
  * them on a ramp to 0 V. Sample i is at i / rate; a corner that falls on a sample is at it. */
-#ifndef DEA_LAB_INSTRUMENT_DRIVE_OUTPUT_H
-#define DEA_LAB_INSTRUMENT_DRIVE_OUTPUT_H
+#ifndef DEA_LAB_DRIVE_DRIVE_OUTPUT_H
+#define DEA_LAB_DRIVE_DRIVE_OUTPUT_H
 
 #include "lab/protocol/protocol.h"
 

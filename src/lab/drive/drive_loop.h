@@ -1,8 +1,8 @@
 /* The loop of `dea drive` on instruments that are open already. */
-#ifndef DEA_LAB_INSTRUMENT_DRIVE_LOOP_H
-#define DEA_LAB_INSTRUMENT_DRIVE_LOOP_H
+#ifndef DEA_LAB_DRIVE_DRIVE_LOOP_H
+#define DEA_LAB_DRIVE_DRIVE_LOOP_H
 
-#include "lab/instrument/drive.h"
+#include "lab/drive/drive.h"
 #include "lab/instrument/instrument.h"
 #include "lab/recording/recorder.h"
 

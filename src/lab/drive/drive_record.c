@@ -1,5 +1,5 @@
 /* What a drive is made of: who does what, and the recording that it fills. */
-#include "lab/instrument/drive_loop.h"
+#include "lab/drive/drive_loop.h"
 
 #include "base/json.h"
 #include "result/provenance.h"
