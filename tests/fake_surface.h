@@ -3,7 +3,7 @@
 #ifndef DEA_TESTS_FAKE_SURFACE_H
 #define DEA_TESTS_FAKE_SURFACE_H
 
-#include "model/field_mesh.h"
+#include "result/field_mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,25 +7,12 @@
 #include "base/context.h"
 #include "device/device.h"
 #include "model/circuit.h"
-#include "model/field_mesh.h"
-#include "model/load_point.h"
-#include "model/state.h"
+#include "result/field_mesh.h"
+#include "result/load_point.h"
+#include "result/profile.h"
+#include "result/state.h"
 
 struct dea_model; // state of one solve: device, last equilibrium
-
-/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down.
- */
-enum dea_event_kind {
-  DEA_EVENT_PULL_IN,
-  DEA_EVENT_SNAP_BACK,
-  DEA_EVENT_SLACK,
-  DEA_EVENT_BREAKDOWN
-};
-
-struct dea_event {
-  enum dea_event_kind kind;
-  struct dea_load_point point;
-};
 
 /* Takes a point of a path; anything but DEA_OK stops the path with that status. */
 typedef dea_status (*dea_point_sink)(void *user, const struct dea_load_point *point);
@@ -35,18 +22,6 @@ struct dea_path_options {
   double max_stretch;   // end: total electrode stretch (pre-stretch included)
   double max_voltage_V; // end; INFINITY for none
   size_t max_points;
-};
-
-/* Values along the radius, arrays [count] in ascending order of it, lent until the next call. Model
- * 3d gives them across the diagonal: radius > 0 along a fibre's axis, < 0 halfway between two
- * fibres, and twice where electrode and bare film or film under and beside a fibre meet. */
-struct dea_profile {
-  size_t count;
-  const double *radius_m;              // in the stretched flat film
-  const double *displacement_m;        // radial, outwards
-  const double *stretch_r, *stretch_t; // total, from the unstretched film
-  const double *tension_r_N_per_m, *tension_t_N_per_m;
-  const double *z_m; // displacement out of the plane, of the film's middle surface
 };
 
 /* What `fields` hands out: all of the device, or the middle surface of its film. */
@@ -66,16 +41,6 @@ struct dea_probe {
 struct dea_ac_excitation {
   double amplitude_V;
   double damping_ratio, damping_mass_per_s, damping_stiffness_s;
-};
-
-/* Name of the fields that hold shapes of modes in the film's middle surface, counted from 1; and
- * what is added to a model's name for surfaces of a result that hold them. */
-#define DEA_SHAPE_FIELD "mode_%d"
-#define DEA_SHAPES_SUFFIX "_modal"
-
-/* How large the system of a model on a mesh is. */
-struct dea_model_size {
-  size_t elements, nodes, unknowns;
 };
 
 /* How a history in time is computed. */

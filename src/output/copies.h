@@ -2,7 +2,7 @@
 #ifndef DEA_OUTPUT_COPIES_H
 #define DEA_OUTPUT_COPIES_H
 
-#include "model/field_mesh.h"
+#include "result/field_mesh.h"
 
 /* x' = m x in the plane; z stays. */
 struct dea_copy {

@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_SURFACE_LATTICE_H
 #define DEA_OUTPUT_SURFACE_LATTICE_H
 
-#include "model/field_mesh.h"
+#include "result/field_mesh.h"
 
 /* Columns of a point: place in the stretched flat film, displacement [m]. */
 enum {

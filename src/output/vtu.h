@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_VTU_H
 #define DEA_OUTPUT_VTU_H
 
-#include "model/field_mesh.h"
+#include "result/field_mesh.h"
 
 /* Writes a mesh with its fields as a whole or not at all. Places and displacements are in double
  * precision, the other fields in single; an AXIS is a vector there. Elements of order 1 and 2 (in

@@ -5,17 +5,6 @@
 
 #include "result/result.h"
 
-// X(member of struct dea_profile, SI unit, display unit, factor SI -> display, header, meaning)
-#define DEA_PROFILE_LIST(X)                                                                        \
-  X(radius_m, "m", "mm", 1e3, "radius", "radius in the stretched flat film")                       \
-  X(displacement_m, "m", "um", 1e6, "radial displacement", "radial displacement")                  \
-  X(stretch_r, "1", "1", 1.0, "radial stretch", "radial stretch from the unstretched film")        \
-  X(stretch_t, "1", "1", 1.0, "hoop stretch", "hoop stretch from the unstretched film")            \
-  X(tension_r_N_per_m, "N/m", "N/m", 1.0, "radial tension",                                        \
-    "radial true stress x current thickness")                                                      \
-  X(tension_t_N_per_m, "N/m", "N/m", 1.0, "hoop tension", "hoop true stress x current thickness")  \
-  X(z_m, "m", "um", 1e6, "z", "displacement out of the plane, positive to the fibres")
-
 #define DEA_COLUMN_ONE(member, si, display, factor, header, meaning) +1
 enum {
   DEA_PROFILE_COLUMNS = 0 DEA_PROFILE_LIST(DEA_COLUMN_ONE),

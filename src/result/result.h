@@ -4,7 +4,9 @@
 
 #include "design/design.h"
 #include "device/device.h"
-#include "model/model.h"
+#include "result/field_mesh.h"
+#include "result/load_point.h"
+#include "result/profile.h"
 
 /* Points in the order computed; a curve of kind "sweep" stays on stable equilibria at the asked
  * voltages, one of kind "path" is the whole equilibrium path. */
@@ -47,21 +49,6 @@ struct dea_variant {
   struct dea_profile_record profile; // at the last point; count 0: the model has none
 };
 
-struct dea_result;
-
-/* Told of a sweep as it goes, so that what is there can be kept before it ends
- * (output/checkpoint.h). A failure ends the sweep. */
-struct dea_checkpoint_sink {
-  void *user;
-  /* Before the first solve; the curve may have points already, from which the model is to go on. */
-  dea_status (*start)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_curve *curve);
-  /* After a point was added to the curve of the result. */
-  dea_status (*point)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_result *result,
-                      const struct dea_curve *curve);
-};
-
 /* Where a result comes from. */
 struct dea_provenance {
   char program[DEA_NAME_SIZE];   // "dea 0.1.0"
@@ -74,6 +61,8 @@ struct dea_provenance {
   char *overrides;       // "key=value" a line; owned, may be NULL
   char *command;         // command line; owned, may be NULL
 };
+
+struct dea_checkpoint_sink; // of study/study.h
 
 struct dea_result {
   const struct dea_design *design; // lent

@@ -2,6 +2,7 @@
 #ifndef DEA_STUDY_VARIANT_H
 #define DEA_STUDY_VARIANT_H
 
+#include "model/model.h"
 #include "result/result.h"
 
 /* Which computation: of a device, through voltages in their order. */

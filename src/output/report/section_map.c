@@ -1,6 +1,7 @@
 /* The operating map of model lumped: at which voltages the actuator works, against a parameter of
  * the design. Each column of the map is the equilibrium path of one design, so that its limits are
  * those of the path, to the solver's accuracy. */
+#include "model/model.h"
 #include "output/report/plot_svg.h"
 #include "output/report/section.h"
 

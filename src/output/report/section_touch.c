@@ -3,6 +3,7 @@
  *
  * Reaches are quasi-static; study "frequency" says what is left of a motion at 5 to 10 Hz. */
 #include "model/lumped/lumped.h"
+#include "model/model.h"
 #include "output/report/plot_svg.h"
 #include "output/report/section.h"
 

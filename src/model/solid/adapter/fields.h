@@ -2,8 +2,8 @@
 #ifndef DEA_MODEL_SOLID_ADAPTER_FIELDS_H
 #define DEA_MODEL_SOLID_ADAPTER_FIELDS_H
 
-#include "model/field_mesh.h"
 #include "model/solid/assembly/solid.h"
+#include "result/field_mesh.h"
 
 /* out: owned by the caller, NULL on failure. The symmetry is left to the caller. */
 dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *solid,

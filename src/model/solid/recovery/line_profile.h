@@ -2,8 +2,8 @@
 #ifndef DEA_MODEL_SOLID_RECOVERY_LINE_PROFILE_H
 #define DEA_MODEL_SOLID_RECOVERY_LINE_PROFILE_H
 
-#include "model/field_mesh.h"
 #include "model/model.h"
+#include "result/field_mesh.h"
 
 /* Along the rays at the angle `plus` (places > 0) and `minus` (places < 0) from the z axis, in
  * ascending order of the place; a place where parts meet stands there once for each. Both rays lie

@@ -11,9 +11,9 @@
 #ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_H
 #define DEA_MODEL_SOLID_RECOVERY_RECOVER_H
 
-#include "model/field_mesh.h"
 #include "model/solid/element/membrane.h"
 #include "model/solid/mesh/grid.h"
+#include "result/field_mesh.h"
 
 enum { DEA_RECOVER_PLANE_MAX = 16 }; // nodes in the plane of an element
 

@@ -1,4 +1,4 @@
-#include "model/field_mesh.h"
+#include "result/field_mesh.h"
 
 #include <string.h>
 

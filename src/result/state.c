@@ -1,4 +1,4 @@
-#include "model/state.h"
+#include "result/state.h"
 
 #include <string.h>
 

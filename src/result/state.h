@@ -1,8 +1,8 @@
 /* The state of a model between two solves: arrays from which it goes on as if it had never stopped,
  * and marks of what they belong to (mesh, materials, ...), which have to be the same when they come
  * back. What the arrays mean only the model knows. */
-#ifndef DEA_MODEL_STATE_H
-#define DEA_MODEL_STATE_H
+#ifndef DEA_RESULT_STATE_H
+#define DEA_RESULT_STATE_H
 
 #include "base/context.h"
 

@@ -2,8 +2,8 @@
  *
  * Values are SI. NAN means that the model has no such quantity; writers then leave the key out.
  * The keys are published and stay as they are. z is positive towards the fibre side. */
-#ifndef DEA_MODEL_LOAD_POINT_H
-#define DEA_MODEL_LOAD_POINT_H
+#ifndef DEA_RESULT_LOAD_POINT_H
+#define DEA_RESULT_LOAD_POINT_H
 
 #include <stdbool.h>
 
@@ -75,5 +75,19 @@ struct dea_load_point {
 
 /* Point with every number NAN, stable, no unstable mode. */
 struct dea_load_point dea_load_point_empty(void);
+
+/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down.
+ */
+enum dea_event_kind {
+  DEA_EVENT_PULL_IN,
+  DEA_EVENT_SNAP_BACK,
+  DEA_EVENT_SLACK,
+  DEA_EVENT_BREAKDOWN
+};
+
+struct dea_event {
+  enum dea_event_kind kind;
+  struct dea_load_point point;
+};
 
 #endif

@@ -2,8 +2,8 @@
  *
  * Points carry their place in the stretched flat film; where the parts of a device meet there is
  * one point a part, so that a value that jumps there has both its sides. */
-#ifndef DEA_MODEL_FIELD_MESH_H
-#define DEA_MODEL_FIELD_MESH_H
+#ifndef DEA_RESULT_FIELD_MESH_H
+#define DEA_RESULT_FIELD_MESH_H
 
 #include "base/context.h"
 
@@ -33,6 +33,16 @@ struct dea_mesh_block {
   int order, order_z;
   size_t count;
   int *nodes;
+};
+
+/* Name of the fields that hold shapes of modes in the film's middle surface, counted from 1; and
+ * what is added to a model's name for surfaces of a result that hold them. */
+#define DEA_SHAPE_FIELD "mode_%d"
+#define DEA_SHAPES_SUFFIX "_modal"
+
+/* How large the system of a model on a mesh is. */
+struct dea_model_size {
+  size_t elements, nodes, unknowns;
 };
 
 struct dea_field_mesh {

@@ -1,4 +1,4 @@
-#include "model/load_point.h"
+#include "result/load_point.h"
 
 #include <math.h>
 
