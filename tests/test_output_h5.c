@@ -40,8 +40,40 @@ static void test_store_reads_single_attributes_only(void **state)
   dea_context_destroy(ctx);
 }
 
+/* Files of libdea 0.1 say that long texts are UTF-8; now they say ASCII, for Octave. */
+static void test_long_text_of_older_files(void **state)
+{
+  (void)state;
+  static const char text[] = "80 \302\265m";
+  struct h5 h;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  dea_h5_begin(&h, ctx, "texts.h5");
+  hid_t file = dea_h5_file_make(&h);
+  hid_t space = H5Screate(H5S_SCALAR), type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, sizeof text);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  hid_t old = H5Dcreate2(file, "old", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  assert_true(H5Dwrite(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0);
+  dea_h5_put_long_text(&h, file, "new", text);
+  char *of_old = dea_h5_get_long_text(&h, file, "old");
+  char *of_new = dea_h5_get_long_text(&h, file, "new");
+  assert_int_equal(h.status, DEA_OK);
+  assert_string_equal(of_old, text);
+  assert_string_equal(of_new, text);
+  dea_free(ctx, of_new);
+  dea_free(ctx, of_old);
+  H5Dclose(old);
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Fclose(file);
+  dea_h5_end(&h);
+  dea_context_destroy(ctx);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_store_reads_single_attributes_only)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_store_reads_single_attributes_only),
+                                     cmocka_unit_test(test_long_text_of_older_files)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

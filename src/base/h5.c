@@ -122,11 +122,11 @@ void dea_h5_close(hid_t object)
   }
 }
 
-static hid_t text_type(size_t size)
+static hid_t text_type(size_t size, H5T_cset_t characters)
 {
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, size);
-  H5Tset_cset(type, H5T_CSET_UTF8);
+  H5Tset_cset(type, characters);
   return type;
 }
 
@@ -148,7 +148,7 @@ static void put_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
 void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text)
 {
   const char *value = text != NULL ? text : "";
-  hid_t type = text_type(strlen(value) + 1);
+  hid_t type = text_type(strlen(value) + 1, H5T_CSET_UTF8);
   put_scalar(h, object, name, type, type, value);
   dea_h5_close(type);
 }
@@ -224,8 +224,10 @@ void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const cha
     return;
   }
   hid_t space = H5Screate(H5S_SCALAR);
-  hid_t type = text_type(strlen(text) + 1);
-  dea_h5_close(make_dataset(h, group, name, type, type, space, text));
+  hid_t type = text_type(strlen(text) + 1, H5T_CSET_ASCII); // all that Octave's load takes
+  hid_t set = make_dataset(h, group, name, type, type, space, text);
+  dea_h5_put_text(h, set, "encoding", "UTF-8");
+  dea_h5_close(set);
   dea_h5_close(type);
   dea_h5_close(space);
 }
@@ -245,7 +247,7 @@ void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, si
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   hid_t stored = attribute >= 0 ? H5Aget_type(attribute) : H5I_INVALID_HID;
   hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
-  hid_t type = text_type(size);
+  hid_t type = text_type(size, H5T_CSET_UTF8);
   if (!is_single(space) || stored < 0 || H5Tget_class(stored) != H5T_STRING ||
       H5Tis_variable_str(stored) > 0 || H5Aread(attribute, type, out) < 0) {
     dea_h5_fail(h, h->not_it);

@@ -49,7 +49,7 @@ hsize_t dea_h5_file_size(const struct h5 *h, hid_t object);
 hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name);
 /* Gives an object of `from` the same name in `to` as well. */
 void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to);
-/* Text of any length as a scalar dataset. */
+/* UTF-8 text of any length as a scalar dataset. */
 void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
 
 /* Readers of attributes fail when the attribute is missing. Text longer than size is cut. */
