@@ -222,7 +222,7 @@ static void test_usage_errors(void **state)
   assert_int_equal(command_run("run a.yaml --modle x"), 2);
   assert_contains(command_err, "--modle");
   assert_int_equal(command_run("run a.yaml --set thickness"), 2);
-  assert_contains(command_err, "key=value");
+  assert_contains(command_err, "KEY=VALUE");
 }
 
 static void test_missing_file(void **state)

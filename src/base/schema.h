@@ -88,5 +88,7 @@ dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_recor
 /* The same as a table for people: plain text for a terminal, or Markdown. */
 void dea_schema_print_text(const struct dea_record *record, struct dea_text *out);
 void dea_schema_print_markdown(const struct dea_record *record, struct dea_text *out);
+/* The dotted paths of the values that are in no list, a line each. */
+void dea_schema_print_keys(const struct dea_record *record, struct dea_text *out);
 
 #endif

@@ -114,6 +114,20 @@ void dea_schema_print_text(const struct dea_record *record, struct dea_text *out
   walk(record, "", print_plain, out);
 }
 
+static void print_key(const struct dea_record *record, const struct dea_field *field,
+                      const char *path, struct dea_text *out)
+{
+  (void)record;
+  if (field->kind < DEA_FIELD_RECORD && strpbrk(path, "[(") == NULL) {
+    dea_text_add(out, "%s\n", path);
+  }
+}
+
+void dea_schema_print_keys(const struct dea_record *record, struct dea_text *out)
+{
+  walk(record, "", print_key, out);
+}
+
 /* Text in a cell of a Markdown table: a bar would end the cell. */
 static void add_cell(struct dea_text *out, const char *text)
 {

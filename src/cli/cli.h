@@ -3,9 +3,11 @@
 #define DEA_CLI_CLI_H
 
 #include "base/text.h"
+#include "base/units.h"
 #include "device/device.h"
 
 #include <jansson.h>
+#include <stddef.h>
 #include <stdio.h>
 
 /* What all commands share. Results go to stdout, everything else to stderr. */
@@ -13,18 +15,27 @@ struct dea_cli {
   struct dea_context *ctx;
   bool quiet;    // --quiet: no progress, no notes
   bool verbose;  // --verbose: with the chain of calls of an error
+  bool help;     // --help: say how it is used, and do nothing
   bool terminal; // stderr is a terminal
   bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
   bool colour;   // stderr takes colours (terminal, no NO_COLOR)
   const char *command_line; // the whole of it, for provenance
 };
 
+struct cli_option;
+
 struct dea_command {
   const char *name;
   const char *summary; // one line
-  const char *usage;   // "dea run DESIGN [options]" and the options, a line each
-  /* argv[0] is the command's name. Returns the exit code. */
-  int (*run)(struct dea_cli *cli, int argc, char **argv);
+  const char *about;   // more of it, NULL: nothing; lines are wrapped
+  /* Everything that it takes, ended by a row without help. Parsing, --help, completion and manual
+   * page follow from it. */
+  const struct cli_option *options;
+  /* The struct that the options fill, and what it holds before; NULL: zeros. */
+  size_t request_size;
+  const void *defaults;
+  /* request: filled from the command line. Returns the exit code. */
+  int (*run)(struct dea_cli *cli, void *request);
 };
 
 // X(name of the `const struct dea_command`)
@@ -49,6 +60,147 @@ struct dea_command {
 #define DEA_COMMAND_DECLARE(name) extern const struct dea_command name;
 DEA_COMMAND_LIST(DEA_COMMAND_DECLARE)
 #undef DEA_COMMAND_DECLARE
+/* All of them in the order of the list, ended by NULL. */
+extern const struct dea_command *const cli_commands[];
+
+// Options ----------------------------------------------------------------------------------------
+
+/* What the value of an option is, and so what a shell offers for it: a row of cli_kinds. */
+enum cli_kind {
+  CLI_FLAG, // no value
+  CLI_TEXT, // nothing to offer
+  CLI_FILE,
+  CLI_FOLDER,
+  CLI_DESIGN,
+  CLI_COMMAND,
+  CLI_EXAMPLE,
+  CLI_FIGURE,
+  CLI_FORMAT,
+  CLI_IMPORTER,
+  CLI_KEY,
+  CLI_MATERIAL,
+  CLI_MODEL,
+  CLI_PROTOCOL_KEY,
+  CLI_QUANTITY,
+  CLI_SHELL,
+  CLI_STUDY,
+  CLI_KINDS,
+};
+
+struct cli_kind_info {
+  const char *name;   // for "dea completion names NAME"; NULL: files
+  const char *ending; // of the files; NULL: any file
+  bool folder;        // folders only
+  bool few;           // help lists them too
+  dea_status (*list)(struct dea_context *ctx, struct dea_text *out); // a line each; NULL: nothing
+};
+extern const struct cli_kind_info cli_kinds[CLI_KINDS];
+
+/* A row of a command's table: an option, or without a name the argument (one row at most). */
+struct cli_option {
+  const char *name; // "output" of --output
+  char letter;      // 'o' of -o; 0: none
+  enum cli_kind kind;
+  const char *value; // what help calls it: "DIR"
+  const char *help;
+  /* Offset in the request of a bool (flag), a `const char *`, a struct cli_words (most above 1), or
+   * of what `take` fills. */
+  size_t target;
+  /* Reads the value in place of keeping it: 0, or the exit code after a usage error. */
+  int (*take)(struct dea_cli *cli, const struct dea_command *command,
+              const struct cli_option *option, const char *text, void *target);
+  size_t least, most;             // how many; most 0: one, of an option the last counts
+  const char *too_few, *too_many; // what is said then
+  bool or_before;                 // excludes the row before
+  struct dea_measure measure;     // of cli_take_quantity: unit and example
+  bool positive;                  // of cli_take_quantity: more than 0
+};
+
+enum { CLI_OPTIONS_MAX = 24, CLI_WORDS_MAX = 64, CLI_OVERRIDES_MAX = 256 };
+
+struct cli_words {
+  size_t count;
+  const char *at[CLI_WORDS_MAX];
+};
+
+struct cli_overrides {
+  size_t count;
+  struct dea_override at[CLI_OVERRIDES_MAX];
+};
+
+/* Options that main.c takes for every command, into a struct dea_cli. */
+extern const struct cli_option cli_common_options[];
+/* Reads a command line (argv[0] is the command's name) into its request: 0, or the exit code after
+ * a usage error. What it keeps lends from argv. */
+int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
+              void *request);
+/* For `take`: "key=value" into a struct cli_overrides; a number with its unit into a double; "5%"
+ * or "0.05", of 0 and more, into a double; "svg,pdf" and "85 mm" into a struct dea_plot_format. */
+int cli_take_override(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target);
+int cli_take_quantity(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target);
+int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
+                     const struct cli_option *option, const char *text, void *target);
+int cli_take_width(struct dea_cli *cli, const struct dea_command *command,
+                   const struct cli_option *option, const char *text, void *target);
+/* "0.2" or "20%"; false otherwise. */
+bool cli_read_share(const char *text, double *share);
+
+// Rows of several tables, for a `struct request` whose members have the options' names.
+#define CLI_AT(member) .target = offsetof(struct request, member)
+#define CLI_ONE(what, word, text, member, none, more)                                              \
+  {                                                                                                \
+    NULL, 0, what, word, text, CLI_AT(member), .least = 1, .too_few = none, .too_many = more       \
+  }
+#define CLI_MANY(what, word, text, member, count, none, more)                                      \
+  {                                                                                                \
+    NULL, 0, what, word, text, CLI_AT(member), .least = 1, .most = count, .too_few = none,         \
+                                               .too_many = more                                    \
+  }
+#define CLI_DESIGN_ROW                                                                             \
+  CLI_ONE(CLI_DESIGN, "DESIGN", "design file", design, "a design file is needed",                  \
+          "one design file at a time")
+#define CLI_RECORDING_ROW                                                                          \
+  CLI_ONE(CLI_FILE, "FILE", "recording", file, "give one recording", "give one recording")
+#define CLI_OUTPUT_ROW(kind, word, text)                                                           \
+  {                                                                                                \
+    "output", 'o', kind, word, text, CLI_AT(output)                                                \
+  }
+#define CLI_SET_ROW(letter, keys, example)                                                         \
+  {                                                                                                \
+    "set", letter, keys, "KEY=VALUE",                                                              \
+        "take VALUE in place of the file's, for example --set " example, CLI_AT(overrides),        \
+        cli_take_override, .most = CLI_OVERRIDES_MAX                                               \
+  }
+#define CLI_FORCE_ROW(letter, text)                                                                \
+  {                                                                                                \
+    "force", letter, CLI_FLAG, NULL, text, CLI_AT(force)                                           \
+  }
+#define CLI_JSON_ROW(text)                                                                         \
+  {                                                                                                \
+    "json", 0, CLI_FLAG, NULL, text, CLI_AT(json)                                                  \
+  }
+#define CLI_FORMAT_ROW(text)                                                                       \
+  {                                                                                                \
+    "format", 0, CLI_FORMAT, "LIST", text, CLI_AT(format), cli_take_formats                        \
+  }
+#define CLI_WIDTH_ROW(text)                                                                        \
+  {                                                                                                \
+    "width", 0, CLI_TEXT, "MM", text, CLI_AT(format), cli_take_width                               \
+  }
+
+// Help -------------------------------------------------------------------------------------------
+
+/* Adds "Usage: dea ..." and the options. */
+void cli_add_usage(const struct dea_command *command, struct dea_text *out);
+/* Adds words [length] broken into lines that start at the column `margin`, where the first line is
+ * already. Ends the last one. */
+void cli_add_wrapped(struct dea_text *out, int margin, const char *text, size_t length);
+/* Prints the manual page dea(1) in mdoc to stdout. */
+dea_status cli_print_manual(struct dea_context *ctx);
+
+// For all commands -------------------------------------------------------------------------------
 
 /* Prints all findings, then the recorded failure, in the form "file:line:column: error: text";
  * returns the exit code of `status`. */
@@ -56,43 +208,21 @@ int cli_report(struct dea_cli *cli, dea_status status);
 /* Prints "dea COMMAND: text" and a hint to --help; returns the exit code of a usage error. */
 int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
     DEA_PRINTF(3, 4);
-/* Takes "key=value" of --set (text is cut at the '='); false when it is not of that form or there
- * is no room. Keys and values lend from text. */
-bool cli_parse_override(char *text, struct dea_override *overrides, size_t room, size_t *count);
-/* What a command takes that looks at one design: DESIGN, --set, --json; where it writes one file,
- * --output; where it writes a folder, --force and --drawing too. */
-enum { CLI_OVERRIDES_MAX = 256 };
-enum cli_writes { CLI_WRITES_NOTHING, CLI_WRITES_FILE, CLI_WRITES_FOLDER };
-struct cli_design_arguments {
-  const char *design;
-  const char *output; // NULL: not given
-  bool json, force, drawing;
-  struct dea_override overrides[CLI_OVERRIDES_MAX];
-  size_t override_count;
-};
-/* -1, or the exit code after a usage error. */
-int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command,
-                               enum cli_writes writes, int argc, char **argv,
-                               struct cli_design_arguments *out);
 /* Reads the design and builds its device; both owned by the caller, also after a failure. */
-dea_status cli_build_device(struct dea_cli *cli, const struct cli_design_arguments *arguments,
-                            struct dea_design **design, struct dea_device **device);
+dea_status cli_build_device(struct dea_cli *cli, const char *file,
+                            const struct cli_overrides *overrides, struct dea_design **design,
+                            struct dea_device **device);
 /* Folder for the results of a design: its file name without ending, plus ".ENDING", in the current
  * folder. */
 void cli_folder_name(const char *design, const char *ending, struct dea_text *out);
-/* Usage error for what getopt_long answered: ':' or '?'. */
-int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
-                     char **argv);
-/* Prints a command's usage to stdout. */
-void cli_print_usage(const struct dea_command *command);
 /* All findings so far as an array; owned by the caller. */
 json_t *cli_findings_json(const struct dea_context *ctx);
 /* Prints JSON to stdout; takes it. */
 void cli_print_json(json_t *json);
+/* Prints a text to stdout if `status` is good and it is whole, and frees it. */
+dea_status cli_print_text(dea_status status, struct dea_text *text);
 /* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */
 void cli_progress(void *cli, const char *what, size_t done, size_t total);
-/* True after SIGINT or SIGTERM. */
-bool cli_interrupted(void);
 /* From here on no signal ends or stops the program at once, not a second one either, because the
  * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
  * not under nohup). Progress is left out while stderr does not take it. */

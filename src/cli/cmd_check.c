@@ -7,6 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+struct request {
+  const char *design;
+  struct cli_overrides overrides;
+  bool json;
+};
+
 enum { DERIVED_MAX = 16 };
 
 /* A number that follows from the design. */
@@ -165,18 +171,13 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
   cli_print_json(json);
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct cli_design_arguments arguments;
+  const struct request *request = user;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
-  int wrong =
-      cli_parse_design_arguments(cli, &cmd_check, CLI_WRITES_NOTHING, argc, argv, &arguments);
-  if (wrong >= 0) {
-    return wrong;
-  }
-  dea_status status = dea_design_read(cli->ctx, arguments.design, arguments.overrides,
-                                      arguments.override_count, &design);
+  dea_status status = dea_design_read(cli->ctx, request->design, request->overrides.at,
+                                      request->overrides.count, &design);
   if (status == DEA_OK) {
     dea_status known = cli_models_check(cli, design);
     status = dea_device_build(cli->ctx, design, &device);
@@ -184,8 +185,8 @@ static int run(struct dea_cli *cli, int argc, char **argv)
     known = cli_variants_check(cli, design);
     status = status != DEA_OK ? status : known;
   }
-  if (arguments.json) {
-    print_json(cli, arguments.design, design, device);
+  if (request->json) {
+    print_json(cli, request->design, design, device);
   } else if (status == DEA_OK) {
     print_text(design, device);
     fflush(stdout);
@@ -196,12 +197,16 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_DESIGN_ROW,
+    CLI_SET_ROW(0, CLI_KEY, "film.thickness=200um; 'null' takes a key away"),
+    CLI_JSON_ROW("values, derived numbers and findings as JSON"),
+    {0}};
+
 const struct dea_command cmd_check = {
     .name = "check",
     .summary = "Check a design file and list every value with its origin",
-    .usage = "dea check DESIGN [--set KEY=VALUE]... [--json]\n\n"
-             "  --set KEY=VALUE  take VALUE in place of the file's, for example\n"
-             "                   --set film.thickness=200um; 'null' takes a key away\n"
-             "  --json           values, derived numbers and findings as JSON\n",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

@@ -1,15 +1,12 @@
-#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
 #include "cli/compare_many.h"
-#include "cli/figure_options.h"
 #include "output/compare_output.h"
 #include "output/csv.h"
 #include "output/figure.h"
 #include "output/measured.h"
 #include "output/results_h5.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,116 +36,53 @@ struct pair {
 
 // Command line -----------------------------------------------------------------------------------
 
-static int add_quantity(struct dea_cli *cli, const char *name, struct compare_request *request)
+static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
+                         const struct cli_option *option, const char *text, void *target)
 {
-  int column = dea_point_column_find(name);
-  if (column >= 0 && request->column_count < COMPARE_QUANTITIES_MAX) {
-    request->columns[request->column_count++] = column;
+  struct compare_columns *columns = target;
+  int column = dea_point_column_find(text);
+  (void)option;
+  if (column >= 0 && columns->count < COMPARE_QUANTITIES_MAX) {
+    columns->at[columns->count++] = column;
     return 0;
   }
   const char *keys[DEA_LOAD_POINT_COLUMNS];
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     keys[c] = dea_point_columns[c].key;
   }
-  const char *nearest = dea_nearest_name(name, keys, DEA_LOAD_POINT_COLUMNS);
-  return cli_usage_error(cli, &cmd_compare, "'%s' is not a quantity; %s%s%s", name,
+  const char *nearest = dea_nearest_name(text, keys, DEA_LOAD_POINT_COLUMNS);
+  return cli_usage_error(cli, command, "'%s' is not a quantity; %s%s%s", text,
                          nearest != NULL ? "did you mean '" : "see 'dea compare --help'",
                          nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
 /* "5%" or "0.05". */
-static bool read_tolerance(const char *text, double *tolerance)
+static int take_tolerance(struct dea_cli *cli, const struct dea_command *command,
+                          const struct cli_option *option, const char *text, void *target)
 {
-  const char *end;
-  *tolerance = dea_text_to_double(text, &end);
-  bool number = end != text && isfinite(*tolerance) && *tolerance >= 0.0;
-  if (number && (strcmp(end, "%") == 0 || strcmp(end, " %") == 0)) {
-    *tolerance /= 100.0;
-    return true;
-  }
-  return number && *end == '\0';
+  double *tolerance = target;
+  (void)option;
+  return cli_read_share(text, tolerance) && *tolerance >= 0.0
+             ? 0
+             : cli_usage_error(cli, command, "'%s' is not a tolerance such as 5%%", text);
 }
 
 /* "lumped" or "lumped:axisymmetric". */
-static bool read_models(const char *text, char model[2][DEA_NAME_SIZE])
+static int take_models(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
+  struct compare_models *models = target;
   size_t n = strcspn(text, ":");
   const char *second = text[n] == ':' ? text + n + 1 : text;
   size_t m = strcspn(second, ":");
-  if (n == 0 || m == 0 || n >= DEA_NAME_SIZE || m >= DEA_NAME_SIZE || second[m] != '\0') {
-    return false;
+  (void)option;
+  if (models->count == DEA_DESIGN_MODELS_MAX || n == 0 || m == 0 || n >= DEA_NAME_SIZE ||
+      m >= DEA_NAME_SIZE || second[m] != '\0') {
+    return cli_usage_error(cli, command, "'%s' names no model", text);
   }
-  memcpy(model[0], text, n);
-  memcpy(model[1], second, m);
-  return true;
-}
-
-static int take_option(struct dea_cli *cli, int letter, struct compare_request *request)
-{
-  switch (letter) {
-  case 't':
-    if (!read_tolerance(optarg, &request->tolerance)) {
-      return cli_usage_error(cli, &cmd_compare, "'%s' is not a tolerance such as 5%%", optarg);
-    }
-    return 0;
-  case 'q':
-    return add_quantity(cli, optarg, request);
-  case 'm':
-    if (request->model_count == DEA_DESIGN_MODELS_MAX ||
-        !read_models(optarg, request->models[request->model_count])) {
-      return cli_usage_error(cli, &cmd_compare, "'%s' names no model", optarg);
-    }
-    request->model_count++;
-    return 0;
-  case 'o':
-    request->folder = optarg;
-    return 0;
-  case 'f':
-    if (!cli_read_formats(optarg, &request->format)) {
-      return cli_usage_error(cli, &cmd_compare, "'%s' is not a list of svg, pdf, png", optarg);
-    }
-    return 0;
-  case 'w':
-    if (!cli_read_width(optarg, &request->format)) {
-      return cli_usage_error(cli, &cmd_compare, "'%s' is not a width of 40 to 400 mm", optarg);
-    }
-    return 0;
-  default:
-    request->json = true;
-    return 0;
-  }
-}
-
-static int read_options(struct dea_cli *cli, int argc, char **argv, struct compare_request *request)
-{
-  static const struct option options[] = {{"tolerance", required_argument, NULL, 't'},
-                                          {"quantity", required_argument, NULL, 'q'},
-                                          {"model", required_argument, NULL, 'm'},
-                                          {"output", required_argument, NULL, 'o'},
-                                          {"format", required_argument, NULL, 'f'},
-                                          {"width", required_argument, NULL, 'w'},
-                                          {"json", no_argument, NULL, 'j'},
-                                          {0}};
-  int letter, code = 0;
-  opterr = 0;
-  while (code == 0 && (letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter == ':' || letter == '?') {
-      return cli_option_error(cli, &cmd_compare, letter, argv);
-    }
-    code = take_option(cli, letter, request);
-  }
-  if (code == 0 && argc - optind < 2) {
-    return cli_usage_error(cli, &cmd_compare,
-                           "give two or more: runs, and a run or what was measured");
-  }
-  if (code == 0 && argc - optind > COMPARE_NAMES_MAX) {
-    return cli_usage_error(cli, &cmd_compare, "at most %d runs can be compared at a time",
-                           COMPARE_NAMES_MAX - 1);
-  }
-  for (; code == 0 && optind < argc; optind++) {
-    request->names[request->name_count++] = argv[optind];
-  }
-  return code;
+  memcpy(models->at[models->count][0], text, n);
+  memcpy(models->at[models->count++][1], second, m);
+  return 0;
 }
 
 // Sides ------------------------------------------------------------------------------------------
@@ -266,17 +200,17 @@ static dea_status note_left_out(struct dea_context *ctx, const struct pair *pair
 static dea_status compare_pair(struct dea_context *ctx, const struct request *request,
                                struct pair *pair)
 {
-  const int *only = request->line->column_count == 1 ? &request->line->columns[0] : NULL;
+  const int *only = request->line->columns.count == 1 ? &request->line->columns.at[0] : NULL;
   DEA_TRY(ctx, dea_compare_curves(ctx, pair->a, pair->b, pair->b_std, only != NULL ? *only : -1,
                                   &pair->comparison));
   pair->compared.comparison = pair->comparison;
   DEA_TRY(ctx, note_left_out(ctx, pair));
-  if (request->line->column_count < 2) {
+  if (request->line->columns.count < 2) {
     return DEA_OK;
   }
-  size_t found = dea_comparison_keep(ctx, pair->comparison, request->line->columns,
-                                     request->line->column_count);
-  return found < request->line->column_count
+  size_t found = dea_comparison_keep(ctx, pair->comparison, request->line->columns.at,
+                                     request->line->columns.count);
+  return found < request->line->columns.count
              ? dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common")
              : DEA_OK;
 }
@@ -321,7 +255,7 @@ static dea_status draw(struct dea_context *ctx, const struct request *request,
 {
   for (size_t i = 0; i < count; i++) {
     DEA_TRY(ctx, dea_compared_draw(ctx, &pairs[i].compared, count > 1 ? pairs[i].a->model : "",
-                                   &request->line->format, request->line->folder));
+                                   &request->line->format, request->line->output));
   }
   return DEA_OK;
 }
@@ -361,7 +295,7 @@ static dea_status compare(struct dea_cli *cli, struct request *request, struct p
   if (request->line->json) {
     DEA_TRY(ctx, print_json(ctx, pairs, *count, request->line->tolerance));
   }
-  if (request->line->folder != NULL) {
+  if (request->line->output != NULL) {
     DEA_TRY(ctx, draw(ctx, request, pairs, *count));
   }
   return judge(ctx, pairs, *count, request->line->tolerance);
@@ -370,15 +304,15 @@ static dea_status compare(struct dea_cli *cli, struct request *request, struct p
 /* The two-sided comparison: pairs of curves, each with its difference. */
 static int compare_two(struct dea_cli *cli, const struct compare_request *line)
 {
-  struct request request = {.side = {{.name = line->names[0]}, {.name = line->names[1]}},
+  struct request request = {.side = {{.name = line->names.at[0]}, {.name = line->names.at[1]}},
                             .model = {"", ""},
                             .line = line};
   struct pair pairs[PAIRS_MAX];
   memset(pairs, 0, sizeof pairs);
   size_t count = 0;
-  if (line->model_count > 0) {
-    request.model[0] = line->models[0][0];
-    request.model[1] = line->models[0][1];
+  if (line->models.count > 0) {
+    request.model[0] = line->models.at[0][0];
+    request.model[1] = line->models.at[0][1];
   }
   int code = cli_report(cli, compare(cli, &request, pairs, &count));
   for (size_t i = 0; i < count; i++) {
@@ -389,45 +323,58 @@ static int compare_two(struct dea_cli *cli, const struct compare_request *line)
   return code;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct compare_request request = {.tolerance = NAN, .format = {.svg = true, .width_m = 0.085}};
-  int code = read_options(cli, argc, argv, &request);
-  if (code != 0) {
-    return code;
-  }
-  bool two = request.name_count == 2 && request.model_count < 2 &&
-             !dea_measured_is_folder(request.names[0]) && !dea_measured_is_folder(request.names[1]);
-  return two ? compare_two(cli, &request) : cli_report(cli, cli_compare_many(cli, &request));
+  const struct compare_request *request = user;
+  const char *const *names = request->names.at;
+  bool two = request->names.count == 2 && request->models.count < 2 &&
+             !dea_measured_is_folder(names[0]) && !dea_measured_is_folder(names[1]);
+  return two ? compare_two(cli, request) : cli_report(cli, cli_compare_many(cli, request));
 }
+
+static const struct compare_request defaults = {.tolerance = NAN,
+                                                .format = {.svg = true, .width_m = 0.085}};
+
+#define AT(member) .target = offsetof(struct compare_request, member)
+
+static const struct cli_option options[] = {
+    {NULL, 0, CLI_FOLDER, "A... B",
+     "A: folders of runs. B: folder of a run or of dea reduce, or a CSV table", AT(names),
+     .least = 2, .most = COMPARE_NAMES_MAX,
+     .too_few = "give two or more: runs, and a run or what was measured",
+     .too_many = "at most 16 runs can be compared at a time"},
+    {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", AT(tolerance),
+     take_tolerance},
+    {"quantity", 0, CLI_QUANTITY, "KEY",
+     "only this quantity, such as fibre_tip_z_m; can be repeated", AT(columns), take_quantity,
+     .most = COMPARE_QUANTITIES_MAX},
+    {"model", 0, CLI_MODEL, "MODEL",
+     "only this model; can be repeated. lumped:axisymmetric takes one of A, the other of B. There "
+     "are",
+     AT(models), take_models, .most = DEA_DESIGN_MODELS_MAX},
+    {"output", 'o', CLI_FOLDER, "DIR", "draw the figures into this folder", AT(output)},
+    {"format", 0, CLI_FORMAT, "LIST", "formats with commas between, svg if not given", AT(format),
+     cli_take_formats},
+    {"width", 0, CLI_TEXT, "MM", "width, 85 for one column or 170 for two", AT(format),
+     cli_take_width},
+    {"json", 0, CLI_FLAG, NULL, "print the comparison as JSON", AT(json)},
+    {0}};
 
 const struct dea_command cmd_compare = {
     .name = "compare",
     .summary = "Compare runs with a run or with what was measured",
-    .usage =
-        "dea compare A... B [--tolerance SHARE] [--quantity KEY]... [--model MODEL]...\n"
-        "            [-o DIR] [--format LIST] [--width MM] [--json]\n"
-        "\n"
-        "A are folders of runs. B, with which they are compared, is a folder of a run, a CSV "
-        "table\n"
-        "with headers such as 'V (kV)', 'z centre (um)', 'z centre std (um)', or a folder written\n"
-        "by dea reduce (measurement.csv, profiles.csv, history.csv). Two runs: curves of the same\n"
-        "model are compared, each pair in a figure with its difference. More of them, several\n"
-        "--model, or a reduced measurement: all curves in one figure a quantity, with a band of\n"
-        "one standard deviation, then profiles across the film and histories in time.\n"
-        "Differences are a - b, relative ones over the range of b. The exit code is 1 when a\n"
-        "tolerance is given and the largest difference of a quantity against the voltage "
-        "exceeds it.\n"
-        "\n"
-        "  A                  folder of a run; can be repeated\n"
-        "  B                  folder of a run or of dea reduce, or a CSV table\n"
-        "  --tolerance SHARE  largest difference allowed, such as 5%\n"
-        "  --quantity KEY     only this quantity, such as fibre_tip_z_m; can be repeated\n"
-        "  --model MODEL      only this model; can be repeated. lumped:axisymmetric takes one of\n"
-        "                     A, the other of B\n"
-        "  -o, --output DIR   draw the figures into this folder\n"
-        "  --format LIST      formats such as svg,pdf,png; svg if not given\n"
-        "  --width MM         width, 85 for one column or 170 for two\n"
-        "  --json             print the comparison as JSON\n",
+    .about =
+        "A are folders of runs. B, with which they are compared, is a folder of a run, a CSV table "
+        "with headers such as 'V (kV)', 'z centre (um)', 'z centre std (um)', or a folder written "
+        "by dea reduce (measurement.csv, profiles.csv, history.csv). Two runs: curves of the same "
+        "model are compared, each pair in a figure with its difference. More of them, several "
+        "--model, or a reduced measurement: all curves in one figure a quantity, with a band of "
+        "one standard deviation, then profiles across the film and histories in time. "
+        "Differences are a - b, relative ones over the range of b. The exit code is 1 when a "
+        "tolerance is given and the largest difference of a quantity against the voltage exceeds "
+        "it.",
+    .options = options,
+    .request_size = sizeof(struct compare_request),
+    .defaults = &defaults,
     .run = run,
 };

@@ -187,11 +187,9 @@ static void check_folder(struct report *report)
   say(report, WISHED, ok, "folder to write in", text, "go to another folder, or use -o DIR");
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *request)
 {
-  if (argc > 1) {
-    return cli_usage_error(cli, &cmd_doctor, "'%s' is not expected here", argv[1]);
-  }
+  (void)request;
   struct report report = {.usable = true};
   say(&report, NEEDED, true, "dea", DEA_VERSION ", built by " DEA_COMPILER " as " DEA_BUILD_TYPE,
       NULL);
@@ -212,12 +210,14 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return cli_report(cli, status);
 }
 
+static const struct cli_option options[] = {{0}};
+
 const struct dea_command cmd_doctor = {
     .name = "doctor",
     .summary = "Say what this installation has and what it lacks",
-    .usage = "dea doctor\n"
-             "\n"
-             "One line a thing that a run needs: ok or missing, and what to do about it.\n"
-             "The exit code is 0 when designs can be computed, even if figures cannot be drawn.\n",
+    .about =
+        "One line a thing that a run needs: ok or missing, and what to do about it. The exit code "
+        "is 0 when designs can be computed, even if figures cannot be drawn.",
+    .options = options,
     .run = run,
 };

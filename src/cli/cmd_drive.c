@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
 #include "base/file.h"
@@ -8,69 +7,14 @@
 #include "lab/instrument/instrument.h"
 #include "lab/protocol/export.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <string.h>
 
 struct request {
   const char *protocol, *output, *folder; // NULL: not given
   bool arm, simulate, json, force;
-  struct dea_override overrides[CLI_OVERRIDES_MAX];
-  size_t override_count;
+  struct cli_overrides overrides;
 };
-
-// Command line -----------------------------------------------------------------------------------
-
-/* -1, or the exit code after a usage error. */
-static int parse(struct dea_cli *cli, int argc, char **argv, struct request *out)
-{
-  static const struct option longs[] = {
-      {"arm", no_argument, NULL, 'a'},          {"sim", no_argument, NULL, 'm'},
-      {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, 's'},
-      {"force", no_argument, NULL, 'f'},        {"json", no_argument, NULL, 'j'},
-      {"export", required_argument, NULL, 'e'}, {NULL, 0, NULL, 0}};
-  int option;
-  *out = (struct request){0};
-  opterr = 0;
-  while ((option = getopt_long(argc, argv, ":o:f", longs, NULL)) != -1) {
-    switch (option) {
-    case 'a':
-      out->arm = true;
-      break;
-    case 'm':
-      out->simulate = true;
-      break;
-    case 'o':
-      out->output = optarg;
-      break;
-    case 's':
-      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
-        return cli_usage_error(cli, &cmd_drive, "--set takes KEY=VALUE, not '%s'", optarg);
-      }
-      break;
-    case 'e':
-      out->folder = optarg;
-      break;
-    case 'f':
-      out->force = true;
-      break;
-    case 'j':
-      out->json = true;
-      break;
-    default:
-      return cli_option_error(cli, &cmd_drive, option, argv);
-    }
-  }
-  if (argc - optind != 1) {
-    return cli_usage_error(cli, &cmd_drive,
-                           argc == optind ? "a protocol is needed" : "one protocol at a time");
-  }
-  if ((out->arm && out->simulate) || (out->folder != NULL && (out->arm || out->simulate))) {
-    return cli_usage_error(cli, &cmd_drive, "--arm, --sim and --export exclude each other");
-  }
-  out->protocol = argv[optind];
-  return -1;
-}
 
 // What would be played ---------------------------------------------------------------------------
 
@@ -297,8 +241,8 @@ static dea_status look(struct dea_cli *cli, const struct request *request,
                        bool *planned)
 {
   struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_protocol_read(ctx, request->protocol, request->overrides,
-                                 request->override_count, protocol));
+  DEA_TRY(ctx, dea_protocol_read(ctx, request->protocol, request->overrides.at,
+                                 request->overrides.count, protocol));
   DEA_TRY(ctx, dea_instrument_check(ctx, *protocol));
   if (dea_finding_count(ctx, DEA_ERROR) > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "the instruments of '%s' have errors", (*protocol)->file);
@@ -321,47 +265,43 @@ static json_t *whole_json(struct dea_cli *cli, const struct request *request, de
   return json;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct request request;
+  const struct request *request = user;
   struct dea_protocol *protocol = NULL;
   struct dea_protocol_plan plan;
   struct dea_drive_report report = {.largest_current_A = NAN};
   struct dea_text name = {.ctx = cli->ctx};
   bool planned = false, played = false;
-  int wrong = parse(cli, argc, argv, &request);
-  if (wrong >= 0) {
-    return wrong;
-  }
-  dea_status status = look(cli, &request, &protocol, &plan, &planned);
-  if (planned && !request.json) {
+  dea_status status = look(cli, request, &protocol, &plan, &planned);
+  if (planned && !request->json) {
     print_plan(protocol, &plan);
     fflush(stdout);
   }
-  cli_folder_name(request.protocol, "h5", &name);
-  const char *file = request.output != NULL ? request.output : dea_text_get(&name);
+  cli_folder_name(request->protocol, "h5", &name);
+  const char *file = request->output != NULL ? request->output : dea_text_get(&name);
   if (status == DEA_OK && name.failed) {
     status = DEA_E_MEMORY;
   }
-  if (status == DEA_OK && (request.arm || request.simulate)) {
-    status = play(cli, &request, protocol, file, &report);
+  if (status == DEA_OK && (request->arm || request->simulate)) {
+    status = play(cli, request, protocol, file, &report);
     played = dea_path_exists(file) && (status == DEA_OK || report.played_s > 0);
   }
-  if (status == DEA_OK && request.folder != NULL) {
-    status = export(cli, &request, protocol);
+  if (status == DEA_OK && request->folder != NULL) {
+    status = export(cli, request, protocol);
   }
-  if (request.json) {
-    json_t *json = whole_json(cli, &request, status, protocol, planned ? &plan : NULL);
+  if (request->json) {
+    json_t *json = whole_json(cli, request, status, protocol, planned ? &plan : NULL);
     if (played) {
       json_object_set_new(json, "recording", report_json(&report, file));
     }
     cli_print_json(json);
   } else if (played) {
     print_report(&report, file);
-  } else if (status == DEA_OK && request.folder != NULL) {
-    printf("\nFiles\n  %s\n\nNext:  read %s/README.txt\n", request.folder, request.folder);
+  } else if (status == DEA_OK && request->folder != NULL) {
+    printf("\nFiles\n  %s\n\nNext:  read %s/README.txt\n", request->folder, request->folder);
   } else if (status == DEA_OK) {
-    printf("\nNothing was played. Next:  dea drive %s --sim\n", request.protocol);
+    printf("\nNothing was played. Next:  dea drive %s --sim\n", request->protocol);
   }
   fflush(stdout);
   int code = cli_report(cli, status);
@@ -370,28 +310,35 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_ONE(CLI_DESIGN, "PROTOCOL", "protocol of the experiment", protocol, "a protocol is needed",
+            "one protocol at a time"),
+    {"arm", 0, CLI_FLAG, NULL, "play on the instruments of the protocol: HIGH VOLTAGE",
+     CLI_AT(arm)},
+    {"sim", 0, CLI_FLAG, NULL, "play on a simulated bench, a model of the design with noise",
+     CLI_AT(simulate), .or_before = true},
+    {"export", 0, CLI_FOLDER, "DIR",
+     "write the waveform, and scripts for MATLAB and Python that play it and record on a computer "
+     "with NI-DAQmx, into DIR",
+     CLI_AT(folder), .or_before = true},
+    CLI_OUTPUT_ROW(
+        CLI_FILE, "FILE",
+        "name of the recording; by default that of the protocol with .h5, in the current folder"),
+    CLI_FORCE_ROW('f', "replace a recording or files of that name"),
+    CLI_SET_ROW(0, CLI_PROTOCOL_KEY, "rate=2kHz"),
+    CLI_JSON_ROW("plan, findings and what was recorded as JSON"),
+    {0}};
+
 const struct dea_command cmd_drive = {
     .name = "drive",
     .summary = "Play a protocol to a high-voltage amplifier and record what the film does",
-    .usage =
-        "dea drive PROTOCOL [--arm | --sim | --export DIR] [-o FILE] [--set KEY=VALUE]...\n"
-        "          [--force] [--json]\n\n"
+    .about =
         "Without --arm or --sim nothing is played: the plan is printed, and what is wrong with "
-        "it.\n"
-        "\n"
-        "  --arm              play on the instruments of the protocol: HIGH VOLTAGE\n"
-        "  --sim              play on a simulated bench, a model of the design with noise\n"
-        "  --export DIR       write the waveform, and scripts for MATLAB and Python that play it "
-        "and\n"
-        "                     record on a computer with NI-DAQmx, into DIR\n"
-        "  -o, --output FILE  name of the recording; by default that of the protocol with .h5, in\n"
-        "                     the current folder\n"
-        "  -f, --force        replace a recording or files of that name\n"
-        "  --set KEY=VALUE    take VALUE in place of the file's, for example --set rate=2kHz\n"
-        "  --json             plan, findings and what was recorded as JSON\n\n"
-        "Ctrl-C brings the voltage to 0 V along the protocol's ramp. Exit code 6: a limit of the\n"
+        "it.\n\n"
+        "Ctrl-C brings the voltage to 0 V along the protocol's ramp. Exit code 6: a limit of the "
         "bench would be or was exceeded, or an instrument failed. 'dea schema --protocol' lists "
-        "the\n"
-        "keys of a protocol.\n",
+        "the keys of a protocol.",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

@@ -1,14 +1,18 @@
-#define _GNU_SOURCE // getopt_long, mkdir
+#define _POSIX_C_SOURCE 200809L // mkdir
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <yaml.h>
+
+struct request {
+  const char *name, *folder; // NULL: not given
+  bool force;
+};
 
 /* Value of the top-level key "title" of a YAML file; "" when it has none. */
 static void read_title(const char *path, char *title, size_t size)
@@ -197,43 +201,30 @@ static int show(struct dea_cli *cli, const char *name)
   return code;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  static const struct option options[] = {
-      {"copy", required_argument, NULL, 'c'}, {"force", no_argument, NULL, 'f'}, {0}};
-  const char *folder = NULL;
-  bool force = false;
-  int letter;
-  opterr = 0;
-  while ((letter = getopt_long(argc, argv, ":", options, NULL)) != -1) {
-    if (letter == 'c' && optarg[0] != '\0') {
-      folder = optarg;
-    } else if (letter == 'f') {
-      force = true;
-    } else if (letter == ':' || letter == 'c') {
-      return cli_usage_error(cli, &cmd_examples, "--copy needs a folder");
-    } else {
-      return cli_usage_error(cli, &cmd_examples, "'%s' is not an option", argv[optind - 1]);
-    }
+  const struct request *request = user;
+  if (request->folder != NULL && request->folder[0] == '\0') {
+    return cli_usage_error(cli, &cmd_examples, "--copy needs a folder");
   }
-  int names = argc - optind;
-  if (names > 1 || (folder != NULL && names > 0)) {
-    return cli_usage_error(cli, &cmd_examples, "'%s' is one argument too many", argv[argc - 1]);
+  if (request->folder != NULL && request->name != NULL) {
+    return cli_usage_error(cli, &cmd_examples, "'%s' is one argument too many", request->name);
   }
-  return folder != NULL ? cli_report(cli, copy_all(cli, folder, force))
-                        : show(cli, names == 1 ? argv[optind] : NULL);
+  return request->folder != NULL ? cli_report(cli, copy_all(cli, request->folder, request->force))
+                                 : show(cli, request->name);
 }
+
+static const struct cli_option options[] = {
+    {NULL, 0, CLI_EXAMPLE, "EXAMPLE", "print this design file to standard output", CLI_AT(name)},
+    {"copy", 0, CLI_FOLDER, "DIR", "copy all examples to a folder", CLI_AT(folder)},
+    CLI_FORCE_ROW(0, "overwrite files that are there"),
+    {0}};
 
 const struct dea_command cmd_examples = {
     .name = "examples",
     .summary = "List the example designs, print one, or copy all of them",
-    .usage = "dea examples [EXAMPLE]\n"
-             "       dea examples --copy DIR [--force]\n"
-             "\n"
-             "Without arguments the examples are listed with their titles.\n"
-             "\n"
-             "  EXAMPLE     print this design file to standard output\n"
-             "  --copy DIR  copy all examples to a folder\n"
-             "  --force     overwrite files that are there\n",
+    .about = "Without arguments the examples are listed with their titles.",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

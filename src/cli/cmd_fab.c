@@ -6,6 +6,12 @@
 #include "fabricate/files.h"
 #include "fabricate/process.h"
 
+struct request {
+  const char *design, *output; // output: NULL for the folder of the design's name
+  struct cli_overrides overrides;
+  bool force, drawing, json;
+};
+
 static dea_status add_name(void *array, const char *name)
 {
   json_array_append_new(array, json_string(name));
@@ -28,7 +34,7 @@ static json_t *amounts_json(const struct dea_workshop *w)
 }
 
 /* Sizes of the finished parts, and what was written where. */
-static void print_json(const struct dea_workshop *w, const struct cli_design_arguments *arguments,
+static void print_json(const struct dea_workshop *w, const struct request *request,
                        const struct dea_workshop_options *options, const char *directory)
 {
   json_t *parts = json_array(), *files = json_array();
@@ -43,7 +49,7 @@ static void print_json(const struct dea_workshop *w, const struct cli_design_arg
   }
   dea_workshop_files(w, options, add_name, files);
   json_t *json = json_object();
-  dea_json_put_text(json, "design", arguments->design);
+  dea_json_put_text(json, "design", request->design);
   dea_json_put_text(json, "folder", directory);
   json_object_set_new(json, "copies", json_integer(w->plan.copies));
   dea_json_put(json, "kerf_m", w->plan.kerf_m);
@@ -53,14 +59,14 @@ static void print_json(const struct dea_workshop *w, const struct cli_design_arg
   cli_print_json(json);
 }
 
-static dea_status write_files(struct dea_cli *cli, const struct cli_design_arguments *arguments,
+static dea_status write_files(struct dea_cli *cli, const struct request *request,
                               const struct dea_workshop *workshop)
 {
   struct dea_text name = {.ctx = cli->ctx};
-  const struct dea_workshop_options options = {arguments->force, arguments->drawing};
-  const char *directory = arguments->output;
+  const struct dea_workshop_options options = {request->force, request->drawing};
+  const char *directory = request->output;
   if (directory == NULL) {
-    cli_folder_name(arguments->design, "fab", &name);
+    cli_folder_name(request->design, "fab", &name);
     directory = dea_text_get(&name);
   }
   dea_status status =
@@ -68,8 +74,8 @@ static dea_status write_files(struct dea_cli *cli, const struct cli_design_argum
   if (status == DEA_OK) {
     status = dea_workshop_write(cli->ctx, workshop, directory, &options);
   }
-  if (status == DEA_OK && arguments->json) {
-    print_json(workshop, arguments, &options, directory);
+  if (status == DEA_OK && request->json) {
+    print_json(workshop, request, &options, directory);
     fflush(stdout);
   } else if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "files for the workshop are in %s\n", directory);
@@ -78,22 +84,18 @@ static dea_status write_files(struct dea_cli *cli, const struct cli_design_argum
   return status;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct cli_design_arguments arguments;
+  const struct request *request = user;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   struct dea_workshop *workshop = NULL;
-  int wrong = cli_parse_design_arguments(cli, &cmd_fab, CLI_WRITES_FOLDER, argc, argv, &arguments);
-  if (wrong >= 0) {
-    return wrong;
-  }
-  dea_status status = cli_build_device(cli, &arguments, &design, &device);
+  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
   if (status == DEA_OK) {
     status = dea_workshop_create(cli->ctx, design, device, &workshop);
   }
   if (status == DEA_OK) {
-    status = write_files(cli, &arguments, workshop);
+    status = write_files(cli, request, workshop);
   }
   int code = cli_report(cli, status);
   dea_workshop_destroy(cli->ctx, workshop);
@@ -102,20 +104,22 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_DESIGN_ROW,
+    CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "folder for the files; DESIGN's name with .fab if not given"),
+    CLI_FORCE_ROW('f', "replace files that are there; sheets of fibres go when DESIGN has none"),
+    {"drawing", 0, CLI_FLAG, NULL, "only the drawing of the actuator", CLI_AT(drawing)},
+    CLI_SET_ROW(0, CLI_KEY, "fabrication.kerf=0.15mm"),
+    CLI_JSON_ROW("areas, lengths and names of files as JSON"),
+    {0}};
+
 const struct dea_command cmd_fab = {
     .name = "fab",
     .summary = "Make the files for the workshop: masks, fibres, frame, process sheet",
-    .usage =
-        "dea fab DESIGN [-o DIR] [--force] [--drawing] [--set KEY=VALUE]... [--json]\n\n"
-        "Writes for each part a DXF and an SVG file in mm, with the kerf taken into account,\n"
-        "drawings at 1:1 with dimensions, the process sheet, and a drawing of the actuator.\n"
-        "Kerf, sheet, leads, tabs and the like are in the section 'fabrication' of DESIGN.\n\n"
-        "  -o, --output DIR   folder for the files; DESIGN's name with .fab if not given\n"
-        "  -f, --force        replace files that are there; sheets of fibres go when DESIGN has\n"
-        "                     none\n"
-        "      --drawing      only the drawing of the actuator\n"
-        "      --set KEY=VALUE  take VALUE in place of the file's, for example\n"
-        "                     --set fabrication.kerf=0.15mm\n"
-        "      --json         areas, lengths and names of files as JSON\n",
+    .about = "Writes for each part a DXF and an SVG file in mm, with the kerf taken into account, "
+             "drawings at 1:1 with dimensions, the process sheet, and a drawing of the actuator. "
+             "Kerf, sheet, leads, tabs and the like are in the section 'fabrication' of DESIGN.",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // getopt_long, unlink
+#define _POSIX_C_SOURCE 200809L // unlink
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
@@ -6,79 +6,17 @@
 #include "lab/import/import.h"
 #include "result/provenance.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { FILES_MAX = 64 };
-
 struct request {
-  const char *files[FILES_MAX];
-  size_t file_count;
+  struct cli_words files;
   const char *map, *format, *output, *design;
   bool list, force, json;
 };
-
-// Command line -----------------------------------------------------------------------------------
-
-static void take_option(int letter, struct request *request)
-{
-  switch (letter) {
-  case 'm':
-    request->map = optarg;
-    break;
-  case 'f':
-    request->format = optarg;
-    break;
-  case 'o':
-    request->output = optarg;
-    break;
-  case 'd':
-    request->design = optarg;
-    break;
-  case 'l':
-    request->list = true;
-    break;
-  case 'F':
-    request->force = true;
-    break;
-  default:
-    request->json = true;
-  }
-}
-
-static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
-{
-  static const struct option options[] = {
-      {"map", required_argument, NULL, 'm'},    {"format", required_argument, NULL, 'f'},
-      {"output", required_argument, NULL, 'o'}, {"design", required_argument, NULL, 'd'},
-      {"list", no_argument, NULL, 'l'},         {"force", no_argument, NULL, 'F'},
-      {"json", no_argument, NULL, 'j'},         {0}};
-  int letter;
-  opterr = 0;
-  while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter == ':' || letter == '?') {
-      return cli_option_error(cli, &cmd_import, letter, argv);
-    }
-    take_option(letter, request);
-  }
-  if (optind == argc) {
-    return cli_usage_error(cli, &cmd_import, "a file is missing");
-  }
-  if (argc - optind > FILES_MAX) {
-    return cli_usage_error(cli, &cmd_import, "more than %d files", (int)FILES_MAX);
-  }
-  if (request->list && (request->output != NULL || request->design != NULL)) {
-    return cli_usage_error(cli, &cmd_import, "--list writes nothing: leave -o and --design out");
-  }
-  for (int i = optind; i < argc; i++) {
-    request->files[request->file_count++] = argv[i];
-  }
-  return 0;
-}
 
 // Listing ----------------------------------------------------------------------------------------
 
@@ -199,8 +137,8 @@ static dea_status add_provenance(struct dea_cli *cli, const struct request *requ
                                  const struct dea_table *table, struct dea_recording *recording)
 {
   json_t *files = json_array();
-  for (size_t i = 0; i < request->file_count; i++) {
-    json_array_append_new(files, json_string_nocheck(request->files[i]));
+  for (size_t i = 0; i < request->files.count; i++) {
+    json_array_append_new(files, json_string_nocheck(request->files.at[i]));
   }
   json_t *json = json_pack("{s:s, s:s, s:o, s:s, s:s}", "program", "dea import", "version",
                            DEA_VERSION, "files", files, "format", table->format, "note",
@@ -287,7 +225,7 @@ static dea_status record(struct dea_cli *cli, const struct request *request,
     dea_text_add(&name, "%s", request->output);
   } else {
     size_t stem;
-    const char *path = dea_path_stem(request->files[0], &stem);
+    const char *path = dea_path_stem(request->files.at[0], &stem);
     dea_text_add(&name, "%.*s.h5", (int)stem, path);
   }
   if (status == DEA_OK) {
@@ -306,11 +244,11 @@ static dea_status record(struct dea_cli *cli, const struct request *request,
 static dea_status read_tables(struct dea_cli *cli, const struct request *request,
                               struct dea_table **out)
 {
-  DEA_TRY(cli->ctx, dea_table_read(cli->ctx, request->files[0], request->format, out));
+  DEA_TRY(cli->ctx, dea_table_read(cli->ctx, request->files.at[0], request->format, out));
   dea_status status = DEA_OK;
-  for (size_t i = 1; i < request->file_count && status == DEA_OK; i++) {
+  for (size_t i = 1; i < request->files.count && status == DEA_OK; i++) {
     struct dea_table *other;
-    status = dea_table_read(cli->ctx, request->files[i], request->format, &other);
+    status = dea_table_read(cli->ctx, request->files.at[i], request->format, &other);
     if (status == DEA_OK) {
       status = dea_table_join(cli->ctx, *out, other);
     }
@@ -319,50 +257,55 @@ static dea_status read_tables(struct dea_cli *cli, const struct request *request
   return status;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct request request = {0};
+  const struct request *request = user;
   struct dea_mapping *mapping = NULL;
   struct dea_table *table = NULL;
-  int code = read_options(cli, argc, argv, &request);
-  if (code != 0) {
-    return code;
+  if (request->list && (request->output != NULL || request->design != NULL)) {
+    return cli_usage_error(cli, &cmd_import, "--list writes nothing: leave -o and --design out");
   }
   dea_status status =
-      request.map != NULL ? dea_mapping_read(cli->ctx, request.map, &mapping) : DEA_OK;
+      request->map != NULL ? dea_mapping_read(cli->ctx, request->map, &mapping) : DEA_OK;
   if (status == DEA_OK) {
-    status = read_tables(cli, &request, &table);
+    status = read_tables(cli, request, &table);
   }
   if (status == DEA_OK) {
     status =
-        request.list ? list(cli, &request, table, mapping) : record(cli, &request, table, mapping);
+        request->list ? list(cli, request, table, mapping) : record(cli, request, table, mapping);
   }
   fflush(stdout);
-  code = cli_report(cli, status);
+  int code = cli_report(cli, status);
   dea_table_destroy(cli->ctx, table);
   dea_mapping_destroy(cli->ctx, mapping);
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_MANY(CLI_FILE, "FILE...", "files of one measurement", files, CLI_WORDS_MAX,
+             "a file is missing", "more than 64 files"),
+    {"map", 0, CLI_FILE, "FILE", "mapping in YAML", CLI_AT(map)},
+    {"format", 0, CLI_IMPORTER, "NAME", "format, when it is not recognised", CLI_AT(format)},
+    CLI_OUTPUT_ROW(CLI_FILE, "FILE",
+                   "the recording; without it the first file's name with .h5, here"),
+    {"design", 0, CLI_DESIGN, "DESIGN",
+     "put this design inside, so that 'dea reduce' knows the geometry", CLI_AT(design)},
+    {"list", 0, CLI_FLAG, NULL, "show columns and what they would be taken for; write nothing",
+     CLI_AT(list)},
+    CLI_FORCE_ROW(0, "replace the recording"),
+    CLI_JSON_ROW("print what was read as JSON"),
+    {0}};
+
 const struct dea_command cmd_import = {
     .name = "import",
     .summary = "Make a recording of other programs' files",
-    .usage =
-        "dea import FILE... [--map MAP] [--format NAME] [-o FILE] [--design DESIGN]\n"
-        "           [--list] [--force] [--json]\n"
-        "\n"
-        "Reads columns of numbers from CSV and other text (any separator, decimal comma, units in\n"
-        "titles), MATLAB's .mat (version 5 and 7.3), LabVIEW's .lvm and .tdms, and COMSOL's text\n"
-        "export. What a column is follows from its name and unit, or from a mapping; 'dea schema\n"
-        "--mapping' shows its keys. What was taken for what is said. Several files become one\n"
-        "recording when they have one clock.\n"
-        "\n"
-        "  --map FILE         mapping in YAML\n"
-        "  --format NAME      csv, mat, lvm, tdms or comsol, when it is not recognised\n"
-        "  -o, --output FILE  the recording; without it the first file's name with .h5, here\n"
-        "  --design DESIGN    put this design inside, so that 'dea reduce' knows the geometry\n"
-        "  --list             show columns and what they would be taken for; write nothing\n"
-        "  --force            replace the recording\n"
-        "  --json             print what was read as JSON\n",
+    .about =
+        "Reads columns of numbers from CSV and other text (any separator, decimal comma, units in "
+        "titles), MATLAB's .mat (version 5 and 7.3), LabVIEW's .lvm and .tdms, and COMSOL's text "
+        "export. What a column is follows from its name and unit, or from a mapping; 'dea schema "
+        "--mapping' shows its keys. What was taken for what is said. Several files become one "
+        "recording when they have one clock.",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

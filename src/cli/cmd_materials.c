@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+struct request {
+  const char *name; // NULL: all
+  bool json;
+};
+
 static const char *const kind_names[] = {"elastomer", "plastic", "electrode"};
 
 static const char *kind_of(const struct dea_material_data *data)
@@ -34,24 +39,6 @@ static const char *leaf(const char *path)
   return dot != NULL ? dot + 1 : path;
 }
 
-/* Text broken into lines of at most 96 columns below a heading. */
-static void print_wrapped(const char *heading, const char *text)
-{
-  const int margin = printf("    %-14s ", heading);
-  int column = margin;
-  while (*text != '\0') {
-    size_t length = strcspn(text, " \n");
-    if (column > margin && column + (int)length > 96) {
-      printf("\n%*s", margin, "");
-      column = margin;
-    }
-    column += printf("%s%.*s", column > margin ? " " : "", (int)length, text);
-    text += length;
-    text += strspn(text, " \n");
-  }
-  putchar('\n');
-}
-
 /* Length of the section that a path belongs to: everything before its last key. The parameters of a
  * law are shown with its set. */
 static size_t section_length(const char *path)
@@ -71,7 +58,8 @@ static bool in_section(const struct dea_listed *item, const char *path, size_t l
 }
 
 /* Values of one section, in the words of the file; prose comes after the numbers. */
-static void print_section(const struct dea_listing *listing, const char *path, size_t length)
+static void add_section(struct dea_text *out, const struct dea_listing *listing, const char *path,
+                        size_t length)
 {
   static const char *const prose[] = {"uncertainty", "range", "source", "note"};
   const size_t prose_count = sizeof prose / sizeof prose[0];
@@ -86,23 +74,27 @@ static void print_section(const struct dea_listing *listing, const char *path, s
         which++;
       }
       if ((pass == 0 && which == prose_count) || (pass > 0 && which == pass - 1)) {
-        print_wrapped(key, listing->items[i].text);
+        const char *text = listing->items[i].text;
+        size_t before = out->length;
+        dea_text_add(out, "    %-14s ", key);
+        cli_add_wrapped(out, (int)(out->length - before), text, strlen(text));
       }
     }
   }
 }
 
-static void print_material(const struct dea_catalogue_entry *entry)
+static void add_material(struct dea_text *out, const struct dea_catalogue_entry *entry)
 {
   const struct dea_listing *listing = &entry->listing;
   const struct dea_material_data *data = &entry->data;
-  printf("%s (%s)\n%s\n%s\n", data->name.text, kind_of(data), data->title.text, entry->file);
+  dea_text_add(out, "%s (%s)\n%s\n%s\n", data->name.text, kind_of(data), data->title.text,
+               entry->file);
   for (size_t i = 0; i < listing->count; i++) {
     const char *path = listing->items[i].path;
     size_t length = section_length(path), before = 0;
     if (length == 0) {
       if (listing->items[i].origin == DEA_ABSENT) {
-        printf("\n  %s: %s\n", path, listing->items[i].text);
+        dea_text_add(out, "\n  %s: %s\n", path, listing->items[i].text);
       }
       continue;
     }
@@ -110,8 +102,8 @@ static void print_material(const struct dea_catalogue_entry *entry)
       before++;
     }
     if (before == i) { // the first of its section
-      printf("\n  %.*s\n", (int)length, path);
-      print_section(listing, path, length);
+      dea_text_add(out, "\n  %.*s\n", (int)length, path);
+      add_section(out, listing, path, length);
     }
   }
 }
@@ -137,17 +129,18 @@ static json_t *material_json(const struct dea_catalogue_entry *entry)
 /* Prints one material or adds it to an array. */
 static dea_status show(struct dea_cli *cli, const char *name, bool whole, json_t *array)
 {
+  struct dea_text out = {.ctx = cli->ctx};
   struct dea_catalogue_entry *entry;
   DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_location){0}, &entry));
   if (array != NULL) {
     json_array_append_new(array, material_json(entry));
   } else if (whole) {
-    print_material(entry);
+    add_material(&out, entry);
   } else {
     print_line(&entry->data);
   }
   dea_catalogue_destroy(cli->ctx, entry);
-  return DEA_OK;
+  return cli_print_text(DEA_OK, &out);
 }
 
 /* Shows all; one file with errors does not hide the others. */
@@ -165,34 +158,31 @@ static dea_status show_all(struct dea_cli *cli, json_t *array)
   return worst;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  const char *name = NULL;
-  bool json = false;
-  for (int i = 1; i < argc; i++) {
-    if (strcmp(argv[i], "--json") == 0) {
-      json = true;
-    } else if (argv[i][0] == '-' || name != NULL) {
-      return cli_usage_error(cli, &cmd_materials, "unknown argument '%s'", argv[i]);
-    } else {
-      name = argv[i];
-    }
-  }
-  json_t *array = json ? json_array() : NULL;
-  dea_status status = name != NULL ? show(cli, name, true, array) : show_all(cli, array);
-  if (json) {
+  const struct request *request = user;
+  json_t *array = request->json ? json_array() : NULL;
+  dea_status status =
+      request->name != NULL ? show(cli, request->name, true, array) : show_all(cli, array);
+  if (request->json) {
     cli_print_json(array);
   }
   fflush(stdout);
   return cli_report(cli, status);
 }
 
+static const struct cli_option options[] = {
+    {NULL, 0, CLI_MATERIAL, "NAME", "this material with all that is known of it", CLI_AT(name)},
+    CLI_JSON_ROW("as JSON"),
+    {0}};
+
 const struct dea_command cmd_materials = {
     .name = "materials",
     .summary = "List the materials of the catalogue, or show one with all its numbers and sources",
-    .usage = "dea materials [NAME] [--json]\n\n"
-             "Own materials: put NAME.yaml into a directory that the environment variable\n"
-             "DEA_MATERIALS names (several, separated by colons). What such a file holds says\n"
-             "'dea schema' for material files.\n",
+    .about = "Own materials: put NAME.yaml into a directory that the environment variable "
+             "DEA_MATERIALS names (several, separated by colons). What such a file holds says "
+             "'dea schema --material'.",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

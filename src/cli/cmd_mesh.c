@@ -6,6 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+struct request {
+  const char *design, *output; // output: NULL for none
+  struct cli_overrides overrides;
+  bool json;
+};
+
 /* Displacement components that nothing holds. */
 static size_t count_unknowns(const struct dea_fibre_disc *plate, const struct dea_grid *grid)
 {
@@ -27,13 +33,13 @@ static size_t count_flat(const struct dea_grid *grid)
   return count;
 }
 
-static void print_summary(const struct cli_design_arguments *arguments,
-                          const struct dea_fibre_disc *plate, const struct dea_grid *grid)
+static void print_summary(const struct request *request, const struct dea_fibre_disc *plate,
+                          const struct dea_grid *grid)
 {
   double degrees = dea_fibre_disc_angle(plate) * 180 / acos(-1);
   double jacobian = dea_grid_smallest_jacobian(grid);
   size_t unknowns = count_unknowns(plate, grid), flat = count_flat(grid);
-  if (arguments->json) {
+  if (request->json) {
     json_t *json = json_pack("{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements",
                              (json_int_t)grid->element_count, "flat_elements", (json_int_t)flat,
                              "nodes", (json_int_t)grid->node_count, "unknowns",
@@ -54,34 +60,30 @@ static void print_summary(const struct cli_design_arguments *arguments,
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
          1e3 * plate->size, 1e3 * plate->edge);
   printf("%-20s %.3f of an element's mean\n", "smallest Jacobian", jacobian);
-  if (arguments->output != NULL) {
-    printf("%-20s %s\n", "file", arguments->output);
+  if (request->output != NULL) {
+    printf("%-20s %s\n", "file", request->output);
   }
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct cli_design_arguments arguments;
+  const struct request *request = user;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   struct dea_grid *grid = NULL;
   struct dea_fibre_disc plate;
-  int wrong = cli_parse_design_arguments(cli, &cmd_mesh, CLI_WRITES_FILE, argc, argv, &arguments);
-  if (wrong >= 0) {
-    return wrong;
-  }
-  dea_status status = cli_build_device(cli, &arguments, &design, &device);
+  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
   if (status == DEA_OK) {
     status = dea_fibre_disc_of_device(cli->ctx, device, &plate);
   }
   if (status == DEA_OK) {
     status = dea_fibre_disc_create(cli->ctx, &plate, &grid);
   }
-  if (status == DEA_OK && arguments.output != NULL) {
-    status = dea_msh_write(cli->ctx, &plate, grid, arguments.output);
+  if (status == DEA_OK && request->output != NULL) {
+    status = dea_msh_write(cli->ctx, &plate, grid, request->output);
   }
   if (status == DEA_OK) {
-    print_summary(&arguments, &plate, grid);
+    print_summary(request, &plate, grid);
     fflush(stdout);
   }
   int code = cli_report(cli, status);
@@ -91,13 +93,17 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_DESIGN_ROW,
+    CLI_OUTPUT_ROW(CLI_FILE, "FILE", "write the mesh as FILE, in Gmsh's format 2.2 (.msh)"),
+    CLI_SET_ROW(0, CLI_KEY, "compute.solid.refinement=2"),
+    CLI_JSON_ROW("size and quality of the mesh as JSON"),
+    {0}};
+
 const struct dea_command cmd_mesh = {
     .name = "mesh",
     .summary = "Make the mesh of model 3d, and write it for Gmsh",
-    .usage = "dea mesh DESIGN [-o FILE] [--set KEY=VALUE]... [--json]\n\n"
-             "  -o, --output FILE  write the mesh as FILE, in Gmsh's format 2.2 (.msh)\n"
-             "  --set KEY=VALUE    take VALUE in place of the file's, for example\n"
-             "                     --set compute.solid.refinement=2\n"
-             "  --json             size and quality of the mesh as JSON\n",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

@@ -1,43 +1,15 @@
-#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
 #include "base/json.h"
 #include "lab/recording/table.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <string.h>
 
 struct request {
-  const char *file, *copy, *folder;
+  const char *file, *output, *folder;
   bool json;
 };
-
-static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
-{
-  static const struct option options[] = {{"json", no_argument, NULL, 'j'},
-                                          {"output", required_argument, NULL, 'o'},
-                                          {"csv", required_argument, NULL, 'c'},
-                                          {0}};
-  int letter;
-  opterr = 0;
-  while ((letter = getopt_long(argc, argv, ":o:", options, NULL)) != -1) {
-    if (letter == 'j') {
-      request->json = true;
-    } else if (letter == 'o') {
-      request->copy = optarg;
-    } else if (letter == 'c') {
-      request->folder = optarg;
-    } else {
-      return cli_option_error(cli, &cmd_recording, letter, argv);
-    }
-  }
-  if (argc - optind != 1) {
-    return cli_usage_error(cli, &cmd_recording, "give one recording");
-  }
-  request->file = argv[optind];
-  return 0;
-}
 
 // What is in it ----------------------------------------------------------------------------------
 
@@ -223,22 +195,18 @@ static void print_json(const struct dea_recording *recording)
   cli_print_json(json);
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct request request = {0};
+  const struct request *request = user;
   struct dea_recording *recording = NULL;
-  int wrong = read_options(cli, argc, argv, &request);
-  if (wrong != 0) {
-    return wrong;
+  dea_status status = dea_recording_read(cli->ctx, request->file, &recording);
+  if (status == DEA_OK && request->output != NULL) {
+    status = dea_recording_write(cli->ctx, recording, request->output);
   }
-  dea_status status = dea_recording_read(cli->ctx, request.file, &recording);
-  if (status == DEA_OK && request.copy != NULL) {
-    status = dea_recording_write(cli->ctx, recording, request.copy);
+  if (status == DEA_OK && request->folder != NULL) {
+    status = dea_recording_write_tables(cli->ctx, recording, request->folder);
   }
-  if (status == DEA_OK && request.folder != NULL) {
-    status = dea_recording_write_tables(cli->ctx, recording, request.folder);
-  }
-  if (status == DEA_OK && request.json) {
+  if (status == DEA_OK && request->json) {
     print_json(recording);
   } else if (status == DEA_OK) {
     print_text(recording);
@@ -249,14 +217,21 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_RECORDING_ROW,
+    CLI_OUTPUT_ROW(
+        CLI_FILE, "FILE",
+        "write a clean copy as FILE, which must not exist: also of a recording whose program was "
+        "killed, and in a form that programs with older versions of HDF5 read"),
+    {"csv", 0, CLI_FOLDER, "DIR", "write the channels, profiles and cycles as CSV files into DIR",
+     CLI_AT(folder)},
+    CLI_JSON_ROW("what is in it as JSON"),
+    {0}};
+
 const struct dea_command cmd_recording = {
     .name = "recording",
     .summary = "Say what is in a recording; copy or rescue it; write it as CSV",
-    .usage = "dea recording FILE [--json] [-o FILE] [--csv DIR]\n\n"
-             "  -o, --output FILE  write a clean copy as FILE, which must not exist: also of a\n"
-             "                     recording whose program was killed, and in a form that\n"
-             "                     programs with older versions of HDF5 read\n"
-             "  --csv DIR          write the channels, profiles and cycles as CSV files into DIR\n"
-             "  --json             what is in it as JSON\n",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

@@ -1,124 +1,27 @@
-#define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
-#include "base/units.h"
-#include "cli/figure_options.h"
 #include "lab/reduce/output.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <string.h>
 
 struct request {
-  const char *file, *design, *folder;
+  const char *file, *design, *output;
   bool json, force;
   struct dea_plot_format format;
   struct dea_reduce_options options;
 };
 
-// Command line -----------------------------------------------------------------------------------
-
-/* Value of an option in its unit; 0, or the exit code after its message. */
-static int read_quantity(struct dea_cli *cli, const char *option, const char *unit,
-                         const char *example, double lowest, double *out)
-{
-  char why[DEA_WHY_SIZE];
-  if (!dea_units_read(cli->ctx, optarg, (struct dea_measure){unit, example}, out, why)) {
-    return why[0] == '\0' ? cli_report(cli, dea_context_status(cli->ctx))
-                          : cli_usage_error(cli, &cmd_reduce, "--%s '%s': %s", option, optarg, why);
-  }
-  if (!(*out > lowest)) {
-    return cli_usage_error(cli, &cmd_reduce, "--%s '%s': must be more than 0, such as %s", option,
-                           optarg, example);
-  }
-  return 0;
-}
-
 /* "0.2" or "20%". */
-static int read_settle(struct dea_cli *cli, double *settle)
+static int take_settle(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
-  const char *end;
-  *settle = dea_text_to_double(optarg, &end);
-  bool number = end != optarg;
-  if (number && (strcmp(end, "%") == 0 || strcmp(end, " %") == 0)) {
-    *settle /= 100.0;
-    end = "";
-  }
-  if (!number || *end != '\0' || !(*settle > 0.0) || !(*settle <= 1.0)) {
-    return cli_usage_error(cli, &cmd_reduce, "--settle '%s': must be a share such as 0.2 or 20%%",
-                           optarg);
-  }
-  return 0;
+  double *settle = target;
+  bool good = cli_read_share(text, settle) && *settle > 0.0 && *settle <= 1.0;
+  return good ? 0
+              : cli_usage_error(cli, command, "--%s '%s': must be a share such as 0.2 or 20%%",
+                                option->name, text);
 }
-
-static int take_option(struct dea_cli *cli, int letter, struct request *request)
-{
-  struct dea_reduce_options *options = &request->options;
-  switch (letter) {
-  case 'd':
-    request->design = optarg;
-    return 0;
-  case 'o':
-    request->folder = optarg;
-    return 0;
-  case 'F':
-    request->force = true;
-    return 0;
-  case 'j':
-    request->json = true;
-    return 0;
-  case 't':
-    return read_quantity(cli, "tip-radius", "m", "3 mm", 0.0, &options->tip_radius_m);
-  case 'r':
-    return read_quantity(cli, "film-radius", "m", "15 mm", 0.0, &options->film_radius_m);
-  case 'e':
-    return read_quantity(cli, "electrode-radius", "m", "3.75 mm", 0.0,
-                         &options->electrode_radius_m);
-  case 'c':
-    return read_quantity(cli, "force-offset", "N", "1.5 mN", -INFINITY, &options->force_offset_N);
-  case 's':
-    return read_settle(cli, &options->settle);
-  case 'f':
-    return cli_read_formats(optarg, &request->format)
-               ? 0
-               : cli_usage_error(cli, &cmd_reduce, "'%s' is not a list of svg, pdf, png", optarg);
-  default:
-    return cli_read_width(optarg, &request->format)
-               ? 0
-               : cli_usage_error(cli, &cmd_reduce, "'%s' is not a width of 40 to 400 mm", optarg);
-  }
-}
-
-static int read_options(struct dea_cli *cli, int argc, char **argv, struct request *request)
-{
-  static const struct option longs[] = {{"design", required_argument, NULL, 'd'},
-                                        {"output", required_argument, NULL, 'o'},
-                                        {"force", no_argument, NULL, 'F'},
-                                        {"json", no_argument, NULL, 'j'},
-                                        {"tip-radius", required_argument, NULL, 't'},
-                                        {"film-radius", required_argument, NULL, 'r'},
-                                        {"electrode-radius", required_argument, NULL, 'e'},
-                                        {"force-offset", required_argument, NULL, 'c'},
-                                        {"settle", required_argument, NULL, 's'},
-                                        {"format", required_argument, NULL, 'f'},
-                                        {"width", required_argument, NULL, 'w'},
-                                        {0}};
-  int letter, code = 0;
-  opterr = 0;
-  while (code == 0 && (letter = getopt_long(argc, argv, ":o:", longs, NULL)) != -1) {
-    if (letter == ':' || letter == '?') {
-      return cli_option_error(cli, &cmd_reduce, letter, argv);
-    }
-    code = take_option(cli, letter, request);
-  }
-  if (code == 0 && argc - optind != 1) {
-    return cli_usage_error(cli, &cmd_reduce, "give one recording");
-  }
-  request->file = code == 0 ? argv[optind] : NULL;
-  return code;
-}
-
-// Work -------------------------------------------------------------------------------------------
 
 /* The device of --design, or of the design that the recording brings along; NULL without. */
 static dea_status find_device(struct dea_context *ctx, const struct request *request,
@@ -268,7 +171,7 @@ static void print_text(const struct dea_recording *recording, const struct dea_r
   printf("\nwritten to %s\n", folder);
 }
 
-static dea_status reduce(struct dea_cli *cli, struct request *request,
+static dea_status reduce(struct dea_cli *cli, const struct request *request,
                          struct dea_recording **recording, struct dea_reduction **reduction)
 {
   struct dea_context *ctx = cli->ctx;
@@ -280,37 +183,32 @@ static dea_status reduce(struct dea_cli *cli, struct request *request,
     status = dea_reduce(ctx, *recording, device, &request->options, reduction);
   }
   if (status == DEA_OK) {
-    status = dea_reduction_folder(ctx, request->folder, request->force);
+    status = dea_reduction_folder(ctx, request->output, request->force);
   }
   if (status == DEA_OK) {
     status = dea_reduction_write(ctx, *recording, *reduction, cli->command_line, &request->format,
-                                 request->folder);
+                                 request->output);
   }
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
   return status;
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct request request = {.options = {NAN, NAN, NAN, 0.0, NAN},
-                            .format = {.svg = true, .width_m = 85e-3}};
+  struct request *request = user;
   struct dea_recording *recording = NULL;
   struct dea_reduction *reduction = NULL;
   struct dea_text folder = {.ctx = cli->ctx};
-  int wrong = read_options(cli, argc, argv, &request);
-  if (wrong != 0) {
-    return wrong;
+  if (request->output == NULL) {
+    cli_folder_name(request->file, "reduced", &folder);
+    request->output = dea_text_get(&folder);
   }
-  if (request.folder == NULL) {
-    cli_folder_name(request.file, "reduced", &folder);
-    request.folder = dea_text_get(&folder);
-  }
-  dea_status status = folder.failed ? DEA_E_MEMORY : reduce(cli, &request, &recording, &reduction);
-  if (reduction != NULL && request.json) {
+  dea_status status = folder.failed ? DEA_E_MEMORY : reduce(cli, request, &recording, &reduction);
+  if (reduction != NULL && request->json) {
     cli_print_json(dea_reduction_json(cli->ctx, recording, reduction, cli->command_line));
   } else if (reduction != NULL) {
-    print_text(recording, reduction, request.folder);
+    print_text(recording, reduction, request->output);
     fflush(stdout);
   }
   int code = cli_report(cli, status);
@@ -320,25 +218,47 @@ static int run(struct dea_cli *cli, int argc, char **argv)
   return code;
 }
 
+static const struct request defaults = {.options = {NAN, NAN, NAN, 0.0, NAN},
+                                        .format = {.svg = true, .width_m = 85e-3}};
+
+/* A length or force of the bench, with an example. */
+#define QUANTITY_ROW(name, word, text, member, unit, example, above_0)                             \
+  {                                                                                                \
+    name, 0, CLI_TEXT, word, text, CLI_AT(options.member), cli_take_quantity,                      \
+        .measure = {unit, example}, .positive = above_0                                            \
+  }
+
+static const struct cli_option options[] = {
+    CLI_RECORDING_ROW,
+    {"design", 0, CLI_DESIGN, "DESIGN",
+     "radii of film, electrode and fibre tips from DESIGN; else from the design in the recording",
+     CLI_AT(design)},
+    QUANTITY_ROW("film-radius", "R", "inner radius of the frame, such as '15 mm'", film_radius_m,
+                 "m", "15 mm", true),
+    QUANTITY_ROW("electrode-radius", "R", "radius of the electrode", electrode_radius_m, "m",
+                 "3.75 mm", true),
+    QUANTITY_ROW("tip-radius", "R", "distance of the fibre tips from the centre", tip_radius_m, "m",
+                 "3 mm", true),
+    QUANTITY_ROW(
+        "force-offset", "F",
+        "reading of the unloaded force cell, such as '1.5 mN'; else the mean of its first readings",
+        force_offset_N, "N", "1.5 mN", false),
+    {"settle", 0, CLI_TEXT, "SHARE", "last share of each part of a cycle that is averaged (0.2)",
+     CLI_AT(options.settle), take_settle},
+    CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .reduced)"),
+    CLI_FORCE_ROW(0, "replace an earlier reduction in that folder"),
+    CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),
+    CLI_WIDTH_ROW("width of the figures (default 85)"),
+    CLI_JSON_ROW("print reduction.json in place of the table"),
+    {0}};
+
 const struct dea_command cmd_reduce = {
     .name = "reduce",
     .summary = "Make displacements, forces, times and discharges of a recording",
-    .usage =
-        "dea reduce FILE [--design DESIGN] [-o DIR] [--force] [--json]\n\n"
-        "Writes measurement.csv (for 'dea compare'), levels.csv, cycles.csv, profiles.csv,\n"
-        "history.csv, discharges.csv, reduction.json and figures.\n\n"
-        "  --design DESIGN       radii of film, electrode and fibre tips from DESIGN; else from\n"
-        "                        the design in the recording\n"
-        "  --film-radius R       inner radius of the frame, such as '15 mm'\n"
-        "  --electrode-radius R  radius of the electrode\n"
-        "  --tip-radius R        distance of the fibre tips from the centre\n"
-        "  --force-offset F      reading of the unloaded force cell, such as '1.5 mN'; else the\n"
-        "                        mean of its first readings\n"
-        "  --settle SHARE        last share of each part of a cycle that is averaged (0.2)\n"
-        "  -o, --output DIR      write into DIR (default: the file's name + .reduced)\n"
-        "  --force               replace an earlier reduction in that folder\n"
-        "  --format LIST         figures as svg, pdf, png (default svg)\n"
-        "  --width WIDTH         of the figures, in mm (default 85)\n"
-        "  --json                print reduction.json in place of the table\n",
+    .about = "Writes measurement.csv (for 'dea compare'), levels.csv, cycles.csv, profiles.csv, "
+             "history.csv, discharges.csv, reduction.json and figures.",
+    .options = options,
+    .request_size = sizeof(struct request),
+    .defaults = &defaults,
     .run = run,
 };

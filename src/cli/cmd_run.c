@@ -11,7 +11,6 @@
 #include "result/provenance.h"
 #include "study/study.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,16 +18,11 @@
 
 enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
 
-struct run_options {
-  const char *file; // and those that it is compared with
-  const char *others[DEA_DESIGN_VARIANTS_MAX];
-  size_t other_count;
-  const char *directory, *models[DEA_DESIGN_MODELS_MAX];
-  size_t model_count;
-  const char *studies[STUDIES_MAX];
-  size_t study_count;
-  struct dea_override overrides[CLI_OVERRIDES_MAX];
-  size_t override_count;
+struct request {
+  struct cli_words designs; // the first, and those that it is compared with
+  const char *output;       // NULL: not given
+  struct cli_words models, studies;
+  struct cli_overrides overrides;
   bool json, force, resume, no_figures;
 };
 
@@ -42,106 +36,49 @@ struct run {
   struct dea_keep *keep;
 };
 
-static int parse_options(struct dea_cli *cli, int argc, char **argv, struct run_options *out)
+static int take_model(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
 {
-  static const struct option longs[] = {{"model", required_argument, NULL, 'm'},
-                                        {"set", required_argument, NULL, 's'},
-                                        {"output", required_argument, NULL, 'o'},
-                                        {"json", no_argument, NULL, 'j'},
-                                        {"force", no_argument, NULL, 'f'},
-                                        {"resume", no_argument, NULL, 'r'},
-                                        {"no-figures", no_argument, NULL, 'n'},
-                                        {"study", required_argument, NULL, 'S'},
-                                        {NULL, 0, NULL, 0}};
-  opterr = 0;
-  int option;
-  while ((option = getopt_long(argc, argv, ":m:s:o:f", longs, NULL)) != -1) {
-    switch (option) {
-    case 'm':
-      if (out->model_count == DEA_DESIGN_MODELS_MAX) {
-        return cli_usage_error(cli, &cmd_run, "too many models");
-      }
-      for (size_t i = 0; i < out->model_count; i++) {
-        if (strcmp(out->models[i], optarg) == 0) {
-          return cli_usage_error(cli, &cmd_run, "--model %s is given twice", optarg);
-        }
-      }
-      out->models[out->model_count++] = optarg;
-      break;
-    case 's':
-      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
-        return cli_usage_error(cli, &cmd_run, "--set takes key=value, not '%s'", optarg);
-      }
-      break;
-    case 'S':
-      if (out->study_count == STUDIES_MAX) {
-        return cli_usage_error(cli, &cmd_run, "too many studies");
-      }
-      out->studies[out->study_count++] = optarg;
-      break;
-    case 'o':
-      out->directory = optarg;
-      break;
-    case 'j':
-      out->json = true;
-      break;
-    case 'f':
-      out->force = true;
-      break;
-    case 'r':
-      out->resume = true;
-      break;
-    case 'n':
-      out->no_figures = true;
-      break;
-    default:
-      return cli_option_error(cli, &cmd_run, option, argv);
+  struct cli_words *models = target;
+  if (models->count == DEA_DESIGN_MODELS_MAX) {
+    return cli_usage_error(cli, command, "too many models");
+  }
+  for (size_t i = 0; i < models->count; i++) {
+    if (strcmp(models->at[i], text) == 0) {
+      return cli_usage_error(cli, command, "--%s %s is given twice", option->name, text);
     }
   }
-  if (argc == optind || argc - optind - 1 > DEA_DESIGN_VARIANTS_MAX) {
-    return cli_usage_error(cli, &cmd_run,
-                           argc == optind ? "a design file is needed" : "too many design files");
-  }
-  if (out->resume && out->force) {
-    return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
-  }
-  if (out->resume && out->json && out->directory == NULL) {
-    return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
-  }
-  out->file = argv[optind];
-  for (int i = optind + 1; i < argc; i++) {
-    out->others[out->other_count++] = argv[i];
-  }
+  models->at[models->count++] = text;
   return 0;
 }
 
 /* Run folder: the one given, or the design's file name without ending, plus ".run", in the current
  * folder; empty when the summary goes to stdout alone. */
-static void choose_directory(const struct run_options *options, struct dea_text *out)
+static void choose_directory(const struct request *request, struct dea_text *out)
 {
-  if (options->directory != NULL) {
-    dea_text_add(out, "%s", options->directory);
+  if (request->output != NULL) {
+    dea_text_add(out, "%s", request->output);
     return;
   }
-  if (options->json) {
+  if (request->json) {
     return;
   }
-  cli_folder_name(options->file, "run", out);
+  cli_folder_name(request->designs.at[0], "run", out);
 }
 
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
  * ones. */
-static dea_status choose_models(struct dea_cli *cli, const struct run_options *options,
+static dea_status choose_models(struct dea_cli *cli, const struct request *request,
                                 const struct dea_design *design,
                                 const struct dea_model_type *out[DEA_DESIGN_MODELS_MAX],
                                 size_t *count)
 {
-  bool given = options->model_count > 0, bad = false;
-  *count = given ? options->model_count : design->compute.model_count;
+  bool given = request->models.count > 0, bad = false;
+  *count = given ? request->models.count : design->compute.model_count;
   for (size_t i = 0; i < *count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_location option = {.file = "--model"};
-    out[i] = given ? cli_model_find(cli, options->models[i], option)
+    out[i] = given ? cli_model_find(cli, request->models.at[i], option)
                    : cli_model_find(cli, label->text, label->location);
     bad = bad || out[i] == NULL;
   }
@@ -151,22 +88,22 @@ static dea_status choose_models(struct dea_cli *cli, const struct run_options *o
   return DEA_OK;
 }
 
-static dea_status build(struct dea_cli *cli, const struct run_options *options, const char *bytes,
+static dea_status build(struct dea_cli *cli, const struct request *request, const char *bytes,
                         size_t length, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
   struct dea_override overrides[CLI_OVERRIDES_MAX + 1];
-  size_t count = options->override_count;
-  memcpy(overrides, options->overrides, sizeof options->overrides);
-  if (options->other_count > 0) {
+  size_t count = request->overrides.count;
+  memcpy(overrides, request->overrides.at, sizeof request->overrides.at);
+  if (request->designs.count > 1) {
     run->others.ctx = ctx;
-    cli_designs_text(options->others, options->other_count, &run->others);
+    cli_designs_text(request->designs.at + 1, request->designs.count - 1, &run->others);
     overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
     if (run->others.failed) {
       return DEA_E_MEMORY;
     }
   }
-  DEA_TRY(ctx, dea_design_read_memory(ctx, options->file, bytes, length, overrides, count,
+  DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
   DEA_TRY(ctx, cli_variants_check(cli, run->design));
@@ -176,13 +113,13 @@ static dea_status build(struct dea_cli *cli, const struct run_options *options, 
   return DEA_OK;
 }
 
-static dea_status prepare(struct dea_cli *cli, const struct run_options *options, struct run *run)
+static dea_status prepare(struct dea_cli *cli, const struct request *request, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
   char *bytes;
   size_t length;
-  DEA_TRY(ctx, dea_file_read(ctx, options->file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  dea_status status = build(cli, options, bytes, length, run); // the very bytes that are kept
+  DEA_TRY(ctx, dea_file_read(ctx, request->designs.at[0], DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = build(cli, request, bytes, length, run); // the very bytes that are kept
   dea_free(ctx, bytes);
   DEA_TRY(ctx, status);
   return DEA_OK;
@@ -283,11 +220,11 @@ static void print_model(const struct dea_result *result, const char *model)
 }
 
 /* Writes what there is, whatever happened before: partial results are results. */
-static dea_status deliver(struct dea_cli *cli, const struct run_options *options, struct run *run,
+static dea_status deliver(struct dea_cli *cli, const struct request *request, struct run *run,
                           const struct dea_model_type *const *types, size_t count)
 {
   struct dea_context *ctx = cli->ctx;
-  if (options->json) {
+  if (request->json) {
     char *text;
     DEA_TRY(ctx, dea_summary_text(ctx, run->result, &text));
     fputs(text, stdout);
@@ -297,10 +234,10 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
   dea_status status = DEA_OK;
   if (directory[0] != '\0') {
     const struct dea_run_folder_options folder = {.started = true,
-                                                  .no_figures = options->no_figures};
+                                                  .no_figures = request->no_figures};
     status = dea_run_folder_write(ctx, run->result, directory, &folder);
   }
-  if (!options->json && !cli->quiet) {
+  if (!request->json && !cli->quiet) {
     puts(run->design->title.text);
     for (size_t i = 0; i < count; i++) {
       print_model(run->result, types[i]->name);
@@ -310,28 +247,27 @@ static dea_status deliver(struct dea_cli *cli, const struct run_options *options
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
-             options->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
+             request->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
     }
   }
   return status;
 }
 
 /* Makes the folder ready, and what is to be kept in it while the run goes. */
-static dea_status open_folder(struct dea_cli *cli, const struct run_options *options,
-                              struct run *run)
+static dea_status open_folder(struct dea_cli *cli, const struct request *request, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
   run->directory.ctx = ctx;
-  choose_directory(options, &run->directory);
+  choose_directory(request, &run->directory);
   const char *directory = dea_text_get(&run->directory);
   if (directory[0] == '\0') {
     return DEA_OK;
   }
-  if (options->resume) {
+  if (request->resume) {
     DEA_TRY(ctx, dea_checkpoint_restore(ctx, directory, run->result));
   }
-  DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, options->force || options->resume));
-  if (options->force) {
+  DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, request->force || request->resume));
+  if (request->force) {
     dea_run_folder_clear(ctx, directory);
   }
   DEA_TRY(ctx, dea_checkpoint_create(ctx, directory, &run->keep));
@@ -340,28 +276,28 @@ static dea_status open_folder(struct dea_cli *cli, const struct run_options *opt
 }
 
 /* Names of studies, NULL for those that the design asks for. */
-static const char *const *chosen_studies(const struct run_options *options)
+static const char *const *chosen_studies(const struct request *request)
 {
-  return options->study_count > 0 ? options->studies : NULL;
+  return request->studies.count > 0 ? request->studies.at : NULL;
 }
 
-static dea_status run_all(struct dea_cli *cli, const struct run_options *options, struct run *run)
+static dea_status run_all(struct dea_cli *cli, const struct request *request, struct run *run)
 {
   const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
   struct dea_context *ctx = cli->ctx;
   size_t count;
   struct timespec start, end;
-  DEA_TRY(ctx, prepare(cli, options, run));
-  DEA_TRY(ctx, choose_models(cli, options, run->design, types, &count));
-  DEA_TRY(ctx, dea_study_check(ctx, chosen_studies(options), options->study_count, run->design));
-  DEA_TRY(ctx, open_folder(cli, options, run));
+  DEA_TRY(ctx, prepare(cli, request, run));
+  DEA_TRY(ctx, choose_models(cli, request, run->design, types, &count));
+  DEA_TRY(ctx, dea_study_check(ctx, chosen_studies(request), request->studies.count, run->design));
+  DEA_TRY(ctx, open_folder(cli, request, run));
   dea_status first = DEA_OK;
   char message[1024] = "";
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(run->keep);
        i++) {
-    dea_status status = dea_study_run_named(ctx, types[i], chosen_studies(options),
-                                            options->study_count, run->result);
+    dea_status status = dea_study_run_named(ctx, types[i], chosen_studies(request),
+                                            request->studies.count, run->result);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
       snprintf(message, sizeof message, "%s: %s", types[i]->name, dea_context_message(ctx));
@@ -371,44 +307,53 @@ static dea_status run_all(struct dea_cli *cli, const struct run_options *options
   run->result->provenance.wall_s =
       (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
   if (!dea_checkpoint_refused(run->keep)) {
-    DEA_TRY(ctx, deliver(cli, options, run, types, count));
+    DEA_TRY(ctx, deliver(cli, request, run, types, count));
   }
   return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
 }
 
-static int run(struct dea_cli *cli, int argc, char **argv)
+static int run(struct dea_cli *cli, void *user)
 {
-  struct run_options options = {0};
+  struct request *request = user;
   struct run run = {0};
-  int code = parse_options(cli, argc, argv, &options);
-  if (code != 0) {
-    return code;
+  if (request->resume && request->json && request->output == NULL) {
+    return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
+  }
+  if (request->resume && request->force) {
+    return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
   }
   if (cli->follower) { // no folder; its standard output leads nowhere
-    options.json = true;
-    options.directory = NULL;
+    request->json = true;
+    request->output = NULL;
   }
-  code = cli_report(cli, run_all(cli, &options, &run));
+  int code = cli_report(cli, run_all(cli, request, &run));
   release(cli, &run);
   return code;
 }
 
+static const struct cli_option options[] = {
+    CLI_MANY(CLI_DESIGN, "DESIGN...",
+             "design file; more of them are set beside the first in its figures and tables (study "
+             "compare-design)",
+             designs, DEA_DESIGN_VARIANTS_MAX + 1, "a design file is needed",
+             "too many design files"),
+    {"model", 'm', CLI_MODEL, "NAME", "model instead of the design's list; can be repeated",
+     CLI_AT(models), take_model, .most = DEA_DESIGN_MODELS_MAX},
+    {"study", 0, CLI_STUDY, "NAME", "only this study; can be repeated", CLI_AT(studies),
+     .most = STUDIES_MAX, .too_many = "too many studies"},
+    CLI_SET_ROW('s', CLI_KEY, "film.thickness=200um"),
+    CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "run folder (default: DESIGN.run here)"),
+    CLI_FORCE_ROW('f', "replace the results in an existing run folder"),
+    {"resume", 0, CLI_FLAG, NULL, "go on where the run in the folder stopped (model 3d)",
+     CLI_AT(resume)},
+    {"no-figures", 0, CLI_FLAG, NULL, "no figures", CLI_AT(no_figures)},
+    CLI_JSON_ROW("summary as JSON on stdout; a folder only with -o"),
+    {0}};
+
 const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
-    .usage =
-        "dea run DESIGN [DESIGN]... [options]\n"
-        "\n"
-        "More designs are set beside the first in its figures and tables (study compare-design).\n"
-        "\n"
-        "  -m, --model NAME      lumped, axisymmetric or 3d, instead of the design's list\n"
-        "      --study NAME      only this study: path, sweep, force, transient, modal,\n"
-        "                        frequency, convergence, compare-design; can be repeated\n"
-        "  -s, --set KEY=VALUE   override a value of the design: film.thickness='200 um'\n"
-        "  -o, --output DIR      run folder (default: DESIGN.run here)\n"
-        "  -f, --force           replace the results in an existing run folder\n"
-        "      --resume          go on where the run in the folder stopped (model 3d)\n"
-        "      --no-figures      no figures\n"
-        "      --json            summary as JSON on stdout; a folder only with -o\n",
+    .options = options,
+    .request_size = sizeof(struct request),
     .run = run,
 };

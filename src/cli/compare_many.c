@@ -51,15 +51,15 @@ struct sides {
 static dea_status read_sides(struct dea_context *ctx, const struct compare_request *request,
                              struct sides *sides)
 {
-  size_t last = request->name_count - 1;
+  size_t last = request->names.count - 1;
   for (size_t i = 0; i < last; i++) {
-    if (dea_measured_is_folder(request->names[i])) {
+    if (dea_measured_is_folder(request->names.at[i])) {
       return dea_fail(ctx, DEA_E_ARGUMENT, "%s is a measurement: name it last, and runs before it",
-                      request->names[i]);
+                      request->names.at[i]);
     }
-    DEA_TRY(ctx, dea_run_read(ctx, request->names[i], &sides->runs[i]));
+    DEA_TRY(ctx, dea_run_read(ctx, request->names.at[i], &sides->runs[i]));
   }
-  const char *reference = request->names[last];
+  const char *reference = request->names.at[last];
   return dea_measured_is_folder(reference) || !cli_compare_is_run(reference)
              ? dea_measured_read(ctx, reference, &sides->measured)
              : dea_run_read(ctx, reference, &sides->runs[last]);
@@ -76,10 +76,10 @@ static void free_sides(struct dea_context *ctx, struct sides *sides)
 /* Last part of a path, or all of it where another side ends the same. Into out[DEA_LABEL_SIZE]. */
 static void side_name(const struct compare_request *request, size_t side, char *out)
 {
-  const char *path = request->names[side], *own = dea_path_name(path);
+  const char *path = request->names.at[side], *own = dea_path_name(path);
   bool alone = own[0] != '\0';
-  for (size_t i = 0; i < request->name_count; i++) {
-    alone = alone && (i == side || strcmp(dea_path_name(request->names[i]), own) != 0);
+  for (size_t i = 0; i < request->names.count; i++) {
+    alone = alone && (i == side || strcmp(dea_path_name(request->names.at[i]), own) != 0);
   }
   snprintf(out, DEA_LABEL_SIZE, "%.60s", alone ? own : path);
 }
@@ -89,23 +89,23 @@ static size_t models_of(const struct compare_request *request, const struct dea_
                         const char *models[DEA_DESIGN_MODELS_MAX])
 {
   size_t count = dea_result_models(run->result, models, DEA_DESIGN_MODELS_MAX), kept = 0;
-  for (size_t m = 0; m < count && request->model_count > 0; m++) {
-    for (size_t k = 0; k < request->model_count; k++) {
-      if (strcmp(models[m], request->models[k][0]) == 0) {
+  for (size_t m = 0; m < count && request->models.count > 0; m++) {
+    for (size_t k = 0; k < request->models.count; k++) {
+      if (strcmp(models[m], request->models.at[k][0]) == 0) {
         models[kept++] = models[m];
         break;
       }
     }
   }
-  return request->model_count > 0 ? kept : count;
+  return request->models.count > 0 ? kept : count;
 }
 
 /* Model of the reference that was asked for beside this one, "" for none. */
 static const char *reference_model(const struct compare_request *request, const char *model)
 {
-  for (size_t k = 0; k < request->model_count; k++) {
-    if (strcmp(model, request->models[k][0]) == 0) {
-      return request->models[k][1];
+  for (size_t k = 0; k < request->models.count; k++) {
+    if (strcmp(model, request->models.at[k][0]) == 0) {
+      return request->models.at[k][1];
     }
   }
   return "";
@@ -121,11 +121,11 @@ static dea_status add_run(struct dea_context *ctx, const struct compare_request 
   char run[DEA_LABEL_SIZE], name[DEA_LABEL_SIZE];
   side_name(request, side, run);
   if (count == 0) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model %s", request->names[side],
-                    request->model_count > 0 ? "of those asked for" : "with points");
+    return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model %s", request->names.at[side],
+                    request->models.count > 0 ? "of those asked for" : "with points");
   }
   for (size_t m = 0; m < count; m++) {
-    if (request->name_count == 2) {
+    if (request->names.count == 2) {
       snprintf(name, sizeof name, "%s", models[m]);
     } else {
       snprintf(name, sizeof name, "%.60s%s%.60s", run, one_model ? "" : ", ",
@@ -140,7 +140,7 @@ static dea_status add_run(struct dea_context *ctx, const struct compare_request 
 static dea_status fill_set(struct dea_context *ctx, const struct compare_request *request,
                            const struct sides *sides, struct dea_compare_set *set)
 {
-  size_t runs = request->name_count - 1;
+  size_t runs = request->names.count - 1;
   bool one_model = true;
   for (size_t i = 0; i < runs; i++) {
     const char *models[DEA_DESIGN_MODELS_MAX];
@@ -280,14 +280,14 @@ static dea_status compare(struct dea_context *ctx, const struct compare_request 
 {
   size_t worst_curve = 0;
   DEA_TRY(ctx, fill_set(ctx, request, sides, set));
-  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, request->columns, request->column_count));
+  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, request->columns.at, request->columns.count));
   if (request->json) {
     DEA_TRY(ctx, print_json(ctx, set, request->tolerance));
   } else {
     print_tables(set, request->tolerance);
   }
-  if (request->folder != NULL) {
-    DEA_TRY(ctx, dea_compare_set_draw(ctx, set, &request->format, request->folder));
+  if (request->output != NULL) {
+    DEA_TRY(ctx, dea_compare_set_draw(ctx, set, &request->format, request->output));
   }
   const struct dea_misfit *worst = dea_compare_set_worst(set, &worst_curve);
   if (worst == NULL && !isnan(request->tolerance)) {
@@ -304,7 +304,7 @@ dea_status cli_compare_many(struct dea_cli *cli, const struct compare_request *r
   struct dea_compare_set *set = NULL;
   struct dea_context *ctx = cli->ctx;
   char reference[DEA_LABEL_SIZE];
-  size_t last = request->name_count - 1;
+  size_t last = request->names.count - 1;
   side_name(request, last, reference);
   dea_status status = read_sides(ctx, request, &sides);
   if (status == DEA_OK) {

@@ -9,15 +9,23 @@
 
 enum { COMPARE_NAMES_MAX = 17, COMPARE_QUANTITIES_MAX = DEA_LOAD_POINT_COLUMNS };
 
+/* Models asked for: of the runs, of the reference. */
+struct compare_models {
+  size_t count;
+  char at[DEA_DESIGN_MODELS_MAX][2][DEA_NAME_SIZE];
+};
+
+struct compare_columns {
+  size_t count;
+  int at[COMPARE_QUANTITIES_MAX];
+};
+
 struct compare_request {
-  const char *names[COMPARE_NAMES_MAX]; // runs, and last what they are compared with
-  size_t name_count;
-  char models[DEA_DESIGN_MODELS_MAX][2][DEA_NAME_SIZE]; // asked for: of the runs, of the reference
-  size_t model_count;
-  int columns[COMPARE_QUANTITIES_MAX];
-  size_t column_count;
-  double tolerance; // NAN for none
-  const char *folder;
+  struct cli_words names; // runs, and last what they are compared with
+  struct compare_models models;
+  struct compare_columns columns;
+  double tolerance;   // NAN for none
+  const char *output; // folder; NULL for none
   struct dea_plot_format format;
   bool json;
 };

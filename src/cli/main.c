@@ -12,12 +12,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const struct dea_command *const commands[] = {
+const struct dea_command *const cli_commands[] = {
 #define COMMAND_ROW(name) &name,
     DEA_COMMAND_LIST(COMMAND_ROW)
 #undef COMMAND_ROW
-};
-enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+        NULL};
+enum { COMMAND_COUNT = sizeof cli_commands / sizeof cli_commands[0] - 1 };
+
+const struct cli_option cli_common_options[] = {
+#define AT(member) .target = offsetof(struct dea_cli, member)
+    {"quiet", 'q', CLI_FLAG, NULL, "no progress, no notes", AT(quiet)},
+    {"verbose", 'v', CLI_FLAG, NULL, "say more about an error", AT(verbose)},
+    {"help", 'h', CLI_FLAG, NULL, "say how the command is used", AT(help)},
+#undef AT
+    {0}};
 
 static volatile sig_atomic_t interrupt_flag, voltage_flag;
 
@@ -35,11 +43,6 @@ static bool has_room(void)
 {
   struct pollfd entry = {.fd = STDERR_FILENO, .events = POLLOUT};
   return poll(&entry, 1, 0) > 0 && (entry.revents & POLLOUT) != 0;
-}
-
-bool cli_interrupted(void)
-{
-  return interrupt_flag != 0;
 }
 
 void cli_progress(void *user, const char *what, size_t done, size_t total)
@@ -117,9 +120,14 @@ void cli_print_json(json_t *json)
   json_decref(json);
 }
 
-void cli_print_usage(const struct dea_command *command)
+dea_status cli_print_text(dea_status status, struct dea_text *text)
 {
-  printf("%s\n\nUsage: %s", command->summary, command->usage);
+  status = status == DEA_OK && text->failed ? DEA_E_MEMORY : status;
+  if (status == DEA_OK) {
+    fputs(dea_text_get(text), stdout);
+  }
+  dea_text_free(text);
+  return status;
 }
 
 static void print_help(void)
@@ -127,7 +135,7 @@ static void print_help(void)
   puts("dea - design and simulation of dielectric elastomer actuators\n\n"
        "Usage: dea COMMAND [arguments]\n       dea --version | --help\n\nCommands:");
   for (int i = 0; i < COMMAND_COUNT; i++) {
-    printf("  %-12s %s\n", commands[i]->name, commands[i]->summary);
+    printf("  %-12s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
   }
   puts(
       "\nBefore or after the command: --quiet, --verbose. 'dea COMMAND --help' says more.\n"
@@ -139,14 +147,12 @@ static void print_help(void)
 
 static const struct dea_command *find_command(const char *name)
 {
-  for (int i = 0; i < COMMAND_COUNT; i++) {
-    if (strcmp(commands[i]->name, name) == 0) {
-      return commands[i];
-    }
-  }
   const char *names[COMMAND_COUNT];
   for (int i = 0; i < COMMAND_COUNT; i++) {
-    names[i] = commands[i]->name;
+    names[i] = cli_commands[i]->name;
+    if (strcmp(names[i], name) == 0) {
+      return cli_commands[i];
+    }
   }
   const char *nearest = dea_nearest_name(name, names, COMMAND_COUNT);
   fprintf(stderr, "dea: '%s' is not a command", name);
@@ -159,11 +165,16 @@ static int take_common_options(struct dea_cli *cli, int argc, char **argv)
 {
   int kept = 0;
   for (int i = 0; i < argc; i++) {
-    if (strcmp(argv[i], "--quiet") == 0 || strcmp(argv[i], "-q") == 0) {
-      cli->quiet = true;
-    } else if (strcmp(argv[i], "--verbose") == 0 || strcmp(argv[i], "-v") == 0) {
-      cli->verbose = true;
-    } else {
+    const struct cli_option *o = cli_common_options;
+    for (; o->help != NULL; o++) {
+      const char letter[] = {'-', o->letter, '\0'};
+      bool is_long = strncmp(argv[i], "--", 2) == 0 && strcmp(argv[i] + 2, o->name) == 0;
+      if (is_long || strcmp(argv[i], letter) == 0) {
+        *(bool *)((char *)cli + o->target) = true;
+        break;
+      }
+    }
+    if (o->help == NULL) {
       argv[kept++] = argv[i];
     }
   }
@@ -208,17 +219,27 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
   if (command == NULL) {
     return dea_status_exit_code(DEA_E_USAGE);
   }
-  for (int i = 1; i < argc; i++) {
-    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-      cli_print_usage(command);
-      return 0;
-    }
+  if (cli->help) {
+    struct dea_text usage = {.ctx = cli->ctx};
+    dea_text_add(&usage, "%s\n\n", command->summary);
+    cli_add_usage(command, &usage);
+    return cli_report(cli, cli_print_text(DEA_OK, &usage));
   }
   watch_signals();
   if (cli->follower && command != &cmd_run) {
     return 0; // nothing to compute together
   }
-  return command->run(cli, argc, argv);
+  char *request = dea_alloc(cli->ctx, 1, command->request_size);
+  if (request == NULL) {
+    return cli_report(cli, DEA_E_MEMORY);
+  }
+  if (command->defaults != NULL) {
+    memcpy(request, command->defaults, command->request_size);
+  }
+  int code = cli_parse(cli, command, argc, argv, request);
+  code = code != 0 ? code : command->run(cli, request);
+  dea_free(cli->ctx, request);
+  return code;
 }
 
 /* Standard files that the caller has closed become /dev/null; else the first result file would get
@@ -288,17 +309,16 @@ int main(int argc, char **argv)
   dea_context_set_interrupt(cli.ctx, &interrupt_flag);
   int code = 0;
   argc = take_common_options(&cli, argc, argv);
+  if (argc >= 2 && strcmp(argv[1], "help") == 0) { // "dea help run" as "dea run --help"
+    cli.help = true;
+    argc--;
+    argv++;
+  }
   if (argc < 2) {
     print_help();
-    code = dea_status_exit_code(DEA_E_USAGE);
+    code = cli.help ? 0 : dea_status_exit_code(DEA_E_USAGE);
   } else if (strcmp(argv[1], "--version") == 0) {
     printf("dea %s\n", DEA_VERSION);
-  } else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
-             (strcmp(argv[1], "help") == 0 && argc == 2)) {
-    print_help();
-  } else if (strcmp(argv[1], "help") == 0) { // "dea help run" as "dea run --help"
-    char *swapped[] = {argv[2], "--help", NULL};
-    code = run_command(&cli, 2, swapped);
   } else {
     code = run_command(&cli, argc - 1, argv + 1);
   }

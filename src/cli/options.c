@@ -1,22 +1,213 @@
-/* What the commands share in reading their options. */
+/* A command line read by the table of its command. */
 #define _GNU_SOURCE // getopt_long
 #include "cli/cli.h"
 
 #include "base/file.h"
+#include "output/plot.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <string.h>
 
-bool cli_parse_override(char *text, struct dea_override *overrides, size_t room, size_t *count)
+enum { FIRST_LONG = 256 }; // above all letters: what getopt_long answers for the first row
+
+static const struct cli_option *find_letter(const struct dea_command *command, int letter)
 {
+  const struct cli_option *option = command->options;
+  while (option->help != NULL && option->letter != letter) {
+    option++;
+  }
+  return option;
+}
+
+/* Puts one value where it belongs. */
+static int take(struct dea_cli *cli, const struct dea_command *command,
+                const struct cli_option *option, const char *text, void *request)
+{
+  void *target = (char *)request + option->target;
+  if (option->take != NULL) {
+    return option->take(cli, command, option, text, target);
+  }
+  if (option->kind == CLI_FLAG) {
+    *(bool *)target = true;
+  } else if (option->most > 1) {
+    struct cli_words *words = target;
+    if (words->count == option->most) {
+      return cli_usage_error(cli, command, "%s", option->too_many);
+    }
+    words->at[words->count++] = text;
+  } else {
+    *(const char **)target = text;
+  }
+  return 0;
+}
+
+/* The words that are no options. */
+static int take_arguments(struct dea_cli *cli, const struct dea_command *command, int count,
+                          char **words, void *request)
+{
+  const struct cli_option *option = command->options;
+  while (option->help != NULL && option->name != NULL) {
+    option++;
+  }
+  int most = option->help == NULL ? 0 : option->most > 1 ? (int)option->most : 1, code = 0;
+  if (count < (int)option->least) {
+    return cli_usage_error(cli, command, "%s", option->too_few);
+  }
+  if (count > most) {
+    return option->too_many != NULL
+               ? cli_usage_error(cli, command, "%s", option->too_many)
+               : cli_usage_error(cli, command, "'%s' is not expected here", words[most]);
+  }
+  for (int i = 0; i < count && code == 0; i++) {
+    code = take(cli, command, option, words[i], request);
+  }
+  return code;
+}
+
+/* Usage error where two are given of options that exclude each other. */
+static int check_exclusions(struct dea_cli *cli, const struct dea_command *command,
+                            const bool given[CLI_OPTIONS_MAX])
+{
+  const struct cli_option *options = command->options;
+  for (size_t first = 0, i = 0; options[first].help != NULL; first = i) {
+    size_t count = 0;
+    char names[128] = "";
+    for (i = first; i == first || options[i].or_before; i++) {
+      bool last = options[i + 1].help == NULL || !options[i + 1].or_before;
+      size_t used = strlen(names);
+      count += given[i];
+      if (options[i].name != NULL) {
+        snprintf(names + used, sizeof names - used, "%s--%s",
+                 i == first ? ""
+                 : last     ? " and "
+                            : ", ",
+                 options[i].name);
+      }
+    }
+    if (count > 1) {
+      return cli_usage_error(cli, command, "%s exclude each other", names);
+    }
+  }
+  return 0;
+}
+
+int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
+              void *request)
+{
+  struct option longs[CLI_OPTIONS_MAX + 1] = {{0}};
+  bool given[CLI_OPTIONS_MAX] = {false};
+  char letters[2 * CLI_OPTIONS_MAX + 2] = ":";
+  size_t long_count = 0, letter_count = 1;
+  for (const struct cli_option *o = command->options; o->help != NULL; o++) {
+    bool flag = o->kind == CLI_FLAG;
+    if (o->name != NULL) {
+      longs[long_count++] = (struct option){o->name, flag ? no_argument : required_argument, NULL,
+                                            FIRST_LONG + (int)(o - command->options)};
+    }
+    if (o->letter != 0) {
+      letters[letter_count++] = o->letter;
+      letters[letter_count] = ':';
+      letter_count += flag ? 0 : 1;
+    }
+  }
+  letters[letter_count] = '\0';
+  int found, code = 0;
+  opterr = 0;
+  while (code == 0 && (found = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
+    if (found == ':' || found == '?') {
+      return cli_usage_error(cli, command,
+                             found == ':' ? "option '%s' needs a value" : "there is no option '%s'",
+                             argv[optind - 1]);
+    }
+    const struct cli_option *option =
+        found >= FIRST_LONG ? &command->options[found - FIRST_LONG] : find_letter(command, found);
+    given[option - command->options] = true;
+    code = take(cli, command, option, optarg, request);
+  }
+  code = code != 0 ? code : check_exclusions(cli, command, given);
+  return code != 0 ? code : take_arguments(cli, command, argc - optind, argv + optind, request);
+}
+
+int cli_take_override(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
+{
+  struct cli_overrides *overrides = target;
   char *equals = strchr(text, '=');
-  if (equals == NULL || equals == text || *count == room) {
+  if (equals == NULL || equals == text || overrides->count == CLI_OVERRIDES_MAX) {
+    return cli_usage_error(cli, command, "--%s takes KEY=VALUE, not '%s'", option->name, text);
+  }
+  *equals = '\0'; // argv is ours
+  overrides->at[overrides->count++] = (struct dea_override){.key = text, .value = equals + 1};
+  return 0;
+}
+
+int cli_take_quantity(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
+{
+  char why[DEA_WHY_SIZE];
+  double *value = target;
+  if (!dea_units_read(cli->ctx, text, option->measure, value, why)) {
+    return why[0] == '\0' ? cli_report(cli, dea_context_status(cli->ctx))
+                          : cli_usage_error(cli, command, "--%s: %s", option->name, why);
+  }
+  return *value > 0.0 || !option->positive
+             ? 0
+             : cli_usage_error(cli, command, "--%s '%s': must be more than 0, such as %s",
+                               option->name, text, option->measure.example);
+}
+
+int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
+                     const struct cli_option *option, const char *text, void *target)
+{
+  struct dea_plot_format *format = target;
+  (void)option;
+  format->svg = format->pdf = format->png = false;
+  for (const char *word = text;; word++) {
+    size_t n = strcspn(word, ",");
+    bool *which = n != 3                         ? NULL
+                  : strncmp(word, "svg", n) == 0 ? &format->svg
+                  : strncmp(word, "pdf", n) == 0 ? &format->pdf
+                  : strncmp(word, "png", n) == 0 ? &format->png
+                                                 : NULL;
+    if (which == NULL) {
+      return cli_usage_error(cli, command, "'%s' is not a list of svg, pdf, png", text);
+    }
+    *which = true;
+    word += n;
+    if (*word == '\0') {
+      return 0;
+    }
+  }
+}
+
+int cli_take_width(struct dea_cli *cli, const struct dea_command *command,
+                   const struct cli_option *option, const char *text, void *target)
+{
+  struct dea_plot_format *format = target;
+  const char *end;
+  double width_mm = dea_text_to_double(text, &end);
+  (void)option;
+  if (end == text || (*end != '\0' && strcmp(end, "mm") != 0 && strcmp(end, " mm") != 0) ||
+      !(width_mm >= 40.0) || !(width_mm <= 400.0)) {
+    return cli_usage_error(cli, command, "'%s' is not a width of 40 to 400 mm", text);
+  }
+  format->width_m = 1e-3 * width_mm;
+  return 0;
+}
+
+bool cli_read_share(const char *text, double *share)
+{
+  const char *end;
+  *share = dea_text_to_double(text, &end);
+  if (end == text || !isfinite(*share)) {
     return false;
   }
-  *equals = '\0';
-  overrides[*count] = (struct dea_override){.key = text, .value = equals + 1};
-  *count += 1;
-  return true;
+  if (strcmp(end, "%") == 0 || strcmp(end, " %") == 0) {
+    *share /= 100.0;
+    return true;
+  }
+  return *end == '\0';
 }
 
 void cli_folder_name(const char *design, const char *ending, struct dea_text *out)
@@ -26,65 +217,11 @@ void cli_folder_name(const char *design, const char *ending, struct dea_text *ou
   dea_text_add(out, "%.*s.%s", (int)length, name, ending);
 }
 
-int cli_option_error(struct dea_cli *cli, const struct dea_command *command, int option,
-                     char **argv)
-{
-  const char *word = argv[optind - 1];
-  if (option == ':') {
-    return cli_usage_error(cli, command, "option '%s' needs a value", word);
-  }
-  return cli_usage_error(cli, command, "there is no option '%s'", word);
-}
-
-int cli_parse_design_arguments(struct dea_cli *cli, const struct dea_command *command,
-                               enum cli_writes writes, int argc, char **argv,
-                               struct cli_design_arguments *out)
-{
-  static const struct option longs[] = {
-      {"drawing", no_argument, NULL, 'd'},      {"force", no_argument, NULL, 'f'},
-      {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, 's'},
-      {"json", no_argument, NULL, 'j'},         {NULL, 0, NULL, 0}};
-  static const char *const letters[] = {":", ":o:", ":o:f"};
-  static const int first[] = {3, 2, 0}; // of longs
-  int option;
-  *out = (struct cli_design_arguments){0};
-  opterr = 0;
-  while ((option = getopt_long(argc, argv, letters[writes], longs + first[writes], NULL)) != -1) {
-    switch (option) {
-    case 's':
-      if (!cli_parse_override(optarg, out->overrides, CLI_OVERRIDES_MAX, &out->override_count)) {
-        return cli_usage_error(cli, command, "--set takes KEY=VALUE, not '%s'", optarg);
-      }
-      break;
-    case 'j':
-      out->json = true;
-      break;
-    case 'o':
-      out->output = optarg;
-      break;
-    case 'f':
-      out->force = true;
-      break;
-    case 'd':
-      out->drawing = true;
-      break;
-    default:
-      return cli_option_error(cli, command, option, argv);
-    }
-  }
-  if (argc - optind != 1) {
-    return cli_usage_error(
-        cli, command, argc == optind ? "a design file is needed" : "one design file at a time");
-  }
-  out->design = argv[optind];
-  return -1;
-}
-
-dea_status cli_build_device(struct dea_cli *cli, const struct cli_design_arguments *arguments,
-                            struct dea_design **design, struct dea_device **device)
+dea_status cli_build_device(struct dea_cli *cli, const char *file,
+                            const struct cli_overrides *overrides, struct dea_design **design,
+                            struct dea_device **device)
 {
   *device = NULL;
-  DEA_TRY(cli->ctx, dea_design_read(cli->ctx, arguments->design, arguments->overrides,
-                                    arguments->override_count, design));
+  DEA_TRY(cli->ctx, dea_design_read(cli->ctx, file, overrides->at, overrides->count, design));
   return dea_device_build(cli->ctx, *design, device);
 }

@@ -1,0 +1,116 @@
+/* What the values of options are, and the words that are known for them. */
+#include "base/schema.h"
+#include "cli/cli.h"
+#include "cli/data_files.h"
+#include "design/schema.h"
+#include "lab/import/import.h"
+#include "lab/protocol/protocol.h"
+#include "material/catalogue.h"
+#include "model/model.h"
+#include "output/figure.h"
+#include "result/columns.h"
+#include "study/study.h"
+
+/* The names of what a registry holds. */
+#define NAMES_OF(function, all)                                                                    \
+  static dea_status function(struct dea_context *ctx, struct dea_text *out)                        \
+  {                                                                                                \
+    size_t count;                                                                                  \
+    (void)ctx;                                                                                     \
+    for (size_t i = 0; all(&count) != NULL && i < count; i++) {                                    \
+      dea_text_add(out, "%s\n", all(&count)[i]->name);                                             \
+    }                                                                                              \
+    return DEA_OK;                                                                                 \
+  }
+NAMES_OF(list_figures, dea_figure_all)
+NAMES_OF(list_importers, dea_importer_all)
+NAMES_OF(list_models, dea_model_all)
+NAMES_OF(list_studies, dea_study_all)
+
+static dea_status list_commands(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  for (size_t i = 0; cli_commands[i] != NULL; i++) {
+    dea_text_add(out, "%s\n", cli_commands[i]->name);
+  }
+  return DEA_OK;
+}
+
+static dea_status list_examples(struct dea_context *ctx, struct dea_text *out)
+{
+  struct cli_data_list list;
+  dea_status status = cli_examples_find(ctx, ".yaml", &list);
+  for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
+    dea_text_add(out, "%.*s\n", (int)cli_data_stem(list.files[i].name), list.files[i].name);
+  }
+  cli_data_free(ctx, &list);
+  return status;
+}
+
+static dea_status list_materials(struct dea_context *ctx, struct dea_text *out)
+{
+  const char **names;
+  size_t count;
+  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
+  for (size_t i = 0; i < count; i++) {
+    dea_text_add(out, "%s\n", names[i]);
+  }
+  dea_free(ctx, names);
+  return DEA_OK;
+}
+
+static dea_status list_quantities(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    dea_text_add(out, "%s\n", dea_point_columns[c].key);
+  }
+  return DEA_OK;
+}
+
+static dea_status list_keys(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  dea_schema_print_keys(&dea_design_record, out);
+  return DEA_OK;
+}
+
+static dea_status list_protocol_keys(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  dea_schema_print_keys(&dea_protocol_record, out);
+  return DEA_OK;
+}
+
+static dea_status list_formats(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  dea_text_add(out, "svg\npdf\npng\n");
+  return DEA_OK;
+}
+
+static dea_status list_shells(struct dea_context *ctx, struct dea_text *out)
+{
+  (void)ctx;
+  dea_text_add(out, "bash\nzsh\nfish\n");
+  return DEA_OK;
+}
+
+const struct cli_kind_info cli_kinds[CLI_KINDS] = {
+    [CLI_TEXT] = {.name = "nothing"},
+    [CLI_FILE] = {.name = NULL},
+    [CLI_FOLDER] = {.folder = true},
+    [CLI_DESIGN] = {.ending = "yaml"},
+    [CLI_COMMAND] = {"commands", .list = list_commands},
+    [CLI_EXAMPLE] = {"examples", .list = list_examples},
+    [CLI_FIGURE] = {"figures", .list = list_figures},
+    [CLI_FORMAT] = {"formats", .few = true, .list = list_formats},
+    [CLI_IMPORTER] = {"importers", .few = true, .list = list_importers},
+    [CLI_KEY] = {"keys", .list = list_keys},
+    [CLI_MATERIAL] = {"materials", .list = list_materials},
+    [CLI_MODEL] = {"models", .few = true, .list = list_models},
+    [CLI_PROTOCOL_KEY] = {"protocol-keys", .list = list_protocol_keys},
+    [CLI_QUANTITY] = {"quantities", .list = list_quantities},
+    [CLI_SHELL] = {"shells", .few = true, .list = list_shells},
+    [CLI_STUDY] = {"studies", .few = true, .list = list_studies},
+};
