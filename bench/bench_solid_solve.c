@@ -6,7 +6,8 @@
  * Each size is a process of its own, so that its memory is its own: the program runs itself as
  * "bench_solid_solve one UNKNOWNS", also under mpirun. DEA_BENCH_LARGE adds 300000. */
 #include "bench.h"
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/matrix.h"
 
 #include <math.h>
 #include <string.h>
@@ -108,7 +109,7 @@ static int run_one(double unknowns)
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   sample.of[MEMORY] = 1024.0 * (double)usage.ru_maxrss;
-  dea_solid_sum(solid, &sample.of[MEMORY], 1);
+  dea_solid_sum(&sample.of[MEMORY], 1);
   for (int i = 0; i < FIGURES && dea_solid_rank() == 0; i++) {
     printf("%.17g\n", sample.of[i]);
   }

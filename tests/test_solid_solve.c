@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "solid_node.h"
 #include "testing.h"
 

@@ -1,7 +1,8 @@
 /* Stability of solids: modes of a clamped strip, buckling of a compressed strip
  * against Euler, both sides of the pitchfork, and solves that leave an unstable equilibrium. */
 // ctest: solid
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
 #include "model/solid/mesh/grid.h"
 #include "solid_block.h"
 

@@ -1,5 +1,6 @@
 /* Rigid tips on a soft block and on a film under tension, against closed forms. */
 // ctest: solid
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 #include "solid_block.h"
 

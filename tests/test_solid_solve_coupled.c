@@ -1,7 +1,7 @@
 /* Solids with a coupled field: against the thin-film field, fringes, unstable modes, fibres. */
 // ctest: solid
 #include "failing_allocator.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "solid_node.h"
 #include "testing.h"
 

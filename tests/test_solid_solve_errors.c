@@ -1,6 +1,7 @@
 /* Solids that cannot be solved: each says why and where. */
 // ctest: solid
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
 
 #include "solid_fixture.h"

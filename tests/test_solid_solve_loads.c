@@ -1,5 +1,6 @@
 /* Loads in a solve, against closed forms: weight, foundation, pressure. */
 // ctest: solid
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 #include "solid_block.h"
 

@@ -2,7 +2,6 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/assembly/mass.h"
 #include "model/solid/load/loads.h"
 #include "solid_block.h"
 

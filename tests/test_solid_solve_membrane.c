@@ -2,8 +2,10 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
+#include "model/solid/assembly/film.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

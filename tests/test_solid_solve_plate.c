@@ -1,6 +1,7 @@
 /* The actuator on its sector, on two sectors and as a whole disc: one answer. */
 // ctest: solid
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/mesh/fibre_disc.h"
 #include "solid_node.h"
 #include "testing.h"

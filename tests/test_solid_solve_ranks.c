@@ -4,7 +4,8 @@
 #define _GNU_SOURCE // mkdtemp, popen
 #include "command.h"
 #include "devices.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/assembly/film.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 #include <jansson.h>
 

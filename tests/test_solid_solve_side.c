@@ -5,7 +5,9 @@
 #include "devices.h"
 #include "model/model.h"
 #include "model/solid/actuator/actuator.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/adapter/solid_of_actuator.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

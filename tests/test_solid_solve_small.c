@@ -1,6 +1,8 @@
 /* A coupled solid that is solved in a moment, for builds with sanitizers: fibres, a load, local
  * axes, orders 1 and 2. */
+#include "model/solid/assembly/film.h"
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above

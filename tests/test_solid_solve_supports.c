@@ -2,6 +2,7 @@
 // ctest: solid
 #include "solid_block.h"
 
+#include "model/solid/equilibrium/load_steps.h"
 #include "solid_fixture.h"
 
 #include <stdlib.h>

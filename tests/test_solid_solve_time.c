@@ -2,6 +2,7 @@
 // ctest: solid
 #include "material/material.h"
 #include "model/solid/adapter/state.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/time.h"
 #include "solid_block.h"
 

@@ -3,9 +3,10 @@
  * together. */
 // ctest: solid
 #include "failing_allocator.h"
-#include "model/solid/equilibrium/branch.h"
 #include "solid_block.h"
 
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "solid_fixture.h"
 
 #include <string.h>

@@ -2,8 +2,7 @@
 // ctest: solid
 #include "devices.h"
 #include "material/plane.h"
-#include "model/solid/assembly/mass.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/vibration.h"
 #include "solid_block.h"
 

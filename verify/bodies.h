@@ -4,6 +4,7 @@
 
 #include "verify.h"
 
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/time.h"
 
 static struct dea_context *ctx;

@@ -4,6 +4,7 @@
 
 #include "base/quadrature.h"
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 static struct dea_context *ctx;
 

@@ -7,7 +7,9 @@
 #include "design/design.h"
 #include "model/model.h"
 #include "model/solid/actuator/actuator.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/adapter/solid_of_actuator.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 extern const struct dea_model_type dea_solid_module;
 

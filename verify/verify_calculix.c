@@ -3,6 +3,7 @@
 #include "verify.h"
 
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 #include <unistd.h>
 

@@ -3,6 +3,7 @@
 
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 static struct dea_context *ctx;
 static const double frame_m = 15e-3;

@@ -1,8 +1,8 @@
 /* Films under voltage in equal stretch of both directions as solids, by arc-length through their
  * limit points (benchmark 2), and a film between clamps that buckles. */
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "verify.h"
-
-#include "model/solid/equilibrium/branch.h"
 
 static struct dea_context *ctx;
 

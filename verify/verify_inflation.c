@@ -1,7 +1,8 @@
 /* Inflated neo-Hookean membranes as thin solids (benchmark 7): a flat clamped disc, a balloon. */
 #include "verify.h"
 
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 
 static struct dea_context *ctx;

@@ -1,7 +1,8 @@
 /* Thin plates in large bending (benchmark 8): a cantilever and an annulus that is slit open. */
 #include "verify.h"
 
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 
 enum { CUTS_MAX = 65 };

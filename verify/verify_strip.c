@@ -4,6 +4,7 @@
 
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/mesh/cuts.h"
 
 enum { CUTS_MAX = 200, HALVINGS_MAX = 8, PARTS = 3 };

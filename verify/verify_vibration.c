@@ -4,6 +4,7 @@
 
 #include "material/plane.h"
 #include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/vibration.h"
 
 static const double pi = 3.14159265358979323846;

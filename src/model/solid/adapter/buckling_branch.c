@@ -1,6 +1,5 @@
 #include "model/solid/adapter/buckling_branch.h"
-
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
 

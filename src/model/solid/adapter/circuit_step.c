@@ -1,4 +1,6 @@
 #include "model/solid/adapter/circuit_step.h"
+#include "model/solid/adapter/solid_of_actuator.h"
+#include "model/solid/assembly/film.h"
 
 #include <math.h>
 

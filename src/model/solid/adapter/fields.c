@@ -1,6 +1,6 @@
 #include "model/solid/adapter/fields.h"
 
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/potential.h"
 #include "model/solid/recovery/recover.h"
 
 /* Potentials of a coupled field [V], owned by the caller; NULL for thin films. */

@@ -1,4 +1,5 @@
 #include "model/solid/adapter/indent.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
 

@@ -7,8 +7,10 @@
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
+#include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/state.h"
-#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/film.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/recovery/line_profile.h"
 
 #include <math.h>

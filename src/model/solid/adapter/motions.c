@@ -1,7 +1,7 @@
 #include "model/solid/adapter/motions.h"
 
 #include "model/solid/adapter/fields.h"
-#include "model/solid/assembly/mass.h"
+#include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/motion/vibration.h"
 
 #include <math.h>

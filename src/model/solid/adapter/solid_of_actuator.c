@@ -1,6 +1,4 @@
-#include "model/solid/actuator/actuator.h"
-#include "model/solid/assembly/internal_variables.h"
-#include "model/solid/assembly/solid.h"
+#include "model/solid/adapter/solid_of_actuator.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "model/solid/adapter/state.h"
 
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/controls.h"
 
 #include <string.h>
 

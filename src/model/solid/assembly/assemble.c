@@ -1,26 +1,15 @@
-/* Energy, forces and tangent of the whole solid. */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/assemble.h"
 
-#include "material/plane.h"
-#include "model/solid/assembly/inertia.h"
+#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/assembly/potential.h"
 #include "model/solid/element/hex_coupled.h"
 
 #include <math.h>
 #include <string.h>
 
-size_t dea_solid_pressure_count(const struct dea_solid *s)
-{
-  return s->grid->element_count * (size_t)s->shape.pressures;
-}
-
-double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b)
-{
-  double sum = 0;
-  for (size_t i = 0; i < s->dofs; i++) {
-    sum += a[i] * b[i];
-  }
-  return sum;
-}
+/* ---- elements ---- */
 
 /* What an element needs from the whole. */
 struct element_place {
@@ -30,12 +19,24 @@ struct element_place {
 
 static void gather(const struct dea_solid *s, size_t e, const double *u, struct element_place *out)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
-    memcpy(out->X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
-    memcpy(out->u + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
-  }
+  dea_solid_gather(s, e, s->grid->X, out->X);
+  dea_solid_gather(s, e, u, out->u);
   out->multiplier = s->multiplier + e * (size_t)s->shape.pressures;
+}
+
+/* An element with potential. psi: of the whole. */
+static dea_status evaluate_coupled(struct dea_solid *s, size_t e, const double *X, const double *u,
+                                   const double *multiplier, const double *psi,
+                                   enum dea_eval_order level)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  double potential[DEA_HEX_NODES_MAX];
+  for (int n = 0; n < s->shape.nodes; n++) {
+    potential[n] = psi[nodes[n]];
+  }
+  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
+  return dea_hex_coupled_evaluate(&s->shape, &layer, X, u, potential, multiplier,
+                                  dea_solid_field_scale(s), level, s->element);
 }
 
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
@@ -49,8 +50,7 @@ static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *
                                  s->element);
   }
   if (s->field != NULL && layer->permittivity_F_per_m > 0) {
-    return dea_solid_coupled_element(s, e, at.X, at.u, at.multiplier, u + 3 * s->grid->node_count,
-                                     level);
+    return evaluate_coupled(s, e, at.X, at.u, at.multiplier, u + 3 * s->grid->node_count, level);
   }
   dea_status status =
       dea_hex_evaluate(&s->shape, layer, at.X, at.u, at.multiplier,
@@ -78,6 +78,122 @@ static dea_status evaluate_own(struct dea_solid *s, size_t k, double voltage_V,
       s->predicted + k * dea_hex_predicted_count(&s->shape), s->element);
 }
 
+/* ---- inertia ---- */
+
+/* *quadratic and *linear: the two terms; leaves M (u - u*) in inertia->force. */
+static dea_status evaluate_inertia(struct dea_context *ctx, const struct dea_solid *s,
+                                   const double *u, double *quadratic, double *linear)
+{
+  const struct dea_solid_inertia *inertia = s->inertia;
+  size_t count = 3 * s->grid->node_count;
+  *quadratic = *linear = 0;
+  for (size_t i = 0; i < count; i++) {
+    inertia->away[i] = u[i] - inertia->around[i];
+  }
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, inertia->away, inertia->force));
+  for (size_t i = 0; i < count; i++) {
+    *quadratic += 0.5 * inertia->factor * inertia->away[i] * inertia->force[i];
+    *linear += inertia->constant[i] * u[i];
+  }
+  return DEA_OK;
+}
+
+/* Adds the energy at displacements u. */
+static dea_status add_inertia_energy(const struct dea_solid *s, const double *u, double *energy)
+{
+  double quadratic = 0, linear = 0;
+  // no context: masses do not depend on the state, and have been evaluated before
+  dea_status status =
+      s->inertia != NULL ? evaluate_inertia(NULL, s, u, &quadratic, &linear) : DEA_OK;
+  *energy += quadratic + linear;
+  return status;
+}
+
+/* Adds energy and force at s->u, and c M to K. */
+static dea_status add_inertia(struct dea_context *ctx, struct dea_solid *s,
+                              enum dea_eval_order level, double *energy)
+{
+  const struct dea_solid_inertia *inertia = s->inertia;
+  double quadratic, linear;
+  if (inertia == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, evaluate_inertia(ctx, s, s->u, &quadratic, &linear));
+  *energy += quadratic + linear;
+  s->energy_scale += fabs(quadratic) + fabs(linear);
+  for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
+    double force = inertia->factor * inertia->force[i] + inertia->constant[i];
+    s->g[i] += force;
+    s->squares += force * force;
+  }
+  if (level >= DEA_TANGENT) {
+    DEA_TRY(ctx, dea_solid_add_mass(ctx, s, s->K, inertia->factor));
+  }
+  return DEA_OK;
+}
+
+/* ---- springs of flat elements: modes without stiffness (docs/theory/membrane.md) ---- */
+
+static const double neutral = 1e-10; // tau: stiffness that counts as none, in units of M
+
+static dea_status add_spring(struct dea_context *ctx, struct dea_solid *s, size_t e)
+{
+  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+  const struct dea_constituent *layer = &s->layers[s->layer[e]];
+  double X[DEA_FLAT_DOFS_MAX], stiffness[DEA_FLAT_NODES_MAX];
+  dea_status status = dea_membrane_check(layer);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "a membrane takes isotropic hyperelastic laws only");
+  }
+  dea_solid_gather(s, e, s->grid->X, X);
+  status = dea_membrane_stiffness(&s->flat, layer, X, stiffness);
+  if (status != DEA_OK) {
+    return DEA_OK; // inverted: dea_solid_check says where
+  }
+  for (int i = 0; i < 3 * s->flat.nodes; i++) {
+    s->spring[3 * nodes[i / 3] + i % 3] += stiffness[i / 3];
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s)
+{
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    if (!s->grid->flat[e]) {
+      continue;
+    }
+    if (s->per_node != 3) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "a membrane takes the field V/h, not a coupled one");
+    }
+    if (s->spring == NULL) {
+      s->spring = dea_alloc(ctx, s->dofs, sizeof *s->spring);
+      if (s->spring == NULL) {
+        return DEA_E_MEMORY;
+      }
+    }
+    DEA_TRY(ctx, add_spring(ctx, s, e));
+  }
+  return DEA_OK;
+}
+
+/* What K gets for modes without stiffness; nothing without flat elements. */
+static dea_status add_springs(struct dea_context *ctx, struct dea_solid *s)
+{
+  if (s->spring == NULL) {
+    return DEA_OK;
+  }
+  PetscScalar *values;
+  DEA_PETSC(ctx, VecGetArray(s->right, &values));
+  for (size_t i = 3 * s->first_node; i < 3 * s->end_node; i++) {
+    values[i - 3 * s->first_node] = neutral * s->spring[i];
+  }
+  DEA_PETSC(ctx, VecRestoreArray(s->right, &values));
+  DEA_PETSC(ctx, MatDiagonalSet(s->K, s->right, ADD_VALUES));
+  return DEA_OK;
+}
+
+/* ---- the whole ---- */
+
 /* Energy of this rank's elements and pieces of loads. */
 static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
@@ -90,7 +206,7 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
   }
   for (size_t i = 0; i < s->load_count; i++) {
     size_t from, to;
-    dea_solid_share(s, s->loads[i].piece_count, &from, &to);
+    dea_solid_share(s->loads[i].piece_count, &from, &to);
     for (size_t p = from; p < to; p++) {
       dea_status status = s->loads[i].evaluate(s->loads[i].self, p, u, DEA_ENERGY, s->piece);
       if (status != DEA_OK) {
@@ -105,11 +221,11 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
   *energy = 0;
-  dea_status status = dea_solid_agree(NULL, s, own_energy(s, u, voltage_V, energy));
+  dea_status status = dea_solid_agree(NULL, own_energy(s, u, voltage_V, energy));
   if (status == DEA_OK) {
-    dea_solid_sum(s, energy, 1);
+    dea_solid_sum(energy, 1);
     *energy -= dea_solid_dot(s, s->force, u);
-    status = dea_solid_inertia_energy(s, u, energy);
+    status = add_inertia_energy(s, u, energy);
   }
   return status;
 }
@@ -166,10 +282,7 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   for (int n = 0; n < node_count; n++) {
     block[n] = nodes[n];
   }
-  DEA_TRY(ctx,
-          dea_solid_petsc(
-              ctx, MatSetValuesBlocked(s->K, node_count, block, node_count, block, K, ADD_VALUES),
-              "MatSetValuesBlocked"));
+  DEA_PETSC(ctx, MatSetValuesBlocked(s->K, node_count, block, node_count, block, K, ADD_VALUES));
   return DEA_OK;
 }
 
@@ -199,7 +312,7 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
   struct dea_piece *piece = s->piece;
   for (size_t i = 0; i < s->load_count; i++) {
     size_t from, to;
-    dea_solid_share(s, s->loads[i].piece_count, &from, &to);
+    dea_solid_share(s->loads[i].piece_count, &from, &to);
     for (size_t p = from; p < to; p++) {
       dea_status status = s->loads[i].evaluate(s->loads[i].self, p, s->u, level, piece);
       if (status != DEA_OK) {
@@ -238,9 +351,9 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
                           double *energy)
 {
   double sums[3] = {*energy, s->energy_scale, s->squares};
-  dea_solid_sum(s, sums, 3);
-  dea_solid_sum(s, s->g, s->dofs);
-  dea_solid_sum(s, s->theta, dea_solid_pressure_count(s));
+  dea_solid_sum(sums, 3);
+  dea_solid_sum(s->g, s->dofs);
+  dea_solid_sum(s->theta, dea_solid_pressure_count(s));
   for (size_t i = 0; i < s->dofs; i++) {
     s->g[i] -= s->force[i];
     sums[2] += s->force[i] * s->force[i];
@@ -248,7 +361,7 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
   *energy = sums[0] - dea_solid_dot(s, s->force, s->u);
   s->energy_scale = sums[1];
   s->squares = sums[2];
-  DEA_TRY(ctx, dea_solid_inertia_add(ctx, s, level, energy));
+  DEA_TRY(ctx, add_inertia(ctx, s, level, energy));
   keep_scales(s);
   memcpy(s->reaction, s->g, s->dofs * sizeof(double));
   dea_solid_release_held(s, s->g);
@@ -265,97 +378,20 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   memset(s->g, 0, s->dofs * sizeof(double));
   memset(s->theta, 0, dea_solid_pressure_count(s) * sizeof(double));
   if (level >= DEA_TANGENT) {
-    DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(s->K), "MatZeroEntries"));
+    DEA_PETSC(ctx, MatZeroEntries(s->K));
   }
   dea_status status = add_elements(ctx, s, voltage_V, level, energy);
   if (status == DEA_OK) {
     status = add_loads(ctx, s, level, energy);
   }
-  status = dea_solid_agree(ctx, s, status);
+  status = dea_solid_agree(ctx, status);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->K));
   }
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, collect(ctx, s, level, energy));
   if (level >= DEA_TANGENT) {
-    DEA_TRY(ctx, dea_solid_add_springs(ctx, s));
-  }
-  return DEA_OK;
-}
-
-/* Takes the film's extremes of one element into *out. */
-static dea_status extremes_of(const struct dea_solid *s, size_t e,
-                              const struct dea_material *material, double pre_stretch,
-                              struct dea_solid_extremes *out)
-{
-  const struct dea_constituent at_step = dea_solid_constituent_at(s, e), *layer = &at_step;
-  double voltage_V = s->active[e] ? s->voltage_V : 0;
-  struct element_place at;
-  struct dea_hex_membrane membrane;
-  gather(s, e, s->u, &at);
-  dea_status status = s->grid->flat[e]
-                          ? dea_membrane_state(&s->flat, layer, at.X, at.u, voltage_V, &membrane)
-                          : dea_hex_membrane_eval(&s->shape, layer, at.X, at.u, at.multiplier,
-                                                  voltage_V, &membrane);
-  for (int p = 0; status == DEA_OK && p < membrane.count; p++) {
-    double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
-    double stretch = pre_stretch * sqrt(membrane.area[p]);
-    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
-    if (s->active[e]) {
-      out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
-      out->breakdown_margin =
-          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
-    }
-  }
-  return status;
-}
-
-dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
-                                 double *capacitance_F)
-{
-  // charge: minus the derivative of the energy by V at fixed displacements; by V^2 it is C/2. The
-  // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
-  double thickness = 0, energy[2] = {0, 0};
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[e]];
-    bool counts = s->field != NULL ? layer->permittivity_F_per_m > 0 : s->active[e];
-    thickness = fmax(thickness, counts ? layer->thickness_m : 0);
-  }
-  double step = 1e12 * thickness * thickness, square = s->voltage_V * s->voltage_V;
-  const double squares[2] = {fmax(square - step, 0), square + step};
-  dea_status status = DEA_OK;
-  memcpy(s->trial, s->u, s->dofs * sizeof(double));
-  for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    status = dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->trial);
-    if (status == DEA_OK) {
-      status = dea_solid_energy(s, s->trial, sqrt(squares[i]), &energy[i]);
-    }
-  }
-  *capacitance_F =
-      status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
-  return status;
-}
-
-dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
-                              double pre_stretch, struct dea_solid_extremes *out)
-{
-  dea_status status = DEA_OK;
-  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    size_t e = s->own[k];
-    if (s->layers[s->layer[e]].permittivity_F_per_m > 0) { // the film
-      status = extremes_of(s, e, material, pre_stretch, out);
-    }
-  }
-  status = dea_solid_agree(NULL, s, status);
-  if (status != DEA_OK) {
-    return status;
-  }
-  out->true_field_V_per_m = dea_solid_largest(s, out->true_field_V_per_m);
-  out->breakdown_margin = -dea_solid_largest(s, -out->breakdown_margin);
-  out->min_tension_N_per_m = -dea_solid_largest(s, -out->min_tension_N_per_m);
-  if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
-    out->breakdown_margin = NAN;
+    DEA_TRY(ctx, add_springs(ctx, s));
   }
   return DEA_OK;
 }

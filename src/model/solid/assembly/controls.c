@@ -1,8 +1,6 @@
-/* What an equilibrium is asked for at, as one vector of controls: the voltage, the dead loads and
- * charges [dofs], the displacements of held components [moves] (0 where free), the parameters of
- * all loads.
- * Only what they are differs between them; a step goes a share of the way of all of them alike. */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/controls.h"
+
+#include "model/solid/assembly/matrix.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "model/solid/assembly/internal_variables.h"
 
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/element/hex_points.h"
 
 #include <stdint.h>
@@ -18,13 +18,10 @@ struct strains {
 
 static dea_status find_strains(const struct dea_solid *s, size_t e, struct strains *out)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], F[6];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  int count = dea_solid_places(s, e, X);
-  for (int n = 0; n < count; n++) {
-    memcpy(u + 3 * n, s->u + 3 * nodes[n], 3 * sizeof *u);
-  }
+  dea_solid_gather(s, e, s->grid->X, X);
+  dea_solid_gather(s, e, s->u, u);
   if (s->grid->flat[e]) {
     double thickness = s->layers[s->layer[e]].thickness_m;
     out->count = s->flat.gauss;
@@ -86,8 +83,9 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_v
   return status;
 }
 
-static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
-                          const struct dea_branches *branches, struct dea_internal_variables *h)
+static dea_status allocate_points(struct dea_context *ctx, const struct dea_solid *s,
+                                  const struct dea_branches *branches,
+                                  struct dea_internal_variables *h)
 {
   h->branches = dea_alloc(ctx, s->layer_count, sizeof *h->branches);
   h->steps = dea_alloc(ctx, s->layer_count, sizeof *h->steps);
@@ -114,8 +112,8 @@ dea_status dea_internal_variables_create(struct dea_context *ctx, const struct d
 {
   struct dea_internal_variables *h = dea_alloc(ctx, 1, sizeof *h);
   *out = NULL;
-  dea_status status = h != NULL ? prepare(ctx, s, branches, h) : DEA_E_MEMORY;
-  status = dea_solid_agree(ctx, s, status);
+  dea_status status = h != NULL ? allocate_points(ctx, s, branches, h) : DEA_E_MEMORY;
+  status = dea_solid_agree(ctx, status);
   if (status != DEA_OK) {
     dea_internal_variables_destroy(ctx, h);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

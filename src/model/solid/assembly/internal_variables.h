@@ -13,11 +13,6 @@ struct dea_branches {
   struct dea_branch branch[DEA_BRANCHES_MAX];
 };
 
-struct dea_device;
-/* Those of the layers of an actuator: of its film, and of electrodes of a thickness. out:
- * [DEA_CONSTITUENT_COUNT]. */
-void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out);
-
 struct dea_internal_variables {
   struct dea_branches *branches; // [layer_count]
   size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
@@ -28,6 +23,9 @@ struct dea_internal_variables {
   double (*inverse_next)[6];                         // at the end of the step that is tried
   double (*A)[DEA_BRANCHES_MAX][6];                  // [points] at the accepted state
 };
+
+/* What an element is of, with the step of its branches. */
+struct dea_constituent dea_solid_constituent_at(const struct dea_solid *solid, size_t e);
 
 /* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
  * by the caller, NULL on failure. */

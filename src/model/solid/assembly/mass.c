@@ -1,15 +1,17 @@
 #include "model/solid/assembly/mass.h"
 
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/element/mass.h"
 
 #include <string.h>
+
+/* ---- mass ---- */
 
 static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
 {
   const struct dea_constituent *layer = &s->layers[s->layer[e]];
   double X[DEA_HEX_DOFS_MAX];
-  dea_solid_places(s, e, X);
+  dea_solid_gather(s, e, s->grid->X, X);
   return s->grid->flat[e] ? dea_membrane_mass(&s->flat, layer, X, mass)
                           : dea_hex_mass(&s->shape, layer, X, mass);
 }
@@ -22,12 +24,11 @@ dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat 
 
 dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *M)
 {
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, M), "MatDuplicate"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
-                               "MatSetOption"));
+  DEA_PETSC(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, M));
+  DEA_PETSC(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   DEA_TRY(ctx, dea_solid_add_mass(ctx, s, *M, 1));
   PetscReal size;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatNorm(*M, NORM_INFINITY, &size), "MatNorm"));
+  DEA_PETSC(ctx, MatNorm(*M, NORM_INFINITY, &size));
   return size > 0 ? DEA_OK
                   : dea_fail(ctx, DEA_E_ARGUMENT, "the solid has no mass: no density is known");
 }
@@ -51,10 +52,63 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
       }
     }
   }
-  status = dea_solid_agree(NULL, s, status);
+  status = dea_solid_agree(NULL, status);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "an element is inverted");
   }
-  dea_solid_sum(s, out, 3 * s->grid->node_count);
+  dea_solid_sum(out, 3 * s->grid->node_count);
   return DEA_OK;
+}
+
+/* ---- volume and grad : grad ---- */
+
+/* L of an element [nodes][nodes] and its volume. */
+static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace, double *lumped,
+                            double *volume)
+{
+  double X[DEA_HEX_DOFS_MAX] = {0};
+  int count = dea_solid_gather(s, e, s->grid->X, X);
+  dea_status status =
+      s->grid->flat[e] ? dea_membrane_metric(&s->flat, &s->layers[s->layer[e]], X, laplace, lumped)
+                       : dea_hex_metric(&s->shape, X, laplace, lumped);
+  *volume = 0;
+  for (int n = 0; n < count && status == DEA_OK; n++) {
+    *volume += lumped[n];
+  }
+  return status;
+}
+
+static dea_status laplace_of(const struct dea_solid *s, size_t e, double *laplace)
+{
+  double lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+  return metric_of(s, e, laplace, lumped, &volume);
+}
+
+dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, Mat A,
+                                 double amount_Pa)
+{
+  DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, amount_Pa, laplace_of));
+  return DEA_OK;
+}
+
+void dea_solid_lump_volume(const struct dea_solid *s, double *volume)
+{
+  memset(volume, 0, s->dofs * sizeof *volume);
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
+    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    metric_of(s, e, laplace, lumped, &whole);
+    for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+      for (int i = 0; i < 3; i++) {
+        volume[3 * nodes[n] + i] += lumped[n];
+      }
+    }
+  }
+}
+
+double dea_solid_volume_of(const struct dea_solid *s, size_t e)
+{
+  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+  metric_of(s, e, laplace, lumped, &volume);
+  return volume;
 }

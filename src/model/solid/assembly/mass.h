@@ -1,13 +1,22 @@
-/* Inertia of a solid: the consistent mass matrix of its layers' densities
- * (docs/theory/vibration.md). It does not depend on the state. */
+/* Matrices that do not depend on the state, of numbers between the nodes: the consistent mass of
+ * the layers' densities (docs/theory/vibration.md), the volume lumped to the nodes, and the
+ * integral of grad : grad that shifts K (docs/theory/branches.md). */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_MASS_H
 #define DEA_MODEL_SOLID_ASSEMBLY_MASS_H
 
-#include "model/solid/assembly/solid.h"
+#include "model/solid/assembly/problem.h"
 
-/* out = M v, [node_count][3] both and not the same memory, what is held included: the forces that
- * accelerations v take, or momenta. All ranks call it and get the whole. */
-dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *solid,
-                                const double *v, double *out);
+/* A += factor M; A as in dea_solid_add_scalar. */
+dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor);
+/* M as a matrix of K's pattern, owned by the caller. DEA_E_ARGUMENT where there is no mass. */
+dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *out);
+
+/* Volume lumped to the displacements [dofs]; 0 for potentials. */
+void dea_solid_lump_volume(const struct dea_solid *s, double *volume);
+/* Volume of an element; 0 for an inverted one. */
+double dea_solid_volume_of(const struct dea_solid *s, size_t e);
+/* A += amount_Pa int grad : grad of the displacements; A as in dea_solid_add_scalar. */
+dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, Mat A,
+                                 double amount_Pa);
 
 #endif

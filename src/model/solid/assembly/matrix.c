@@ -1,7 +1,89 @@
-/* The matrix K of a solid: which rank has which rows and elements, and room for the entries. */
-#include "model/solid/assembly/internal.h"
+/* The matrix K of a solid: which rank has which rows and elements, room for the entries, local axes
+ * of its rows, factor and solutions. */
+#include "model/solid/assembly/matrix.h"
 
 #include <string.h>
+
+/* ---- local axes ---- */
+
+dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
+                                   const struct dea_solid_options *options)
+{
+  size_t nodes = s->grid->node_count, count = 0;
+  double Q[9];
+  for (size_t n = 0; options->frame != NULL && n < nodes; n++) {
+    count += options->frame(options->self, s->grid->X + 3 * n, Q);
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  s->frame = dea_alloc(ctx, nodes, sizeof *s->frame);
+  s->frames = dea_alloc(ctx, count, sizeof *s->frames);
+  if (s->frame == NULL || s->frames == NULL) {
+    return DEA_E_MEMORY;
+  }
+  count = 0;
+  for (size_t n = 0; n < nodes; n++) {
+    if (options->frame(options->self, s->grid->X + 3 * n, Q)) {
+      memcpy(s->frames[count], Q, sizeof Q);
+      s->frame[n] = (int)++count;
+    }
+  }
+  return DEA_OK;
+}
+
+/* Local axes of a node, NULL: the global ones. */
+static const double *frame_of(const struct dea_solid *s, size_t node)
+{
+  return s->frame == NULL || s->frame[node] == 0 ? NULL : s->frames[s->frame[node] - 1];
+}
+
+/* v = Q v or, back, v = Q^T v; the components of v lie `apart` from each other. */
+static void turn(const double Q[9], bool back, double *v, size_t apart)
+{
+  double old[3] = {v[0], v[apart], v[2 * apart]};
+  for (size_t i = 0; i < 3; i++) {
+    v[apart * i] = back ? Q[i] * old[0] + Q[3 + i] * old[1] + Q[6 + i] * old[2]
+                        : Q[3 * i] * old[0] + Q[3 * i + 1] * old[1] + Q[3 * i + 2] * old[2];
+  }
+}
+
+void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K)
+{
+  size_t per = (size_t)s->per_node, dofs = per * (size_t)node_count;
+  for (size_t n = 0; n < (size_t)node_count; n++) {
+    const double *Q = frame_of(s, (size_t)nodes[n]);
+    if (Q != NULL) {
+      for (size_t j = 0; j < dofs; j++) {
+        turn(Q, false, K + per * n * dofs + j, dofs);
+      }
+      for (size_t i = 0; i < dofs; i++) {
+        turn(Q, false, K + i * dofs + per * n, 1);
+      }
+    }
+  }
+}
+
+void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v)
+{
+  for (size_t n = 0; s->frame != NULL && n < s->grid->node_count; n++) {
+    const double *Q = frame_of(s, n);
+    if (Q != NULL) {
+      turn(Q, back, v + 3 * n, 1);
+    }
+  }
+}
+
+void dea_solid_release_held(const struct dea_solid *s, double *v)
+{
+  dea_solid_frame_vector(s, false, v);
+  for (size_t i = 0; i < s->dofs; i++) {
+    v[i] = s->held[i] ? 0 : v[i];
+  }
+  dea_solid_frame_vector(s, true, v);
+}
+
+/* ---- rows and room for entries ---- */
 
 /* An element goes to the rank that has the row of a node in its middle, so that most of what it
  * adds to K stays there. */
@@ -79,58 +161,49 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
   return done ? DEA_OK : DEA_E_MEMORY;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_solid *s, PetscInt **own,
-                          PetscInt **others)
+static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
+                                  struct dea_solid_row_lengths *lengths)
 {
   size_t rows = s->end_node - s->first_node;
   DEA_TRY(ctx, split_elements(ctx, s));
   s->predicted =
       dea_alloc(ctx, s->own_count * dea_hex_predicted_count(&s->shape), sizeof *s->predicted);
-  *own = dea_alloc(ctx, rows, sizeof **own);
-  *others = dea_alloc(ctx, rows, sizeof **others);
-  return s->predicted != NULL && *own != NULL && *others != NULL
-             ? count_blocks(ctx, s, *own, *others)
+  lengths->own = dea_alloc(ctx, rows, sizeof *lengths->own);
+  lengths->others = dea_alloc(ctx, rows, sizeof *lengths->others);
+  return s->predicted != NULL && lengths->own != NULL && lengths->others != NULL
+             ? count_blocks(ctx, s, lengths->own, lengths->others)
              : DEA_E_MEMORY;
 }
 
-dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before)
+dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before,
+                                   struct dea_solid_row_lengths *lengths)
 {
-  PetscInt *own = NULL, *others = NULL;
-  PetscMPIInt rank, size;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  s->rank = rank;
-  s->size = size;
-  dea_solid_share(s, s->grid->node_count, &s->first_node, &s->end_node);
-  dea_status status = before == DEA_OK ? prepare(ctx, s, &own, &others) : before;
-  status = dea_solid_agree(ctx, s, status); // from here on all ranks have to take part
-  if (status == DEA_OK) {
-    PetscInt per = s->per_node, all = (PetscInt)s->dofs;
-    PetscInt rows = per * (PetscInt)(s->end_node - s->first_node);
-    status = dea_solid_petsc(
-        ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, per, rows, rows, all, all, 0, own, 0, others, &s->K),
-        "MatCreateSBAIJ");
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_field_matrix(ctx, s, own, others);
-  }
-  dea_free(ctx, own);
-  dea_free(ctx, others);
+  dea_solid_share(s->grid->node_count, &s->first_node, &s->end_node);
+  dea_status status = before == DEA_OK ? split_and_count(ctx, s, lengths) : before;
+  status = dea_solid_agree(ctx, status); // from here on all ranks have to take part
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(s->K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
-                               "MatSetOption"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCreateVecs(s->K, &s->solution, &s->right), "MatCreateVecs"));
+  PetscInt per = s->per_node, all = (PetscInt)s->dofs;
+  PetscInt rows = per * (PetscInt)(s->end_node - s->first_node);
+  DEA_PETSC(ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, per, rows, rows, all, all, 0, lengths->own, 0,
+                                lengths->others, &s->K));
+  DEA_PETSC(ctx, MatSetOption(s->K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  DEA_PETSC(ctx, MatCreateVecs(s->K, &s->solution, &s->right));
   return DEA_OK;
 }
 
-int dea_solid_places(const struct dea_solid *s, size_t e, double *X)
+void dea_solid_destroy_matrix(struct dea_solid *s)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
-  for (int n = 0; n < count; n++) {
-    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof *X);
-  }
-  return count;
+  MatDestroy(&s->factor);
+  MatDestroy(&s->K);
+  VecDestroy(&s->right);
+  VecDestroy(&s->solution);
+}
+
+dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
+{
+  DEA_PETSC(ctx, MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  DEA_PETSC(ctx, MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  return DEA_OK;
 }
 
 /* amount times a matrix of numbers between the nodes of an element, as a block of K without the
@@ -177,8 +250,114 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
           "MatSetValuesBlocked");
     }
   }
-  status = dea_solid_agree(ctx, s, status);
+  status = dea_solid_agree(ctx, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
   DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
+/* ---- factor and solutions ---- */
+
+/* Analysis of A's pattern. room_percent: for pivots that come later than planned. */
+static dea_status analyse(struct dea_context *ctx, Mat A, PetscInt room_percent, Mat *factor)
+{
+  MatFactorInfo info;
+  MatFactorInfoInitialize(&info);
+  DEA_PETSC(ctx, MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor));
+  MatMumpsSetIcntl(*factor, 24, 1); // null pivots and
+  MatMumpsSetIcntl(*factor, 13, 1); // no parallel root, so that the inertia is counted
+  MatMumpsSetIcntl(*factor, 14, room_percent);
+  dea_status status = dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info),
+                                      "MatCholeskyFactorSymbolic");
+  if (status != DEA_OK) {
+    MatDestroy(factor); // sets it to NULL: not analysed
+  }
+  return status;
+}
+
+dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
+{
+  enum { ROOM = 25, ROOM_MAX = 400 };
+  MatFactorInfo info;
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  MatFactorInfoInitialize(&info);
+  for (PetscInt room = ROOM; room <= ROOM_MAX; room *= 2) {
+    if (*factor == NULL) {
+      DEA_TRY(ctx, analyse(ctx, A, room, factor));
+    }
+    DEA_PETSC(ctx, MatCholeskyFactorNumeric(*factor, A, &info));
+    DEA_PETSC(ctx, MatFactorGetError(*factor, &error));
+    if (error != MAT_FACTOR_OUTMEMORY) {
+      break;
+    }
+    MatDestroy(factor); // PETSc takes no second attempt with it
+  }
+  if (error == MAT_FACTOR_OUTMEMORY) {
+    return dea_fail(ctx, DEA_E_MEMORY, "the factors of the tangent find no room in memory");
+  }
+  return error == MAT_FACTOR_NOERROR
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the tangent cannot be factorised");
+}
+
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  PetscInt minus, zero, plus;
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->K, &s->factor));
+  DEA_PETSC(ctx, MatGetInertia(s->factor, &minus, &zero, &plus));
+  *negative = (int)(minus + zero) - (int)s->free_potentials;
+  return DEA_OK;
+}
+
+/* This rank's unknowns as K has them, node by node, from where the solid has them. */
+static void to_nodes(const struct dea_solid *s, const double *solid, double *nodes)
+{
+  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
+    for (int i = 0; i < s->per_node; i++) {
+      nodes[k++] = solid[dea_solid_at(s, (int)n, i)];
+    }
+  }
+}
+
+static void from_nodes(const struct dea_solid *s, const double *nodes, double *solid)
+{
+  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
+    for (int i = 0; i < s->per_node; i++) {
+      solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
+    }
+  }
+}
+
+dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
+                                 double *out)
+{
+  const PetscScalar *values;
+  DEA_PETSC(ctx, VecGetArrayRead(vector, &values));
+  memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
+  from_nodes(s, values, out);
+  DEA_PETSC(ctx, VecRestoreArrayRead(vector, &values));
+  dea_solid_sum(out, s->dofs);
+  dea_solid_frame_vector(s, true, out);
+  return DEA_OK;
+}
+
+dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
+                               Vec vector)
+{
+  PetscScalar *rows;
+  dea_solid_frame_vector(s, false, values);
+  DEA_PETSC(ctx, VecGetArray(vector, &rows));
+  to_nodes(s, values, rows);
+  DEA_PETSC(ctx, VecRestoreArray(vector, &rows));
+  return DEA_OK;
+}
+
+dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
+                                  double *out)
+{
+  memmove(out, right, s->dofs * sizeof(double));
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->right));
+  DEA_PETSC(ctx, MatSolve(s->factor, s->right, s->solution));
+  DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out));
   return DEA_OK;
 }

@@ -1,15 +1,18 @@
-/* Several processes at one solid (docs/performance.md): start of MPI and PETSc, sums and agreement.
- *
- * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
- * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
- * same bits and go the same way. */
 #define _POSIX_C_SOURCE 200809L // setenv
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/ranks.h"
 
 #include <slepcsys.h>
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+static int rank_count(void)
+{
+  PetscMPIInt size = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
 
 /* Outside of mpirun Open MPI need not look for networks: a fifth of the start-up. */
 static void start_mpi_alone(void)
@@ -40,9 +43,8 @@ dea_status dea_solid_start(struct dea_context *ctx)
     return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
   }
   PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-  PetscMPIInt size;
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  if (size > 1 && atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
+  if (rank_count() > 1 &&
+      atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
     return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
   }
   return DEA_OK;
@@ -72,50 +74,59 @@ bool dea_solid_any(bool here)
   return flag != 0;
 }
 
-dea_status dea_solid_agree(struct dea_context *ctx, const struct dea_solid *s, dea_status status)
+dea_status dea_solid_agree(struct dea_context *ctx, dea_status status)
 {
   enum { TEXT = 256 };
-  if (s->size == 1) {
+  if (rank_count() == 1) {
     return status;
   }
   struct {
     int status;
     char text[TEXT];
   } failure = {.status = (int)status};
-  int first = status != DEA_OK ? s->rank : s->size;
+  const int rank = dea_solid_rank(), size = rank_count();
+  int first = status != DEA_OK ? rank : size;
   MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
-  if (first == s->size) {
+  if (first == size) {
     return DEA_OK;
   }
-  if (ctx != NULL && s->rank == first) {
+  if (ctx != NULL && rank == first) {
     snprintf(failure.text, sizeof failure.text, "%s", dea_context_message(ctx));
   }
   MPI_Bcast(&failure, sizeof failure, MPI_BYTE, first, PETSC_COMM_WORLD);
-  if (ctx != NULL && s->rank != first) {
+  if (ctx != NULL && rank != first) {
     return dea_fail(ctx, (dea_status)failure.status, "%s", failure.text);
   }
   return (dea_status)failure.status;
 }
 
-void dea_solid_sum(const struct dea_solid *s, double *values, size_t count)
+void dea_solid_sum(double *values, size_t count)
 {
-  if (s->size > 1) { // not MPI_Allreduce, which may give each rank other bits
-    MPI_Reduce(s->rank == 0 ? MPI_IN_PLACE : values, values, (int)count, MPI_DOUBLE, MPI_SUM, 0,
-               PETSC_COMM_WORLD);
+  if (rank_count() > 1) { // not MPI_Allreduce, which may give each rank other bits
+    MPI_Reduce(dea_solid_rank() == 0 ? MPI_IN_PLACE : values, values, (int)count, MPI_DOUBLE,
+               MPI_SUM, 0, PETSC_COMM_WORLD);
     MPI_Bcast(values, (int)count, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
   }
 }
 
-double dea_solid_largest(const struct dea_solid *s, double value)
+double dea_solid_largest(double value)
 {
-  if (s->size > 1) {
+  if (rank_count() > 1) {
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
   }
   return value;
 }
 
-void dea_solid_share(const struct dea_solid *s, size_t count, size_t *from, size_t *to)
+void dea_solid_share(size_t count, size_t *from, size_t *to)
 {
-  *from = count * (size_t)s->rank / (size_t)s->size;
-  *to = count * ((size_t)s->rank + 1) / (size_t)s->size;
+  size_t rank = (size_t)dea_solid_rank(), size = (size_t)rank_count();
+  *from = count * rank / size;
+  *to = count * (rank + 1) / size;
+}
+
+dea_status dea_solid_petsc(struct dea_context *ctx, int code, const char *call)
+{
+  return code == 0 ? DEA_OK
+                   : dea_fail(ctx, DEA_E_NOT_CONVERGED, "PETSc failed in %.*s (error %d)",
+                              (int)strcspn(call, "("), call, code);
 }

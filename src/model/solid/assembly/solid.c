@@ -1,19 +1,43 @@
 /* A solid: creation, what it lends. */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/solid.h"
 
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/potential.h"
+
+#include <float.h>
+#include <math.h>
 #include <string.h>
-
-dea_status dea_solid_petsc(struct dea_context *ctx, PetscErrorCode code, const char *what)
-{
-  return code == 0
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "PETSc failed in %s (error %d)", what, (int)code);
-}
 
 /* ---- creation ---- */
 
-static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
-                       const struct dea_solid_options *options)
+/* Sets modulus_Pa, length_m and energy_floor. */
+static void find_sizes(struct dea_solid *s)
+{
+  double squares = 0, extent[3];
+  s->modulus_Pa = INFINITY;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    double modulus = dea_constituent_modulus(&s->layers[s->layer[e]]);
+    double volume_m3 = dea_solid_volume_of(s, e); // an inverted one: dea_solid_check speaks of it
+    squares += modulus * modulus * volume_m3 * volume_m3;
+    s->modulus_Pa = fmin(s->modulus_Pa, modulus);
+  }
+  s->energy_floor = DBL_EPSILON * sqrt(squares);
+  s->length_m = INFINITY;
+  for (int i = 0; i < 3; i++) {
+    double least = INFINITY, most = -INFINITY;
+    for (size_t n = 0; n < s->grid->node_count; n++) {
+      least = fmin(least, s->grid->X[3 * n + (size_t)i]);
+      most = fmax(most, s->grid->X[3 * n + (size_t)i]);
+    }
+    extent[i] = most - least;
+    s->length_m = extent[i] > 0 ? fmin(s->length_m, extent[i]) : s->length_m;
+  }
+}
+
+static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
+                             const struct dea_solid_options *options)
 {
   const struct dea_grid *grid = s->grid;
   size_t elements = grid->element_count, pressures = (size_t)s->shape.pressures;
@@ -56,7 +80,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
-  dea_solid_sizes(s);
+  find_sizes(s);
   return DEA_OK;
 }
 
@@ -77,9 +101,15 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
     status = dea_flat_shape_create(grid->order, &s->flat);
   }
   if (status == DEA_OK) {
-    status = fill(ctx, s, options);
+    status = fill_solid(ctx, s, options);
   }
-  status = dea_solid_create_matrix(ctx, s, status);
+  struct dea_solid_row_lengths lengths = {0};
+  status = dea_solid_create_matrix(ctx, s, status, &lengths);
+  if (status == DEA_OK) {
+    status = dea_solid_field_matrix(ctx, s, &lengths);
+  }
+  dea_free(ctx, lengths.own);
+  dea_free(ctx, lengths.others);
   if (status != DEA_OK) {
     dea_solid_destroy(ctx, s);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -94,10 +124,7 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
     return;
   }
   dea_solid_field_destroy(ctx, s);
-  MatDestroy(&s->factor);
-  MatDestroy(&s->K);
-  VecDestroy(&s->right);
-  VecDestroy(&s->solution);
+  dea_solid_destroy_matrix(s);
   dea_load_steps_release(ctx, &s->path);
   void *const memory[] = {s->layers,  s->layer,      s->active, s->held,       s->u,
                           s->trial,   s->g,          s->step,   s->multiplier, s->theta,

@@ -9,11 +9,11 @@
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
 #define DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
 
+#include "model/solid/assembly/ranks.h"
 #include "model/solid/load/load.h"
 #include "model/solid/mesh/grid.h"
 
 struct dea_solid;
-struct dea_actuator;
 
 /* Where the field comes from: V/h in every active element, or a potential as a fourth unknown of
  * every node (docs/theory/coupled.md). */
@@ -53,28 +53,10 @@ struct dea_solid_report {
   double way;                  // share of the way to what was asked for; 1 unless the solve failed
 };
 
-/* PETSc for this process; harmless when it runs already. */
-dea_status dea_solid_start(struct dea_context *ctx);
-void dea_solid_stop(void);
-/* Number of this process among those that mpirun started, from 0. */
-int dea_solid_rank(void);
-/* Whether it is so on any rank; all ranks call it. */
-bool dea_solid_any(bool here);
-
 /* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */
 dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid,
                             const struct dea_solid_options *options, struct dea_solid **out);
-/* The solid of an actuator on its mesh. actuator, grid: lent, outlive the solid. */
-dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
-                                 const struct dea_grid *grid, struct dea_solid **out);
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
-
-/* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
- * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
- * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
- * report->way of the way. */
-dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                           struct dea_solid_report *report);
 
 /* Voltage of the last equilibrium. */
 double dea_solid_voltage(const struct dea_solid *solid);
@@ -107,18 +89,10 @@ const double *dea_solid_reaction(const struct dea_solid *solid);
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);
 
-/* Capacitance between the electrodes at the last equilibrium: charge over voltage. */
-dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
-                                 double *capacitance_F);
-
-/* Extremes of the film (elements of layers with a permittivity) at the last equilibrium. */
-struct dea_solid_extremes {
-  double true_field_V_per_m;  // largest V over the current thickness
-  double breakdown_margin;    // smallest; NAN when unknown
-  double min_tension_N_per_m; // smallest principal membrane force per current length
-};
-/* material: of the film, for its breakdown field; pre_stretch: of it. */
-dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,
-                              double pre_stretch, struct dea_solid_extremes *out);
+/* out = M v with the consistent mass of the layers' densities, [node_count][3] both and not the
+ * same memory, what is held included: the forces that accelerations v take, or momenta. All ranks
+ * call it and get the whole. */
+dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *solid,
+                                const double *v, double *out);
 
 #endif

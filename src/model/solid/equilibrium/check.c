@@ -1,5 +1,7 @@
 /* What can be said of a solid before anything is solved: elements, laws, supports. */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/equilibrium/check.h"
+
+#include "model/solid/assembly/problem.h"
 #include "model/solid/element/hex_points.h"
 
 #include <lapacke.h>
@@ -25,12 +27,9 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
                                 double (*gradient)[3][DEA_HEX_NODES_MAX])
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   double X[DEA_HEX_DOFS_MAX], x[3], stiffness[DEA_FLAT_NODES_MAX];
-  for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
-    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
-  }
+  dea_solid_gather(s, e, s->grid->X, X);
   if (DEA_OK == (s->grid->flat[e]
                      ? dea_membrane_stiffness(&s->flat, &s->layers[s->layer[e]], X, stiffness)
                      : dea_hex_kinematics(&s->shape, X, rest, gradient, points))) {

@@ -1,17 +1,77 @@
-/* Paths of equilibria by arc-length: steps along the tangent (docs/theory/branches.md). */
 #include "model/solid/equilibrium/continuation.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/check.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { ATTEMPTS_MAX = 16, ITERATIONS_MANY = 8 };
 
-static const double off_most = 0.3;    // distance of a point from its prediction, over the step
-static const double bend_least = 0.02; // of a unit tangent: below which it is an arc
-static const double off_good = 0.08;   // the one that steps aim at
-static const double least = 1e-6;      // step over the first one
+static const double off_most = 0.3;       // distance of a point from its prediction, over the step
+static const double bend_least = 0.02;    // of a unit tangent: below which it is an arc
+static const double off_good = 0.08;      // the one that steps aim at
+static const double step_shortest = 1e-6; // step over the first one
 
-double dea_continuation_size(const struct dea_solid_continuation *t, const double *du)
+/* of the corrector */
+enum { ITERATIONS_MAX = 15, HIDDEN_MANY = 3 };
+
+static const double residual_small = 1e-8; // of the sum of element forces: what kappa leaves
+static const double harder = 16;           // kappa on the way
+static const double step_small = 1e-10;    // of the solid's length
+static const double plane_small = 1e-9;    // of the distance to the plane
+static const double theta_small = 1e-2 * DEA_SOLID_THETA_SMALL; // kappa theta is no pressure then
+static const double difference = 1e-5;                          // of tau, for the force by tau
+
+/* of critical points */
+enum { ROUNDS_MAX = 20, ASIDE_MAX = 4, SIZES_MAX = 6 };
+
+static const double limit_near = 1e-6, bifurcation_near = 1e-4; // of the way between two points
+static const double flat_enough = 1e-8; // of what is 0 at the critical point, over what it was
+static const double aside = 0.03;       // of the bracket, at first
+
+/* An equilibrium on the path. */
+struct dea_continuation_path_point {
+  double *state; // [state_count]
+  double load;   // tau
+  double slope;  // d tau/d s
+  double arc;    // s from the start
+  double energy_J;
+  int modes;
+};
+
+/* A plane in the space of displacements and load, which a point is looked for in:
+ * weight . (u - u0) + load (tau - tau0) = length. */
+struct dea_continuation_plane {
+  double *weight;   // [dofs] metric times the unit normal's displacements
+  double load;      // the unit normal's load
+  const double *u0; // [dofs]
+  double tau0, length;
+};
+
+struct dea_solid_continuation {
+  struct dea_solid *s;
+  double *metric;            // [dofs] of displacements: sum of metric du^2 + d tau^2 = ds^2
+  double *from, *goal, *now; // [control_count] at tau = 0 and 1, and as they are
+  double *held_rate;         // [dofs] of what is prescribed, by tau
+  double load, energy_J;     // tau and energy of the solid as it is
+  struct dea_continuation_path_point before, last, next, critical;
+  double *tangent, tangent_load; // of the path at last; [dofs]
+  struct dea_continuation_plane plane;
+  double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
+  double step, step_most, step_least;
+  enum dea_continuation_event event;   // between before and last
+  enum dea_continuation_event located; // what critical is
+};
+
+/* Length of a displacement in the metric. */
+static double size_of(const struct dea_solid_continuation *t, const double *du)
 {
   double sum = 0;
   for (size_t i = 0; i < t->s->dofs; i++) {
@@ -20,10 +80,33 @@ double dea_continuation_size(const struct dea_solid_continuation *t, const doubl
   return sqrt(sum);
 }
 
-void dea_continuation_orient_plane(struct dea_solid_continuation *t, const double *direction,
-                                   double load)
+/* Sets all controls to those at tau, held components go along. DEA_E_DOMAIN below 0 V. */
+static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuation *t, double tau)
 {
-  double size = hypot(dea_continuation_size(t, direction), load);
+  struct dea_solid *s = t->s;
+  double square = t->from[0] * t->from[0] * (1 - tau) + t->goal[0] * t->goal[0] * tau;
+  double least = -1e-9 * fmax(t->from[0] * t->from[0], t->goal[0] * t->goal[0]);
+  if (square < least) {
+    return dea_fail(ctx, DEA_E_DOMAIN, "the path ends at 0 V");
+  }
+  for (size_t i = 1; i < s->path.control_count; i++) {
+    t->now[i] = t->from[i] + tau * (t->goal[i] - t->from[i]);
+  }
+  t->now[0] = sqrt(fmax(square, 0));
+  t->load = tau;
+  dea_solid_controls_set(s, t->now);
+  if (dea_solid_controls_increment(s, t->now)) {
+    for (size_t i = 0; i < s->dofs; i++) {
+      s->u[i] += s->drive[i];
+    }
+  }
+  return DEA_OK;
+}
+
+/* The plane's normal, from a direction of any length. */
+static void orient_plane(struct dea_solid_continuation *t, const double *direction, double load)
+{
+  double size = hypot(size_of(t, direction), load);
   size = size > 0 ? size : 1;
   for (size_t i = 0; i < t->s->dofs; i++) {
     t->plane.weight[i] = t->metric[i] * direction[i] / size;
@@ -31,30 +114,195 @@ void dea_continuation_orient_plane(struct dea_solid_continuation *t, const doubl
   t->plane.load = load / size;
 }
 
-void dea_continuation_report(const struct dea_solid_continuation *t,
-                             const struct dea_continuation_path_point *place,
-                             enum dea_continuation_event event, struct dea_continuation_point *out)
-{
-  *out = (struct dea_continuation_point){.load = place->load,
-                                         .voltage_V = t->s->voltage_V,
-                                         .slope = place->slope,
-                                         .arc = place->arc,
-                                         .energy_J = place->energy_J,
-                                         .unstable_modes = place->modes,
-                                         .passed = event};
-}
+/* ---- corrector: an equilibrium in a plane, Newton on displacements and load together ---- */
 
-dea_status dea_continuation_return(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                   const struct dea_continuation_path_point *place)
+/* t->right = -dg/d tau at the displacements as they are, by a difference: g is linear in the square
+ * of the voltage and in dead loads. */
+static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
-  dea_solid_state_set(t->s, place->state);
-  t->s->predicted_fits = t->s->factor_fits = false;
-  DEA_TRY(ctx, dea_continuation_load(ctx, t, place->load));
+  struct dea_solid *s = t->s;
+  double energy, tau = t->load, by = difference;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  memcpy(t->right, s->g, s->dofs * sizeof(double));
+  if (set_load(ctx, t, tau + by) != DEA_OK) {
+    dea_context_clear(ctx);
+    by = -by;
+    DEA_TRY(ctx, set_load(ctx, t, tau + by));
+  }
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  for (size_t i = 0; i < s->dofs; i++) {
+    t->right[i] = (t->right[i] - s->g[i]) / by;
+  }
+  DEA_TRY(ctx, set_load(ctx, t, tau));
   return DEA_OK;
 }
 
-dea_status dea_continuation_advance(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                    const double *du, double dtau)
+/* t->rate = du/d tau with the factor that is there, from t->right. */
+static dea_status displacement_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
+{
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, t->s, t->right, t->rate));
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->rate[i] += t->held_rate[i];
+  }
+  return DEA_OK;
+}
+
+/* What the plane's equation is off by. */
+static double off_plane(const struct dea_solid_continuation *t)
+{
+  const struct dea_continuation_plane *plane = &t->plane;
+  double off = plane->load * (t->load - plane->tau0) - plane->length;
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    off += plane->weight[i] * (t->s->u[i] - plane->u0[i]);
+  }
+  return off;
+}
+
+/* s->step and *dtau: the Newton step of g = 0 and of the plane's equation, with K factorised. */
+static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                double *dtau)
+{
+  struct dea_solid *s = t->s;
+  const struct dea_continuation_plane *plane = &t->plane;
+  double off = off_plane(t), along = plane->load;
+  DEA_TRY(ctx, displacement_rate(ctx, t));
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->trial[i] = -s->g[i];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  for (size_t i = 0; i < s->dofs; i++) {
+    off += plane->weight[i] * s->step[i];
+    along += plane->weight[i] * t->rate[i];
+  }
+  if (along == 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path does not cross the plane");
+  }
+  *dtau = -off / along;
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->step[i] += *dtau * t->rate[i];
+  }
+  return DEA_OK;
+}
+
+/* One iteration, unless *there: it is at an equilibrium in the plane. *small: the step was;
+ * *hidden: from the energy, by rounding. */
+static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               double *residual, bool *there, bool *small, bool *hidden)
+{
+  struct dea_solid *s = t->s;
+  double dtau = 0, size = 0;
+  int negative;
+  DEA_TRY(ctx, force_rate(ctx, t));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &t->energy_J));
+  *residual = sqrt(dea_solid_dot(s, s->g, s->g)) / (s->force_scale > 0 ? s->force_scale : 1);
+  bool constrained = dea_solid_theta_max(s) < theta_small;
+  *there = constrained && *residual < residual_small &&
+           fabs(off_plane(t)) < plane_small * fabs(t->plane.length);
+  if (*there) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
+  DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
+  *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->g, s->step));
+  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, true, true));
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->u[i] += s->step[i];
+    size = fmax(size, fabs(s->step[i]));
+  }
+  *small = constrained && size < step_small * s->length_m;
+  DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
+  return DEA_OK;
+}
+
+/* With a large kappa, multipliers that are pressures and predicted stresses this is Newton's
+ * method on displacements, pressures and load. */
+static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation *t,
+                          int *iterations)
+{
+  double residual = 0;
+  int in_a_row = 0; // hidden steps
+  for (*iterations = 1; *iterations <= ITERATIONS_MAX; ++*iterations) {
+    bool there = false, small = false, hidden = false;
+    DEA_TRY(ctx, correct_once(ctx, t, &residual, &there, &small, &hidden));
+    in_a_row = hidden ? in_a_row + 1 : 0;
+    if ((there || in_a_row >= HIDDEN_MANY || (small && *iterations > 1)) &&
+        dea_solid_update_loads(t->s) <= 1) {
+      return DEA_OK;
+    }
+  }
+  *iterations = ITERATIONS_MAX;
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium in the plane (residual %.1e)",
+                  residual);
+}
+
+/* The solid to the equilibrium in t->plane. *iterations: that it took. */
+static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                 int *iterations)
+{
+  dea_solid_scale_bulk_modulus(t->s, harder);
+  dea_status status = correct(ctx, t, iterations);
+  dea_solid_scale_bulk_modulus(t->s, 1 / harder);
+  t->s->predicted_fits = false;
+  return status;
+}
+
+/* ---- points of the path ---- */
+
+/* At an equilibrium: unstable modes, and t->rate = du/d tau along the path. */
+static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuation *t, int *modes)
+{
+  struct dea_solid *s = t->s;
+  s->predicted_fits = s->factor_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &t->energy_J));
+  dea_solid_raise_bulk_modulus(s);
+  double energy;
+  dea_status status = force_rate(ctx, t);
+  if (status == DEA_OK) {
+    status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
+  }
+  dea_solid_restore_bulk_modulus(s);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, modes));
+  DEA_TRY(ctx, displacement_rate(ctx, t));
+  return DEA_OK;
+}
+
+/* The place of the solid as it is; along: a displacement and load that the path's sense makes a
+ * positive product with. Sets the tangent when it is wanted. */
+static dea_status record_point(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               const double *along, double along_load, bool tangent,
+                               struct dea_continuation_path_point *place)
+{
+  struct dea_solid *s = t->s;
+  double product = along_load;
+  DEA_TRY(ctx, find_rate(ctx, t, &place->modes));
+  for (size_t i = 0; i < s->dofs; i++) {
+    product += t->metric[i] * along[i] * t->rate[i];
+  }
+  place->slope = copysign(1 / hypot(size_of(t, t->rate), 1), product);
+  place->load = t->load;
+  place->energy_J = t->energy_J;
+  dea_solid_state_get(s, place->state);
+  for (size_t i = 0; i < s->dofs && tangent; i++) {
+    t->tangent[i] = place->slope * t->rate[i];
+  }
+  t->tangent_load = tangent ? place->slope : t->tangent_load;
+  return DEA_OK;
+}
+
+/* Puts the solid to a place. */
+static dea_status return_to(struct dea_context *ctx, struct dea_solid_continuation *t,
+                            const struct dea_continuation_path_point *place)
+{
+  dea_solid_state_set(t->s, place->state);
+  t->s->predicted_fits = t->s->factor_fits = false;
+  DEA_TRY(ctx, set_load(ctx, t, place->load));
+  return DEA_OK;
+}
+
+/* From an equilibrium by du [dofs] and dtau, pressures and predicted stresses along. */
+static dea_status predict_from(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               const double *du, double dtau)
 {
   struct dea_solid *s = t->s;
   double energy;
@@ -67,33 +315,27 @@ dea_status dea_continuation_advance(struct dea_context *ctx, struct dea_solid_co
   for (size_t i = 0; i < s->dofs; i++) {
     s->u[i] += du[i];
   }
-  DEA_TRY(ctx, dea_continuation_load(ctx, t, t->load + dtau));
+  DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
   return DEA_OK;
 }
 
-dea_status dea_continuation_arrive(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                   const double *along, double along_load, bool tangent,
-                                   struct dea_continuation_path_point *place)
+static void report_point(const struct dea_solid_continuation *t,
+                         const struct dea_continuation_path_point *place,
+                         enum dea_continuation_event event, struct dea_continuation_point *out)
 {
-  struct dea_solid *s = t->s;
-  double product = along_load;
-  DEA_TRY(ctx, dea_continuation_evaluate(ctx, t, &place->modes));
-  for (size_t i = 0; i < s->dofs; i++) {
-    product += t->metric[i] * along[i] * t->rate[i];
-  }
-  place->slope = copysign(1 / hypot(dea_continuation_size(t, t->rate), 1), product);
-  place->load = t->load;
-  place->energy_J = t->energy_J;
-  dea_solid_state_get(s, place->state);
-  for (size_t i = 0; i < s->dofs && tangent; i++) {
-    t->tangent[i] = place->slope * t->rate[i];
-  }
-  t->tangent_load = tangent ? place->slope : t->tangent_load;
-  return DEA_OK;
+  *out = (struct dea_continuation_point){.load = place->load,
+                                         .voltage_V = t->s->voltage_V,
+                                         .slope = place->slope,
+                                         .arc = place->arc,
+                                         .energy_J = place->energy_J,
+                                         .unstable_modes = place->modes,
+                                         .passed = event};
 }
+
+/* ---- steps along the tangent ---- */
 
 /* Distance of where the solid is to the prediction that t->start and tau are, both from last. */
-static double distance(struct dea_solid_continuation *t, const double *predicted, double tau)
+static double distance_from(struct dea_solid_continuation *t, const double *predicted, double tau)
 {
   double sum = (t->load - tau) * (t->load - tau);
   for (size_t i = 0; i < t->s->dofs; i++) {
@@ -131,26 +373,26 @@ static double bend(const struct dea_solid_continuation *t)
 }
 
 /* A point at t->step into t->next; *off: how far from the prediction, over the step. */
-static dea_status attempt(struct dea_context *ctx, struct dea_solid_continuation *t, double *off,
-                          int *iterations)
+static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               double *off, int *iterations)
 {
   struct dea_solid *s = t->s;
-  DEA_TRY(ctx, dea_continuation_return(ctx, t, &t->last));
+  DEA_TRY(ctx, return_to(ctx, t, &t->last));
   for (size_t i = 0; i < s->dofs; i++) {
     t->start[i] = t->step * t->tangent[i];
   }
-  DEA_TRY(ctx, dea_continuation_advance(ctx, t, t->start, t->step * t->tangent_load));
+  DEA_TRY(ctx, predict_from(ctx, t, t->start, t->step * t->tangent_load));
   memcpy(t->start, s->u, s->dofs * sizeof *t->start);
   double tau = t->load;
-  dea_continuation_orient_plane(t, t->tangent, t->tangent_load);
+  orient_plane(t, t->tangent, t->tangent_load);
   t->plane.u0 = t->last.state;
   t->plane.tau0 = t->last.load;
   t->plane.length = t->step;
-  DEA_TRY(ctx, dea_continuation_correct(ctx, t, iterations));
-  *off = distance(t, t->start, tau) / t->step;
+  DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
+  *off = distance_from(t, t->start, tau) / t->step;
   if (*off < off_most) {
     t->next.arc = t->last.arc + t->step;
-    DEA_TRY(ctx, dea_continuation_arrive(ctx, t, t->tangent, t->tangent_load, false, &t->next));
+    DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, &t->next));
     if (bend(t) < fmax(*off, bend_least)) {
       return DEA_OK;
     }
@@ -159,7 +401,7 @@ static dea_status attempt(struct dea_context *ctx, struct dea_solid_continuation
 }
 
 /* The new point becomes the last one. */
-static void accept(struct dea_solid_continuation *t)
+static void accept_point(struct dea_solid_continuation *t)
 {
   struct dea_continuation_path_point old = t->before;
   t->before = t->last;
@@ -182,7 +424,7 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   for (int i = 0; i < ATTEMPTS_MAX; i++) {
     dea_context_clear(ctx);
     iterations = 0;
-    status = attempt(ctx, t, &off, &iterations);
+    status = attempt_step(ctx, t, &off, &iterations);
     all += iterations;
     if (status == DEA_OK || status == DEA_E_MEMORY || t->step < 2 * t->step_least) {
       break;
@@ -194,12 +436,12 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
     strncpy(why, dea_context_message(ctx), sizeof why - 1);
     why[sizeof why - 1] = '\0';
     dea_context_clear(ctx);
-    DEA_TRY(ctx, dea_continuation_return(ctx, t, &t->last));
+    DEA_TRY(ctx, return_to(ctx, t, &t->last));
     return dea_fail(ctx, status, "the path cannot be followed beyond a load of %.6g (%s)",
                     t->last.load, why);
   }
-  accept(t);
-  dea_continuation_report(t, &t->last, t->event, point);
+  accept_point(t);
+  report_point(t, &t->last, t->event, point);
   point->iterations = all;
   double longer = off > 0 ? fmin(sqrt(off_good / off), 2) : 2;
   longer = iterations > ITERATIONS_MANY ? fmin(longer, 0.7) : longer;
@@ -207,10 +449,12 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
+/* ---- creation ---- */
+
 /* Memory and metric. */
-static dea_status make(struct dea_context *ctx, struct dea_solid *s,
-                       const struct dea_continuation_options *options,
-                       struct dea_solid_continuation *t)
+static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
+                                const struct dea_continuation_options *options,
+                                struct dea_solid_continuation *t)
 {
   size_t controls = s->path.control_count, states = s->path.state_count;
   double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
@@ -235,7 +479,7 @@ static dea_status make(struct dea_context *ctx, struct dea_solid *s,
     return DEA_E_MEMORY;
   }
   double volume = 0;
-  dea_solid_masses(s, t->metric);
+  dea_solid_lump_volume(s, t->metric);
   for (size_t i = 0; i < s->dofs; i++) {
     volume += t->metric[i] / 3;
   }
@@ -243,14 +487,14 @@ static dea_status make(struct dea_context *ctx, struct dea_solid *s,
     t->metric[i] /= volume * options->unit_m * options->unit_m;
   }
   t->step = fabs(options->step);
-  t->step_least = least * t->step;
+  t->step_least = step_shortest * t->step;
   t->step_most = options->step_most > 0 ? options->step_most : INFINITY;
   return DEA_OK;
 }
 
 /* The controls and the place to start from. */
-static dea_status begin(struct dea_context *ctx, struct dea_solid_continuation *t,
-                        const double *goal, double sense)
+static dea_status begin_path(struct dea_context *ctx, struct dea_solid_continuation *t,
+                             const double *goal, double sense)
 {
   struct dea_solid *s = t->s;
   struct dea_solid_report report = {0};
@@ -264,7 +508,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_solid_continuation *
   for (size_t i = 0; i < s->dofs; i++) {
     t->held_rate[i] = s->drive[i] - t->held_rate[i];
   }
-  DEA_TRY(ctx, dea_continuation_arrive(ctx, t, t->tangent, sense, true, &t->last));
+  DEA_TRY(ctx, record_point(ctx, t, t->tangent, sense, true, &t->last));
   return DEA_OK;
 }
 
@@ -280,9 +524,9 @@ dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid 
     return DEA_E_MEMORY;
   }
   t->s = s;
-  dea_status status = make(ctx, s, options, t);
+  dea_status status = allocate_path(ctx, s, options, t);
   if (status == DEA_OK) {
-    status = begin(ctx, t, goal, options->step);
+    status = begin_path(ctx, t, goal, options->step);
   }
   if (status != DEA_OK) {
     dea_solid_continuation_destroy(ctx, t);
@@ -304,9 +548,9 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   if (s->field != NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   double *goal = dea_alloc(ctx, s->path.control_count, sizeof *goal);
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, goal != NULL ? DEA_OK : DEA_E_MEMORY));
+  DEA_TRY(ctx, dea_solid_agree(ctx, goal != NULL ? DEA_OK : DEA_E_MEMORY));
   dea_solid_controls_goal(s, voltage_V, goal);
   dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
   dea_free(ctx, goal);
@@ -326,4 +570,201 @@ void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_co
     dea_free(ctx, memory[i]);
   }
   dea_free(ctx, t);
+}
+
+/* ---- limit points and bifurcations ---- */
+
+/* Between two places: where, what is to be 0 there, and the direction from one to the other. */
+struct bracket {
+  const struct dea_continuation_path_point *from;
+  double *way; // [state_count]
+  double way_load, length, at[2], value[2];
+  size_t mode; // of a bifurcation: the place of the critical one among all
+};
+
+/* What is 0 at the critical point, where the solid is; t->mode then is the critical mode. */
+static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                   const struct bracket *b, double *value)
+{
+  struct dea_solid *s = t->s;
+  DEA_TRY(ctx, record_point(ctx, t, b->way, b->way_load, false, &t->critical));
+  *value = t->critical.slope;
+  if (t->event == DEA_CONTINUATION_LIMIT) {
+    return DEA_OK;
+  }
+  size_t count = b->mode + 1, dofs = 3 * s->grid->node_count;
+  double values[DEA_MODES_MAX];
+  double *vectors = dea_alloc(ctx, count * dofs, sizeof *vectors);
+  DEA_TRY(ctx, dea_solid_agree(ctx, vectors != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_status status = dea_solid_modes(ctx, s, count, values, vectors);
+  *value = values[b->mode];
+  memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);
+  dea_free(ctx, vectors);
+  return status;
+}
+
+/* The equilibrium at a share of the way. */
+static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                 const struct bracket *b, double share)
+{
+  int iterations;
+  memcpy(t->critical.state, b->from->state, t->s->path.state_count * sizeof(double));
+  for (size_t i = 0; i < t->s->path.state_count; i++) {
+    t->critical.state[i] += share * b->way[i];
+  }
+  t->critical.load = b->from->load + share * b->way_load;
+  DEA_TRY(ctx, return_to(ctx, t, &t->critical));
+  orient_plane(t, b->way, b->way_load);
+  t->plane.u0 = b->from->state;
+  t->plane.tau0 = b->from->load;
+  t->plane.length = share * b->length;
+  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
+  t->critical.arc = b->from->arc + share * b->length;
+  return DEA_OK;
+}
+
+/* The same beside the share where there is none at it: where a mode other than the path's loses its
+ * stiffness K is singular on the plane too, and what rounding leaves along the mode grows. */
+static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                   const struct bracket *b, double *share)
+{
+  dea_status status = solve_at_share(ctx, t, b, *share);
+  bool first_half = *share - b->at[0] < b->at[1] - *share;
+  double by = (first_half ? aside : -aside) * (b->at[1] - b->at[0]), from = *share;
+  for (int i = 0; i < ASIDE_MAX && (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN);
+       i++, by *= 2) {
+    dea_context_clear(ctx);
+    *share = from + by;
+    status = solve_at_share(ctx, t, b, *share);
+  }
+  return status;
+}
+
+/* Regula falsi, with the older end's value halved while it stays (Illinois). A value between the
+ * two ends that is larger than at both is that of a K which is singular to rounding: there it is.
+ */
+static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuation *t,
+                           struct bracket *b)
+{
+  double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
+  double value, before = -1;
+  double enough = t->event == DEA_CONTINUATION_LIMIT ? limit_near : bifurcation_near;
+  int stays = -1;
+  for (int i = 0; i < ROUNDS_MAX; i++) {
+    double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
+    DEA_TRY(ctx, solve_near_share(ctx, t, b, &share));
+    DEA_TRY(ctx, measure_critical(ctx, t, b, &value));
+    if (fabs(share - before) < enough || fabs(value) < flat_enough * first ||
+        fabs(value) > fmax(seen[0], seen[1])) {
+      return DEA_OK;
+    }
+    before = share;
+    int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
+    b->at[end] = share;
+    b->value[end] = value;
+    seen[end] = fabs(value);
+    if (stays == 1 - end) {
+      b->value[1 - end] /= 2;
+    }
+    stays = 1 - end;
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the critical point could not be closed in on");
+}
+
+static dea_status locate_between(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                 struct bracket *b)
+{
+  const struct dea_continuation_path_point *ends[2] = {&t->before, &t->last};
+  b->from = ends[0];
+  for (size_t i = 0; i < t->s->path.state_count; i++) {
+    b->way[i] = ends[1]->state[i] - ends[0]->state[i];
+  }
+  b->way_load = ends[1]->load - ends[0]->load;
+  b->length = hypot(size_of(t, b->way), b->way_load);
+  b->at[1] = 1;
+  b->mode = (size_t)(ends[0]->modes < ends[1]->modes ? ends[0]->modes : ends[1]->modes);
+  if (t->event == DEA_CONTINUATION_BIFURCATION && b->mode >= DEA_MODES_MAX) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%zu modes are unstable already", b->mode);
+  }
+  for (int k = 0; k < 2; k++) {
+    DEA_TRY(ctx, return_to(ctx, t, ends[k]));
+    DEA_TRY(ctx, measure_critical(ctx, t, b, &b->value[k]));
+  }
+  if (b->value[0] * b->value[1] > 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no change of sign between the two points");
+  }
+  DEA_TRY(ctx, close_in(ctx, t, b));
+  return DEA_OK;
+}
+
+dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                         struct dea_continuation_point *point)
+{
+  struct bracket b = {0};
+  if (t->event == DEA_CONTINUATION_NOTHING) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
+  }
+  b.way = dea_alloc(ctx, t->s->path.state_count, sizeof *b.way);
+  dea_status status = dea_solid_agree(ctx, b.way != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    status = locate_between(ctx, t, &b);
+  }
+  dea_free(ctx, b.way);
+  if (status != DEA_OK) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  t->located = t->event;
+  report_point(t, &t->critical, t->event, point);
+  return DEA_OK;
+}
+
+/* ---- the other branch ---- */
+
+/* Onto the branch at a distance along the critical mode. */
+static dea_status leave_along(struct dea_context *ctx, struct dea_solid_continuation *t,
+                              double distance)
+{
+  int iterations;
+  DEA_TRY(ctx, return_to(ctx, t, &t->critical));
+  double size = size_of(t, t->mode);
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->start[i] = distance / size * t->mode[i];
+  }
+  DEA_TRY(ctx, predict_from(ctx, t, t->start, 0));
+  orient_plane(t, t->mode, 0);
+  t->plane.u0 = t->critical.state;
+  t->plane.tau0 = t->critical.load;
+  t->plane.length = distance;
+  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
+  for (size_t i = 0; i < t->s->dofs; i++) {
+    t->start[i] = t->s->u[i] - t->critical.state[i];
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                         int side, double distance,
+                                         struct dea_continuation_point *point)
+{
+  if (t->located != DEA_CONTINUATION_BIFURCATION || !(distance > 0)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "another branch starts at a bifurcation that was located");
+  }
+  dea_status status = DEA_OK;
+  for (int i = 0; i < SIZES_MAX; i++, distance /= 2) {
+    dea_context_clear(ctx);
+    status = leave_along(ctx, t, side < 0 ? -distance : distance);
+    if (status != DEA_E_NOT_CONVERGED && status != DEA_E_DOMAIN) {
+      break;
+    }
+  }
+  DEA_TRY(ctx, status);
+  struct dea_continuation_path_point old = t->before;
+  t->before = t->last;
+  t->last = old;
+  t->last.arc = t->critical.arc + distance;
+  DEA_TRY(ctx, record_point(ctx, t, t->start, t->load - t->critical.load, true, &t->last));
+  t->event = DEA_CONTINUATION_NOTHING;
+  t->step = distance;
+  report_point(t, &t->last, t->event, point);
+  return DEA_OK;
 }

@@ -1,76 +1,76 @@
-/* What the files of path following share (docs/theory/branches.md). */
+/* Paths of equilibria, stable or not, through limit points and bifurcations, by arc-length
+ * (docs/theory/branches.md), from where a solid is. All controls go together, by a load tau: at 0
+ * as they stand at the start, at 1 as they are asked for - the square of the voltage, dead loads,
+ * prescribed displacements and parameters of loads, each in proportion. tau is found with the
+ * displacements: it may turn back at a limit point, and go below 0 or above 1.
+ *
+ * Length along the path: ds^2 = d tau^2 + (root mean square of du over the volume / unit_m)^2. */
 #ifndef DEA_MODEL_SOLID_EQUILIBRIUM_CONTINUATION_H
 #define DEA_MODEL_SOLID_EQUILIBRIUM_CONTINUATION_H
 
-#include "model/solid/assembly/internal.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/assembly/solid.h"
 
-/* An equilibrium on the path. */
-struct dea_continuation_path_point {
-  double *state; // [state_count]
-  double load;   // tau
-  double slope;  // d tau/d s
-  double arc;    // s from the start
+struct dea_solid_continuation;
+
+struct dea_continuation_options {
+  double step;      // length of the first step; below 0: tau falls at first
+  double step_most; // longest step; 0: any
+  double unit_m;    // displacement that counts as much as the whole load, above 0
+};
+
+enum dea_continuation_event {
+  DEA_CONTINUATION_NOTHING,
+  DEA_CONTINUATION_LIMIT,
+  DEA_CONTINUATION_BIFURCATION
+};
+
+struct dea_continuation_point {
+  double load; // tau
+  double voltage_V;
+  double slope; // d tau/d s: 0 at a limit point
+  double arc;   // s from the start
   double energy_J;
-  int modes;
+  int unstable_modes;
+  enum dea_continuation_event
+      passed;     // since the point before: slope or number of unstable modes changed
+  int iterations; // of a step, those of attempts that were too long among them
 };
 
-/* A plane in the space of displacements and load, which a point is looked for in:
- * weight . (u - u0) + load (tau - tau0) = length. */
-struct dea_continuation_plane {
-  double *weight;   // [dofs] metric times the unit normal's displacements
-  double load;      // the unit normal's load
-  const double *u0; // [dofs]
-  double tau0, length;
-};
+/* Starts at the equilibrium that the solid is at or slides into. The goals (forces, prescribed
+ * displacements, parameters of loads) are taken as they are now. solid: lent; while the trace lives
+ * it alone moves the solid, which stays at the last point. out: owned by the caller, NULL on
+ * failure. DEA_E_ARGUMENT for options that cannot be, DEA_E_UNSUPPORTED for a coupled field. */
+dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_solid *solid,
+                                         double voltage_V,
+                                         const struct dea_continuation_options *options,
+                                         struct dea_solid_continuation **out);
+void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_continuation *trace);
 
-struct dea_solid_continuation {
-  struct dea_solid *s;
-  double *metric;            // [dofs] of displacements: sum of metric du^2 + d tau^2 = ds^2
-  double *from, *goal, *now; // [control_count] at tau = 0 and 1, and as they are
-  double *held_rate;         // [dofs] of what is prescribed, by tau
-  double load, energy_J;     // tau and energy of the solid as it is
-  struct dea_continuation_path_point before, last, next, critical;
-  double *tangent, tangent_load; // of the path at last; [dofs]
-  struct dea_continuation_plane plane;
-  double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
-  double step, step_most, step_least;
-  enum dea_continuation_event event;   // between before and last
-  enum dea_continuation_event located; // what critical is
-};
+/* The next point; the step's length adapts. DEA_E_NOT_CONVERGED or DEA_E_DOMAIN where the path
+ * cannot be followed: the solid is then at the last point. */
+dea_status dea_solid_continuation_step(struct dea_context *ctx,
+                                       struct dea_solid_continuation *trace,
+                                       struct dea_continuation_point *point);
+
+/* The limit point or bifurcation that the last step has passed: the solid is there until the next
+ * call. Of several modes that turn unstable in one step it is that of the first. DEA_E_ARGUMENT
+ * where nothing was passed, DEA_E_NOT_CONVERGED when it cannot be closed in on. */
+dea_status dea_solid_continuation_locate(struct dea_context *ctx,
+                                         struct dea_solid_continuation *trace,
+                                         struct dea_continuation_point *point);
+
+/* From the bifurcation that dea_solid_continuation_locate has found to the other branch, along the
+ * critical mode (side 1) or against it (-1); steps go on from there. distance: from the
+ * bifurcation, in s. The mode's component of largest size is positive. DEA_E_ARGUMENT where none
+ * was located. */
+dea_status dea_solid_continuation_switch(struct dea_context *ctx,
+                                         struct dea_solid_continuation *trace, int side,
+                                         double distance, struct dea_continuation_point *point);
 
 /* dea_solid_continuation_create to the controls `goal` [control_count]; the path is prepared. */
 dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid *s,
                                       const double *goal,
                                       const struct dea_continuation_options *options,
                                       struct dea_solid_continuation **out);
-/* Length of a displacement in the metric. */
-double dea_continuation_size(const struct dea_solid_continuation *t, const double *du);
-/* Sets all controls to those at tau, held components go along. DEA_E_DOMAIN below 0 V. */
-dea_status dea_continuation_load(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                 double tau);
-/* Puts the solid to a place. */
-dea_status dea_continuation_return(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                   const struct dea_continuation_path_point *place);
-/* From an equilibrium by du and dtau, pressures and predicted stresses along. du: [dofs]. */
-dea_status dea_continuation_advance(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                    const double *du, double dtau);
-/* The solid to the equilibrium in t->plane. *iterations: that it took. */
-dea_status dea_continuation_correct(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                    int *iterations);
-/* At an equilibrium: unstable modes, and t->rate = du/d tau along the path. */
-dea_status dea_continuation_evaluate(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                     int *modes);
-/* The place of the solid as it is; along: a displacement and load that the path's sense makes a
- * positive product with. Sets the tangent when it is wanted. */
-dea_status dea_continuation_arrive(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                   const double *along, double along_load, bool tangent,
-                                   struct dea_continuation_path_point *place);
-/* The plane's normal, from a direction of any length. */
-void dea_continuation_orient_plane(struct dea_solid_continuation *t, const double *direction,
-                                   double load);
-void dea_continuation_report(const struct dea_solid_continuation *t,
-                             const struct dea_continuation_path_point *place,
-                             enum dea_continuation_event event, struct dea_continuation_point *out);
 
 #endif

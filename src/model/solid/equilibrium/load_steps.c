@@ -1,54 +1,288 @@
-/* From one equilibrium to the next: prediction, multipliers, smaller steps. */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/equilibrium/load_steps.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/assembly/potential.h"
+#include "model/solid/equilibrium/check.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { OUTER_MAX = 30, WORSE_MAX = 4 };
-
 static const double step_smallest = 1.0 / 64; // of the way asked for
 
-/* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
- * more minima at given multipliers may go on, but violate the constraints more and more. */
-dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
-                                 struct dea_solid_report *report)
+/* of the descent from an unstable equilibrium */
+enum { STEPS_MAX = 4 };
+
+static const double push_first = 0.05; // of the solid's length
+static const double equal = 1e-6;      // two energies, relative to how far they fell
+
+/* of the path of a force along a mode */
+enum { POINTS_MAX = 80 };
+
+static const double step_first = 0.1, step_most = 1; // of the solid's length, root mean square
+
+/* ---- the path of a force along an unstable mode ---- */
+
+/* The controls as they are (where the path starts), and with a force that would hold the mode back
+ * at a displacement of the solid's length if its stiffness stayed what it is. */
+static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid *s, double value,
+                                      const double *mode, double *from, double *goal)
 {
-  double best = INFINITY;
-  for (int i = 0, worse = 0; i < OUTER_MAX && worse < WORSE_MAX; i++) {
-    DEA_TRY(ctx, dea_solid_minimise(ctx, s, s->voltage_V, report));
-    report->load_error = dea_solid_update_loads(s);
-    double error = fmax(report->theta_max / DEA_SOLID_THETA_SMALL, report->load_error);
-    if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {
-      return DEA_OK;
-    }
-    if (report->theta_max >= DEA_SOLID_THETA_SMALL) {
-      dea_solid_update_multipliers(s);
-    }
-    worse = error < best ? 0 : worse + 1;
-    best = fmin(best, error);
+  size_t moves = 3 * s->grid->node_count;
+  double volume = 0, *mass = dea_alloc(ctx, s->dofs, sizeof *mass);
+  DEA_TRY(ctx, dea_solid_agree(ctx, mass != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_solid_lump_volume(s, mass);
+  for (size_t i = 0; i < moves; i++) {
+    volume += mass[i] / 3;
   }
-  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                  "the constraints do not settle (J - 1: %.1e; loads: %.2g of what is allowed)",
-                  report->theta_max, report->load_error);
+  double amplitude = s->length_m * sqrt(volume);
+  dea_solid_controls_get(s, from);
+  memcpy(goal, from, s->path.control_count * sizeof *goal);
+  for (size_t i = 0; i < moves; i++) {
+    goal[1 + i] += fabs(value) * amplitude * mass[i] * mode[i];
+  }
+  dea_free(ctx, mass);
+  return DEA_OK;
 }
 
-double dea_solid_update_loads(struct dea_solid *s)
+/* Along the path until the force has come to nothing. */
+static dea_status follow_force(struct dea_context *ctx, struct dea_solid_continuation *trace)
 {
-  double error = 0;
-  for (size_t k = 0; k < s->load_count; k++) {
-    if (s->loads[k].update != NULL) {
-      error = fmax(error, s->loads[k].update(s->loads[k].self, s->u));
+  struct dea_continuation_point point = {0};
+  double first = 0;
+  for (int i = 0; i < POINTS_MAX; i++) {
+    DEA_TRY(ctx, dea_solid_continuation_step(ctx, trace, &point));
+    first = i == 0 ? point.load : first;
+    if (point.load * first <= 0) {
+      return DEA_OK;
     }
   }
-  return error;
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "a force along an unstable mode does not vanish");
+}
+
+/* From an unstable equilibrium to the next one on the path of a force along its unstable mode
+ * [3 node_count] of that value: it holds back at first and comes to nothing again. side: 1 or -1.
+ */
+static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int side, double value,
+                              const double *mode, struct dea_solid_report *report)
+{
+  // the stiffness is negative: a force against the mode leads along it
+  const struct dea_continuation_options options = {side > 0 ? -step_first : step_first, step_most,
+                                                   s->length_m};
+  struct dea_solid_continuation *trace = NULL;
+  double *from = dea_alloc(ctx, s->path.control_count, sizeof *from);
+  double *goal = dea_alloc(ctx, s->path.control_count, sizeof *goal);
+  dea_status status = dea_solid_agree(ctx, from != NULL && goal != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    status = mode_force_controls(ctx, s, value, mode, from, goal);
+  }
+  if (status == DEA_OK) {
+    status = dea_continuation_create_to(ctx, s, goal, &options, &trace);
+  }
+  if (status == DEA_OK) {
+    status = follow_force(ctx, trace);
+    dea_solid_controls_set(s, from);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_equilibrate(ctx, s, report);
+  }
+  dea_solid_continuation_destroy(ctx, trace);
+  dea_free(ctx, from);
+  dea_free(ctx, goal);
+  return status;
+}
+
+/* ---- from an unstable equilibrium down to a stable one ---- */
+
+/* s->trial = u + size v, and the energy there; INFINITY where there is none. */
+static double energy_beside(struct dea_context *ctx, struct dea_solid *s, const double *u,
+                            const double *mode, double size)
+{
+  double energy;
+  memcpy(s->trial, u, s->dofs * sizeof *s->trial);
+  for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
+    s->trial[i] += size * mode[i];
+  }
+  return dea_solid_solve_potential(ctx, s, s->voltage_V, s->trial) == DEA_OK &&
+                 dea_solid_energy(s, s->trial, s->voltage_V, &energy) == DEA_OK
+             ? energy
+             : INFINITY;
+}
+
+/* A push along the mode, with its sign, whose largest displacement is `metres` or less where that
+ * is needed to go down, and more as long as that goes down further; 0 when no side goes down. */
+static double choose_push(struct dea_context *ctx, struct dea_solid *s, const double *u,
+                          const double *mode, double metres, int side, double energy)
+{
+  double most = 0, push = 0, lowest = energy;
+  for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
+    most = fmax(most, fabs(mode[i]));
+  }
+  for (double size = metres / most; push == 0 && size > 1e-4 * metres / most; size /= 2) {
+    double up = side >= 0 ? energy_beside(ctx, s, u, mode, size) : INFINITY;
+    double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
+    lowest = fmin(up, down);
+    if (lowest < energy) {
+      push = up <= down + equal * fabs(energy - down) ? size : -size;
+    }
+  }
+  double next = push != 0 ? energy_beside(ctx, s, u, mode, 2 * push) : INFINITY;
+  while (next < lowest) {
+    lowest = next;
+    push *= 2;
+    next = energy_beside(ctx, s, u, mode, 2 * push);
+  }
+  return push;
+}
+
+/* One step down along the lowest mode: a push, or on the path of a force. */
+static dea_status step_down(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
+                            double *mode, struct dea_solid_report *report)
+{
+  double value;
+  DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
+  double push = choose_push(ctx, s, s->u, mode, push_first * s->length_m, side, report->energy_J);
+  if (push == 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "an unstable mode without a way down");
+  }
+  s->factor_fits = false;
+  if (pull) {
+    DEA_TRY(ctx, follow_mode(ctx, s, push > 0 ? 1 : -1, value, mode, report));
+    return DEA_OK;
+  }
+  energy_beside(ctx, s, s->u, mode, push);
+  memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
+  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
+  return DEA_OK;
+}
+
+/* Until no mode is unstable and the energy is lower. */
+static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
+                          double *mode, struct dea_solid_report *report)
+{
+  double energy = report->energy_J;
+  for (int k = 0; k < STEPS_MAX && report->unstable_modes > 0; k++) {
+    DEA_TRY(ctx, step_down(ctx, s, k == 0 ? side : 0, pull, mode, report));
+  }
+  return report->unstable_modes == 0 && report->energy_J <= energy
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no way down from an unstable equilibrium");
+}
+
+/* First by pushes; where those come back or do not end, by forces. state: where it starts. */
+static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
+                           const double *state, struct dea_solid_report *report)
+{
+  const struct dea_solid_report before = *report;
+  dea_status status = descend(ctx, s, side, false, mode, report);
+  if ((status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) && s->field == NULL) {
+    dea_context_clear(ctx);
+    dea_solid_state_set(s, state);
+    s->factor_fits = s->predicted_fits = false;
+    *report = before;
+    status = descend(ctx, s, side, true, mode, report);
+  }
+  return status;
+}
+
+/* At an unstable equilibrium that *report speaks of; the solid stays there where no way is found.
+ */
+static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int side,
+                               struct dea_solid_report *report)
+{
+  double *mode = dea_alloc(ctx, 3 * s->grid->node_count, sizeof *mode);
+  double *state = dea_alloc(ctx, s->path.state_count, sizeof *state);
+  dea_status status = dea_solid_agree(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    struct dea_solid_report before = *report;
+    dea_solid_state_get(s, state);
+    status = try_both(ctx, s, side, mode, state, report);
+    if (status == DEA_OK) {
+      report->snapped = true;
+    } else {
+      dea_solid_state_set(s, state);
+      *report = before;
+      s->factor_fits = s->predicted_fits = false;
+    }
+  }
+  dea_free(ctx, mode);
+  dea_free(ctx, state);
+  return status;
+}
+
+dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid *s, int side,
+                                      struct dea_solid_report *report)
+{
+  *report = (struct dea_solid_report){.way = 1};
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
+  if (report->unstable_modes > 0) {
+    DEA_TRY(ctx, descend_from(ctx, s, side, report));
+  }
+  return DEA_OK;
+}
+
+/* ---- from a stable equilibrium to another ---- */
+
+/* dea_solid_push from state, which is that of the solid. */
+static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
+                               struct dea_solid_report *report)
+{
+  memset(s->step, 0, s->dofs * sizeof *s->step);
+  memcpy(s->step, push_m, 3 * s->grid->node_count * sizeof *s->step);
+  dea_solid_release_held(s, s->step);
+  for (size_t i = 0; i < s->dofs; i++) {
+    s->u[i] += s->step[i];
+  }
+  s->factor_fits = false;
+  *report = (struct dea_solid_report){.way = 1};
+  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
+  return DEA_OK;
+}
+
+dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
+                          bool (*accept)(const void *self, const double *displacement_m),
+                          const void *self, struct dea_solid_report *report, bool *found)
+{
+  struct dea_solid_report before = *report;
+  *found = false;
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  double *state = dea_alloc(ctx, s->path.state_count, sizeof *state);
+  DEA_TRY(ctx, dea_solid_agree(ctx, state != NULL ? DEA_OK : DEA_E_MEMORY));
+  dea_solid_state_get(s, state);
+  dea_status status = solve_pushed(ctx, s, push_m, report);
+  *found = status == DEA_OK && report->unstable_modes == 0 && accept(self, s->u);
+  if (!*found) {
+    dea_solid_state_set(s, state);
+    *report = before;
+    s->factor_fits = s->predicted_fits = false;
+  }
+  if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  dea_free(ctx, state);
+  return status;
+}
+
+/* ---- to the next voltage and loads ---- */
+
+void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
+{
+  solid->stay = stay;
 }
 
 /* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
  * unstable modes. */
-static dea_status leave(struct dea_context *ctx, struct dea_solid *s,
-                        struct dea_solid_report *report)
+static dea_status leave_unstable(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report)
 {
-  dea_status status = dea_solid_descend_from(ctx, s, 0, report);
+  dea_status status = descend_from(ctx, s, 0, report);
   if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
     dea_context_clear(ctx);
     return DEA_OK;
@@ -57,8 +291,8 @@ static dea_status leave(struct dea_context *ctx, struct dea_solid *s,
 }
 
 /* The equilibrium a share of the way to the goal; the solid stays as it was when it fails. */
-static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double way,
-                           struct dea_solid_report *report)
+static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, double way,
+                                 struct dea_solid_report *report)
 {
   struct dea_load_steps *path = &s->path;
   const double *from = path->controls_from;
@@ -71,13 +305,13 @@ static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double 
   dea_solid_controls_set(s, next);
   dea_status status = DEA_OK;
   if (dea_solid_controls_increment(s, next)) {
-    status = dea_solid_prescribed_increment(ctx, s, s->voltage_V, report);
+    status = dea_solid_prescribed_increment(ctx, s, report);
   }
   if (status == DEA_OK) {
     status = dea_solid_equilibrate(ctx, s, report);
   }
   if (status == DEA_OK && report->unstable_modes > 0 && !s->stay) {
-    status = leave(ctx, s, report);
+    status = leave_unstable(ctx, s, report);
   }
   if (status != DEA_OK) {
     dea_solid_state_set(s, path->keep);
@@ -88,7 +322,8 @@ static dea_status solve_at(struct dea_context *ctx, struct dea_solid *s, double 
   return DEA_OK;
 }
 
-static dea_status go(struct dea_context *ctx, struct dea_solid *s, struct dea_solid_report *report)
+static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report)
 {
   const struct dea_load_steps *path = &s->path;
   bool moves = memcmp(path->controls_from, path->controls_goal,
@@ -96,7 +331,7 @@ static dea_status go(struct dea_context *ctx, struct dea_solid *s, struct dea_so
   double part = 1;
   for (;;) {
     double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
-    dea_status status = solve_at(ctx, s, way, report);
+    dea_status status = solve_at_share(ctx, s, way, report);
     if (status == DEA_OK) {
       report->way = way;
       if (way >= 1) {
@@ -117,9 +352,9 @@ dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *s, double 
   struct dea_load_steps *path = &s->path;
   *report = (struct dea_solid_report){0};
   DEA_TRY(ctx, dea_solid_check(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   dea_solid_controls_get(s, path->controls);
   dea_solid_controls_goal(s, voltage_V, path->controls_goal);
   memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
-  return go(ctx, s, report);
+  return solve_in_steps(ctx, s, report);
 }

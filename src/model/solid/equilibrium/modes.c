@@ -1,7 +1,10 @@
 /* Softest modes: Lanczos on K^-1 M with the factor of K (docs/theory/branches.md). The factor is
  * there anyway and vectors are whole on every rank, so that this takes no more than solves. */
-#include "model/solid/assembly/internal.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/solid/equilibrium/modes.h"
+
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
 
 #include <petscblaslapack.h>
 
@@ -11,7 +14,6 @@
 enum { ROUNDS_MAX = 12, BASIS_MAX = DEA_MODES_MAX + 40 };
 
 static const double ritz_small = 1e-9; // residual over the eigenvalue
-static const double stiffer = 128;     // kappa where unstable modes are counted; a power of 2
 
 struct lanczos {
   size_t dofs, room, locked, most; // room: of the basis; locked: modes that were found, of most
@@ -221,58 +223,6 @@ static dea_status find(struct dea_context *ctx, struct dea_solid *s, struct lanc
                         negative + positive);
 }
 
-void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
-{
-  for (size_t k = 0; k < s->layer_count; k++) {
-    s->layers[k].kappa_Pa *= factor;
-  }
-}
-
-/* p + kappa theta stays what it is when kappa becomes factor times as large. */
-static void keep_pressures(struct dea_solid *s, double factor)
-{
-  size_t pressures = (size_t)s->shape.pressures;
-  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] -= layer->law != NULL ? (factor - 1) * layer->kappa_Pa * s->theta[i] : 0;
-  }
-}
-
-void dea_solid_raise_bulk_modulus(struct dea_solid *s)
-{
-  keep_pressures(s, stiffer);
-  dea_solid_scale_bulk_modulus(s, stiffer);
-}
-
-void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s)
-{
-  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
-}
-
-void dea_solid_restore_bulk_modulus(struct dea_solid *s)
-{
-  keep_pressures(s, 1 / stiffer);
-  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
-}
-
-dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)
-{
-  double energy;
-  s->predicted_fits = s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
-  dea_solid_raise_bulk_modulus(s);
-  dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
-  dea_solid_restore_bulk_modulus(s);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-}
-
-dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
-{
-  DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, s));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, negative));
-  return DEA_OK;
-}
-
 static void release(struct dea_context *ctx, struct lanczos *l)
 {
   void *const memory[] = {l->mass, l->work, l->basis, l->mode, l->nu, l};
@@ -305,7 +255,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_solid *s, size_
     *out = NULL;
     return DEA_E_MEMORY;
   }
-  dea_solid_masses(s, l->mass);
+  dea_solid_lump_volume(s, l->mass);
   return DEA_OK;
 }
 

@@ -1,11 +1,17 @@
-/* Equilibrium at fixed controls: a descent on the energy with pressures that follow
- * (docs/theory/branches.md). */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/equilibrium/newton.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/assembly/potential.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { NEWTON_MAX = 80, FREE_MAX = 50, CHORDS_MAX = 8, SHIFTS_MAX = 40, HALVINGS_MAX = 12 };
+enum { OUTER_MAX = 30, WORSE_MAX = 4 }; // rounds of the multipliers
 
 static const double residual_small = 1e-9; // of the sum of element forces
 static const double step_small = 1e-10;    // of the solid's length
@@ -17,7 +23,7 @@ static const double shift_first = 3e-3;    // of the modulus of the softest laye
 static const double shift_least = 3e-5;    // below which there is none
 static const double shift_up = 4, shift_down = 10;
 
-struct descent {
+struct newton {
   double voltage_V;
   double shift_Pa;
   double norm_before; // of g at the last iterate
@@ -43,26 +49,17 @@ static double largest(const struct dea_solid *s, const double *v)
   return most;
 }
 
-double dea_solid_theta_max(const struct dea_solid *s)
-{
-  double most = 0;
-  size_t pressures = (size_t)s->shape.pressures;
-  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    bool projected = s->layers[s->layer[i / pressures]].law != NULL;
-    most = projected ? fmax(most, fabs(s->theta[i])) : most;
-  }
-  return most;
-}
+/* ---- linear steps ---- */
 
 /* Factor of K, shifted by d->shift_Pa or as much more as makes it positive definite. *there: the
  * shift that K has; the count of unstable modes is set when that is none. */
-static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s,
-                                     struct descent *d, double *there)
+static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                                     double *there)
 {
   for (int i = 0; i < SHIFTS_MAX; i++) {
     int negative;
     if (d->shift_Pa != *there) {
-      DEA_TRY(ctx, dea_solid_shift(ctx, s, d->shift_Pa - *there));
+      DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->K, d->shift_Pa - *there));
       *there = d->shift_Pa;
     }
     DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
@@ -80,6 +77,18 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
 }
 
+/* s->step = -K^-1 g with the factor that is there. */
+static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
+{
+  for (size_t k = 0; k < s->dofs; k++) {
+    s->trial[k] = -s->g[k];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  return DEA_OK;
+}
+
+/* ---- line search ---- */
+
 bool dea_solid_resolved(const struct dea_solid *s, double change)
 {
   return fabs(change) > energy_small * s->energy_scale + s->energy_floor;
@@ -87,8 +96,8 @@ bool dea_solid_resolved(const struct dea_solid *s, double change)
 
 /* The longest share of the step that the energy lets pass, into s->trial. *rise: of the energy over
  * the slope's size there, -1/2 where the energy is quadratic. false: none. */
-static bool search(struct dea_context *ctx, struct dea_solid *s, const struct descent *d,
-                   double slope, double *share, double *rise)
+static bool search_line(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
+                        double slope, double *share, double *rise)
 {
   double energy = d->report->energy_J, allowed = d->strict ? -downhill : uphill, at;
   *rise = -0.5;
@@ -112,7 +121,7 @@ static bool search(struct dea_context *ctx, struct dea_solid *s, const struct de
 }
 
 /* The shift of the next step from how this one went. */
-static void adapt(struct dea_solid *s, struct descent *d, double share, double rise)
+static void adapt_shift(struct dea_solid *s, struct newton *d, double share, double rise)
 {
   if (share < 1 || rise > 0) {
     d->shift_Pa = d->shift_Pa > 0 ? d->shift_Pa * (share < 0.2 ? shift_up * shift_up : shift_up)
@@ -125,19 +134,56 @@ static void adapt(struct dea_solid *s, struct descent *d, double share, double r
   }
 }
 
-/* s->step = -K^-1 g with the factor that is there. */
-static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
+/* ---- stresses and pressures at the end of a step ---- */
+
+/* One element: predicted stresses into their place, pressures into s->theta, which is free here. */
+static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_V,
+                                  const double *step, double share, bool stresses)
 {
-  for (size_t k = 0; k < s->dofs; k++) {
-    s->trial[k] = -s->g[k];
+  size_t e = s->own[k], pressures = (size_t)s->shape.pressures;
+  double X[DEA_HEX_DOFS_MAX] = {0}, u[DEA_HEX_DOFS_MAX] = {0}, way[DEA_HEX_DOFS_MAX] = {0};
+  double *out = s->predicted + k * dea_hex_predicted_count(&s->shape);
+  dea_solid_gather(s, e, s->grid->X, X);
+  dea_solid_gather(s, e, s->u, u);
+  dea_solid_gather(s, e, step, way);
+  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
+  dea_status status = dea_hex_predict(&s->shape, &layer, X, u, s->multiplier + e * pressures,
+                                      s->active[e] ? voltage_V : 0, way, share, stresses, out);
+  memcpy(s->theta + e * pressures, out, pressures * sizeof *out);
+  return status;
+}
+
+dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                             const double *step, double share, bool stresses, bool pressures)
+{
+  size_t count = dea_solid_pressure_count(s);
+  dea_status status = DEA_OK;
+  stresses = stresses && s->field == NULL;
+  memset(s->theta, 0, count * sizeof *s->theta);
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    if (s->grid->flat[s->own[k]]) {
+      continue; // no pressure, and the tangent that it has
+    }
+    status = predict_element(s, k, voltage_V, step, share, stresses);
   }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  s->predicted_fits = false;
+  status = dea_solid_agree(ctx, status);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the stresses at the end of a step cannot be had");
+  }
+  s->predicted_fits = stresses;
+  if (pressures) {
+    dea_solid_sum(s->theta, count);
+    memcpy(s->multiplier, s->theta, count * sizeof *s->multiplier);
+  }
   return DEA_OK;
 }
 
+/* ---- one minimum ---- */
+
 /* Takes the share of the step, with the stresses and the pressures that go with it. */
-static dea_status take(struct dea_context *ctx, struct dea_solid *s, const struct descent *d,
-                       double share, bool stresses)
+static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
+                            double share, bool stresses)
 {
   if (!d->strict) {
     DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->step, share, stresses,
@@ -148,7 +194,7 @@ static dea_status take(struct dea_context *ctx, struct dea_solid *s, const struc
 }
 
 /* A step with the factor that is there, close to the equilibrium. */
-static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct descent *d)
+static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
   DEA_TRY(ctx, linear_step(ctx, s));
   for (size_t k = 0; k < s->dofs; k++) {
@@ -165,12 +211,12 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
   }
   d->chords++;
   d->report->corrections++;
-  return take(ctx, s, d, 1, false);
+  return take_step(ctx, s, d, 1, false);
 }
 
 /* A step with the tangent at hand, or from the last equilibrium along the tangent of its path.
  * *done: the step is too small to matter. */
-static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, struct descent *d,
+static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                               bool *done)
 {
   double there = 0, share, rise;
@@ -183,15 +229,15 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     }
     DEA_TRY(ctx, linear_step(ctx, s));
     double slope = dea_solid_dot(s, s->g, s->step);
-    if (search(ctx, s, d, slope, &share, &rise)) {
+    if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
       *done = !start && there == 0 && largest(s, s->step) < step_small * s->length_m;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
-      DEA_TRY(ctx, take(ctx, s, d, share, !*done));
+      DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
       if (start) {
         return DEA_OK;
       }
-      adapt(s, d, share, rise);
+      adapt_shift(s, d, share, rise);
       d->chords = 0;
       d->chord = quadratic && there == 0;
       return DEA_OK;
@@ -204,26 +250,8 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
 }
 
-/* Inertia of the tangent at the equilibrium; its factor is the start of the next step. */
-static dea_status finish(struct dea_context *ctx, struct dea_solid *s, struct descent *d,
-                         bool tangent)
-{
-  s->predicted_fits = false;
-  if (!tangent) {
-    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &d->report->energy_J));
-  }
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
-  d->report->factorisations++;
-  s->factor_fits = d->report->unstable_modes == 0;
-  if (!s->factor_fits) { // of a solid that kappa leaves a little compressible
-    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
-    d->report->factorisations++;
-  }
-  return DEA_OK;
-}
-
 /* Energy, forces and, where the next step needs one, the tangent at s->u. */
-static dea_status look(struct dea_context *ctx, struct dea_solid *s, struct descent *d)
+static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
   struct dea_solid_report *report = d->report;
   bool chord = d->chord || d->start;
@@ -241,10 +269,31 @@ static dea_status look(struct dea_context *ctx, struct dea_solid *s, struct desc
   return DEA_OK;
 }
 
-dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                              struct dea_solid_report *report)
+/* Inertia of the tangent at the equilibrium; its factor is the start of the next step. */
+static dea_status count_unstable(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                                 bool tangent)
 {
-  struct descent d = {.voltage_V = voltage_V, .start = s->factor_fits, .report = report};
+  s->predicted_fits = false;
+  if (!tangent) {
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &d->report->energy_J));
+  }
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
+  d->report->factorisations++;
+  s->factor_fits = d->report->unstable_modes == 0;
+  if (!s->factor_fits) { // of a solid that kappa leaves a little compressible
+    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
+    d->report->factorisations++;
+  }
+  return DEA_OK;
+}
+
+/* Stationary point of the energy, downhill from s->u: a minimum, or a point that has a valley on
+ * all sides that a Newton step sees. Pressures follow; where they do not, report->theta_max is
+ * above DEA_SOLID_THETA_SMALL. */
+static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                           struct dea_solid_report *report)
+{
+  struct newton d = {.voltage_V = voltage_V, .start = s->factor_fits, .report = report};
   s->factor_fits = false;
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
   for (int i = 0; i < NEWTON_MAX; i++) {
@@ -253,10 +302,10 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, doub
       d.strict = true;
       d.chord = s->predicted_fits = false;
     }
-    DEA_TRY(ctx, look(ctx, s, &d));
+    DEA_TRY(ctx, evaluate(ctx, s, &d));
     bool fits = d.strict || report->theta_max < DEA_SOLID_THETA_SMALL;
     if (i > 0 && fits && (report->residual < residual_small || d.unresolved > 2)) {
-      return finish(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->predicted_fits);
+      return count_unstable(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->predicted_fits);
     }
     if (d.chord) {
       DEA_TRY(ctx, chord_step(ctx, s, &d));
@@ -264,22 +313,24 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, doub
       DEA_TRY(ctx, newton_step(ctx, s, &d, &done));
     }
     if (done && fits) {
-      return finish(ctx, s, &d, false);
+      return count_unstable(ctx, s, &d, false);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
                   NEWTON_MAX, report->residual);
 }
 
+/* ---- held components that move ---- */
+
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
-                                          double voltage_V, struct dea_solid_report *report)
+                                          struct dea_solid_report *report)
 {
-  struct descent d = {.voltage_V = voltage_V, .report = report};
+  struct newton d = {.voltage_V = s->voltage_V, .report = report};
   double energy, there = 0;
   s->factor_fits = s->predicted_fits = false;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->voltage_V, s->u));
   s->driven = true;
-  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_TANGENT, &energy);
+  dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
   s->driven = false;
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, factorise_definite(ctx, s, &d, &there));
@@ -289,21 +340,49 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
     for (size_t i = 0; i < s->dofs; i++) {
       s->trial[i] = s->u[i] + s->drive[i] + length * s->step[i];
     }
-    if (dea_solid_energy(s, s->trial, voltage_V, &energy) == DEA_OK) {
+    if (dea_solid_energy(s, s->trial, s->voltage_V, &energy) == DEA_OK) {
       for (size_t i = 0; i < s->dofs; i++) {
         s->step[i] = s->trial[i] - s->u[i];
       }
-      return take(ctx, s, &d, 1, true);
+      return take_step(ctx, s, &d, 1, true);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the prescribed displacements invert an element");
 }
 
-void dea_solid_update_multipliers(struct dea_solid *s)
+/* ---- multipliers ---- */
+
+double dea_solid_update_loads(struct dea_solid *s)
 {
-  size_t pressures = (size_t)s->shape.pressures;
-  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] += layer->law != NULL ? layer->kappa_Pa * s->theta[i] : 0;
+  double error = 0;
+  for (size_t k = 0; k < s->load_count; k++) {
+    if (s->loads[k].update != NULL) {
+      error = fmax(error, s->loads[k].update(s->loads[k].self, s->u));
+    }
   }
+  return error;
+}
+
+/* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
+ * more minima at given multipliers may go on, but violate the constraints more and more. */
+dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report)
+{
+  double best = INFINITY;
+  for (int i = 0, worse = 0; i < OUTER_MAX && worse < WORSE_MAX; i++) {
+    DEA_TRY(ctx, minimise(ctx, s, s->voltage_V, report));
+    report->load_error = dea_solid_update_loads(s);
+    double error = fmax(report->theta_max / DEA_SOLID_THETA_SMALL, report->load_error);
+    if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {
+      return DEA_OK;
+    }
+    if (report->theta_max >= DEA_SOLID_THETA_SMALL) {
+      dea_solid_update_multipliers(s);
+    }
+    worse = error < best ? 0 : worse + 1;
+    best = fmin(best, error);
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                  "the constraints do not settle (J - 1: %.1e; loads: %.2g of what is allowed)",
+                  report->theta_max, report->load_error);
 }

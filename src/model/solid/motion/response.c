@@ -1,7 +1,7 @@
 /* Response to an AC excitation of the voltage: superposition of modes, and a series for those that
  * are higher (docs/theory/vibration.md). */
-#include "model/solid/assembly/internal.h"
-#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/motion/vibration.h"
 
 #include <complex.h>

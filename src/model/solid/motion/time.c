@@ -1,12 +1,40 @@
-#include "model/solid/motion/time_state.h"
+#include "model/solid/motion/time.h"
 
-#include "model/solid/assembly/inertia.h"
-#include "model/solid/assembly/internal.h"
-#include "model/solid/assembly/mass.h"
-#include "model/solid/equilibrium/branch.h"
+#include "model/alpha.h"
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/potential.h"
+#include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
 #include <string.h>
+
+struct dea_solid_time {
+  struct dea_solid *solid;
+  struct dea_internal_variables *history;
+  struct dea_solid_inertia inertia;
+  bool inertial, stay;    // stay: of the solid before
+  bool open;              // a step has been tried, the solid is not at the accepted state
+  bool start, start_next; // acceleration and pressures belong to other forces: after a jump
+  struct dea_alpha alpha;
+  size_t count;                     // 3 node_count
+  double *v, *a, *F;                // at the accepted state; F: all forces but those of inertia
+  double *v_next, *a_next, *F_next; // of the step that is tried
+  double *first;                    // [count] displacements at the start
+  double *u_before;                 // [count] of the state before the accepted one
+  double *work;                     // [count]
+  double step_s, step_before_s;     // of the step that is tried; of the accepted one, 0: a corner
+  double *keep, *controls;          // the accepted state, as of a path
+  size_t keep_count, control_count; // numbers in them
+  double stiffened;                 // kappa is so many times that of the layers
+  struct dea_solid_energies sums, sums_next;
+  double first_J; // stored energy at the start
+  double capacitance_F, capacitance_next_F;
+};
+
+/* ---- forces and stored energy at a state ---- */
 
 /* Forces of everything but inertia at the solid's displacements, supports included. */
 static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t, double *F)
@@ -20,9 +48,29 @@ static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t,
   return DEA_OK;
 }
 
+/* Elastic and electric energy and that of loads, and capacitance, without what steps add. */
+static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t, double *stored,
+                              double *capacitance_F)
+{
+  struct dea_solid *s = t->solid;
+  double potential = 0, capacitance = 0;
+  s->history = NULL;
+  dea_status status = dea_solid_energy(s, s->u, s->voltage_V, &potential);
+  if (status == DEA_OK) {
+    status = dea_solid_capacitance(ctx, s, &capacitance);
+  }
+  s->history = t->history;
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
+  }
+  *capacitance_F = isnan(capacitance) ? 0 : capacitance; // NAN: no electrodes
+  *stored = potential + *capacitance_F * s->voltage_V * s->voltage_V;
+  return DEA_OK;
+}
+
 /* ---- creation ---- */
 
-static dea_status allocate(struct dea_context *ctx, struct dea_solid_time *t)
+static dea_status allocate_time(struct dea_context *ctx, struct dea_solid_time *t)
 {
   double **const memory[] = {&t->v,
                              &t->a,
@@ -46,11 +94,11 @@ static dea_status allocate(struct dea_context *ctx, struct dea_solid_time *t)
   return DEA_OK;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_solid_time *t,
-                          const struct dea_solid_time_options *options)
+static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
+                             const struct dea_solid_time_options *options)
 {
   struct dea_solid *s = t->solid;
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, allocate(ctx, t)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(ctx, t)));
   if (options->branches != NULL) {
     DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->history));
     dea_internal_variables_begin(t->history, s, 0);
@@ -61,7 +109,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_solid_time *t,
   }
   memcpy(t->first, s->u, t->count * sizeof *t->first);
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
-  DEA_TRY(ctx, dea_time_find_stored(ctx, t, &t->first_J, &t->capacitance_F));
+  DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F));
   return DEA_OK;
 }
 
@@ -85,7 +133,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   t->stiffened = 1;
   t->stay = solid->stay;
   solid->stay = t->stay || t->inertial; // inertia decides where a film goes
-  dea_status status = prepare(ctx, t, options);
+  dea_status status = start_time(ctx, t, options);
   if (status != DEA_OK) {
     dea_solid_time_destroy(ctx, t);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -95,7 +143,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
 }
 
 /* Back to the accepted state. */
-static void go_back(struct dea_solid_time *t)
+static void return_to_accepted(struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   t->open = false;
@@ -111,7 +159,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
     return;
   }
   if (t->open) {
-    go_back(t);
+    return_to_accepted(t);
   }
   t->solid->history = NULL;
   t->solid->inertia = NULL;
@@ -147,14 +195,14 @@ double *dea_solid_velocity(struct dea_solid_time *time)
 /* ---- steps ---- */
 
 /* The accepted state, to come back to. */
-static dea_status keep(struct dea_context *ctx, struct dea_solid_time *t)
+static dea_status save_accepted(struct dea_context *ctx, struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   const struct dea_load_steps *path = &s->path;
   if (t->open) {
-    go_back(t);
+    return_to_accepted(t);
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, s, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   if (t->keep_count != path->state_count || t->control_count != path->control_count) {
     double *state = dea_resize(ctx, t->keep, path->state_count, sizeof *state);
     t->keep = state != NULL ? state : t->keep;
@@ -209,8 +257,8 @@ static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t,
 }
 
 /* The minimum of the potential that has been set up; the solid as it was when there is none. */
-static dea_status minimise(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
-                           struct dea_solid_report *report)
+static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
+                             struct dea_solid_report *report)
 {
   struct dea_solid *s = t->solid;
   follow_stiffness(t);
@@ -218,7 +266,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid_time *t, do
   dea_status status = dea_solid_solve(ctx, s, voltage_V, report);
   s->inertia = NULL;
   if (status != DEA_OK) {
-    go_back(t);
+    return_to_accepted(t);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   return DEA_OK;
@@ -239,7 +287,7 @@ static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_ti
     inertia->constant[i] = 0;
   }
   s->factor_fits = false;
-  DEA_TRY(ctx, minimise(ctx, t, s->voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, s->voltage_V, report));
   for (size_t i = 0; i < t->count; i++) {
     t->a[i] = (s->u[i] - inertia->around[i]) / (h * h);
   }
@@ -256,7 +304,7 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
 {
   struct dea_solid *s = t->solid;
   double h = step_s;
-  DEA_TRY(ctx, keep(ctx, t));
+  DEA_TRY(ctx, save_accepted(ctx, t));
   if (t->history != NULL) {
     dea_internal_variables_begin(t->history, s, h);
   }
@@ -269,7 +317,7 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
   t->start_next = false;
   s->factor_fits = s->factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
   t->step_s = h;
-  DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
   return DEA_OK;
 }
 
@@ -279,26 +327,110 @@ dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *
   if (t->inertial && !(t->step_s > 0)) {
     return dea_solid_time_jump(ctx, t, voltage_V, report);
   }
-  DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
   return DEA_OK;
 }
 
 void dea_solid_time_reject(struct dea_solid_time *time)
 {
   if (time->open) {
-    go_back(time);
+    return_to_accepted(time);
   }
 }
+
+/* ---- energies, works and error of a step ---- */
+
+/* The integral of Q dV is half that of C by V^2, along which C is nearly straight. */
+double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2])
+{
+  const double square[2] = {voltage_V[0] * voltage_V[0], voltage_V[1] * voltage_V[1]};
+  return capacitance_F[1] * square[1] - capacitance_F[0] * square[0] -
+         0.25 * (capacitance_F[0] + capacitance_F[1]) * (square[1] - square[0]);
+}
+
+static double half_square(const double *v, const double *momentum, size_t count)
+{
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    sum += 0.5 * v[i] * momentum[i];
+  }
+  return sum;
+}
+
+/* sums_next at the end of the step that was tried; needs F_next and v_next. */
+static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  struct dea_solid *s = t->solid;
+  struct dea_solid_branch_energies branches = {0};
+  struct dea_solid_energies *sums = &t->sums_next;
+  double stored = 0, work = 0;
+  *sums = t->sums;
+  if (t->history != NULL) {
+    DEA_TRY(ctx, dea_internal_variables_close(ctx, t->history, s, &branches));
+  }
+  DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F));
+  const double voltage_V[2] = {t->controls[0], s->voltage_V};
+  const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
+  sums->supply += dea_solid_source_work(voltage_V, capacitance_F);
+  sums->stored = stored - t->first_J;
+  sums->branches = branches.stored;
+  sums->dissipated += branches.dissipated;
+  if (t->inertial) {
+    for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
+      work -= 0.5 * (t->F[i] + t->F_next[i]) * (s->u[i] - t->keep[i]);
+    }
+    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->v_next, t->work));
+    sums->kinetic = half_square(t->v_next, t->work, t->count);
+    sums->damped += t->step_s > 0 ? work - (sums->kinetic - t->sums.kinetic) : 0;
+  }
+  return DEA_OK;
+}
+
+/* Share of the stiffness that relaxes within a step, of the layer with most of it. */
+static double relaxing(const struct dea_solid_time *t)
+{
+  double most = 0;
+  for (size_t l = 0; l < t->solid->layer_count && t->history != NULL; l++) {
+    const struct dea_branches *branches = &t->history->branches[l];
+    double sum = 0, all = dea_constituent_modulus(&t->solid->layers[l]);
+    for (size_t i = 0; i < branches->count; i++) {
+      sum -= branches->branch[i].modulus_Pa * expm1(-t->step_s / branches->branch[i].time_s);
+      all += branches->branch[i].modulus_Pa;
+    }
+    most = fmax(most, sum / all);
+  }
+  return most;
+}
+
+/* Estimate of the error of the step that was tried. With inertia that of the acceleration taken as
+ * straight (Zienkiewicz, Xie 1991). Without it only the branches have a memory, and what counts is
+ * that C^-1 is taken as straight over the step: of what relaxes in it, the difference to the step
+ * before drawn on; after a corner, where there is none, to the way gone. */
+static double step_error(const struct dea_solid_time *t)
+{
+  const double *u = t->solid->u, *from = t->keep;
+  double h = t->step_s, before = t->step_before_s, most = 0, share = relaxing(t);
+  double weight = before > 0 ? 0.25 * h / (h + before) : 0.125;
+  for (size_t i = 0; i < t->count; i++) {
+    double way = before > 0 ? h / before * (from[i] - t->u_before[i]) : 0;
+    double off = t->inertial ? h * h * (t->a_next[i] - t->a[i]) / 12
+                             : share * weight * (u[i] - from[i] - way);
+    most = fmax(most, fabs(off));
+  }
+  return most;
+}
+
+/* ---- the end of a step ---- */
 
 /* What goes with the state that has been found, so that taking it cannot fail. */
 static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
 {
   dea_status status = find_forces(ctx, t, t->F_next);
   if (status == DEA_OK) {
-    status = dea_time_find_energies(ctx, t);
+    status = find_energies(ctx, t);
   }
   if (status != DEA_OK) {
-    go_back(t);
+    return_to_accepted(t);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   return DEA_OK;
@@ -314,12 +446,12 @@ dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *
   }
   DEA_TRY(ctx, close_step(ctx, t));
   if (error_m != NULL) {
-    *error_m = h > 0 ? dea_time_step_error(t) : 0;
+    *error_m = h > 0 ? step_error(t) : 0;
   }
   return DEA_OK;
 }
 
-static void swap(double **a, double **b)
+static void swap_arrays(double **a, double **b)
 {
   double *first = *a;
   *a = *b;
@@ -331,9 +463,9 @@ void dea_solid_time_accept(struct dea_solid_time *t)
   if (t->history != NULL) {
     dea_internal_variables_accept(t->history, t->solid);
   }
-  swap(&t->F, &t->F_next);
-  swap(&t->v, &t->v_next);
-  swap(&t->a, &t->a_next);
+  swap_arrays(&t->F, &t->F_next);
+  swap_arrays(&t->v, &t->v_next);
+  swap_arrays(&t->a, &t->a_next);
   memcpy(t->u_before, t->keep, t->count * sizeof *t->u_before);
   t->step_before_s = t->step_s;
   t->sums = t->sums_next;
@@ -349,7 +481,7 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
                                struct dea_solid_report *report)
 {
   struct dea_solid *s = t->solid;
-  DEA_TRY(ctx, keep(ctx, t));
+  DEA_TRY(ctx, save_accepted(ctx, t));
   t->step_s = 0;
   t->start_next = t->inertial;
   if (t->history != NULL) {
@@ -361,7 +493,7 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
     s->voltage_V = voltage_V;
     DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
   } else {
-    DEA_TRY(ctx, minimise(ctx, t, voltage_V, report));
+    DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
   }
   return DEA_OK;
 }
@@ -369,4 +501,13 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
 struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time, bool tried)
 {
   return tried ? time->sums_next : time->sums;
+}
+
+double dea_solid_time_motion(const struct dea_solid_time *t)
+{
+  double most = 0;
+  for (size_t i = 0; i < t->count; i++) {
+    most = fmax(most, fabs(t->solid->u[i] - t->first[i]));
+  }
+  return most;
 }

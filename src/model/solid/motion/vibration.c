@@ -1,8 +1,11 @@
-/* Frequencies and shapes by SLEPc: Krylov-Schur on K^-1 M with the factor of K that the solver of
- * equilibria makes (docs/theory/vibration.md). */
 #include "model/solid/motion/vibration.h"
 
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/check.h"
+#include "model/solid/equilibrium/modes.h"
 
 #include <slepceps.h>
 
@@ -156,7 +159,7 @@ static dea_status find(struct dea_context *ctx, struct found *f, int count)
     if (round > 0) {
       DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->K, &f->solid->factor));
     }
-    DEA_TRY(ctx, dea_solid_petsc(ctx, search(f, wanted), "EPSSolve"));
+    DEA_PETSC(ctx, search(f, wanted));
     sort(f);
     DEA_TRY(ctx, certify(ctx, f, count, &all));
     if (all) {
@@ -196,8 +199,7 @@ static dea_status make_room(struct dea_context *ctx, struct found *f, int needed
   if (dea_solid_any(f->order == NULL || f->square == NULL)) {
     return DEA_E_MEMORY;
   }
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecDuplicateVecs(f->solid->right, f->room, &f->vectors),
-                               "VecDuplicateVecs"));
+  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->right, f->room, &f->vectors));
   return DEA_OK;
 }
 

@@ -1,7 +1,9 @@
 /* Response of a solid with branches to an AC excitation of the voltage: its stiffness is complex
  * and depends on the frequency, so that the system is solved at each (docs/theory/vibration.md). */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/motion/vibration.h"
 
 #include <complex.h>
@@ -26,8 +28,7 @@ struct system {
 static dea_status copy_tangent(struct dea_context *ctx, struct system *y, Mat *out)
 {
   DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, y->solid));
-  DEA_TRY(ctx,
-          dea_solid_petsc(ctx, MatDuplicate(y->solid->K, MAT_COPY_VALUES, out), "MatDuplicate"));
+  DEA_PETSC(ctx, MatDuplicate(y->solid->K, MAT_COPY_VALUES, out));
   return DEA_OK;
 }
 
@@ -46,8 +47,7 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   s->history = NULL;
   dea_internal_variables_destroy(ctx, history);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx,
-          dea_solid_petsc(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN), "MatAXPY"));
+  DEA_PETSC(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN));
   return DEA_OK;
 }
 
@@ -167,8 +167,7 @@ static PetscErrorCode create_matrix(struct system *y, PetscInt rows, const Petsc
 static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, double complex **sum)
 {
   PetscInt from, end, longest = 0;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatGetOwnershipRange(y->part[0], &from, &end),
-                               "MatGetOwnershipRange"));
+  DEA_PETSC(ctx, MatGetOwnershipRange(y->part[0], &from, &end));
   size_t rows = (size_t)(end - from);
   PetscInt *lengths = dea_alloc(ctx, 2 * rows + 1, sizeof *lengths);
   dea_status status = dea_solid_any(lengths == NULL) ? DEA_E_MEMORY : DEA_OK;
@@ -204,9 +203,9 @@ static dea_status interleave(struct dea_context *ctx, Vec rows, Vec pairs, int o
 {
   PetscInt count;
   PetscScalar *a, *b;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetLocalSize(rows, &count), "VecGetLocalSize"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(rows, &a), "VecGetArray"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(pairs, &b), "VecGetArray"));
+  DEA_PETSC(ctx, VecGetLocalSize(rows, &count));
+  DEA_PETSC(ctx, VecGetArray(rows, &a));
+  DEA_PETSC(ctx, VecGetArray(pairs, &b));
   for (PetscInt i = 0; i < count; i++) {
     if (back) {
       a[i] = b[2 * i + offset];
@@ -214,8 +213,8 @@ static dea_status interleave(struct dea_context *ctx, Vec rows, Vec pairs, int o
       b[2 * i + offset] = a[i];
     }
   }
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(pairs, &b), "VecRestoreArray"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(rows, &a), "VecRestoreArray"));
+  DEA_PETSC(ctx, VecRestoreArray(pairs, &b));
+  DEA_PETSC(ctx, VecRestoreArray(rows, &a));
   return DEA_OK;
 }
 
@@ -232,7 +231,7 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, y->A));
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factor(ctx, y->A, &y->factor));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(y->factor, y->right, y->answer), "MatSolve"));
+  DEA_PETSC(ctx, MatSolve(y->factor, y->right, y->answer));
   for (int c = 0; c < 2; c++) {
     DEA_TRY(ctx, interleave(ctx, s->solution, y->answer, c, true));
     DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out[c]));
@@ -244,7 +243,7 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
 static dea_status set_right(struct dea_context *ctx, struct system *y, double *force)
 {
   DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->right));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecSet(y->right, 0), "VecSet"));
+  DEA_PETSC(ctx, VecSet(y->right, 0));
   DEA_TRY(ctx, interleave(ctx, y->solid->right, y->right, 0, false));
   return DEA_OK;
 }

@@ -1,6 +1,4 @@
-/* The potential of a coupled field: unknowns, electrodes, and the solution at given displacements
- * (docs/theory/coupled.md). */
-#include "model/solid/assembly/internal.h"
+#include "model/solid/assembly/potential.h"
 
 #include "model/solid/element/hex_coupled.h"
 
@@ -92,22 +90,18 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s, const PetscInt *own,
-                                  const PetscInt *others)
+dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_row_lengths *lengths)
 {
   struct dea_solid_field *field = s->field;
   PetscInt rows = (PetscInt)(s->end_node - s->first_node), all = (PetscInt)s->grid->node_count;
   if (field == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_solid_petsc(ctx,
-                               MatCreateSBAIJ(PETSC_COMM_WORLD, 1, rows, rows, all, all, 0, own, 0,
-                                              others, &field->L),
-                               "MatCreateSBAIJ"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSetOption(field->L, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE),
-                               "MatSetOption"));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatCreateVecs(field->L, &field->solution, &field->charge),
-                               "MatCreateVecs"));
+  DEA_PETSC(ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, 1, rows, rows, all, all, 0, lengths->own, 0,
+                                lengths->others, &field->L));
+  DEA_PETSC(ctx, MatSetOption(field->L, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  DEA_PETSC(ctx, MatCreateVecs(field->L, &field->solution, &field->charge));
   return DEA_OK;
 }
 
@@ -124,20 +118,6 @@ void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s)
   }
 }
 
-dea_status dea_solid_coupled_element(struct dea_solid *s, size_t e, const double *X,
-                                     const double *u, const double *multiplier, const double *psi,
-                                     enum dea_eval_order level)
-{
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  double potential[DEA_HEX_NODES_MAX];
-  for (int n = 0; n < s->shape.nodes; n++) {
-    potential[n] = psi[nodes[n]];
-  }
-  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
-  return dea_hex_coupled_evaluate(&s->shape, &layer, X, u, potential, multiplier,
-                                  s->field->scale_V_per_m, level, s->element);
-}
-
 /* Adds an element to L and what its held potentials ask of the others to the right-hand side. */
 static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, size_t e,
                                const double *u, const double *psi)
@@ -147,9 +127,9 @@ static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, siz
   const unsigned char *held = s->held + 3 * s->grid->node_count;
   PetscInt rows[DEA_HEX_NODES_MAX];
   int count = s->shape.nodes;
+  dea_solid_gather(s, e, s->grid->X, X);
+  dea_solid_gather(s, e, u, at);
   for (int n = 0; n < count; n++) {
-    memcpy(X + 3 * n, s->grid->X + 3 * nodes[n], 3 * sizeof(double));
-    memcpy(at + 3 * n, u + 3 * nodes[n], 3 * sizeof(double));
     rows[n] = nodes[n];
   }
   dea_status status = dea_hex_capacity(&s->shape, &s->layers[s->layer[e]], X, at, L);
@@ -178,53 +158,50 @@ static dea_status add_pins(struct dea_context *ctx, struct dea_solid *s, size_t 
   double size = fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
   for (int n = 0; n < s->shape.nodes; n++) {
     if (held[nodes[n]]) {
-      DEA_TRY(ctx, dea_solid_petsc(ctx,
-                                   MatSetValue(s->field->L, nodes[n], nodes[n],
-                                               s->field->permittivity * size, ADD_VALUES),
-                                   "MatSetValue"));
+      DEA_PETSC(ctx, MatSetValue(s->field->L, nodes[n], nodes[n], s->field->permittivity * size,
+                                 ADD_VALUES));
     }
   }
   return DEA_OK;
 }
 
 /* L and, from the held potentials in psi, its right-hand side. */
-static dea_status assemble(struct dea_context *ctx, struct dea_solid *s, const double *u,
-                           const double *psi)
+static dea_status assemble_capacity(struct dea_context *ctx, struct dea_solid *s, const double *u,
+                                    const double *psi)
 {
   Mat L = s->field->L;
   dea_status status = DEA_OK;
   memset(s->field->right, 0, s->grid->node_count * sizeof(double));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatZeroEntries(L), "MatZeroEntries"));
+  DEA_PETSC(ctx, MatZeroEntries(L));
   for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
     size_t e = s->own[k];
     status = dielectric(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
-  status = dea_solid_agree(NULL, s, status);
+  status = dea_solid_agree(NULL, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, L));
   if (status != DEA_OK) {
     return status; // an inverted element: not worth a message in a line search
   }
-  dea_solid_sum(s, s->field->right, s->grid->node_count);
+  dea_solid_sum(s->field->right, s->grid->node_count);
   return DEA_OK;
 }
 
 /* field->right becomes L^-1 times itself. */
-static dea_status solve(struct dea_context *ctx, struct dea_solid *s)
+static dea_status solve_capacity(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_solid_field *field = s->field;
   size_t first = s->first_node, here = s->end_node - first;
   PetscScalar *values;
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(field->charge, &values), "VecGetArray"));
+  DEA_PETSC(ctx, VecGetArray(field->charge, &values));
   memcpy(values, field->right + first, here * sizeof(double));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(field->charge, &values), "VecRestoreArray"));
+  DEA_PETSC(ctx, VecRestoreArray(field->charge, &values));
   DEA_TRY(ctx, dea_solid_factor(ctx, field->L, &field->factor));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, MatSolve(field->factor, field->charge, field->solution),
-                               "MatSolve"));
+  DEA_PETSC(ctx, MatSolve(field->factor, field->charge, field->solution));
   memset(field->right, 0, s->grid->node_count * sizeof(double));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecGetArray(field->solution, &values), "VecGetArray"));
+  DEA_PETSC(ctx, VecGetArray(field->solution, &values));
   memcpy(field->right + first, values, here * sizeof(double));
-  DEA_TRY(ctx, dea_solid_petsc(ctx, VecRestoreArray(field->solution, &values), "VecRestoreArray"));
-  dea_solid_sum(s, field->right, s->grid->node_count);
+  DEA_PETSC(ctx, VecRestoreArray(field->solution, &values));
+  dea_solid_sum(field->right, s->grid->node_count);
   return DEA_OK;
 }
 
@@ -242,14 +219,14 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
   for (size_t n = 0; n < nodes; n++) {
     psi[n] = held[n] ? field->share[n] * voltage_V / c : psi[n];
   }
-  dea_status status = assemble(ctx, s, u, psi);
+  dea_status status = assemble_capacity(ctx, s, u, psi);
   if (status != DEA_OK) {
     return status;
   }
   for (size_t n = 0; n < nodes; n++) {
     field->right[n] -= held[n] ? 0 : force[n] / (c * c);
   }
-  DEA_TRY(ctx, solve(ctx, s));
+  DEA_TRY(ctx, solve_capacity(ctx, s));
   for (size_t n = 0; n < nodes; n++) {
     psi[n] = held[n] ? psi[n] : field->right[n];
   }

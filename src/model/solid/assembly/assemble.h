@@ -1,0 +1,29 @@
+/* Energy, forces and tangent of the whole solid. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_ASSEMBLE_H
+#define DEA_MODEL_SOLID_ASSEMBLY_ASSEMBLE_H
+
+#include "model/solid/assembly/problem.h"
+
+/* The terms of inertia in the potential of a step (motion/time.h):
+ * c/2 (u - u*) . M (u - u*) + d . u. */
+struct dea_solid_inertia {
+  double factor;    // c [1/s^2]
+  double *around;   // [node_count][3] u* [m]
+  double *constant; // [node_count][3] d [N]
+  double *away;     // [node_count][3] u - u* of the last evaluation
+  double *force;    // [node_count][3] M (u - u*) of the last evaluation
+};
+
+/* Checks that flat elements are what they can be, and makes s->spring for them if there are any.
+ * DEA_E_UNSUPPORTED for anisotropic layers, without a law, in a coupled field. */
+dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
+
+/* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
+
+/* At s->u: energy and, up to the level, g and K; also theta, reactions and the scales. With
+ * s->predicted_fits K has the predicted stresses. */
+dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              enum dea_eval_order level, double *energy);
+
+#endif

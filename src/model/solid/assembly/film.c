@@ -1,0 +1,88 @@
+#include "model/solid/assembly/film.h"
+
+#include "material/plane.h"
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/potential.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Takes the film's extremes of one element into *out. */
+static dea_status extremes_of(const struct dea_solid *s, size_t e,
+                              const struct dea_material *material, double pre_stretch,
+                              struct dea_solid_extremes *out)
+{
+  const struct dea_constituent at_step = dea_solid_constituent_at(s, e), *layer = &at_step;
+  double voltage_V = s->active[e] ? s->voltage_V : 0;
+  const double *multiplier = s->multiplier + e * (size_t)s->shape.pressures;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  struct dea_hex_membrane membrane;
+  dea_solid_gather(s, e, s->grid->X, X);
+  dea_solid_gather(s, e, s->u, u);
+  dea_status status =
+      s->grid->flat[e]
+          ? dea_membrane_state(&s->flat, layer, X, u, voltage_V, &membrane)
+          : dea_hex_membrane_eval(&s->shape, layer, X, u, multiplier, voltage_V, &membrane);
+  for (int p = 0; status == DEA_OK && p < membrane.count; p++) {
+    double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
+    double stretch = pre_stretch * sqrt(membrane.area[p]);
+    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
+    if (s->active[e]) {
+      out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+      out->breakdown_margin =
+          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
+    }
+  }
+  return status;
+}
+
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
+                                 double *capacitance_F)
+{
+  // charge: minus the derivative of the energy by V at fixed displacements; by V^2 it is C/2. The
+  // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
+  double thickness = 0, energy[2] = {0, 0};
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    const struct dea_constituent *layer = &s->layers[s->layer[e]];
+    bool counts = s->field != NULL ? layer->permittivity_F_per_m > 0 : s->active[e];
+    thickness = fmax(thickness, counts ? layer->thickness_m : 0);
+  }
+  double step = 1e12 * thickness * thickness, square = s->voltage_V * s->voltage_V;
+  const double squares[2] = {fmax(square - step, 0), square + step};
+  dea_status status = DEA_OK;
+  memcpy(s->trial, s->u, s->dofs * sizeof(double));
+  for (int i = 0; i < 2 && status == DEA_OK; i++) {
+    status = dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->trial);
+    if (status == DEA_OK) {
+      status = dea_solid_energy(s, s->trial, sqrt(squares[i]), &energy[i]);
+    }
+  }
+  *capacitance_F =
+      status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
+  return status;
+}
+
+dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
+                              double pre_stretch, struct dea_solid_extremes *out)
+{
+  dea_status status = DEA_OK;
+  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
+  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+    size_t e = s->own[k];
+    if (s->layers[s->layer[e]].permittivity_F_per_m > 0) { // the film
+      status = extremes_of(s, e, material, pre_stretch, out);
+    }
+  }
+  status = dea_solid_agree(NULL, status);
+  if (status != DEA_OK) {
+    return status;
+  }
+  out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
+  out->breakdown_margin = -dea_solid_largest(-out->breakdown_margin);
+  out->min_tension_N_per_m = -dea_solid_largest(-out->min_tension_N_per_m);
+  if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
+    out->breakdown_margin = NAN;
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,23 @@
+/* What is said of the film at the last equilibrium: capacitance and extremes. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_FILM_H
+#define DEA_MODEL_SOLID_ASSEMBLY_FILM_H
+
+#include "model/solid/assembly/solid.h"
+
+struct dea_material;
+
+/* Capacitance between the electrodes: charge over voltage. NAN without electrodes. */
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
+                                 double *capacitance_F);
+
+/* Extremes of the film (elements of layers with a permittivity). */
+struct dea_solid_extremes {
+  double true_field_V_per_m;  // largest V over the current thickness
+  double breakdown_margin;    // smallest; NAN when unknown
+  double min_tension_N_per_m; // smallest principal membrane force per current length
+};
+/* material: of the film, for its breakdown field; pre_stretch: of it. */
+dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,
+                              double pre_stretch, struct dea_solid_extremes *out);
+
+#endif

@@ -1,0 +1,80 @@
+#include "model/solid/assembly/incompressible.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/matrix.h"
+
+#include <math.h>
+
+static const double stiffer = 128; // kappa where unstable modes are counted; a power of 2
+
+double dea_solid_theta_max(const struct dea_solid *s)
+{
+  double most = 0;
+  size_t pressures = (size_t)s->shape.pressures;
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    bool projected = s->layers[s->layer[i / pressures]].law != NULL;
+    most = projected ? fmax(most, fabs(s->theta[i])) : most;
+  }
+  return most;
+}
+
+void dea_solid_update_multipliers(struct dea_solid *s)
+{
+  size_t pressures = (size_t)s->shape.pressures;
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
+    s->multiplier[i] += layer->law != NULL ? layer->kappa_Pa * s->theta[i] : 0;
+  }
+}
+
+void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
+{
+  for (size_t k = 0; k < s->layer_count; k++) {
+    s->layers[k].kappa_Pa *= factor;
+  }
+}
+
+/* p + kappa theta stays what it is when kappa becomes factor times as large. */
+static void keep_pressures(struct dea_solid *s, double factor)
+{
+  size_t pressures = (size_t)s->shape.pressures;
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
+    s->multiplier[i] -= layer->law != NULL ? (factor - 1) * layer->kappa_Pa * s->theta[i] : 0;
+  }
+}
+
+void dea_solid_raise_bulk_modulus(struct dea_solid *s)
+{
+  keep_pressures(s, stiffer);
+  dea_solid_scale_bulk_modulus(s, stiffer);
+}
+
+void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s)
+{
+  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
+}
+
+void dea_solid_restore_bulk_modulus(struct dea_solid *s)
+{
+  keep_pressures(s, 1 / stiffer);
+  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
+}
+
+dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)
+{
+  double energy;
+  s->predicted_fits = s->factor_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
+  dea_solid_raise_bulk_modulus(s);
+  dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
+  dea_solid_restore_bulk_modulus(s);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, s));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, negative));
+  return DEA_OK;
+}

@@ -1,0 +1,21 @@
+/* The potential of a coupled field: unknowns, electrodes, and the solution at given displacements
+ * (docs/theory/coupled.md). Nothing to do for a thin film, where s->field is NULL. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
+#define DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
+
+#include "model/solid/assembly/matrix.h"
+
+/* Electrodes; then the matrix, with row lengths as those of K. */
+dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_options *options);
+dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
+                                  const struct dea_solid_row_lengths *lengths);
+void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s);
+/* c: a potential is c psi [V/m]. */
+double dea_solid_field_scale(const struct dea_solid *s);
+/* Sets the potentials in u [dofs] to those that belong to its displacements: the maximum of the
+ * energy over them. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                     double *u);
+
+#endif

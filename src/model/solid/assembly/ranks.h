@@ -1,0 +1,35 @@
+/* Several processes at one solid (docs/performance.md): start of MPI and PETSc, sums and agreement;
+ * what PETSc's failures mean.
+ *
+ * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
+ * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
+ * same bits and go the same way. All functions but dea_solid_rank, dea_solid_share and
+ * dea_solid_petsc are calls that all ranks make. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_RANKS_H
+#define DEA_MODEL_SOLID_ASSEMBLY_RANKS_H
+
+#include "base/context.h"
+
+/* PETSc for this process; harmless when it runs already. */
+dea_status dea_solid_start(struct dea_context *ctx);
+void dea_solid_stop(void);
+/* Number of this process among those that mpirun started, from 0. */
+int dea_solid_rank(void);
+/* Whether it is so on any rank. */
+bool dea_solid_any(bool here);
+/* The status and message of the first rank with a failure. ctx: NULL where no message is wanted. */
+dea_status dea_solid_agree(struct dea_context *ctx, dea_status status);
+/* values[count] become their sums over the ranks, the same bits on each. */
+void dea_solid_sum(double *values, size_t count);
+/* Largest value of all ranks. */
+double dea_solid_largest(double value);
+/* This rank's part of `count` things, from *from to before *to. */
+void dea_solid_share(size_t count, size_t *from, size_t *to);
+
+/* PETSc's error code as a status; call: its text, for the message. */
+dea_status dea_solid_petsc(struct dea_context *ctx, int code, const char *call);
+
+/* Returns from a function where a call of PETSc fails. */
+#define DEA_PETSC(ctx, call) DEA_TRY(ctx, dea_solid_petsc(ctx, call, #call))
+
+#endif

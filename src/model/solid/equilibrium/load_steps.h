@@ -1,0 +1,32 @@
+/* From one equilibrium to the next voltage and loads, and from an unstable equilibrium down to a
+ * stable one (docs/theory/branches.md). */
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_LOAD_STEPS_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_LOAD_STEPS_H
+
+#include "model/solid/assembly/solid.h"
+
+/* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
+ * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
+ * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
+ * report->way of the way. */
+dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
+                           struct dea_solid_report *report);
+
+/* From an unstable equilibrium down along its most unstable mode v to a stable one, at the same
+ * voltage and loads. side: 1 along v, -1 against it, 0 where the energy is lower (along v when that
+ * is equal). Goes on until there is no unstable mode. The solid stays where it was with
+ * DEA_E_NOT_CONVERGED. Nothing to do at a stable one. *report: as of a solve. */
+dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid *solid, int side,
+                                      struct dea_solid_report *report);
+
+/* Looks for another equilibrium at the same voltage and loads: down from displacements + push_m
+ * [node_count][3] (what is held stays), to a stable one that is accepted. Where that finds none the
+ * solid stays where it was, *found is false and *report as it was. */
+dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
+                          bool (*accept)(const void *self, const double *displacement_m),
+                          const void *self, struct dea_solid_report *report, bool *found);
+
+/* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
+void dea_solid_accept_unstable(struct dea_solid *solid, bool stay);
+
+#endif

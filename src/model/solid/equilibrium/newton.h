@@ -1,0 +1,27 @@
+/* One equilibrium at the controls as they are: Newton descent on the energy with multipliers that
+ * follow (docs/theory/branches.md). */
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_NEWTON_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_NEWTON_H
+
+#include "model/solid/assembly/problem.h"
+
+/* Equilibrium at the controls as they are, downhill from s->u, with the constraints of the
+ * multipliers met: a minimum, or a point that has a valley on all sides that a Newton step sees. */
+dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report);
+/* One linear step in which the held components go the whole of s->drive and the rest follows. */
+dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
+                                          struct dea_solid_report *report);
+
+/* ---- for continuation, which is Newton's method too ---- */
+
+/* Before s->u goes on by share step: stresses there into s->predicted, pressures there into the
+ * multipliers, each if it is wanted. */
+dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                             const double *step, double share, bool stresses, bool pressures);
+/* Whether the energy of the last assembly can tell a change of this size from rounding. */
+bool dea_solid_resolved(const struct dea_solid *s, double change);
+/* Moves the multipliers of the loads; the largest violation over what is allowed. */
+double dea_solid_update_loads(struct dea_solid *s);
+
+#endif
