@@ -54,8 +54,8 @@ static inline void command_read(const char *name, char *out)
 static inline int command_run(const char *arguments)
 {
   static char text[8192];
-  size_t used = (size_t)snprintf(text, sizeof text, "cd '%s' && %s '%s' ", command_folder,
-                                 command_before, DEA_COMMAND);
+  size_t used = (size_t)snprintf(text, sizeof text, "cd '%s' && XDG_STATE_HOME='%s/state' %s '%s' ",
+                                 command_folder, command_folder, command_before, DEA_COMMAND);
   for (const char *c = arguments; *c != '\0' && used + 600 < sizeof text; c++) {
     if (*c == '@') {
       used += (size_t)snprintf(text + used, sizeof text - used, "%s", DEA_SOURCE_DIR);

@@ -28,7 +28,7 @@ static void test_stops_what_was_opened(void **state)
   (void)state;
   struct emulator supply = {0};
   struct dea_drive_report report;
-  const struct dea_drive_options options = {false, in_folder("none.h5")};
+  const struct dea_drive_options options = {.file = in_folder("none.h5")};
   char text[2048];
   emulator_start(&supply, serve, NULL);
   snprintf(text, sizeof text,

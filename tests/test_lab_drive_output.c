@@ -122,7 +122,7 @@ static void test_run_checks_first(void **state)
 {
   (void)state;
   struct dea_drive_report report;
-  const struct dea_drive_options options = {false, in_folder("none.h5")};
+  const struct dea_drive_options options = {.file = in_folder("none.h5")};
   struct dea_protocol *p =
       good_protocol(ctx, "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
                          "waveform: {kind: square, high: 16 kV, frequency: 1 Hz}\n");

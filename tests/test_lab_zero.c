@@ -31,10 +31,108 @@ static void test_slow_supply(void **state)
   supply_stop(&s);
 }
 
+/* Begins, and lets the fault come once the supply is above a voltage; the exit code. */
+static int fault_above(struct supply *s, const char *file, double volts, enum supply_fault fault)
+{
+  pid_t child = supply_arm(file);
+  assert_true(supply_reaches(s, volts, 10));
+  atomic_store(&s->fault, fault);
+  return supply_wait(child, 20);
+}
+
+static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
+
+/* The output stays up: that is not known, is said, is kept, and ends with a supply that answers. */
+static void test_hung_supply(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 5, SUPPLY_MEASURES);
+  int code = fault_above(&s, "hung.h5", 500, SUPPLY_HANGS);
+  assert_true(supply_volts(&s) > 400); // it is so
+  assert_int_equal(code, 6);
+  assert_contains(command_out, "SWITCH THE SUPPLY OFF: it is not known to be at 0 V");
+  assert_contains(command_err, "did not answer '*OPC?' within 0.5 s");
+  assert_contains(command_err, "not known to be at 0 V: switch the supply off");
+  assert_int_equal(command_run("recording hung.h5"), 0);
+  assert_contains(command_out, "output         not known to be at 0 V");
+  // the next program knows, while the supply hangs and afterwards
+  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_contains(command_out, "not known to be at 0 V");
+  atomic_store(&s.fault, SUPPLY_GOOD);
+  assert_int_equal(supply_wait(supply_arm("next.h5"), 20), 6);
+  assert_contains(command_err, "did not end at 0 V as far as is known");
+  assert_int_equal(supply_run_dea(zero, 20), 0);
+  assert_contains(command_out, "output            at 0 V (0 V read back)");
+  assert_true(supply_volts(&s) <= supply_zero_V);
+  supply_protocol(&s, 1, SUPPLY_MEASURES);
+  assert_int_equal(supply_wait(supply_arm("next.h5"), 20), 0);
+  assert_true(supply_said_zero());
+  assert_int_equal(command_run("recording next.h5"), 0);
+  assert_contains(command_out, "output         at 0 V (0 V read back)");
+  supply_stop(&s);
+}
+
+/* One that lies is found out by its voltage, one that makes no sense or hangs up is not believed.
+ */
+static void test_other_faults(void **state)
+{
+  (void)state;
+  static const enum supply_fault faults[] = {SUPPLY_LIES, SUPPLY_GARBLES, SUPPLY_HANGS_UP};
+  static struct supply s;
+  for (size_t i = 0; i < 3; i++) {
+    s = (struct supply){.delay_s = 0.2};
+    supply_start(&s);
+    supply_protocol(&s, 5, SUPPLY_MEASURES);
+    int code = fault_above(&s, "other.h5", 500, faults[i]);
+    check_said(&s, code);
+    assert_int_equal(code, 6);
+    assert_false(supply_said_zero());
+    supply_stop(&s);
+  }
+}
+
+/* What cannot be read back is commanded, and never "at 0 V". */
+static void test_without_measure(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 1, "");
+  assert_int_equal(supply_wait(supply_arm("blind.h5"), 20), 0);
+  assert_false(supply_said_zero());
+  assert_contains(command_out, "output            commanded to 0 V, not read back");
+  assert_contains(command_err, "has no 'measure'");
+  supply_stop(&s);
+}
+
+static void test_checked_by_somebody(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 5, "");
+  assert_int_equal(fault_above(&s, "c.h5", 500, SUPPLY_HANGS), 6);
+  atomic_store(&s.fault, SUPPLY_GOOD);
+  assert_int_equal(supply_run_dea(zero, 20), 6); // commanded only
+  assert_contains(command_err, "--zero --checked");
+  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
+  assert_int_equal(supply_run_dea(checked, 20), 0);
+  supply_protocol(&s, 1, "");
+  assert_int_equal(supply_wait(supply_arm("c.h5"), 20), 0);
+  supply_stop(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slow_supply),
+      cmocka_unit_test(test_slow_supply),         cmocka_unit_test(test_hung_supply),
+      cmocka_unit_test(test_other_faults),        cmocka_unit_test(test_without_measure),
+      cmocka_unit_test(test_checked_by_somebody),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

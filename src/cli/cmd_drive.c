@@ -8,11 +8,13 @@
 #include "lab/protocol/export.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct request {
   const char *protocol, *output, *folder; // NULL: not given
-  bool arm, simulate, json, force;
+  bool arm, simulate, zero, checked, json, force;
   struct cli_overrides overrides;
 };
 
@@ -167,19 +169,73 @@ static dea_status clear_output(struct dea_cli *cli, const struct request *reques
   return DEA_OK;
 }
 
+/* Folder of what is kept of supplies; owned by the caller. */
+static dea_status state_folder(struct dea_cli *cli, char **out)
+{
+  const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+  struct dea_text text = {.ctx = cli->ctx};
+  *out = NULL;
+  if (state != NULL && state[0] == '/') {
+    dea_text_add(&text, "%s/dea/supplies", state);
+  } else if (home != NULL && home[0] == '/') {
+    dea_text_add(&text, "%s/.local/state/dea/supplies", home);
+  } else {
+    return dea_fail(cli->ctx, DEA_E_IO,
+                    "there is no place to keep whether the supply was left at 0 V: set "
+                    "XDG_STATE_HOME to a folder of yours");
+  }
+  *out = text.failed ? NULL : dea_copy_text(cli->ctx, dea_text_get(&text), SIZE_MAX);
+  dea_text_free(&text);
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+/* Brings the output to 0 V, whatever the protocol would play. */
+static int zero(struct dea_cli *cli, const struct request *request, struct dea_protocol *protocol)
+{
+  char *folder = NULL, known[DEA_ZERO_TEXT_SIZE];
+  struct dea_zero output = {DEA_ZERO_NONE, NAN};
+  dea_finding_clear(cli->ctx); // of what would be played
+  dea_status status = state_folder(cli, &folder);
+  if (status == DEA_OK) {
+    status = dea_drive_zero(cli->ctx, protocol, folder, request->checked, &output);
+  }
+  dea_zero_text(output, known);
+  if (request->json) {
+    json_t *json = json_object();
+    dea_json_put_text(json, "output", dea_zero_name(output.state));
+    dea_json_put(json, "output_V", output.volts);
+    cli_print_json(json);
+  } else {
+    printf("  %-16s  %s\n", "output", known);
+  }
+  fflush(stdout);
+  int code = cli_report(cli, status);
+  dea_free(cli->ctx, folder);
+  dea_protocol_destroy(cli->ctx, protocol);
+  return code;
+}
+
 static dea_status play(struct dea_cli *cli, const struct request *request,
                        const struct dea_protocol *protocol, const char *file,
                        struct dea_drive_report *report)
 {
-  const struct dea_drive_options options = {request->simulate, file};
+  struct dea_drive_options options = {
+      .simulate = request->simulate, .file = file, .checked = request->checked, .guard = true};
+  char *folder = NULL;
   if (request->arm && protocol->instrument_count == 0) {
     return dea_fail(cli->ctx, DEA_E_INSTRUMENT,
                     "%s names no `instruments` to play it; --sim plays it on a simulated bench",
                     protocol->file);
   }
   DEA_TRY(cli->ctx, clear_output(cli, request, file));
+  if (request->arm) {
+    DEA_TRY(cli->ctx, state_folder(cli, &folder));
+  }
+  options.state_folder = folder;
   cli_voltage_is_on();
-  return dea_drive_run(cli->ctx, protocol, &options, report);
+  dea_status status = dea_drive_run(cli->ctx, protocol, &options, report);
+  dea_free(cli->ctx, folder);
+  return status;
 }
 
 /* Files for another computer. */
@@ -274,6 +330,9 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_text name = {.ctx = cli->ctx};
   bool planned = false, played = false;
   dea_status status = look(cli, request, &protocol, &plan, &planned);
+  if (request->zero && planned) {
+    return zero(cli, request, protocol);
+  }
   if (planned && !request->json) {
     print_plan(protocol, &plan);
     fflush(stdout);
@@ -317,10 +376,15 @@ static const struct cli_option options[] = {
      CLI_AT(arm)},
     {"sim", 0, CLI_FLAG, NULL, "play on a simulated bench, a model of the design with noise",
      CLI_AT(simulate), .or_before = true},
+    {"zero", 0, CLI_FLAG, NULL,
+     "bring the output of the protocol's supply to 0 V, and read it back", CLI_AT(zero),
+     .or_before = true},
     {"export", 0, CLI_FOLDER, "DIR",
      "write the waveform, and scripts for MATLAB and Python that play it and record on a computer "
      "with NI-DAQmx, into DIR",
      CLI_AT(folder), .or_before = true},
+    {"checked", 0, CLI_FLAG, NULL,
+     "somebody has looked at supply and specimen after an unclean end", CLI_AT(checked)},
     CLI_OUTPUT_ROW(
         CLI_FILE, "FILE",
         "name of the recording; by default that of the protocol with .h5, in the current folder"),
@@ -336,7 +400,8 @@ const struct dea_command cmd_drive = {
         "Without --arm or --sim nothing is played: the plan is printed, and what is wrong with "
         "it.\n\n"
         "Ctrl-C brings the voltage to 0 V along the protocol's ramp. Exit code 6: a limit of the "
-        "bench would be or was exceeded, or an instrument failed. 'dea schema --protocol' lists "
+        "bench would be or was exceeded, an instrument failed, or the output is not known to be at "
+        "0 V. 'dea schema --protocol' lists "
         "the keys of a protocol.",
     .options = options,
     .request_size = sizeof(struct request),

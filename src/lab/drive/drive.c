@@ -1,8 +1,12 @@
+#define _POSIX_C_SOURCE 200809L // getpid
 #include "lab/drive/drive.h"
 
+#include "base/file.h"
 #include "lab/drive/drive_loop.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <unistd.h>
 
 /* Besides slewing and charging: filters of amplifier and inputs. */
 static const double settle_s = 0.02, stall_s = 3;
@@ -33,18 +37,75 @@ static dea_status open_all(struct dea_context *ctx, const struct dea_protocol *p
   return DEA_OK;
 }
 
-dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *protocol,
-                         const struct dea_drive_options *options, struct dea_drive_report *out)
+/* The supply of a protocol while it is armed. */
+struct armed {
+  const struct dea_protocol_instrument *section; // that plays; NULL: none
+  struct dea_supply supply;
+  struct dea_guard *guard;
+};
+
+/* Finds and locks the supply. */
+static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol *protocol,
+                              const char *folder, struct armed *armed)
 {
-  struct dea_protocol_plan plan;
+  char address[DEA_INSTRUMENT_ADDRESS_SIZE] = "";
+  *armed = (struct armed){.supply.file = -1};
+  for (size_t i = 0; i < protocol->instrument_count && address[0] == '\0'; i++) {
+    armed->section = &protocol->instruments[i];
+    DEA_TRY(ctx, dea_instrument_address(ctx, armed->section, protocol, address));
+  }
+  if (address[0] == '\0') {
+    armed->section = NULL; // which the instruments themselves will say
+    return DEA_OK;
+  }
+  return dea_supply_open(ctx, folder, address, &armed->supply);
+}
+
+static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protocol,
+                      const struct dea_drive_options *options, struct armed *armed)
+{
+  char text[DEA_SUPPLY_LEFT_SIZE];
+  DEA_TRY(ctx, find_supply(ctx, protocol, options->state_folder, armed));
+  if (armed->section == NULL) {
+    return DEA_OK;
+  }
+  if (armed->supply.left[0] != '\0' && !options->checked) {
+    return dea_fail(ctx, DEA_E_INTERLOCK,
+                    "the last measurement with this supply did not end at 0 V as far as is known: "
+                    "%s; look at supply and specimen, then 'dea drive --zero %s', or --checked",
+                    armed->supply.left, protocol->file);
+  }
+  snprintf(text, sizeof text, "armed by process %ld with %.100s, which did not end", (long)getpid(),
+           dea_path_name(protocol->file));
+  DEA_TRY(ctx, dea_supply_leave(ctx, &armed->supply, text));
+  return options->guard
+             ? dea_guard_begin(ctx, protocol, armed->section, &armed->supply, &armed->guard)
+             : DEA_OK;
+}
+
+static dea_status disarm(struct dea_context *ctx, struct armed *armed, struct dea_zero zero)
+{
+  char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE] = "";
+  if (zero.state == DEA_ZERO_UNKNOWN) {
+    dea_zero_text(zero, known);
+    snprintf(text, sizeof text, "its output was %s at the end", known);
+  }
+  dea_guard_end(ctx, armed->guard);
+  dea_status status = dea_supply_leave(ctx, &armed->supply, text);
+  dea_supply_close(&armed->supply);
+  return status;
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_protocol *protocol,
+                      const struct dea_protocol_plan *plan, const struct dea_drive_options *options,
+                      struct dea_guard *guard, struct dea_drive_report *out)
+{
   struct opened opened = {.count = 0};
-  *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
-  DEA_TRY(ctx, dea_protocol_check(ctx, protocol, &plan));
   dea_status status = open_all(ctx, protocol, options->simulate, &opened);
   if (status == DEA_OK) {
     struct dea_drive_bench bench = {opened.instruments, opened.count,
-                                    settle_s + (isfinite(plan.rise_s) ? 2 * plan.rise_s : 0),
-                                    stall_s};
+                                    settle_s + (isfinite(plan->rise_s) ? 2 * plan->rise_s : 0),
+                                    stall_s, guard};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
   } else {
     out->zero.state = status == DEA_E_INTERLOCK ? DEA_ZERO_UNKNOWN : DEA_ZERO_NONE;
@@ -56,5 +117,52 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
   for (size_t i = opened.count; i-- > 0;) {
     opened.instruments[i]->type->close(ctx, opened.instruments[i]);
   }
+  return status;
+}
+
+dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *protocol,
+                         const struct dea_drive_options *options, struct dea_drive_report *out)
+{
+  struct dea_protocol_plan plan;
+  struct armed armed = {.supply.file = -1};
+  *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
+  DEA_TRY(ctx, dea_protocol_check(ctx, protocol, &plan));
+  dea_status status = options->simulate ? DEA_OK : arm(ctx, protocol, options, &armed);
+  if (status != DEA_OK) {
+    dea_supply_close(&armed.supply);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  status = run(ctx, protocol, &plan, options, armed.guard, out);
+  dea_status disarmed = disarm(ctx, &armed, out->zero);
+  status = status != DEA_OK ? status : disarmed;
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
+                          const char *state_folder, bool checked, struct dea_zero *out)
+{
+  struct armed armed;
+  char known[DEA_ZERO_TEXT_SIZE];
+  *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
+  dea_status locked = find_supply(ctx, protocol, state_folder, &armed);
+  if (locked != DEA_OK && locked != DEA_E_INTERLOCK) { // that another program has it is no reason
+    return dea_fail_chain(ctx, locked, __func__, __FILE__, __LINE__);
+  }
+  dea_status status =
+      armed.section != NULL
+          ? dea_instrument_zero(ctx, armed.section, protocol, out)
+          : dea_fail(ctx, DEA_E_INSTRUMENT, "%s names no instrument that plays", protocol->file);
+  out->volts *= protocol->amplifier.gain.si;
+  dea_zero_text(*out, known);
+  bool clean = armed.supply.left[0] == '\0';
+  if (status == DEA_OK &&
+      (out->state == DEA_ZERO_READ_BACK || (checked && out->state == DEA_ZERO_COMMANDED))) {
+    status = dea_supply_leave(ctx, &armed.supply, "");
+  } else if (status == DEA_OK && (out->state == DEA_ZERO_UNKNOWN || !clean)) {
+    status =
+        dea_fail(ctx, DEA_E_INSTRUMENT, "the output is %s: switch the supply off and look at it%s",
+                 known, clean ? "" : "; then --zero --checked says that you have");
+  }
+  dea_supply_close(&armed.supply);
+  return status;
 }

@@ -10,6 +10,11 @@ struct dea_protocol;
 struct dea_drive_options {
   bool simulate;    // play on the simulated bench of protocol->sim instead of the instruments
   const char *file; // recording to make; it must not exist
+  /* Folder in which it is kept whether a supply was left at 0 V; NULL: nothing is kept. A supply
+   * that was not is refused, unless `checked` says that somebody has looked. */
+  const char *state_folder;
+  bool checked;
+  bool guard; // a second process brings the output to 0 V should this one die
 };
 
 struct dea_drive_report {
@@ -29,5 +34,10 @@ struct dea_drive_report {
  * in all cases. */
 dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *protocol,
                          const struct dea_drive_options *options, struct dea_drive_report *out);
+/* Brings the output of the protocol's supply to 0 V and says what is known then (volts: at the
+ * amplifier's output); what was kept of an unclean end goes once 0 V was read back, or was
+ * commanded and `checked`. DEA_E_INSTRUMENT when it is not known to be at 0 V. */
+dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
+                          const char *state_folder, bool checked, struct dea_zero *out);
 
 #endif

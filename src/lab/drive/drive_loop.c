@@ -63,6 +63,7 @@ struct loop {
   double last_frame_s, frame_interval_s;
   double started_s, lost_reader_s; // by the computer's clock
   double stall_s;
+  struct dea_guard *guard;
   bool ending;       // a fault came
   dea_status status; // of it
   struct dea_drive_report *report;
@@ -89,12 +90,26 @@ static void end_early(struct loop *loop, dea_status status, const char *format, 
 
 static void resume(struct loop *loop, double volts);
 
+/* A sign of life. False: the guard has taken over, and nothing is played any more. */
+static bool is_guarded(struct loop *loop)
+{
+  if (dea_guard_beat(loop->guard)) {
+    return true;
+  }
+  loop->player->failed = true;
+  end_early(loop, DEA_E_INSTRUMENT,
+            "the program was stopped, or gave no sign of life for safety.guard_time of %g s: its "
+            "guard has taken over",
+            loop->protocol->safety.guard_time_s.si);
+  return false;
+}
+
 /* One that only held its output can be ramped. */
 static void instrument_failed(struct loop *loop, struct source *source)
 {
   double volts;
   const struct dea_instrument_type *type = source->instrument->type;
-  if (source == loop->player && type->hold != NULL &&
+  if (is_guarded(loop) && source == loop->player && type->hold != NULL &&
       dea_context_status(loop->ctx) == DEA_E_INTERLOCK) {
     end_early(loop, DEA_E_INTERLOCK, "%s: %s", type->name, dea_context_message(loop->ctx));
     if (type->hold(loop->ctx, source->instrument, &volts) == DEA_OK) {
@@ -462,6 +477,9 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
   double duration_s = dea_protocol_duration_s(loop->protocol), shown_s = -1;
   bool played = false;
   while (!played && !loop->player->failed) {
+    if (!is_guarded(loop)) {
+      return;
+    }
     if (interrupt != NULL && *interrupt != 0 && !loop->output.over) { // else there is all of it
       end_early(loop, DEA_E_INTERRUPTED, "interrupted");
     }
@@ -652,7 +670,11 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
                           const struct dea_drive_bench *bench, const char *file,
                           struct dea_drive_report *out)
 {
-  struct loop loop = {.ctx = ctx, .protocol = protocol, .report = out, .stall_s = bench->stall_s};
+  struct loop loop = {.ctx = ctx,
+                      .protocol = protocol,
+                      .report = out,
+                      .stall_s = bench->stall_s,
+                      .guard = bench->guard};
   *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   loop.last_frame_s = -INFINITY;
   dea_status status = set_sources(&loop, bench);
@@ -670,10 +692,14 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     set_monitor(&loop, bench->settle_s);
     start_all(&loop);
     if (!loop.ending) {
+      dea_guard_limit(loop.guard, protocol->safety.guard_time_s.si);
       play(&loop, interrupt);
+      // time for what is left to do; the output is at 0 V, or was brought there by the guard
+      dea_guard_limit(loop.guard, last_frame_wait_s + 3 * protocol->safety.zero_time_s.si);
       wait_for_frames(&loop);
     }
     stop_all(&loop);
+    dea_guard_limit(loop.guard, 0);
     dea_context_set_interrupt(ctx, interrupt);
     status = finish(&loop);
   } else {

@@ -3,6 +3,7 @@
 #define DEA_LAB_DRIVE_DRIVE_LOOP_H
 
 #include "lab/drive/drive.h"
+#include "lab/drive/guard.h"
 #include "lab/instrument/instrument.h"
 #include "lab/recording/recorder.h"
 
@@ -11,6 +12,7 @@ struct dea_drive_bench {
   size_t count;
   double settle_s; // of the amplifier after a jump
   double stall_s;  // an instrument that reads the inputs and gives nothing for so long has failed
+  struct dea_guard *guard; // NULL: none; lent
 };
 
 /* Plays the protocol and records it in `file`, which must not exist. Every instrument is stopped

@@ -1,5 +1,7 @@
 #include "lab/instrument/daq.h"
 
+#include <stdio.h>
+
 /* Samples of the inputs that a driver keeps while nobody takes them. */
 static const double input_room_s = 10;
 /* Clocks are whole divisions of a quartz: what differs less was rounded in between. */
@@ -23,6 +25,11 @@ dea_status dea_daq_begin(struct dea_context *ctx, const struct dea_protocol *pro
                           .scans_room = samples_of(scans_room_s, rate_Hz)};
   out->scans = dea_alloc(ctx, out->scans_room, sizeof *out->scans * (protocol->input_count + 1));
   return out->scans != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+void dea_daq_address(const void *raw, char *out, size_t size)
+{
+  snprintf(out, size, "%s", ((const struct dea_daq_raw *)raw)->device.text);
 }
 
 void dea_daq_free(struct dea_context *ctx, struct dea_daq *daq)

@@ -44,6 +44,8 @@ struct dea_daq {
 /* DEA_E_MEMORY. */
 dea_status dea_daq_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
                          double queue_s, struct dea_daq *out);
+/* Of an instrument's type. */
+void dea_daq_address(const void *raw, char *out, size_t size);
 void dea_daq_free(struct dea_context *ctx, struct dea_daq *daq);
 /* How many of `count` samples may be given to the driver at once. Before the start no more than the
  * queue holds: DEA_E_ARGUMENT. DEA_E_INSTRUMENT when the output ran dry before. */

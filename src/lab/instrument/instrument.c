@@ -71,6 +71,17 @@ static dea_status read_section(struct dea_context *ctx,
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
+/* The same where findings are a failure: *raw is there. */
+static dea_status read_good(struct dea_context *ctx, const struct dea_protocol_instrument *section,
+                            const struct dea_protocol *protocol,
+                            const struct dea_instrument_type **type, void **raw)
+{
+  DEA_TRY(ctx, read_section(ctx, section, protocol, type, raw));
+  return *raw != NULL ? DEA_OK
+                      : dea_fail(ctx, DEA_E_DESIGN, "the section %s of %s has errors",
+                                 section->path, protocol->file);
+}
+
 dea_status dea_instrument_open(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_instrument **out)
@@ -78,11 +89,7 @@ dea_status dea_instrument_open(struct dea_context *ctx,
   const struct dea_instrument_type *type;
   void *raw;
   *out = NULL;
-  DEA_TRY(ctx, read_section(ctx, section, protocol, &type, &raw));
-  if (raw == NULL) {
-    return dea_fail(ctx, DEA_E_DESIGN, "the section %s of %s has errors", section->path,
-                    protocol->file);
-  }
+  DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
   dea_status status = type->open(ctx, raw, protocol, out);
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -103,6 +110,26 @@ struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrume
   return zero;
 }
 
+dea_status dea_instrument_address(struct dea_context *ctx,
+                                  const struct dea_protocol_instrument *section,
+                                  const struct dea_protocol *protocol,
+                                  char out[DEA_INSTRUMENT_ADDRESS_SIZE])
+{
+  const struct dea_instrument_type *type;
+  void *raw;
+  char where[DEA_INSTRUMENT_ADDRESS_SIZE - 20] = "";
+  out[0] = '\0';
+  DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
+  if (type->address != NULL) {
+    type->address(raw, where, sizeof where);
+  }
+  if (where[0] != '\0') {
+    snprintf(out, DEA_INSTRUMENT_ADDRESS_SIZE, "%.16s %s", type->name, where);
+  }
+  dea_free(ctx, raw);
+  return DEA_OK;
+}
+
 dea_status dea_instrument_zero(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_zero *out)
@@ -110,11 +137,7 @@ dea_status dea_instrument_zero(struct dea_context *ctx,
   const struct dea_instrument_type *type;
   void *raw;
   *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
-  DEA_TRY(ctx, read_section(ctx, section, protocol, &type, &raw));
-  if (raw == NULL) {
-    return dea_fail(ctx, DEA_E_DESIGN, "the section %s of %s has errors", section->path,
-                    protocol->file);
-  }
+  DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
   if (type->zero != NULL) {
     *out = type->zero(ctx, raw, protocol);
   }

@@ -82,8 +82,10 @@ struct dea_instrument_type {
    * safety.zero_time (volts: control voltage); called also after failures, and never twice: by
    * dea_instrument_stop. */
   struct dea_zero (*stop)(struct dea_context *ctx, struct dea_instrument *instrument);
-  /* The same for one that is not open, by a connection of its own over which nothing else is sent.
-   * NULL when it never plays. */
+  /* What it plays through, without the kind; NULL with `zero`. */
+  void (*address)(const void *raw, char *out, size_t size);
+  /* The same as stop for one that is not open, by a connection of its own over which nothing else
+   * is sent. NULL when it never plays. */
   struct dea_zero (*zero)(struct dea_context *ctx, const void *raw,
                           const struct dea_protocol *protocol);
   void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
@@ -107,6 +109,13 @@ struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrume
 dea_status dea_instrument_zero(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_zero *out);
+/* Name of the supply or device that a section plays through, "scpi 192.168.1.20 5025"; "" for one
+ * that plays nothing. */
+enum { DEA_INSTRUMENT_ADDRESS_SIZE = 200 };
+dea_status dea_instrument_address(struct dea_context *ctx,
+                                  const struct dea_protocol_instrument *section,
+                                  const struct dea_protocol *protocol,
+                                  char out[DEA_INSTRUMENT_ADDRESS_SIZE]);
 /* Reads the sections of all instruments without opening any: wrong keys become findings. */
 dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol);
 

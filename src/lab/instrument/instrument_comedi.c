@@ -499,6 +499,7 @@ const struct dea_instrument_type dea_instrument_comedi = {
     .put = put,
     .get = get,
     .stop = stop,
+    .address = dea_daq_address,
     .zero = zero,
     .close = close_it,
 };

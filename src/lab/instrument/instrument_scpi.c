@@ -254,6 +254,14 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   return DEA_OK;
 }
 
+static void address(const void *data, char *out, size_t size)
+{
+  const struct dea_scpi_raw *raw = data;
+  if (raw->output.origin != DEA_ABSENT) {
+    snprintf(out, size, "%s %d", raw->address.text, (int)raw->port.si);
+  }
+}
+
 static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
@@ -392,6 +400,7 @@ const struct dea_instrument_type dea_instrument_scpi = {
     .get = get,
     .hold = dea_scpi_output_hold,
     .stop = dea_scpi_stop,
+    .address = address,
     .zero = dea_scpi_zero,
     .close = close_it,
 };

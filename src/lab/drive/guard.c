@@ -1,0 +1,185 @@
+#define _DEFAULT_SOURCE // fork, pipe, MAP_ANONYMOUS
+#include "lab/drive/guard.h"
+
+#include "base/clock.h"
+#include "lab/instrument/instrument.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const double again_s = 0.2, longest_s = 600; // between attempts, and for all of them
+static const char clean_end = 'E';
+enum { poll_ms = 50 };
+
+/* In memory of both. */
+struct signs {
+  atomic_uint beats, limit_ms; // the second 0: none
+  atomic_bool taken;           // the guard has begun to bring the output to 0 V
+};
+
+struct dea_guard {
+  struct signs *signs;
+  int pipe; // written at the clean end; closed by the system when the program dies
+  pid_t process;
+};
+
+// The guard's side -------------------------------------------------------------------------------
+
+/* Nothing of the program's is kept open: what waits for its end must not wait for the guard. */
+static void let_go(int pipe, int supply)
+{
+  long most = sysconf(_SC_OPEN_MAX);
+  for (int file = 0; file < (most > 0 && most < 65536 ? (int)most : 65536); file++) {
+    if (file != pipe && file != supply) {
+      close(file);
+    }
+  }
+  (void)open("/dev/null", O_RDWR);
+  (void)!dup(0);
+  (void)!dup(0);
+  for (int number = 1; number < 32; number++) {
+    if (number != SIGCHLD) {
+      signal(number, SIG_IGN); // KILL and STOP cannot be
+    }
+  }
+  static const int of_errors[] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
+  for (size_t i = 0; i < sizeof of_errors / sizeof of_errors[0]; i++) {
+    signal(of_errors[i], SIG_DFL);
+  }
+  setsid();
+}
+
+/* Waits for the end. True: the clean one. */
+static bool wait_for_end(int pipe, const struct signs *signs)
+{
+  unsigned beats = atomic_load(&signs->beats);
+  for (double heard_s = dea_clock_s();;) {
+    struct pollfd entry = {.fd = pipe, .events = POLLIN};
+    char byte = 0;
+    if (poll(&entry, 1, poll_ms) > 0) {
+      ssize_t got = read(pipe, &byte, 1);
+      if (got >= 0 || (errno != EINTR && errno != EAGAIN)) {
+        return got == 1 && byte == clean_end;
+      }
+    }
+    unsigned now = atomic_load(&signs->beats), limit_ms = atomic_load(&signs->limit_ms);
+    heard_s = now != beats || limit_ms == 0 ? dea_clock_s() : heard_s;
+    beats = now;
+    if (1e3 * (dea_clock_s() - heard_s) > limit_ms) {
+      return false;
+    }
+  }
+}
+
+static void guard(const struct dea_protocol *protocol,
+                  const struct dea_protocol_instrument *section, struct dea_supply supply,
+                  struct signs *signs, int pipe)
+{
+  struct dea_context *ctx;
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE];
+  let_go(pipe, supply.file);
+  if (wait_for_end(pipe, signs)) {
+    return;
+  }
+  atomic_store(&signs->taken, true);
+  if (dea_context_create(NULL, &ctx) != DEA_OK) {
+    return;
+  }
+  for (double until_s = dea_clock_s() + longest_s;
+       zero.state == DEA_ZERO_UNKNOWN && dea_clock_s() < until_s;) {
+    if (dea_instrument_zero(ctx, section, protocol, &zero) != DEA_OK) {
+      zero.state = DEA_ZERO_UNKNOWN;
+    }
+    zero.volts *= protocol->amplifier.gain.si;
+    dea_zero_text(zero, known);
+    snprintf(text, sizeof text, "the program that drove it died; the output is %s", known);
+    (void)dea_supply_leave(ctx, &supply, zero.state == DEA_ZERO_READ_BACK ? "" : text);
+    dea_clock_wait(zero.state == DEA_ZERO_UNKNOWN ? again_s : 0);
+  }
+  dea_context_destroy(ctx);
+}
+
+// The program's side -----------------------------------------------------------------------------
+
+dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
+                           const struct dea_protocol_instrument *section,
+                           const struct dea_supply *supply, struct dea_guard **out)
+{
+  int ends[2];
+  *out = NULL;
+  struct dea_guard *made = dea_alloc(ctx, 1, sizeof *made);
+  if (made == NULL) {
+    return DEA_E_MEMORY;
+  }
+  struct signs *signs =
+      mmap(NULL, sizeof *signs, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (signs == MAP_FAILED || pipe(ends) != 0) {
+    dea_free(ctx, made);
+    return dea_fail(ctx, DEA_E_INSTRUMENT, "the guard of the output cannot be made: %s",
+                    strerror(errno));
+  }
+  *made = (struct dea_guard){signs, ends[1], 0};
+  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+  made->process = fork();
+  if (made->process == 0) {
+    close(ends[1]);
+    guard(protocol, section, *supply, signs, ends[0]);
+    _exit(0);
+  }
+  close(ends[0]);
+  if (made->process < 0) {
+    dea_status status = dea_fail(ctx, DEA_E_INSTRUMENT,
+                                 "the guard of the output cannot be made: %s", strerror(errno));
+    close(ends[1]);
+    munmap(signs, sizeof *signs);
+    dea_free(ctx, made);
+    return status;
+  }
+  *out = made;
+  return DEA_OK;
+}
+
+void dea_guard_limit(struct dea_guard *guard, double silence_s)
+{
+  if (guard != NULL) {
+    atomic_fetch_add(&guard->signs->beats, 1);
+    atomic_store(&guard->signs->limit_ms, (unsigned)(1e3 * silence_s));
+  }
+}
+
+bool dea_guard_beat(struct dea_guard *guard)
+{
+  if (guard == NULL) {
+    return true;
+  }
+  atomic_fetch_add(&guard->signs->beats, 1);
+  return !atomic_load(&guard->signs->taken);
+}
+
+void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard)
+{
+  if (guard == NULL) {
+    return;
+  }
+  struct sigaction ignore = {.sa_handler = SIG_IGN}, before;
+  sigaction(SIGPIPE, &ignore, &before);
+  (void)!write(guard->pipe, &clean_end, 1);
+  sigaction(SIGPIPE, &before, NULL);
+  close(guard->pipe);
+  if (!atomic_load(&guard->signs->taken)) { // else it has still to do, and ends by itself
+    while (waitpid(guard->process, NULL, 0) < 0 && errno == EINTR) {
+    }
+  }
+  munmap(guard->signs, sizeof *guard->signs);
+  dea_free(ctx, guard);
+}

@@ -1,0 +1,24 @@
+/* A process that outlives the one that drives. When that one dies, or gives no sign of life for too
+ * long, it brings the supply to 0 V by a connection of its own; when that one says that it has
+ * ended, it goes. Signals of the terminal do not reach it. */
+#ifndef DEA_LAB_DRIVE_GUARD_H
+#define DEA_LAB_DRIVE_GUARD_H
+
+#include "lab/drive/supply.h"
+#include "lab/protocol/protocol.h"
+
+struct dea_guard; // NULL: none
+
+/* Forks it, before any instrument is open. section: of the instrument that plays. supply: that it
+ * writes what it has done into. out: owned by the caller (dea_guard_end), NULL on failure. */
+dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
+                           const struct dea_protocol_instrument *section,
+                           const struct dea_supply *supply, struct dea_guard **out);
+/* From here on no two signs of life may be farther apart; 0: it waits for the end only. */
+void dea_guard_limit(struct dea_guard *guard, double silence_s);
+/* A sign of life. False once the guard has taken over: nothing may be played then. */
+bool dea_guard_beat(struct dea_guard *guard);
+/* The program has done all that can be done: the guard goes. */
+void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard);
+
+#endif

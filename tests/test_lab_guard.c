@@ -1,0 +1,131 @@
+/* dea drive --arm that is killed, crashes, or is stopped: a second process brings the supply to 0
+ * V. */
+#define _GNU_SOURCE
+#include "supply_drive.h"
+
+/* Waits until it is at 0 V and stays there; how long that took, INFINITY: it did not. */
+static double comes_down(struct supply *s, double within_s)
+{
+  double began_s = dea_clock_s(), took_s = INFINITY;
+  while (dea_clock_s() < began_s + within_s) {
+    if (supply_volts(s) > supply_zero_V) {
+      took_s = INFINITY;
+    } else if (isinf(took_s)) {
+      took_s = dea_clock_s() - began_s;
+    } else if (dea_clock_s() > began_s + took_s + 0.3) {
+      return took_s;
+    }
+    dea_clock_wait(0.005);
+  }
+  return INFINITY;
+}
+
+static void test_killed(void **state)
+{
+  (void)state;
+  static const int signals[] = {SIGKILL, SIGSEGV, SIGABRT, SIGBUS};
+  static struct supply s;
+  for (size_t i = 0; i < 4; i++) {
+    s = (struct supply){.one_client = i % 2 == 1};
+    supply_start(&s);
+    supply_protocol(&s, 20, SUPPLY_MEASURES);
+    pid_t child = supply_arm("killed.h5");
+    assert_true(supply_reaches(&s, 1000, 10));
+    assert_int_equal(kill(child, signals[i]), 0);
+    assert_int_equal(supply_wait(child, 5), -signals[i]);
+    double took_s = comes_down(&s, 10);
+    print_message("signal %d: at 0 V after %.3f s\n", signals[i], took_s);
+    assert_true(isfinite(took_s));
+    // it was read back: nothing is in the way of the next
+    dea_clock_wait(1.5);
+    supply_protocol(&s, 1, SUPPLY_MEASURES);
+    if (supply_wait(supply_arm("next.h5"), 10) != 0) {
+      fail_msg("%s%s", command_out, command_err);
+    }
+    supply_stop(&s);
+  }
+}
+
+/* The guard is not in the way of a clean end, nor of Ctrl-C of a terminal. */
+static void test_interrupted(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_arm("i.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  kill(child, SIGINT);
+  assert_int_equal(supply_wait(child, 10), 130);
+  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
+/* A program that is stopped gives no sign of life. When it goes on it plays nothing more. */
+static void test_stopped(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_arm("s.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  kill(child, SIGSTOP);
+  double took_s = comes_down(&s, 10);
+  print_message("stopped: at 0 V after %.3f s\n", took_s);
+  assert_true(isfinite(took_s));
+  (void)supply_highest(&s);
+  kill(child, SIGCONT);
+  assert_int_equal(supply_wait(child, 10), 6);
+  assert_contains(command_err, "its guard has taken over");
+  assert_true(supply_highest(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
+/* Away for longer than the queue, and back before the guard takes over: the voltage goes on from
+ * where it stands, and down along the ramp of 4 kV/s; the waveform is at 2 kV by then. */
+static void test_stall_is_no_jump(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_safety = ", guard_time: 10 s";
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  supply_safety = "";
+  pid_t child = supply_arm("stall.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  kill(child, SIGSTOP);
+  dea_clock_wait(1.25);
+  double held_V = supply_volts(&s), last_V = held_V, fall_V = 0;
+  (void)supply_highest(&s);
+  kill(child, SIGCONT);
+  for (double until_s = dea_clock_s() + 10; last_V > supply_zero_V && dea_clock_s() < until_s;) {
+    dea_clock_wait(0.01);
+    double volts = supply_volts(&s);
+    fall_V = fmax(fall_V, last_V - volts);
+    last_V = volts;
+  }
+  assert_int_equal(supply_wait(child, 10), 6);
+  double highest_V = supply_highest(&s);
+  print_message("held at %.0f V, then at most %.0f V, falls by %.0f V at most\n", held_V, highest_V,
+                fall_V);
+  assert_contains(command_err, "longer than the queue");
+  assert_true(supply_said_zero());
+  assert_true(highest_V <= held_V + 1 && held_V > 900);
+  assert_true(fall_V < 0.5 * held_V);
+  supply_stop(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_killed),
+      cmocka_unit_test(test_interrupted),
+      cmocka_unit_test(test_stopped),
+      cmocka_unit_test(test_stall_is_no_jump),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
