@@ -1,5 +1,7 @@
-/* base: context, text. */
+/* base: context, arena, text. */
+#include "base/arena.h"
 #include "base/text.h"
+#include "failing_allocator.h"
 #include "testing.h"
 
 #include <stdint.h>
@@ -65,6 +67,61 @@ static void test_text_grows(void **state)
   dea_context_destroy(ctx);
 }
 
+struct arena_use {
+  struct dea_arena arena;
+  double *x[20];
+};
+
+static dea_status fill_arena(struct dea_context *ctx)
+{
+  struct arena_use use = {.arena = {.ctx = ctx}};
+  for (size_t i = 0; i < 20; i++) {
+    use.x[i] = dea_arena_alloc(&use.arena, 100 + i, sizeof(double));
+  }
+  dea_status status = dea_arena_status(&use.arena);
+  if (status == DEA_OK) { // zeroed, apart from each other, and moved with its arena
+    struct arena_use moved = use;
+    for (size_t i = 0; i < 20; i++) {
+      for (size_t k = 0; k < 100 + i; k++) {
+        assert_true(moved.x[i][k] == 0);
+        moved.x[i][k] = (double)i + 1;
+      }
+    }
+    use = moved;
+  } else {
+    assert_null(dea_arena_alloc(&use.arena, 1, 1)); // stays failed
+  }
+  dea_arena_free(&use.arena);
+  assert_null(use.arena.last);
+  return status;
+}
+
+static void test_arena_gives_and_frees_all(void **state)
+{
+  (void)state;
+  assert_int_equal(failing_ends(fill_arena, DEA_OK), 20);
+}
+
+static void test_arena_refuses_overflow(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  const size_t sizes[] = {3, sizeof(double), SIZE_MAX / 2, SIZE_MAX};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+    struct dea_arena arena = {.ctx = ctx};
+    assert_null(dea_arena_alloc(&arena, SIZE_MAX / sizes[i], sizes[i]));
+    assert_int_equal(dea_arena_status(&arena), DEA_E_MEMORY);
+    assert_int_equal(dea_context_status(ctx), DEA_E_MEMORY);
+    dea_arena_free(&arena);
+    assert_non_null(dea_arena_alloc(&arena, 0, sizes[i])); // usable again; nothing is something
+    dea_arena_free(&arena);
+  }
+  struct dea_arena never = {0};
+  dea_arena_free(&never);
+  dea_context_destroy(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -73,6 +130,8 @@ int main(void)
       cmocka_unit_test(test_nearest_name),
       cmocka_unit_test(test_text_to_double_ignores_locale),
       cmocka_unit_test(test_text_grows),
+      cmocka_unit_test(test_arena_gives_and_frees_all),
+      cmocka_unit_test(test_arena_refuses_overflow),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,7 +208,7 @@ static dea_status compare_pair(struct dea_context *ctx, const struct request *re
   if (request->line->columns.count < 2) {
     return DEA_OK;
   }
-  size_t found = dea_comparison_keep(ctx, pair->comparison, request->line->columns.at,
+  size_t found = dea_comparison_keep(pair->comparison, request->line->columns.at,
                                      request->line->columns.count);
   return found < request->line->columns.count
              ? dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common")

@@ -39,10 +39,10 @@ void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *se
   }
   for (size_t i = 0; i < set->profile_count; i++) {
     dea_film_line_free(ctx, &set->profiles[i].line);
-    dea_misfit_free(ctx, &set->profiles[i].misfit);
+    dea_misfit_free(&set->profiles[i].misfit);
   }
   for (size_t i = 0; i < set->history_count; i++) {
-    dea_misfit_free(ctx, &set->histories[i].misfit);
+    dea_misfit_free(&set->histories[i].misfit);
   }
   dea_free(ctx, set->profiles);
   dea_free(ctx, set->histories);
@@ -188,7 +188,7 @@ static dea_status compute_curve(struct dea_context *ctx, const struct dea_compar
       dea_context_clear(ctx); // nothing in common: said below
     } else {
       DEA_TRY(ctx, status);
-      dea_comparison_keep(ctx, curve->comparison, columns, count);
+      dea_comparison_keep(curve->comparison, columns, count);
       if (curve->comparison->part_only) {
         DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
                                      "the voltages of %s go up and down: only its first part was "
@@ -249,7 +249,7 @@ static dea_status add_profile(struct dea_context *ctx, struct dea_compare_set *s
   }
   if (p->misfit.count == 0) {
     dea_film_line_free(ctx, &p->line);
-    dea_misfit_free(ctx, &p->misfit);
+    dea_misfit_free(&p->misfit);
     set->profile_count--;
   } else if (p->line.between_records) {
     return dea_finding_add(ctx, DEA_NOTE, nowhere,
@@ -353,7 +353,7 @@ static dea_status add_histories(struct dea_context *ctx, struct dea_compare_set 
             dea_compare_history(ctx, transient, column, &clock, history->values[DEA_MEASURED_TIME],
                                 history->values[k], history->rows, &h->misfit));
     if (h->misfit.count == 0) {
-      dea_misfit_free(ctx, &h->misfit);
+      dea_misfit_free(&h->misfit);
       set->history_count--;
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
                                    "the history of %s has no '%s' at the times measured", c->name,

@@ -133,13 +133,12 @@ static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
 
 dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, struct dea_misfit *out)
 {
-  *out = (struct dea_misfit){.column = column};
-  out->at = dea_alloc(ctx, room, sizeof *out->at);
-  out->a = dea_alloc(ctx, room, sizeof *out->a);
-  out->b = dea_alloc(ctx, room, sizeof *out->b);
-  out->b_std = dea_alloc(ctx, room, sizeof *out->b_std);
-  return out->at != NULL && out->a != NULL && out->b != NULL && out->b_std != NULL ? DEA_OK
-                                                                                   : DEA_E_MEMORY;
+  *out = (struct dea_misfit){.column = column, .memory = {.ctx = ctx}};
+  out->at = dea_arena_alloc(&out->memory, room, sizeof *out->at);
+  out->a = dea_arena_alloc(&out->memory, room, sizeof *out->a);
+  out->b = dea_arena_alloc(&out->memory, room, sizeof *out->b);
+  out->b_std = dea_arena_alloc(&out->memory, room, sizeof *out->b_std);
+  return dea_arena_status(&out->memory);
 }
 
 void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std)
@@ -196,12 +195,9 @@ void dea_misfit_summarise(struct dea_misfit *m)
   summarise_std(m);
 }
 
-void dea_misfit_free(struct dea_context *ctx, struct dea_misfit *misfit)
+void dea_misfit_free(struct dea_misfit *misfit)
 {
-  dea_free(ctx, misfit->at);
-  dea_free(ctx, misfit->a);
-  dea_free(ctx, misfit->b);
-  dea_free(ctx, misfit->b_std);
+  dea_arena_free(&misfit->memory);
   misfit->at = misfit->a = misfit->b = misfit->b_std = NULL;
 }
 
@@ -252,21 +248,20 @@ static dea_status compare_column(struct dea_context *ctx, const struct pairing *
 {
   struct dea_misfit *m = &comparison->misfits[comparison->misfit_count];
   size_t points = p->at_b ? p->b->count : p->a->count;
-  dea_status made = dea_misfit_make(ctx, column, points, m);
-  double *x = dea_alloc(ctx, p->leg, sizeof *x), *y = dea_alloc(ctx, p->leg, sizeof *y);
-  bool good = made == DEA_OK && x != NULL && y != NULL;
-  if (good) {
-    fill(p, x, y, m);
+  dea_status status = dea_misfit_make(ctx, column, points, m);
+  double *xy = status == DEA_OK ? dea_alloc(ctx, p->leg, 2 * sizeof *xy) : NULL;
+  if (xy != NULL) {
+    fill(p, xy, xy + p->leg, m);
   }
-  dea_free(ctx, x);
-  dea_free(ctx, y);
-  if (good && m->count > 0) {
+  if (xy != NULL && m->count > 0) {
     dea_misfit_summarise(m);
     comparison->misfit_count++;
   } else {
-    dea_misfit_free(ctx, m);
+    dea_misfit_free(m);
   }
-  return good ? DEA_OK : DEA_E_MEMORY;
+  status = xy != NULL ? DEA_OK : DEA_E_MEMORY;
+  dea_free(ctx, xy);
+  return status;
 }
 
 static dea_status nothing_common(struct dea_context *ctx, const struct dea_curve *a,
@@ -322,13 +317,12 @@ void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comp
     return;
   }
   for (size_t i = 0; i < comparison->misfit_count; i++) {
-    dea_misfit_free(ctx, &comparison->misfits[i]);
+    dea_misfit_free(&comparison->misfits[i]);
   }
   dea_free(ctx, comparison);
 }
 
-size_t dea_comparison_keep(struct dea_context *ctx, struct dea_comparison *comparison,
-                           const int *columns, size_t count)
+size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns, size_t count)
 {
   size_t found = 0;
   for (size_t i = 0; i < comparison->misfit_count; i++) {
@@ -343,7 +337,7 @@ size_t dea_comparison_keep(struct dea_context *ctx, struct dea_comparison *compa
     }
   }
   while (comparison->misfit_count > found) {
-    dea_misfit_free(ctx, &comparison->misfits[--comparison->misfit_count]);
+    dea_misfit_free(&comparison->misfits[--comparison->misfit_count]);
   }
   return found;
 }

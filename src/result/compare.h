@@ -2,16 +2,18 @@
 #ifndef DEA_RESULT_COMPARE_H
 #define DEA_RESULT_COMPARE_H
 
+#include "base/arena.h"
 #include "result/columns.h"
 
 /* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
- * largest |b| when all are equal); relative values are over it. Arrays [count], owned. */
+ * largest |b| when all are equal); relative values are over it. Arrays [count] in its memory. */
 struct dea_misfit {
   int column; // of dea_point_columns
   size_t count;
   double *at; // voltage [V]; time [s] of a history, place [m] of a profile
   double *a, *b;
   double *b_std; // standard uncertainty of b, NAN where unknown
+  struct dea_arena memory;
   double rms, largest, largest_at, bias, range;
   double relative_rms, relative_largest;
   // Of the points whose b_std is known and not 0, against it; NAN without any.
@@ -39,8 +41,7 @@ dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a
                               int column, struct dea_comparison **out);
 void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comparison);
 /* Keeps the misfits of these columns; returns how many there are. count 0: all stay. */
-size_t dea_comparison_keep(struct dea_context *ctx, struct dea_comparison *comparison,
-                           const int *columns, size_t count);
+size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns, size_t count);
 
 /* A misfit of a column with room for that many points, by hand: add, then summarise. Freed by the
  * caller, also after a failure. */
@@ -50,7 +51,7 @@ dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room,
 void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std);
 /* Fills what follows from the points, of which there is at least one. */
 void dea_misfit_summarise(struct dea_misfit *misfit);
-void dea_misfit_free(struct dea_context *ctx, struct dea_misfit *misfit);
+void dea_misfit_free(struct dea_misfit *misfit);
 
 /* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
  * [x[0], x[count-1]]. */

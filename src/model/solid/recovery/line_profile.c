@@ -1,5 +1,6 @@
 #include "model/solid/recovery/line_profile.h"
 
+#include "base/arena.h"
 #include "base/quadrature.h"
 
 #include <math.h>
@@ -14,6 +15,7 @@ struct row {
 };
 
 struct work {
+  struct dea_arena memory; // of the arrays below
   const struct dea_field_mesh *surface;
   const double *u, *stretch, *tension; // fields of the surface
   double *slope, *middle, *weight;     // |dx/dr| and middle of the edges on a ray, sums; [points]
@@ -124,15 +126,12 @@ static dea_status fill(struct dea_context *ctx, struct work *w, double plus, dou
                        double **columns, struct dea_profile *out)
 {
   size_t count = w->surface->point_count;
-  w->slope = dea_alloc(ctx, count, sizeof *w->slope);
-  w->middle = dea_alloc(ctx, count, sizeof *w->middle);
-  w->weight = dea_alloc(ctx, count, sizeof *w->weight);
-  w->used = dea_alloc(ctx, count, sizeof *w->used);
-  w->rows = dea_alloc(ctx, count, sizeof *w->rows);
-  if (w->slope == NULL || w->middle == NULL || w->weight == NULL || w->used == NULL ||
-      w->rows == NULL) {
-    return DEA_E_MEMORY;
-  }
+  w->slope = dea_arena_alloc(&w->memory, count, sizeof *w->slope);
+  w->middle = dea_arena_alloc(&w->memory, count, sizeof *w->middle);
+  w->weight = dea_arena_alloc(&w->memory, count, sizeof *w->weight);
+  w->used = dea_arena_alloc(&w->memory, count, sizeof *w->used);
+  w->rows = dea_arena_alloc(&w->memory, count, sizeof *w->rows);
+  DEA_TRY(ctx, dea_arena_status(&w->memory));
   add_ray(w, plus, 1);
   add_ray(w, minus, -1);
   qsort(w->rows, w->row_count, sizeof *w->rows, compare_rows);
@@ -162,7 +161,8 @@ dea_status dea_line_profile(struct dea_context *ctx, const struct dea_field_mesh
                             double plus, double minus, double pre_stretch, double **columns,
                             struct dea_profile *out)
 {
-  struct work w = {.surface = surface,
+  struct work w = {.memory = {.ctx = ctx},
+                   .surface = surface,
                    .u = field(surface, "displacement_m"),
                    .stretch = field(surface, "plane_stretch"),
                    .tension = field(surface, "tension_N_per_m"),
@@ -175,10 +175,6 @@ dea_status dea_line_profile(struct dea_context *ctx, const struct dea_field_mesh
     w.close = fmax(w.close, 1e-9 * fmax(fabs(surface->X[3 * p]), fabs(surface->X[3 * p + 1])));
   }
   dea_status status = fill(ctx, &w, plus, minus, columns, out);
-  dea_free(ctx, w.slope);
-  dea_free(ctx, w.middle);
-  dea_free(ctx, w.weight);
-  dea_free(ctx, w.used);
-  dea_free(ctx, w.rows);
+  dea_arena_free(&w.memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
