@@ -10,9 +10,7 @@ files() {
     find . \( -name .git -o -path './build*' -o -path ./runs -o -name '*.run' \) -prune -o -type f -print
   fi
 }
-texts=$(files | grep -vE '\.(png|pdf|h5|mat|tdms|gdp)$|(^|/)corpus/' | while read -r file; do
-  [ ! -f "$file" ] || echo "$file"
-done)
+texts=$(files | grep -vE '\.(png|pdf|h5|mat|tdms|gdp)$|(^|/)corpus/' | xargs ls -d 2>/dev/null)
 [ -n "$texts" ] || { echo "no file found: the check is broken"; exit 1; }
 bad=0
 # A temporary file by mkstemp or mkdtemp (XXXXXX) is meant to lie in the machine's folder for them,
@@ -28,8 +26,10 @@ if grep -nE "[ 	]+\$|$(printf '\r')\$" $(printf '%s\n' $texts | grep -v '\.svg$'
   echo "^ white space at line ends"
   bad=1
 fi
-for file in $texts; do
-  if [ -s "$file" ] && [ -n "$(tail -c 1 "$file")" ]; then
+# A whole file is one record of grep -z. An empty one has none.
+# shellcheck disable=SC2013,SC2086
+for file in $(grep -LzP '\n\z' $texts); do
+  if [ -s "$file" ]; then
     echo "$file: no line end at its end"
     bad=1
   fi
