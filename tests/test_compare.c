@@ -85,7 +85,7 @@ static void test_one_model_against_another(void **state)
   assert_contains(command_out, "a, lumped");
   assert_contains(command_out, "a, axisymmetric");
   assert_int_equal(command_run("compare a a --model 3d"), 2);
-  assert_contains(command_err, "no model '3d' (it has: lumped, axisymmetric)");
+  assert_contains(command_err, "no curve of model '3d' (it has: lumped, axisymmetric)");
 }
 
 static void test_misfit_figures_are_drawn(void **state)

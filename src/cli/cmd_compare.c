@@ -1,37 +1,41 @@
 #include "cli/cli.h"
 
-#include "cli/compare_many.h"
-#include "output/compare_output.h"
-#include "output/csv.h"
+#include "base/file.h"
+#include "base/write_file.h"
+#include "output/compare_set.h"
 #include "output/figure.h"
-#include "output/measured.h"
 #include "output/results_h5.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { PAIRS_MAX = DEA_DESIGN_MODELS_MAX };
+enum { SIDES_MAX = 17, QUANTITIES_MAX = DEA_LOAD_POINT_COLUMNS };
 
-/* One of the two sides: a run or measurements. */
-struct side {
-  const char *name;
-  struct dea_run *run;
-  struct dea_measurement *measurement;
+/* Models asked for: of the runs, of the reference. */
+struct models {
+  size_t count;
+  char at[DEA_DESIGN_MODELS_MAX][2][DEA_NAME_SIZE];
+};
+
+struct columns {
+  size_t count;
+  int at[QUANTITIES_MAX];
 };
 
 struct request {
-  struct side side[2];
-  const char *model[2]; // asked for with --model, "" for any
-  const struct compare_request *line;
+  struct cli_words names; // runs, and last what they are compared with
+  struct models models;
+  struct columns columns;
+  double tolerance;   // NAN for none
+  const char *output; // folder; NULL for none
+  struct dea_plot_format format;
+  bool json;
 };
 
-/* A pair of curves and what came out. */
-struct pair {
-  const struct dea_curve *a, *b;
-  const struct dea_load_point *b_std;
-  struct dea_comparison *comparison;
-  struct dea_compared compared;
+/* What a name stands for: one of the two. */
+struct side {
+  struct dea_run *run;
+  struct dea_measured *measured;
 };
 
 // Command line -----------------------------------------------------------------------------------
@@ -39,10 +43,10 @@ struct pair {
 static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
                          const struct cli_option *option, const char *text, void *target)
 {
-  struct compare_columns *columns = target;
+  struct columns *columns = target;
   int column = dea_point_column_find(text);
   (void)option;
-  if (column >= 0 && columns->count < COMPARE_QUANTITIES_MAX) {
+  if (column >= 0 && columns->count < QUANTITIES_MAX) {
     columns->at[columns->count++] = column;
     return 0;
   }
@@ -71,7 +75,7 @@ static int take_tolerance(struct dea_cli *cli, const struct dea_command *command
 static int take_models(struct dea_cli *cli, const struct dea_command *command,
                        const struct cli_option *option, const char *text, void *target)
 {
-  struct compare_models *models = target;
+  struct models *models = target;
   size_t n = strcspn(text, ":");
   const char *second = text[n] == ':' ? text + n + 1 : text;
   size_t m = strcspn(second, ":");
@@ -85,279 +89,395 @@ static int take_models(struct dea_cli *cli, const struct dea_command *command,
   return 0;
 }
 
-// Sides ------------------------------------------------------------------------------------------
+// What is compared --------------------------------------------------------------------------------
 
-static dea_status side_read(struct dea_context *ctx, struct side *side)
+/* True for a run: a folder, a store by its name or its first bytes. */
+static bool is_run(const char *path)
 {
-  if (cli_compare_is_run(side->name)) {
-    return dea_run_read(ctx, side->name, &side->run);
+  size_t n = strlen(path);
+  char head[8] = {0};
+  if ((n > 3 && strcmp(path + n - 3, ".h5") == 0) || dea_path_is_folder(path)) {
+    return true;
   }
-  return dea_measurement_read(ctx, side->name, &side->measurement);
-}
-
-static void side_free(struct dea_context *ctx, struct side *side)
-{
-  dea_run_destroy(ctx, side->run);
-  dea_measurement_destroy(ctx, side->measurement);
-}
-
-/* Curve of a model, or of the only one there is when model is ""; NULL if there is none. */
-static const struct dea_curve *side_curve(const struct side *side, const char *model)
-{
-  if (side->measurement != NULL) {
-    return &side->measurement->curve;
+  FILE *file = fopen(path, "rb");
+  bool good = file != NULL && fread(head, 1, sizeof head, file) == sizeof head &&
+              memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
+  if (file != NULL) {
+    fclose(file);
   }
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_result_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
-  const char *wanted = model[0] != '\0' ? model : count > 0 ? models[0] : "";
-  return dea_figure_curve(side->run->result, wanted, false);
+  return good;
 }
 
-static void pair_set(const struct request *request, const struct dea_curve *a,
-                     const struct dea_curve *b, struct pair *pair)
+/* Two of which none is a reduced measurement, and at most one --model. */
+static bool is_pair(const struct request *request)
 {
-  const struct side *sides = request->side;
-  *pair = (struct pair){.a = a, .b = b};
-  pair->b_std = sides[1].measurement != NULL ? sides[1].measurement->std : NULL;
-  const struct dea_curve *const curves[2] = {a, b};
-  char *const names[2] = {pair->compared.a, pair->compared.b};
-  for (int k = 0; k < 2; k++) {
-    const char *slash = strrchr(sides[k].name, '/');
-    const char *name = slash != NULL && slash[1] != '\0' ? slash + 1 : sides[k].name;
-    bool measured = sides[k].measurement != NULL;
-    snprintf(names[k], DEA_LABEL_SIZE, "%.60s%s%.60s", name, measured ? "" : ", ",
-             measured ? "" : curves[k]->model);
+  const char *const *names = request->names.at;
+  return request->names.count == 2 && request->models.count < 2 &&
+         !dea_measured_is_folder(names[0]) && !dea_measured_is_folder(names[1]);
+}
+
+static dea_status read_sides(struct dea_context *ctx, const struct request *request,
+                             struct side *sides)
+{
+  for (size_t i = 0; i < request->names.count; i++) {
+    const char *name = request->names.at[i];
+    if (dea_measured_is_folder(name) && i + 1 < request->names.count) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "%s is a measurement: name it last, and runs before it",
+                      name);
+    }
+    bool run = is_run(name) && !dea_measured_is_folder(name);
+    DEA_TRY(ctx, run || (i + 1 < request->names.count && !is_pair(request))
+                     ? dea_run_read(ctx, name, &sides[i].run)
+                     : dea_measured_read(ctx, name, &sides[i].measured));
   }
+  return DEA_OK;
 }
 
-static dea_status no_curve(struct dea_context *ctx, const struct side *side, const char *model)
+/* Last part of a path, or all of it where another side ends the same. Into out[DEA_LABEL_SIZE]. */
+static void side_name(const struct request *request, size_t side, char *out)
 {
-  struct dea_text all = {.ctx = ctx};
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_result_models(side->run->result, models, DEA_DESIGN_MODELS_MAX);
-  for (size_t m = 0; m < count; m++) {
-    dea_text_add(&all, "%s%s", m > 0 ? ", " : "", models[m]);
+  const char *path = request->names.at[side], *own = dea_path_name(path);
+  bool alone = own[0] != '\0';
+  for (size_t i = 0; i < request->names.count; i++) {
+    alone = alone && (i == side || strcmp(dea_path_name(request->names.at[i]), own) != 0);
   }
-  dea_status status = model[0] != '\0'
-                          ? dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model '%s' (it has: %s)",
-                                     side->name, model, count > 0 ? dea_text_get(&all) : "none")
-                          : dea_fail(ctx, DEA_E_ARGUMENT, "%s has no points", side->name);
-  dea_text_free(&all);
-  return status;
+  snprintf(out, DEA_LABEL_SIZE, "%.60s", alone ? own : path);
 }
 
-/* The curves to be compared: those of the same model; a chosen pair with --model; the only ones. */
-static dea_status find_pairs(struct dea_context *ctx, const struct request *request,
-                             struct pair *pairs, size_t *count)
+/* Models of a run that are to be compared; names lent. */
+static size_t models_of(const struct request *request, const struct dea_run *run,
+                        const char *models[DEA_DESIGN_MODELS_MAX])
 {
-  const struct side *a = &request->side[0], *b = &request->side[1];
-  *count = 0;
-  if (request->model[0][0] == '\0' && a->run != NULL && b->run != NULL) {
-    const char *models[DEA_DESIGN_MODELS_MAX];
-    size_t n = dea_result_models(a->run->result, models, DEA_DESIGN_MODELS_MAX);
-    for (size_t m = 0; m < n; m++) {
-      const struct dea_curve *x = side_curve(a, models[m]), *y = side_curve(b, models[m]);
-      if (x != NULL && y != NULL) {
-        pair_set(request, x, y, &pairs[(*count)++]);
+  size_t count = dea_result_models(run->result, models, DEA_DESIGN_MODELS_MAX), kept = 0;
+  for (size_t m = 0; m < count && request->models.count > 0; m++) {
+    for (size_t k = 0; k < request->models.count; k++) {
+      if (strcmp(models[m], request->models.at[k][0]) == 0) {
+        models[kept++] = models[m];
+        break;
       }
     }
-    if (*count > 0) {
-      return DEA_OK;
+  }
+  return request->models.count > 0 ? kept : count;
+}
+
+/* Model of the reference that was asked for beside this one, "" for none. */
+static const char *reference_model(const struct request *request, const char *model)
+{
+  for (size_t k = 0; k < request->models.count; k++) {
+    if (strcmp(model, request->models.at[k][0]) == 0) {
+      return request->models.at[k][1];
     }
   }
-  const struct dea_curve *x = side_curve(a, request->model[0]);
-  const struct dea_curve *y = side_curve(b, request->model[1]);
-  if (x == NULL || y == NULL) {
-    return no_curve(ctx, x == NULL ? a : b, request->model[x == NULL ? 0 : 1]);
+  return "";
+}
+
+/* Adds the models of one run; they are called by what tells them apart. */
+static dea_status add_run(struct dea_context *ctx, const struct request *request,
+                          const struct side *sides, size_t side, bool one_model,
+                          struct dea_compare_set *set)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = models_of(request, sides[side].run, models);
+  char run[DEA_LABEL_SIZE], name[DEA_LABEL_SIZE];
+  side_name(request, side, run);
+  if (count == 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model %s", request->names.at[side],
+                    request->models.count > 0 ? "of those asked for" : "with points");
   }
-  pair_set(request, x, y, &pairs[(*count)++]);
+  for (size_t m = 0; m < count; m++) {
+    if (request->names.count == 2) {
+      snprintf(name, sizeof name, "%s", models[m]);
+    } else {
+      snprintf(name, sizeof name, "%.60s%s%.60s", run, one_model ? "" : ", ",
+               one_model ? "" : models[m]);
+    }
+    DEA_TRY(ctx, dea_compare_set_add(ctx, set, name, sides[side].run->result, models[m],
+                                     reference_model(request, models[m])));
+  }
   return DEA_OK;
 }
 
-// Comparison and output --------------------------------------------------------------------------
-
-/* Says of which measured points the run has no counterpart: a good misfit of a few says little. */
-static dea_status note_left_out(struct dea_context *ctx, const struct pair *pair)
+/* A model of the first of two, or its table, beside the other. */
+static dea_status add_pair(struct dea_context *ctx, const struct request *request,
+                           const struct side *a, const char *model, const char *reference_model,
+                           struct dea_compare_set *set)
 {
-  for (size_t i = 0; i < pair->comparison->misfit_count && pair->b_std != NULL; i++) {
-    const struct dea_misfit *m = &pair->comparison->misfits[i];
-    size_t measured = 0;
-    for (size_t k = 0; k < pair->b->count; k++) {
-      measured += isnan(dea_point_get(&pair->b->points[k], m->column)) ? 0U : 1U;
-    }
-    if (m->count < measured) {
-      DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                              "%zu of %zu measured points of '%s' lie outside the voltages of "
-                              "the run and are left out",
-                              measured - m->count, measured, dea_point_columns[m->column].header));
-    }
+  char name[DEA_LABEL_SIZE], label[DEA_LABEL_SIZE];
+  side_name(request, 0, name);
+  if (a->measured != NULL) {
+    return dea_compare_set_add_table(ctx, set, name, &a->measured->points->curve, reference_model);
   }
-  return DEA_OK;
+  snprintf(label, sizeof label, "%.60s, %.60s", name, model);
+  return dea_compare_set_add(ctx, set, label, a->run->result, model, reference_model);
 }
 
-/* Takes the misfits out that were not asked for; a quantity that is missing is an error. */
-static dea_status compare_pair(struct dea_context *ctx, const struct request *request,
-                               struct pair *pair)
+/* The models that both runs have; the one asked for with --model; else the first ones. */
+static dea_status fill_pairs(struct dea_context *ctx, const struct request *request,
+                             const struct side *sides, struct dea_compare_set *set)
 {
-  const int *only = request->line->columns.count == 1 ? &request->line->columns.at[0] : NULL;
-  DEA_TRY(ctx, dea_compare_curves(ctx, pair->a, pair->b, pair->b_std, only != NULL ? *only : -1,
-                                  &pair->comparison));
-  pair->compared.comparison = pair->comparison;
-  DEA_TRY(ctx, note_left_out(ctx, pair));
-  if (request->line->columns.count < 2) {
+  const struct side *a = &sides[0], *b = &sides[1];
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  bool asked = request->models.count > 0;
+  const char *model = asked ? request->models.at[0][0] : "";
+  const char *beside = asked ? request->models.at[0][1] : "";
+  size_t count =
+      a->run == NULL ? 0 : dea_result_models(a->run->result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t m = 0; !asked && b->run != NULL && m < count; m++) {
+    if (dea_figure_curve(a->run->result, models[m], false) != NULL &&
+        dea_figure_curve(b->run->result, models[m], false) != NULL) {
+      DEA_TRY(ctx, add_pair(ctx, request, a, models[m], models[m], set));
+    }
+  }
+  if (set->curve_count > 0) {
     return DEA_OK;
   }
-  size_t found = dea_comparison_keep(pair->comparison, request->line->columns.at,
-                                     request->line->columns.count);
-  return found < request->line->columns.count
-             ? dea_fail(ctx, DEA_E_ARGUMENT, "the two have not all quantities asked for in common")
-             : DEA_OK;
+  const char *first = asked || count == 0 ? model : models[0];
+  if (a->run != NULL && dea_figure_curve(a->run->result, first, false) == NULL) {
+    return dea_compare_no_model(ctx, request->names.at[0], a->run->result, model);
+  }
+  return add_pair(ctx, request, a, first, beside, set);
 }
 
-static void print_table(const struct pair *pair, double tolerance)
+static dea_status fill_set(struct dea_context *ctx, const struct request *request,
+                           const struct side *sides, struct dea_compare_set *set)
 {
-  printf("a: %s\nb: %s\n%-28s %6s %12s %12s %8s %12s %10s %10s\n", pair->compared.a,
-         pair->compared.b, "a - b", "points", "RMS", "largest", "at kV", "bias", "RMS/range",
-         "largest/range");
-  for (size_t i = 0; i < pair->comparison->misfit_count; i++) {
-    const struct dea_misfit *m = &pair->comparison->misfits[i];
-    const struct dea_column *c = &dea_point_columns[m->column];
+  size_t runs = request->names.count - 1;
+  bool one_model = true;
+  for (size_t i = 0; i < runs; i++) {
+    const char *models[DEA_DESIGN_MODELS_MAX];
+    one_model = one_model && models_of(request, sides[i].run, models) == 1;
+  }
+  for (size_t i = 0; i < runs; i++) {
+    DEA_TRY(ctx, add_run(ctx, request, sides, i, one_model, set));
+  }
+  return DEA_OK;
+}
+
+// What is printed ---------------------------------------------------------------------------------
+
+/* Title of a table and of the place of the largest difference. */
+static void print_head(const char *title, const char *at, bool std)
+{
+  printf("\n%-28s %6s %11s %11s %8s %11s %10s %13s", title, "points", "RMS", "largest", at, "bias",
+         "RMS/range", "largest/range");
+  printf(std ? " %11s %8s %8s\n" : "\n", "chi2/point", "in 1 std", "in 2 std");
+}
+
+static void print_row(const char *name, const struct dea_misfit *m, double at_factor,
+                      double tolerance)
+{
+  double factor = dea_point_columns[m->column].factor;
+  printf("  %-26s %6zu %11.5g %11.5g %8.4g %11.5g %8.3g %% %11.3g %%", name, m->count,
+         factor * m->rms, factor * m->largest, at_factor * m->largest_at, factor * m->bias,
+         100.0 * m->relative_rms, 100.0 * m->relative_largest);
+  if (m->std_count > 0) {
+    printf(" %11.4g %6.0f %% %6.0f %%", m->chi_square, 100.0 * m->within_1_std,
+           100.0 * m->within_2_std);
+  }
+  printf("%s\n",
+         !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
+}
+
+/* Prints the misfits of a quantity; true when some has uncertainties. */
+static bool print_quantity(const struct dea_compare_set *set, int column, double tolerance)
+{
+  const struct dea_misfit *rows[DEA_SET_CURVES_MAX] = {NULL};
+  bool any = false, std = false;
+  for (size_t i = 0; i < set->curve_count; i++) {
+    const struct dea_comparison *c = set->curves[i].comparison;
+    for (size_t k = 0; c != NULL && k < c->misfit_count; k++) {
+      if (c->misfits[k].column == column) {
+        rows[i] = &c->misfits[k];
+        any = true;
+        std = std || rows[i]->std_count > 0;
+      }
+    }
+  }
+  if (any) {
     char title[96];
-    dea_column_title(c, title, sizeof title);
-    printf("%-28s %6zu %12.5g %12.5g %8.4g %12.5g %8.3g %% %8.3g %%%s\n", title, m->count,
-           c->factor * m->rms, c->factor * m->largest, 1e-3 * m->largest_at, c->factor * m->bias,
-           100.0 * m->relative_rms, 100.0 * m->relative_largest, cli_compare_mark(m, tolerance));
+    dea_column_title(&dea_point_columns[column], title, sizeof title);
+    print_head(title, "at kV", std);
   }
+  for (size_t i = 0; i < set->curve_count; i++) {
+    if (rows[i] != NULL) {
+      print_row(set->curves[i].name, rows[i], 1e-3, tolerance);
+    }
+  }
+  return std;
 }
 
-static dea_status print_json(struct dea_context *ctx, const struct pair *pairs, size_t count,
-                             double tolerance)
+static bool print_profiles(const struct dea_compare_set *set)
 {
-  json_t *root = json_object(), *list = json_array();
-  json_object_set_new(root, "schema", json_integer(1));
-  if (!isnan(tolerance)) {
-    dea_json_put(root, "tolerance", tolerance);
+  bool std = false;
+  for (size_t i = 0; i < set->profile_count; i++) {
+    std = std || set->profiles[i].misfit.std_count > 0;
   }
-  for (size_t i = 0; i < count; i++) {
-    json_array_append_new(list, dea_compared_json(&pairs[i].compared, tolerance));
+  for (size_t i = 0; i < set->profile_count; i++) {
+    const struct dea_set_profile *p = &set->profiles[i];
+    char text[2 * DEA_LABEL_SIZE];
+    if (i == 0 || p->measured != set->profiles[i - 1].measured) {
+      snprintf(text, sizeof text, "z over film at %.4g kV (um)",
+               1e-3 * set->measured->profiles[p->measured].voltage_V);
+      print_head(text, "at mm", std);
+    }
+    snprintf(text, sizeof text, "%s%s%s", set->curves[p->curve].name, p->line.directed ? ", " : "",
+             p->line.directed ? dea_half_names[p->half] : "");
+    print_row(text, &p->misfit, 1e3, NAN);
   }
-  json_object_set_new(root, "comparisons", list);
-  char *text;
-  DEA_TRY(ctx, dea_json_text(ctx, root, &text));
-  fputs(text, stdout);
-  dea_free(ctx, text);
-  return DEA_OK;
+  return std;
 }
 
-static dea_status draw(struct dea_context *ctx, const struct request *request,
-                       const struct pair *pairs, size_t count)
+static void print_histories(const struct dea_compare_set *set)
 {
-  for (size_t i = 0; i < count; i++) {
-    DEA_TRY(ctx, dea_compared_draw(ctx, &pairs[i].compared, count > 1 ? pairs[i].a->model : "",
-                                   &request->line->format, request->line->output));
+  for (int k = 0; k < DEA_MEASURED_COLUMNS; k++) {
+    bool first = true;
+    for (size_t i = 0; i < set->history_count; i++) {
+      const struct dea_set_history *h = &set->histories[i];
+      if ((int)h->column != k) {
+        continue;
+      }
+      if (first) {
+        char title[96], text[112];
+        dea_column_title(&dea_point_columns[h->misfit.column], title, sizeof title);
+        snprintf(text, sizeof text, "%s in time", title);
+        print_head(text, "at s", false);
+        first = false;
+      }
+      print_row(set->curves[h->curve].name, &h->misfit, 1.0, NAN);
+    }
   }
-  return DEA_OK;
 }
 
-static dea_status judge(struct dea_context *ctx, const struct pair *pairs, size_t count,
+/* A pair: a row for each quantity. */
+static bool print_pair(const struct dea_compare_set *set, size_t curve, double tolerance)
+{
+  const struct dea_comparison *c = set->curves[curve].comparison;
+  char beside[DEA_LABEL_SIZE], title[96];
+  bool std = false;
+  dea_compare_set_beside(set, curve, beside);
+  for (size_t i = 0; i < c->misfit_count; i++) {
+    std = std || c->misfits[i].std_count > 0;
+  }
+  printf("a: %s\nb: %s", set->curves[curve].name, beside);
+  print_head("a - b", "at kV", std);
+  for (size_t i = 0; i < c->misfit_count; i++) {
+    dea_column_title(&dea_point_columns[c->misfits[i].column], title, sizeof title);
+    print_row(title, &c->misfits[i], 1e-3, tolerance);
+  }
+  return std;
+}
+
+static void print_tables(const struct dea_compare_set *set, double tolerance)
+{
+  bool std = false;
+  for (size_t i = 0; set->pairs && i < set->curve_count; i++) {
+    std = print_pair(set, i, tolerance) || std;
+  }
+  if (!set->pairs) {
+    printf("Each curve minus %s%s\n", set->reference,
+           set->measured != NULL ? ", as measured" : " (a run)");
+  }
+  for (int c = 0; !set->pairs && c < DEA_LOAD_POINT_COLUMNS; c++) {
+    std = print_quantity(set, c, tolerance) || std;
+  }
+  std = print_profiles(set) || std;
+  print_histories(set);
+  if (std) {
+    printf(
+        "\nchi2/point is the mean of (difference/std)^2: 1 where differences are of the size of "
+        "the scatter.\nOf a normal scatter 68 %% lie within 1 std and 95 %% within 2. The std is "
+        "what the measurement\nsays of its scatter; errors of its calibration and of the model "
+        "are not in it.\n");
+  }
+}
+
+static dea_status judge(struct dea_context *ctx, const struct dea_compare_set *set,
                         double tolerance)
 {
-  const struct dea_misfit *worst = NULL;
-  for (size_t i = 0; i < count; i++) {
-    for (size_t k = 0; k < pairs[i].comparison->misfit_count; k++) {
-      const struct dea_misfit *m = &pairs[i].comparison->misfits[k];
-      worst = worst == NULL || m->relative_largest > worst->relative_largest ? m : worst;
-    }
+  size_t curve = 0;
+  const struct dea_misfit *worst = dea_compare_set_worst(set, &curve);
+  if (isnan(tolerance) || (worst != NULL && worst->relative_largest <= tolerance)) {
+    return DEA_OK;
   }
-  return cli_compare_judge(ctx, worst, "", tolerance);
+  return worst == NULL
+             ? dea_fail(ctx, DEA_E_DIFFERS,
+                        "no quantity against the voltage is in common, so none is within the "
+                        "tolerance")
+             : dea_fail(ctx, DEA_E_DIFFERS,
+                        "%s of %s differs by %.3g %% of its range, more than %.3g %%",
+                        dea_point_columns[worst->column].key, set->curves[curve].name,
+                        100.0 * worst->relative_largest, 100.0 * tolerance);
 }
 
-static dea_status compare(struct dea_cli *cli, struct request *request, struct pair *pairs,
-                          size_t *count)
+static dea_status compare(struct dea_context *ctx, const struct request *request,
+                          const struct side *sides, struct dea_compare_set *set)
 {
-  struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, side_read(ctx, &request->side[0]));
-  DEA_TRY(ctx, side_read(ctx, &request->side[1]));
-  DEA_TRY(ctx, find_pairs(ctx, request, pairs, count));
-  for (size_t i = 0; i < *count; i++) {
-    DEA_TRY(ctx, compare_pair(ctx, request, &pairs[i]));
-    if (pairs[i].comparison->part_only) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
-                                   "the voltages of %s and %s differ and go up and down: only the "
-                                   "first part of one was compared",
-                                   pairs[i].compared.a, pairs[i].compared.b));
-    }
-    if (!request->line->json) {
-      print_table(&pairs[i], request->line->tolerance);
-    }
+  DEA_TRY(ctx,
+          set->pairs ? fill_pairs(ctx, request, sides, set) : fill_set(ctx, request, sides, set));
+  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, request->columns.at, request->columns.count));
+  if (request->json) {
+    char *text;
+    DEA_TRY(ctx, dea_json_text(ctx, dea_compare_set_json(set, request->tolerance), &text));
+    fputs(text, stdout);
+    dea_free(ctx, text);
+  } else {
+    print_tables(set, request->tolerance);
   }
-  if (request->line->json) {
-    DEA_TRY(ctx, print_json(ctx, pairs, *count, request->line->tolerance));
+  if (request->output != NULL) {
+    DEA_TRY(ctx, dea_compare_set_draw(ctx, set, &request->format, request->output));
   }
-  if (request->line->output != NULL) {
-    DEA_TRY(ctx, draw(ctx, request, pairs, *count));
-  }
-  return judge(ctx, pairs, *count, request->line->tolerance);
-}
-
-/* The two-sided comparison: pairs of curves, each with its difference. */
-static int compare_two(struct dea_cli *cli, const struct compare_request *line)
-{
-  struct request request = {.side = {{.name = line->names.at[0]}, {.name = line->names.at[1]}},
-                            .model = {"", ""},
-                            .line = line};
-  struct pair pairs[PAIRS_MAX];
-  memset(pairs, 0, sizeof pairs);
-  size_t count = 0;
-  if (line->models.count > 0) {
-    request.model[0] = line->models.at[0][0];
-    request.model[1] = line->models.at[0][1];
-  }
-  int code = cli_report(cli, compare(cli, &request, pairs, &count));
-  for (size_t i = 0; i < count; i++) {
-    dea_comparison_destroy(cli->ctx, pairs[i].comparison);
-  }
-  side_free(cli->ctx, &request.side[0]);
-  side_free(cli->ctx, &request.side[1]);
-  return code;
+  return judge(ctx, set, request->tolerance);
 }
 
 static int run(struct dea_cli *cli, void *user)
 {
-  const struct compare_request *request = user;
-  const char *const *names = request->names.at;
-  bool two = request->names.count == 2 && request->models.count < 2 &&
-             !dea_measured_is_folder(names[0]) && !dea_measured_is_folder(names[1]);
-  return two ? compare_two(cli, request) : cli_report(cli, cli_compare_many(cli, request));
+  const struct request *request = user;
+  struct dea_context *ctx = cli->ctx;
+  struct side sides[SIDES_MAX] = {{NULL}};
+  struct dea_compare_set *set = NULL;
+  char reference[DEA_LABEL_SIZE];
+  size_t last = request->names.count - 1;
+  side_name(request, last, reference);
+  dea_status status = read_sides(ctx, request, sides);
+  if (status == DEA_OK) {
+    status = dea_compare_set_create(ctx, reference, sides[last].measured,
+                                    sides[last].run != NULL ? sides[last].run->result : NULL, &set);
+  }
+  if (status == DEA_OK) {
+    set->pairs = is_pair(request);
+    status = compare(ctx, request, sides, set);
+  }
+  int code = cli_report(cli, status);
+  dea_compare_set_destroy(ctx, set);
+  for (size_t i = 0; i <= last; i++) {
+    dea_run_destroy(ctx, sides[i].run);
+    dea_measured_destroy(ctx, sides[i].measured);
+  }
+  return code;
 }
 
-static const struct compare_request defaults = {.tolerance = NAN,
-                                                .format = {.svg = true, .width_m = 0.085}};
-
-#define AT(member) .target = offsetof(struct compare_request, member)
+static const struct request defaults = {.tolerance = NAN,
+                                        .format = {.svg = true, .width_m = 0.085}};
 
 static const struct cli_option options[] = {
     {NULL, 0, CLI_FOLDER, "A... B",
-     "A: folders of runs. B: folder of a run or of dea reduce, or a CSV table", AT(names),
-     .least = 2, .most = COMPARE_NAMES_MAX,
+     "A: folders of runs. B: folder of a run or of dea reduce, or a CSV table", CLI_AT(names),
+     .least = 2, .most = SIDES_MAX,
      .too_few = "give two or more: runs, and a run or what was measured",
      .too_many = "at most 16 runs can be compared at a time"},
-    {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", AT(tolerance),
+    {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", CLI_AT(tolerance),
      take_tolerance},
     {"quantity", 0, CLI_QUANTITY, "KEY",
-     "only this quantity, such as fibre_tip_z_m; can be repeated", AT(columns), take_quantity,
-     .most = COMPARE_QUANTITIES_MAX},
+     "only this quantity, such as fibre_tip_z_m; can be repeated", CLI_AT(columns), take_quantity,
+     .most = QUANTITIES_MAX},
     {"model", 0, CLI_MODEL, "MODEL",
      "only this model; can be repeated. lumped:axisymmetric takes one of A, the other of B. There "
      "are",
-     AT(models), take_models, .most = DEA_DESIGN_MODELS_MAX},
-    {"output", 'o', CLI_FOLDER, "DIR", "draw the figures into this folder", AT(output)},
-    {"format", 0, CLI_FORMAT, "LIST", "formats with commas between, svg if not given", AT(format),
-     cli_take_formats},
-    {"width", 0, CLI_TEXT, "MM", "width, 85 for one column or 170 for two", AT(format),
-     cli_take_width},
-    {"json", 0, CLI_FLAG, NULL, "print the comparison as JSON", AT(json)},
+     CLI_AT(models), take_models, .most = DEA_DESIGN_MODELS_MAX},
+    CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "draw the figures into this folder"),
+    CLI_FORMAT_ROW("formats with commas between, svg if not given"),
+    CLI_WIDTH_ROW("width, 85 for one column or 170 for two"),
+    CLI_JSON_ROW("print the comparison as JSON"),
     {0}};
 
 const struct dea_command cmd_compare = {
@@ -374,7 +494,7 @@ const struct dea_command cmd_compare = {
         "tolerance is given and the largest difference of a quantity against the voltage exceeds "
         "it.",
     .options = options,
-    .request_size = sizeof(struct compare_request),
+    .request_size = sizeof(struct request),
     .defaults = &defaults,
     .run = run,
 };

@@ -1,6 +1,5 @@
 #include "output/compare_set.h"
 
-#include "output/compare_output.h"
 #include "output/figure.h"
 
 #include <math.h>
@@ -61,9 +60,25 @@ static const struct dea_curve *reference_curve(const struct dea_result *result, 
              : dea_figure_curve(result, models[0], false);
 }
 
-dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
-                               const char *name, const struct dea_result *result, const char *model,
-                               const char *reference_model)
+dea_status dea_compare_no_model(struct dea_context *ctx, const char *name,
+                                const struct dea_result *result, const char *model)
+{
+  struct dea_text all = {.ctx = ctx};
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t m = 0; m < count; m++) {
+    dea_text_add(&all, "%s%s", m > 0 ? ", " : "", models[m]);
+  }
+  dea_status status =
+      count == 0 ? dea_fail(ctx, DEA_E_ARGUMENT, "%s has no points", name)
+                 : dea_fail(ctx, DEA_E_ARGUMENT, "%s has no curve of model '%s' (it has: %s)", name,
+                            model, dea_text_get(&all));
+  dea_text_free(&all);
+  return status;
+}
+
+static dea_status add_curve(struct dea_context *ctx, struct dea_compare_set *set, const char *name,
+                            const struct dea_set_curve *what, const char *reference_model)
 {
   if (set->curve_count == DEA_SET_CURVES_MAX) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
@@ -71,21 +86,42 @@ dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *
                     DEA_SET_CURVES_MAX);
   }
   struct dea_set_curve *curve = &set->curves[set->curve_count];
-  *curve = (struct dea_set_curve){
-      .result = result,
-      .model = model,
-      .curve = dea_figure_curve(result, model, false),
-      .reference = set->measured != NULL
-                       ? &set->measured->points->curve
-                       : reference_curve(set->reference_result, model, reference_model),
-  };
+  *curve = *what;
+  curve->reference = set->measured != NULL
+                         ? &set->measured->points->curve
+                         : reference_curve(set->reference_result, what->model, reference_model);
   if (curve->reference == NULL) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no curve of model '%s'", set->reference,
-                    reference_model[0] != '\0' ? reference_model : model);
+    return dea_compare_no_model(ctx, set->reference, set->reference_result,
+                                reference_model[0] != '\0' ? reference_model : what->model);
   }
   snprintf(curve->name, sizeof curve->name, "%s", name);
   set->curve_count++;
   return DEA_OK;
+}
+
+dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
+                               const char *name, const struct dea_result *result, const char *model,
+                               const char *reference_model)
+{
+  const struct dea_set_curve curve = {
+      .result = result, .model = model, .curve = dea_figure_curve(result, model, false)};
+  return add_curve(ctx, set, name, &curve, reference_model);
+}
+
+dea_status dea_compare_set_add_table(struct dea_context *ctx, struct dea_compare_set *set,
+                                     const char *name, const struct dea_curve *table,
+                                     const char *reference_model)
+{
+  const struct dea_set_curve curve = {.model = "", .curve = table};
+  return add_curve(ctx, set, name, &curve, reference_model);
+}
+
+void dea_compare_set_beside(const struct dea_compare_set *set, size_t curve,
+                            char out[DEA_LABEL_SIZE])
+{
+  bool run = set->measured == NULL;
+  snprintf(out, DEA_LABEL_SIZE, "%.60s%s%.60s", set->reference, run ? ", " : "",
+           run ? set->curves[curve].reference->model : "");
 }
 
 // Quantities against the voltage ------------------------------------------------------------------
@@ -182,9 +218,9 @@ static dea_status compute_curve(struct dea_context *ctx, const struct dea_compar
 {
   const struct dea_load_point *std = set->measured != NULL ? set->measured->points->std : NULL;
   if (curve->curve != NULL) {
-    dea_status status =
-        dea_compare_curves(ctx, curve->curve, curve->reference, std, -1, &curve->comparison);
-    if (status == DEA_E_ARGUMENT) {
+    dea_status status = dea_compare_curves(ctx, curve->curve, curve->reference, std,
+                                           count == 1 ? columns[0] : -1, &curve->comparison);
+    if (status == DEA_E_ARGUMENT && !set->pairs) {
       dea_context_clear(ctx); // nothing in common: said below
     } else {
       DEA_TRY(ctx, status);
@@ -417,14 +453,47 @@ const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set
 
 // JSON --------------------------------------------------------------------------------------------
 
-static json_t *curve_json(const struct dea_compare_set *set, const struct dea_set_curve *curve,
-                          double tolerance)
+static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, double tolerance)
 {
-  struct dea_compared compared = {.comparison = curve->comparison};
-  snprintf(compared.a, sizeof compared.a, "%s", curve->name);
-  snprintf(compared.b, sizeof compared.b, "%.60s%s%.60s", set->reference,
-           set->measured != NULL ? "" : ", ", set->measured != NULL ? "" : curve->reference->model);
-  return dea_compared_json(&compared, tolerance);
+  const struct dea_column *column = &dea_point_columns[m->column];
+  char at[32];
+  json_t *object = json_object();
+  snprintf(at, sizeof at, "largest_at_%s", at_unit);
+  dea_json_put_text(object, "quantity", column->key);
+  dea_json_put_text(object, "unit", column->si_unit);
+  json_object_set_new(object, "points", json_integer((json_int_t)m->count));
+  dea_json_put(object, "rms", m->rms);
+  dea_json_put(object, "largest", m->largest);
+  dea_json_put(object, at, m->largest_at);
+  dea_json_put(object, "bias", m->bias);
+  dea_json_put(object, "range", m->range);
+  dea_json_put(object, "relative_rms", m->relative_rms);
+  dea_json_put(object, "relative_largest", m->relative_largest);
+  if (m->std_count > 0) {
+    json_object_set_new(object, "std_points", json_integer((json_int_t)m->std_count));
+    dea_json_put(object, "chi_square_per_point", m->chi_square);
+    dea_json_put(object, "within_1_std", m->within_1_std);
+    dea_json_put(object, "within_2_std", m->within_2_std);
+  }
+  if (!isnan(tolerance)) {
+    json_object_set_new(object, "within", json_boolean(m->relative_largest <= tolerance));
+  }
+  return object;
+}
+
+static json_t *curve_json(const struct dea_compare_set *set, size_t curve, double tolerance)
+{
+  const struct dea_comparison *comparison = set->curves[curve].comparison;
+  json_t *object = json_object(), *quantities = json_array();
+  char beside[DEA_LABEL_SIZE];
+  dea_compare_set_beside(set, curve, beside);
+  dea_json_put_text(object, "a", set->curves[curve].name);
+  dea_json_put_text(object, "b", beside);
+  for (size_t i = 0; i < comparison->misfit_count; i++) {
+    json_array_append_new(quantities, misfit_json(&comparison->misfits[i], "V", tolerance));
+  }
+  json_object_set_new(object, "quantities", quantities);
+  return object;
 }
 
 json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance)
@@ -438,12 +507,12 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
   dea_json_put_text(root, "reference", set->reference);
   for (size_t i = 0; i < set->curve_count; i++) {
     if (set->curves[i].comparison != NULL) {
-      json_array_append_new(curves, curve_json(set, &set->curves[i], tolerance));
+      json_array_append_new(curves, curve_json(set, i, tolerance));
     }
   }
   for (size_t i = 0; i < set->profile_count; i++) {
     const struct dea_set_profile *p = &set->profiles[i];
-    json_t *one = dea_misfit_json(&p->misfit, "m", NAN);
+    json_t *one = misfit_json(&p->misfit, "m", NAN);
     dea_json_put_text(one, "quantity", "z_m"); // of all of the film
     dea_json_put_text(one, "a", set->curves[p->curve].name);
     if (p->line.directed) {
@@ -454,7 +523,7 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
   }
   for (size_t i = 0; i < set->history_count; i++) {
     const struct dea_set_history *h = &set->histories[i];
-    json_t *one = dea_misfit_json(&h->misfit, "s", NAN);
+    json_t *one = misfit_json(&h->misfit, "s", NAN);
     dea_json_put_text(one, "a", set->curves[h->curve].name);
     dea_json_put(one, "shift_s", h->clock.shift_s);
     json_object_set_new(one, "edges", json_integer((json_int_t)h->clock.edges));

@@ -310,6 +310,81 @@ static dea_status draw_profile(struct dea_set_figures *f)
   return dea_set_figure_finish(f, plot, fill_profile(f, m, index, &plot->panels[0]));
 }
 
+// Pairs -------------------------------------------------------------------------------------------
+
+/* Adds values (minus less, if given) against the voltage in kV. */
+static dea_status add_values(struct dea_context *ctx, struct dea_panel *panel,
+                             const struct dea_misfit *m, const double *values, const double *less,
+                             const double *std, struct dea_series **out)
+{
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, m->count, out));
+  double factor = dea_point_columns[m->column].factor;
+  for (size_t i = 0; i < m->count; i++) {
+    (*out)->values[i] = 1e-3 * m->at[i];
+    (*out)->values[m->count + i] = factor * (values[i] - (less != NULL ? less[i] : 0.0));
+    (*out)->values[2 * m->count + i] = std != NULL ? factor * std[i] : NAN;
+  }
+  return DEA_OK;
+}
+
+static bool has_bars(const struct dea_misfit *m)
+{
+  for (size_t i = 0; i < m->count; i++) {
+    if (!isnan(m->b_std[i])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m, const char *a,
+                            const char *b, struct dea_plot *plot)
+{
+  struct dea_panel *top = &plot->panels[0], *low = &plot->panels[1];
+  struct dea_series *series;
+  bool bars = has_bars(m);
+  plot->panel_count = 2;
+  plot->second_height = 0.45;
+  DEA_TRY(ctx, add_values(ctx, top, m, m->a, NULL, NULL, &series));
+  series->style = DEA_LINE;
+  series->colour = DEA_BLUE;
+  dea_label_escape(a, series->title, sizeof series->title);
+  DEA_TRY(ctx, add_values(ctx, top, m, m->b, NULL, m->b_std, &series));
+  series->style = bars ? DEA_ERROR_BARS : m->count > 25 ? DEA_LINE_MARKED : DEA_MARKERS;
+  series->colour = DEA_VERMILLION;
+  dea_label_escape(b, series->title, sizeof series->title);
+  DEA_TRY(ctx, add_values(ctx, low, m, m->a, m->b, m->b_std, &series));
+  series->style = bars ? DEA_ERROR_BARS : DEA_LINE_MARKED;
+  series->colour = DEA_BLACK;
+  dea_panel_mark(low, false, 0.0, "");
+  dea_figure_label(&dea_point_columns[m->column], top->y_label, sizeof top->y_label);
+  snprintf(low->y_label, sizeof low->y_label, "Difference");
+  dea_figure_voltage_axis(top);
+  dea_figure_voltage_axis(low);
+  dea_figure_even_tics(top, 7);
+  dea_figure_even_tics(low, 3);
+  return DEA_OK;
+}
+
+static dea_status draw_pair(struct dea_set_figures *f, size_t curve)
+{
+  const struct dea_set_curve *c = &f->set->curves[curve];
+  bool alone = f->set->curve_count == 1;
+  char name[DEA_SET_FIGURE_SIZE], beside[DEA_LABEL_SIZE], caption[3 * DEA_LABEL_SIZE];
+  dea_compare_set_beside(f->set, curve, beside);
+  for (size_t i = 0; c->comparison != NULL && i < c->comparison->misfit_count; i++) {
+    const struct dea_misfit *m = &c->comparison->misfits[i];
+    struct dea_plot *plot;
+    snprintf(name, sizeof name, "compare_%s%s%.30s", dea_point_columns[m->column].key,
+             alone ? "" : "_", alone ? "" : c->model);
+    snprintf(caption, sizeof caption, "%s of %s and %s, and the first minus the second",
+             dea_point_columns[m->column].header, c->name, beside);
+    DEA_TRY(f->ctx, dea_plot_create(f->ctx, name, caption, &plot));
+    DEA_TRY(f->ctx, dea_set_figure_finish(f, plot, fill_pair(f->ctx, m, c->name, beside, plot)));
+  }
+  return DEA_OK;
+}
+
 // All --------------------------------------------------------------------------------------------
 
 dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compare_set *set,
@@ -322,7 +397,10 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
   }
   *f = (struct dea_set_figures){.ctx = ctx, .set = set, .format = format, .directory = directory};
   dea_status status = dea_folder_make(ctx, directory);
-  status = status == DEA_OK ? draw_quantities(f) : status;
+  for (size_t i = 0; status == DEA_OK && set->pairs && i < set->curve_count; i++) {
+    status = draw_pair(f, i);
+  }
+  status = status == DEA_OK && !set->pairs ? draw_quantities(f) : status;
   status = status == DEA_OK ? draw_profile(f) : status;
   status = status == DEA_OK ? dea_set_draw_histories(f) : status;
   for (size_t i = 0; i < f->count; i++) {
