@@ -11,21 +11,8 @@ foreach(module IN ITEMS dea_solid_module dea_cairo_module dea_matio_module)
   endif()
 endforeach()
 
-# The public headers are those that dea.h names; base/version.h is made at configuration.
-set(headers ${PROJECT_SOURCE_DIR}/src/dea.h)
-install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dea)
-file(STRINGS ${PROJECT_SOURCE_DIR}/src/dea.h included REGEX "^#include \"")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/dea.h)
-foreach(line IN LISTS included)
-  string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" header ${line})
-  get_filename_component(folder ${header} DIRECTORY)
-  if(header STREQUAL "base/version.h")
-    set(from ${PROJECT_BINARY_DIR}/src)
-  else()
-    set(from ${PROJECT_SOURCE_DIR}/src)
-  endif()
-  install(FILES ${from}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dea/${folder})
-endforeach()
+# The one public header.
+install(FILES ${PROJECT_SOURCE_DIR}/src/api/dea.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 foreach(folder IN ITEMS materials)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
@@ -52,7 +39,7 @@ set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRAR
 list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits|lapack|blas|gfortran|libsz|libz\\.")
 list(REMOVE_DUPLICATES DEA_PC_LIBRARIES)
 list(JOIN DEA_PC_LIBRARIES " " DEA_PC_LIBRARIES)
-if(BUILD_SHARED_LIBS)
+if(NOT DEA_STATIC)
   set(DEA_PC_DEPENDENCIES "Requires.private: ${DEA_PC_PACKAGES}\nLibs: -L\${libdir} -ldea\n\
 Libs.private: ${DEA_PC_LIBRARIES} -lm")
 else()

@@ -4,9 +4,9 @@
 set -eu
 cd "$1/src"
 # shellcheck disable=SC2016 # awk's own
-find . -name '*.[ch]' ! -name dea.h | sed 's|^\./||' | xargs awk '
+find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
-    n = split("base material waveform design device result model study output fabricate lab cli", order, " ")
+    n = split("base material waveform design device result model study output fabricate lab api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
   }
   function part(path, i, parts) { split(path, parts, "/"); return parts[i] }

@@ -1,6 +1,5 @@
 #!/bin/sh
-# Each header compiles alone as strict C17, and the whole interface as C++17; dea.h names every
-# header that its headers include.
+# Each header compiles alone as strict C17, and the public one as its users compile it.
 set -eu
 source=$1 build=$2
 flags="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla -Werror"
@@ -17,21 +16,30 @@ for header in $(cd "$source/src" && find . -name '*.h' | sed 's|^\./||'); do
     bad=1
   }
 done
-listed=$(sed -n 's/^#include "\(.*\)".*/\1/p' "$source/src/dea.h")
-for header in $listed; do
-  file=$source/src/$header
-  [ -f "$file" ] || continue # made at configuration
-  # shellcheck disable=SC2013 # a header has no white space in its name
-  for needed in $(sed -n 's/^#include "\(.*\)".*/\1/p' "$file"); do
-    printf '%s\n' "$listed" | grep -qxF "$needed" || {
-      echo "src/dea.h lacks $needed, which $header includes"
+# The public one, as users compile it: alone and twice in a file, in C and in C++; and without macros, for
+# wrappers that read the declarations between its marks.
+flags="-Wall -Wextra -Wpedantic -Werror -fsyntax-only -I$source/src/api"
+user='#include <dea.h>
+#include <dea.h>
+int main(void) { return dea_version() == 0; }'
+# shellcheck disable=SC2086
+printf '%s\n' "$user" | "$CC" -std=c99 -x c $flags - || { echo "dea.h does not compile as C99"; bad=1; }
+for compiler in c++ clang++-14; do
+  if command -v $compiler >/dev/null 2>&1; then
+    # shellcheck disable=SC2086
+    printf '%s\n' "$user" | $compiler -std=c++11 -x c++ $flags - || {
+      echo "dea.h does not compile with $compiler"
       bad=1
     }
-  done
+  fi
 done
-if command -v clang-14 >/dev/null 2>&1; then
-  printf '#include "dea.h"\nint main() { return dea_status_exit_code(DEA_OK); }\n' |
-    clang-14 -std=c++17 -x c++ -Wall -Wextra -Werror "-I$source/src" "-I$build/src" -fsyntax-only - ||
-    { echo "dea.h does not compile as C++17"; bad=1; }
+declarations=$(sed -n '/\[declarations\]/,/\[end\]/p' "$source/src/api/dea.h")
+[ "$(printf '%s\n' "$declarations" | grep -c '(.*);')" -gt 30 ] || {
+  echo "no declarations between the marks of dea.h: the check is broken"
+  bad=1
+}
+if printf '%s\n' "$declarations" | grep -n '^ *#'; then
+  echo "dea.h has a line of the preprocessor between its marks"
+  bad=1
 fi
 exit $bad

@@ -28,6 +28,10 @@ struct dea_context {
   dea_progress_fn progress;
   void *progress_user;
   const volatile sig_atomic_t *interrupt;
+  dea_interrupt_fn interrupt_fn;
+  void *interrupt_user;
+  dea_finding_fn finding_fn;
+  void *finding_user;
 };
 
 static void *default_resize(void *user, void *pointer, size_t size)
@@ -215,6 +219,9 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
     return DEA_E_MEMORY;
   }
   ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, location, copy};
+  if (ctx->finding_fn != NULL) {
+    ctx->finding_fn(ctx->finding_user, &ctx->findings[ctx->finding_count - 1]);
+  }
   ctx->errors_kept += error;
   return error && ctx->errors_kept == DEA_ERRORS_KEPT
              ? dea_finding_add(ctx, DEA_NOTE, location, "errors after the first %d are not shown",
@@ -243,6 +250,12 @@ void dea_finding_clear(struct dea_context *ctx)
     dea_free(ctx, ctx->findings[i].text);
   }
   ctx->finding_count = ctx->errors = ctx->errors_kept = 0;
+}
+
+void dea_context_set_finding_sink(struct dea_context *ctx, dea_finding_fn fn, void *user)
+{
+  ctx->finding_fn = fn;
+  ctx->finding_user = user;
 }
 
 const char *dea_intern(struct dea_context *ctx, const char *text)
@@ -307,7 +320,14 @@ const volatile sig_atomic_t *dea_context_get_interrupt(const struct dea_context 
   return ctx->interrupt;
 }
 
+void dea_context_set_interrupt_fn(struct dea_context *ctx, dea_interrupt_fn fn, void *user)
+{
+  ctx->interrupt_fn = fn;
+  ctx->interrupt_user = user;
+}
+
 bool dea_interrupted(const struct dea_context *ctx)
 {
-  return ctx->interrupt != NULL && *ctx->interrupt != 0;
+  return (ctx->interrupt != NULL && *ctx->interrupt != 0) ||
+         (ctx->interrupt_fn != NULL && ctx->interrupt_fn(ctx->interrupt_user));
 }

@@ -49,6 +49,10 @@ struct dea_allocator {
 /* done and total count the same thing; total is 0 when unknown. what: for example "lumped sweep".
  */
 typedef void (*dea_progress_fn)(void *user, const char *what, size_t done, size_t total);
+/* Asked between steps of long work; true: stop. */
+typedef bool (*dea_interrupt_fn)(void *user);
+/* Told of each finding as it is added; lent. */
+typedef void (*dea_finding_fn)(void *user, const struct dea_finding *finding);
 
 struct dea_context;
 
@@ -102,6 +106,8 @@ size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_lea
 /* All findings in the order they were added; lent until the next dea_finding_add. */
 const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count);
 void dea_finding_clear(struct dea_context *ctx);
+/* fn: NULL for none. */
+void dea_context_set_finding_sink(struct dea_context *ctx, dea_finding_fn fn, void *user);
 
 /* Keeps a copy of a name (file name, ...) until the context dies; the same text gives the same
  * pointer. NULL on failure. */
@@ -119,6 +125,8 @@ void dea_progress(struct dea_context *ctx, const char *what, size_t done, size_t
 void dea_context_set_interrupt(struct dea_context *ctx, const volatile sig_atomic_t *flag);
 /* The flag that is set; NULL: none. */
 const volatile sig_atomic_t *dea_context_get_interrupt(const struct dea_context *ctx);
+/* The same as a question; both may be set. fn: NULL for none. */
+void dea_context_set_interrupt_fn(struct dea_context *ctx, dea_interrupt_fn fn, void *user);
 bool dea_interrupted(const struct dea_context *ctx);
 
 #endif

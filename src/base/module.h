@@ -5,6 +5,13 @@
 
 #include "base/context.h"
 
+/* Before the declaration of the symbol that a module is opened for: all others are hidden. */
+#if defined(__GNUC__)
+#define DEA_MODULE_SYMBOL __attribute__((visibility("default")))
+#else
+#define DEA_MODULE_SYMBOL
+#endif
+
 /* Path of a module's file ("dea_solid_module.so") into out[size]: in the folder that DEA_MODULES
  * names, installed, or built here. false when it is in none of them. */
 bool dea_module_find(const char *file, char *out, size_t size);

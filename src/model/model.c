@@ -29,3 +29,84 @@ const struct dea_model_type *dea_model_find(const char *name)
   }
   return NULL;
 }
+
+static dea_status lacks(struct dea_context *ctx, const struct dea_model_type *type,
+                        const char *what)
+{
+  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' knows no %s", type->name, what);
+}
+
+dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_path_options *options,
+                          dea_point_sink points, dea_event_sink events, void *user)
+{
+  return type->path != NULL ? type->path(ctx, model, options, points, events, user)
+                            : lacks(ctx, type, "equilibrium path");
+}
+
+dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, struct dea_profile *out)
+{
+  return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
+}
+
+dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_probe *tip, double depth_m,
+                            struct dea_load_point *out)
+{
+  return type->indent != NULL ? type->indent(ctx, model, tip, depth_m, out)
+                              : lacks(ctx, type, "indenter");
+}
+
+dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_load_point *at, size_t count,
+                           struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  return type->modes != NULL ? type->modes(ctx, model, at, count, points, shapes)
+                             : lacks(ctx, type, "vibrations");
+}
+
+dea_status dea_model_respond(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_load_point *at,
+                             const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                             size_t count, struct dea_load_point *points)
+{
+  return type->respond != NULL
+             ? type->respond(ctx, model, at, excitation, frequency_Hz, count, points)
+             : lacks(ctx, type, "vibrations");
+}
+
+dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, enum dea_fields_part part,
+                            struct dea_field_mesh **out)
+{
+  return type->fields != NULL ? type->fields(ctx, model, part, out) : lacks(ctx, type, "fields");
+}
+
+dea_status dea_model_save(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, struct dea_state *out)
+{
+  return type->save != NULL ? type->save(ctx, model, out) : lacks(ctx, type, "state to be saved");
+}
+
+dea_status dea_model_load(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_state *state)
+{
+  return type->load != NULL ? type->load(ctx, model, state)
+                            : lacks(ctx, type, "state to go on from");
+}
+
+dea_status dea_model_begin(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_time_options *options,
+                           struct dea_load_point *out)
+{
+  return type->begin != NULL ? type->begin(ctx, model, options, out) : lacks(ctx, type, "time");
+}
+
+dea_status dea_model_advance(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_time_step *step,
+                             struct dea_load_point *out, double *error)
+{
+  return type->advance != NULL ? type->advance(ctx, model, step, out, error)
+                               : lacks(ctx, type, "time");
+}

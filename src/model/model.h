@@ -124,6 +124,36 @@ struct dea_model_type {
   void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };
 
+/* Calls to what not every model can: DEA_E_UNSUPPORTED, with a message, where it is NULL. */
+dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_path_options *options,
+                          dea_point_sink points, dea_event_sink events, void *user);
+dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, struct dea_profile *out);
+dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_probe *tip, double depth_m,
+                            struct dea_load_point *out);
+dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_load_point *at, size_t count,
+                           struct dea_load_point *points, struct dea_field_mesh **shapes);
+dea_status dea_model_respond(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_load_point *at,
+                             const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                             size_t count, struct dea_load_point *points);
+dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, enum dea_fields_part part,
+                            struct dea_field_mesh **out);
+dea_status dea_model_save(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, struct dea_state *out);
+dea_status dea_model_load(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_state *state);
+dea_status dea_model_begin(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_time_options *options,
+                           struct dea_load_point *out);
+dea_status dea_model_advance(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_time_step *step,
+                             struct dea_load_point *out, double *error);
+
 /* Path of the module that holds the 3D engine, into out[size]; false when it is not here. */
 bool dea_solid_module_find(char *out, size_t size);
 

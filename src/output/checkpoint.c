@@ -139,7 +139,7 @@ static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *ke
     return DEA_OK;
   }
   field_name(type->name, last, name);
-  DEA_TRY(ctx, type->fields(ctx, model, DEA_FIELDS_VOLUME, &mesh));
+  DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &mesh));
   dea_status status = write_vtu(ctx, keep->directory, name, mesh, voltage_V,
                                 design->report.fields_of.value == DEA_FIELDS_WHOLE);
   dea_field_mesh_destroy(ctx, mesh);

@@ -11,7 +11,7 @@ dea_status dea_state_file_write(struct dea_context *ctx, const struct dea_model_
 {
   struct dea_state state = {0};
   struct h5 h;
-  DEA_TRY(ctx, type->save(ctx, model, &state));
+  DEA_TRY(ctx, dea_model_save(ctx, type, model, &state));
   dea_h5_begin(&h, ctx, path);
   hid_t file = dea_h5_file_make(&h);
   dea_h5_put_text(&h, file, "format", "libdea state");
@@ -105,7 +105,7 @@ dea_status dea_state_file_read(struct dea_context *ctx, const struct dea_model_t
   struct dea_state wanted = {0}, state = {0};
   double *values[DEA_STATE_PARTS_MAX] = {NULL};
   struct h5 h;
-  DEA_TRY(ctx, type->save(ctx, model, &wanted));
+  DEA_TRY(ctx, dea_model_save(ctx, type, model, &wanted));
   dea_h5_begin(&h, ctx, path);
   hid_t file = open_file(&h);
   check_marks(&h, file, type, &wanted);
@@ -113,7 +113,7 @@ dea_status dea_state_file_read(struct dea_context *ctx, const struct dea_model_t
   dea_h5_close(file);
   dea_h5_end(&h);
   if (h.status == DEA_OK) {
-    h.status = type->load(ctx, model, &state);
+    h.status = dea_model_load(ctx, type, model, &state);
   }
   for (size_t i = 0; i < DEA_STATE_PARTS_MAX; i++) {
     dea_free(ctx, values[i]);

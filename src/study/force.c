@@ -20,7 +20,7 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
   struct dea_load_point point;
   double depth_m = first_m, last_m = 0, last_N = 0;
   for (int i = 0; i < PRELOAD_TRIALS; i++) {
-    DEA_TRY(ctx, type->indent(ctx, model, tip, depth_m, &point));
+    DEA_TRY(ctx, dea_model_indent(ctx, type, model, tip, depth_m, &point));
     if (fabs(point.force_N - preload_N) <= preload_close * preload_N) {
       return DEA_OK;
     }
@@ -44,7 +44,8 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
                                 .from_fibre_side = design->compute.force.side.value == 0};
   struct dea_load_point point;
   if (stop < depths) {
-    DEA_TRY(ctx, type->indent(ctx, model, &tip, design->compute.force.depths_m[stop].si, &point));
+    DEA_TRY(ctx, dea_model_indent(ctx, type, model, &tip, design->compute.force.depths_m[stop].si,
+                                  &point));
     return DEA_OK;
   }
   DEA_TRY(ctx, find_preload(ctx, type, model, &tip,

@@ -25,7 +25,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
     frequency_Hz[i] = from * pow(to / from, (double)i / (double)(count - 1));
   }
   if (status == DEA_OK) {
-    status = type->respond(ctx, model, at, &excitation, frequency_Hz, count, points);
+    status = dea_model_respond(ctx, type, model, at, &excitation, frequency_Hz, count, points);
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = dea_curve_add_point(ctx, curve, &points[i]);

@@ -12,7 +12,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   struct dea_load_point points[DEA_DESIGN_MODES_MAX];
   struct dea_field_mesh *shapes;
   char name[DEA_NAME_SIZE];
-  DEA_TRY(ctx, type->modes(ctx, model, at, count, points, &shapes));
+  DEA_TRY(ctx, dea_model_modes(ctx, type, model, at, count, points, &shapes));
   snprintf(name, sizeof name, "%.50s" DEA_SHAPES_SUFFIX, type->name);
   DEA_TRY(ctx, dea_result_add_surface(ctx, result, name, stop, at->voltage_V, shapes));
   for (size_t k = 0; k < count; k++) {

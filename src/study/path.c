@@ -75,7 +75,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       .max_voltage_V = INFINITY,
       .max_points = POINTS_MAX,
   };
-  dea_status status = type->path(ctx, model, &options, take_point, take_event, &target);
+  dea_status status = dea_model_path(ctx, type, model, &options, take_point, take_event, &target);
   DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));
   fill_distances(target.curve);
   return DEA_OK;

@@ -27,7 +27,7 @@ static dea_status add_profile(struct dea_context *ctx, const struct dea_model_ty
   if (type->profile == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, type->profile(ctx, model, &profile));
+  DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
   DEA_TRY(ctx, dea_result_add_profile(ctx, result, type->name, voltage_V, &profile));
   return DEA_OK;
 }
@@ -41,7 +41,7 @@ static dea_status add_surface(struct dea_context *ctx, const struct dea_model_ty
   if (type->fields == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, type->fields(ctx, model, DEA_FIELDS_SURFACE, &mesh));
+  DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_SURFACE, &mesh));
   DEA_TRY(ctx, dea_result_add_surface(ctx, result, type->name, last, curve->points[last].voltage_V,
                                       mesh));
   return DEA_OK;

@@ -127,7 +127,7 @@ static dea_status jump(struct dea_context *ctx, struct player *p, double source_
   const struct dea_time_step step = {0, source_V};
   struct dea_load_point point;
   double error;
-  dea_status status = p->type->advance(ctx, p->model, &step, &point, &error);
+  dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
   if (status != DEA_OK) {
     return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
   }
@@ -150,7 +150,7 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
     const struct dea_time_step step = {h, source_V};
     struct dea_load_point point;
     double error;
-    dea_status status = p->type->advance(ctx, p->model, &step, &point, &error);
+    dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
     if (status == DEA_OK && error <= p->tolerance) {
       p->type->accept(p->model);
       p->time_s = last ? end : p->time_s + h;
@@ -264,7 +264,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   struct dea_load_point point;
   DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
   DEA_TRY(ctx, indent(ctx, design, p));
-  DEA_TRY(ctx, p->type->begin(ctx, p->model, &options, &point));
+  DEA_TRY(ctx, dea_model_begin(ctx, p->type, p->model, &options, &point));
   return keep(ctx, p, &point, true);
 }
 

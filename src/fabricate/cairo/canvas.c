@@ -1,5 +1,6 @@
 /* A canvas by cairo: the whole of the loadable module that fabricate/canvas.c opens. */
 #include "fabricate/canvas.h"
+#include "base/module.h"
 
 #include "base/bytes.h"
 #include "fabricate/labels.h"
@@ -251,7 +252,7 @@ static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *
   return DEA_OK;
 }
 
-extern const struct dea_canvas_type dea_cairo_module;
+extern DEA_MODULE_SYMBOL const struct dea_canvas_type dea_cairo_module;
 const struct dea_canvas_type dea_cairo_module = {
     .create = create,
     .page = page,

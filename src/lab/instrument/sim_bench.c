@@ -52,7 +52,7 @@ static dea_status try_step(struct dea_sim_bench *b, double length_s, double sour
   const struct dea_time_step step = {length_s, source_V};
   struct dea_load_point point;
   double error = 0, factor = 0.25;
-  dea_status status = b->type->advance(b->ctx, b->model, &step, &point, &error);
+  dea_status status = dea_model_advance(b->ctx, b->type, b->model, &step, &point, &error);
   *good = status == DEA_OK && (length_s == 0 || error <= tolerance);
   if (*good) {
     b->type->accept(b->model);
@@ -184,7 +184,8 @@ static bool model_height(struct dea_sim_bench *b, double radius_m, double *z_m)
   }
   if (b->profile_at != b->samples) {
     b->profile_at = b->samples;
-    if (b->type->profile(b->ctx, b->model, &b->profile) != DEA_OK || b->profile.z_m == NULL) {
+    if (dea_model_profile(b->ctx, b->type, b->model, &b->profile) != DEA_OK ||
+        b->profile.z_m == NULL) {
       b->profile.count = 0;
       dea_context_clear(b->ctx);
     }
@@ -226,7 +227,7 @@ static dea_status begin(struct dea_sim_bench *b)
       .rho_inf = 0.8,
   };
   DEA_TRY(b->ctx, b->type->solve(b->ctx, b->model, 0, &b->point));
-  return b->type->begin(b->ctx, b->model, &options, &b->point);
+  return dea_model_begin(b->ctx, b->type, b->model, &options, &b->point);
 }
 
 dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protocol *protocol,

@@ -40,7 +40,8 @@ static dea_status find_pull_in(const struct film *film, double *pull_in_V)
       .max_points = PATH_POINTS_MAX,
   };
   *pull_in_V = NAN;
-  return film->type->path(film->ctx, film->model, &options, no_point, first_pull_in, pull_in_V);
+  return dea_model_path(film->ctx, film->type, film->model, &options, no_point, first_pull_in,
+                        pull_in_V);
 }
 
 /* Field that is allowed at a point; NAN when nobody says. */

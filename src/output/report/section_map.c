@@ -94,7 +94,7 @@ static dea_status trace(struct dea_context *ctx, const struct dea_device *device
   struct dea_model *model;
   DEA_TRY(ctx, type->create(ctx, device, &model));
   map->before = dea_load_point_empty();
-  dea_status status = type->path(ctx, model, &options, take_point, take_event, map);
+  dea_status status = dea_model_path(ctx, type, model, &options, take_point, take_event, map);
   type->destroy(ctx, model);
   return status;
 }

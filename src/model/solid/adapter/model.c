@@ -1,5 +1,6 @@
 /* Model "3d" behind the common interface: the actuator as a solid, on a sector or as a whole disc.
  * It is the whole of the loadable module that model/solid_module.c opens. */
+#include "base/module.h"
 #include "model/make.h"
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/adapter/buckling_branch.h"
@@ -467,7 +468,7 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
                                  .unknowns = 3 * model->grid->node_count};
 }
 
-extern const struct dea_model_type dea_solid_module;
+extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;
 
 const struct dea_model_type dea_solid_module = {
     .name = "3d",

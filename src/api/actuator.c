@@ -1,0 +1,174 @@
+/* Lists of models and studies, and one actuator step by step. */
+#include "api/door.h"
+
+#include "result/columns.h"
+#include "study/study.h"
+
+#include <math.h>
+#include <string.h>
+
+static unsigned abilities_of(const struct dea_model_type *type)
+{
+  return (type->path != NULL ? DEA_CAN_PATH : 0u) | (type->profile != NULL ? DEA_CAN_PROFILE : 0u) |
+         (type->indent != NULL ? DEA_CAN_INDENT : 0u) | (type->modes != NULL ? DEA_CAN_MODES : 0u) |
+         (type->respond != NULL ? DEA_CAN_RESPOND : 0u) |
+         (type->fields != NULL ? DEA_CAN_FIELDS : 0u) |
+         (type->advance != NULL ? DEA_CAN_TIME : 0u) | (type->size != NULL ? DEA_CAN_REFINE : 0u);
+}
+
+const dea_model_info *dea_model_at(dea_context *ctx, size_t index)
+{
+  size_t count;
+  char path[4096];
+  const struct dea_model_type *const *all = dea_model_all(&count);
+  if (index >= count) {
+    return NULL;
+  }
+  const struct dea_model_type *type = all[index];
+  ctx->model = (dea_model_info){.name = type->name,
+                                .title = type->long_name,
+                                .abilities = abilities_of(type),
+                                .available = strcmp(type->name, "3d") != 0 ||
+                                             dea_solid_module_find(path, sizeof path)};
+  return &ctx->model;
+}
+
+const dea_study_info *dea_study_at(dea_context *ctx, size_t index)
+{
+  size_t count;
+  const struct dea_study *const *all = dea_study_all(&count);
+  if (index >= count) {
+    return NULL;
+  }
+  ctx->study = (dea_study_info){.name = all[index]->name,
+                                .needs = all[index]->needs != NULL ? all[index]->needs : ""};
+  return &ctx->study;
+}
+
+struct dea_actuator_handle {
+  dea_context *ctx; // that made it; lent
+  struct dea_design *design;
+  struct dea_device *device;
+  const struct dea_model_type *type;
+  struct dea_model *model;
+  struct dea_load_point point; // the last one
+  struct door_mesh *mesh;
+};
+
+void dea_actuator_free(dea_actuator *actuator)
+{
+  if (actuator != NULL) {
+    struct dea_context *ctx = actuator->ctx->inner;
+    door_mesh_free(ctx, actuator->mesh);
+    if (actuator->model != NULL) {
+      actuator->type->destroy(ctx, actuator->model);
+    }
+    dea_device_destroy(ctx, actuator->device);
+    dea_design_destroy(ctx, actuator->design);
+    dea_free(ctx, actuator);
+  }
+}
+
+dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const char *model,
+                             dea_actuator **out)
+{
+  struct dea_context *inner = door_begin(ctx);
+  *out = NULL;
+  const struct dea_model_type *type;
+  DEA_TRY(inner, door_model_find(ctx, model, &type));
+  dea_actuator *actuator = dea_alloc(inner, 1, sizeof *actuator);
+  if (actuator == NULL) {
+    return DEA_E_MEMORY;
+  }
+  actuator->ctx = ctx;
+  actuator->type = type;
+  actuator->point = dea_load_point_empty();
+  dea_status status = door_design_build(inner, design, &actuator->design, &actuator->device);
+  if (status == DEA_OK) {
+    status = type->create(inner, actuator->device, &actuator->model);
+  }
+  if (status != DEA_OK) {
+    dea_actuator_free(actuator);
+    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
+  }
+  *out = actuator;
+  return DEA_OK;
+}
+
+/* Begins a call that changes the actuator: what it has lent goes. */
+static dea_status begin(dea_context *ctx, dea_actuator *actuator)
+{
+  struct dea_context *inner = door_begin(ctx);
+  DEA_TRY(inner, door_check_owner(ctx, actuator->ctx, "actuator"));
+  door_mesh_free(inner, actuator->mesh);
+  actuator->mesh = NULL;
+  return DEA_OK;
+}
+
+dea_status dea_actuator_solve(dea_context *ctx, dea_actuator *actuator, double voltage_V)
+{
+  DEA_TRY(ctx->inner, begin(ctx, actuator));
+  if (!isfinite(voltage_V)) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a voltage of %g V", voltage_V);
+  }
+  struct dea_load_point point;
+  DEA_TRY(ctx->inner, actuator->type->solve(ctx->inner, actuator->model, voltage_V, &point));
+  actuator->point = point;
+  return DEA_OK;
+}
+
+dea_status dea_actuator_indent(dea_context *ctx, dea_actuator *actuator, dea_indenter_shape shape,
+                               double radius_m, double depth_m)
+{
+  static const enum dea_probe_shape shapes[] = {DEA_PROBE_SPHERE, DEA_PROBE_FLAT,
+                                                DEA_PROBE_CYLINDER};
+  DEA_TRY(ctx->inner, begin(ctx, actuator));
+  if ((size_t)shape >= sizeof shapes / sizeof shapes[0] || !(radius_m > 0) || !isfinite(radius_m) ||
+      !isfinite(depth_m)) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "an indenter of shape %d, radius %g m, at %g m",
+                    (int)shape, radius_m, depth_m);
+  }
+  const struct dea_probe probe = {.shape = shapes[shape],
+                                  .radius_m = radius_m,
+                                  .edge_radius_m = actuator->design->compute.force.edge_radius_m.si,
+                                  .from_fibre_side = true};
+  struct dea_load_point point;
+  DEA_TRY(ctx->inner,
+          dea_model_indent(ctx->inner, actuator->type, actuator->model, &probe, depth_m, &point));
+  actuator->point = point;
+  return DEA_OK;
+}
+
+dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, const char *key,
+                            double *out)
+{
+  int column = dea_point_column_find(key);
+  *out = NAN;
+  if (strcmp(key, "stable") == 0) {
+    *out = actuator->point.stable;
+  } else if (strcmp(key, "unstable_modes") == 0) {
+    *out = actuator->point.unstable_modes;
+  } else if (column < 0) {
+    const char *known[DEA_LOAD_POINT_COLUMNS];
+    for (int i = 0; i < DEA_LOAD_POINT_COLUMNS; i++) {
+      known[i] = dea_point_columns[i].key;
+    }
+    return door_unknown(ctx, "quantity", key, known, DEA_LOAD_POINT_COLUMNS);
+  } else {
+    *out = dea_point_get(&actuator->point, column);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_actuator_mesh(dea_context *ctx, dea_actuator *actuator, const dea_mesh **out)
+{
+  struct dea_field_mesh *mesh;
+  *out = NULL;
+  DEA_TRY(ctx->inner, begin(ctx, actuator));
+  DEA_TRY(ctx->inner,
+          dea_model_fields(ctx->inner, actuator->type, actuator->model, DEA_FIELDS_VOLUME, &mesh));
+  DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, actuator->type->name, actuator->point.voltage_V,
+                                     mesh, true, &actuator->mesh));
+  *out = &actuator->mesh->shown;
+  return DEA_OK;
+}

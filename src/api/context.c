@@ -1,0 +1,169 @@
+/* Contexts of the public interface: they hand the callbacks on. */
+#include "api/door.h"
+
+#include "base/version.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *dea_version(void)
+{
+  return DEA_VERSION;
+}
+
+const char *dea_error_name(dea_status status)
+{
+  return dea_status_name(status);
+}
+
+const char *dea_error_meaning(dea_status status)
+{
+  return dea_status_message(status);
+}
+
+static void on_progress(void *user, const char *what, size_t done, size_t total)
+{
+  const dea_context *ctx = user;
+  ctx->options.progress(ctx->options.user, what, done, total);
+}
+
+static bool on_interrupt(void *user)
+{
+  const dea_context *ctx = user;
+  return ctx->options.interrupt(ctx->options.user) != 0;
+}
+
+static void on_finding(void *user, const struct dea_finding *finding)
+{
+  const dea_context *ctx = user;
+  if (ctx->running) {
+    ctx->options.note(ctx->options.user, finding->severity, finding->text);
+  }
+}
+
+static void *resize_memory(void *user, void *pointer, size_t size)
+{
+  const dea_context_options *options = user;
+  return options->resize != NULL ? options->resize(options->user, pointer, size)
+                                 : realloc(pointer, size);
+}
+
+static void release_memory(void *user, void *pointer)
+{
+  const dea_context_options *options = user;
+  if (options->release != NULL) {
+    options->release(options->user, pointer);
+  } else {
+    free(pointer);
+  }
+}
+
+dea_status dea_context_new(const dea_context_options *options, dea_context **out)
+{
+  dea_context_options all = DEA_CONTEXT_OPTIONS_INIT;
+  *out = NULL;
+  if (options != NULL) { // of an older or a newer caller
+    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  }
+  if ((all.resize == NULL) != (all.release == NULL)) {
+    return DEA_E_ARGUMENT;
+  }
+  dea_context *ctx = resize_memory(&all, NULL, sizeof *ctx);
+  if (ctx == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *ctx = (dea_context){.options = all};
+  const struct dea_allocator allocator = {resize_memory, release_memory, &ctx->options};
+  dea_status status = dea_context_create(&allocator, &ctx->inner);
+  if (status != DEA_OK) {
+    release_memory(&all, ctx);
+    return status;
+  }
+  dea_context_set_progress(ctx->inner, all.progress != NULL ? on_progress : NULL, ctx);
+  dea_context_set_interrupt_fn(ctx->inner, all.interrupt != NULL ? on_interrupt : NULL, ctx);
+  dea_context_set_finding_sink(ctx->inner, all.note != NULL ? on_finding : NULL, ctx);
+  *out = ctx;
+  return DEA_OK;
+}
+
+void dea_context_free(dea_context *ctx)
+{
+  if (ctx != NULL) {
+    dea_free(ctx->inner, ctx->shown);
+    dea_context_destroy(ctx->inner);
+    dea_context_options options = ctx->options;
+    release_memory(&options, ctx);
+  }
+}
+
+const char *dea_error_message(const dea_context *ctx)
+{
+  return dea_context_message(ctx->inner);
+}
+
+const char *dea_error_trace(const dea_context *ctx)
+{
+  return dea_context_chain(ctx->inner);
+}
+
+const dea_finding *dea_finding_at(dea_context *ctx, size_t index)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx->inner, &count);
+  if (index >= count) {
+    return NULL;
+  }
+  if (ctx->shown_count != count) {
+    dea_finding *shown = dea_resize(ctx->inner, ctx->shown, count, sizeof *shown);
+    if (shown == NULL) {
+      return NULL;
+    }
+    for (size_t i = 0; i < count; i++) {
+      const struct dea_location *at = &findings[i].location;
+      shown[i] = (dea_finding){findings[i].severity, findings[i].text,
+                               at->file != NULL ? at->file : "", at->line, at->column};
+    }
+    ctx->shown = shown;
+    ctx->shown_count = count;
+  }
+  return &ctx->shown[index];
+}
+
+struct dea_context *door_begin(dea_context *ctx)
+{
+  dea_finding_clear(ctx->inner);
+  dea_context_clear(ctx->inner);
+  ctx->shown_count = 0;
+  return ctx->inner;
+}
+
+dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const char *what)
+{
+  return ctx == owner
+             ? DEA_OK
+             : dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                        "the %s belongs to the context that made it, this is another one", what);
+}
+
+dea_status door_unknown(dea_context *ctx, const char *what, const char *name,
+                        const char *const known[], size_t count)
+{
+  const char *nearest = count > 0 ? dea_nearest_name(name, known, count) : NULL;
+  return nearest != NULL
+             ? dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                        "there is no %s '%.100s'; did you mean '%.100s'?", what, name, nearest)
+             : dea_fail(ctx->inner, DEA_E_ARGUMENT, "there is no %s '%.100s'", what, name);
+}
+
+void *door_grow(struct dea_context *ctx, void *items, size_t count, size_t *room, size_t size)
+{
+  if (count < *room) {
+    return items;
+  }
+  size_t wanted = *room > 0 ? 2 * *room : 32;
+  void *moved = dea_resize(ctx, items, wanted, size);
+  if (moved != NULL) {
+    *room = wanted;
+  }
+  return moved;
+}

@@ -1,0 +1,76 @@
+#define _POSIX_C_SOURCE 200809L // clock_gettime
+#include "api/job.h"
+
+#include "output/run_folder.h"
+#include "study/study.h"
+
+#include <stdio.h>
+#include <time.h>
+
+static bool has_folder(const struct dea_job *job)
+{
+  return job->folder != NULL && job->folder[0] != '\0';
+}
+
+/* Makes the folder ready, and what is to be kept in it while the run goes. */
+static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
+                              struct dea_result *result)
+{
+  if (!has_folder(job)) {
+    return DEA_OK;
+  }
+  if (job->resume) {
+    DEA_TRY(ctx, dea_checkpoint_restore(ctx, job->folder, result));
+  }
+  DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->folder, job->force || job->resume));
+  if (job->force) {
+    dea_run_folder_clear(ctx, job->folder);
+  }
+  DEA_TRY(ctx, dea_checkpoint_create(ctx, job->folder, &job->keep));
+  result->keeper = dea_checkpoint_get_sink(job->keep);
+  return DEA_OK;
+}
+
+dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
+                       bool *began)
+{
+  struct timespec start, end;
+  dea_status first = DEA_OK;
+  char message[1024] = "";
+  *began = false;
+  DEA_TRY(ctx, dea_study_check(ctx, job->studies, job->study_count, result->design));
+  DEA_TRY(ctx, open_folder(ctx, job, result));
+  *began = true;
+  clock_gettime(CLOCK_MONOTONIC, &start);
+  for (size_t i = 0;
+       i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);
+       i++) {
+    dea_status status =
+        dea_study_run_named(ctx, job->models[i], job->studies, job->study_count, result);
+    if (status != DEA_OK && first == DEA_OK) {
+      first = status;
+      snprintf(message, sizeof message, "%s: %s", job->models[i]->name, dea_context_message(ctx));
+    }
+  }
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  result->provenance.wall_s =
+      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
+}
+
+dea_status dea_job_write(struct dea_context *ctx, const struct dea_job *job,
+                         const struct dea_result *result)
+{
+  if (!has_folder(job) || dea_checkpoint_refused(job->keep)) {
+    return DEA_OK;
+  }
+  const struct dea_run_folder_options options = {.started = true, .no_figures = job->no_figures};
+  DEA_TRY(ctx, dea_run_folder_write(ctx, result, job->folder, &options));
+  return DEA_OK;
+}
+
+void dea_job_end(struct dea_context *ctx, struct dea_job *job)
+{
+  dea_checkpoint_destroy(ctx, job->keep);
+  job->keep = NULL;
+}

@@ -1,0 +1,32 @@
+/* A run from its start to its folder: what `dea run` and dea_run have in common. */
+#ifndef DEA_API_JOB_H
+#define DEA_API_JOB_H
+
+#include "output/checkpoint.h"
+#include "result/result.h"
+
+/* What is to be run. All lent. */
+struct dea_job {
+  const struct dea_model_type *models[DEA_DESIGN_MODELS_MAX];
+  size_t model_count;
+  const char *const *studies; // [study_count]; NULL: those that the design asks for
+  size_t study_count;
+  const char *folder; // run folder; NULL or "": none
+  bool force;         // replace the results in it
+  bool resume;        // go on from them
+  bool no_figures;
+  struct dea_keep *keep; // of a job that has begun
+};
+
+/* Checks names, makes the folder ready and runs every model. The first failure of a study comes
+ * back after all had their turn (an interrupt ends it at once), with the model's name before its
+ * message; the result has what was computed. *began: false when nothing could run. */
+dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
+                       bool *began);
+/* Writes the folder, if there is one, after dea_job_run has begun. */
+dea_status dea_job_write(struct dea_context *ctx, const struct dea_job *job,
+                         const struct dea_result *result);
+/* Frees what the job has made. */
+void dea_job_end(struct dea_context *ctx, struct dea_job *job);
+
+#endif

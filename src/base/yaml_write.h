@@ -1,0 +1,11 @@
+/* A YAML tree as text. */
+#ifndef DEA_BASE_YAML_WRITE_H
+#define DEA_BASE_YAML_WRITE_H
+
+#include "base/text.h"
+#include "base/yaml.h"
+
+/* Adds a document that dea_yaml_parse reads as the same tree; comments are not in the tree. */
+void dea_yaml_write(const struct dea_node *root, struct dea_text *out);
+
+#endif

@@ -1,0 +1,58 @@
+/* What a model cannot do is an error with a message, not a call to nowhere. */
+#include "context_fixture.h"
+#include "devices.h"
+#include "study/force.h"
+#include "testing.h"
+
+/* The axisymmetric model has no indenter: pressing one in called a null pointer. */
+static void test_force_without_indenter(void **state)
+{
+  (void)state;
+  const struct dea_model_type *type = dea_model_find("axisymmetric");
+  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
+  struct dea_design design = {.compute = {.force = {.radius_m = {.si = 1e-3}, .depth_count = 1}}};
+  design.compute.force.depths_m[0].si = 1e-4;
+  struct dea_model *model;
+  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(dea_force_indent(ctx, type, model, &design, 0), DEA_E_UNSUPPORTED);
+  assert_string_equal(dea_context_message(ctx), "the model 'axisymmetric' knows no indenter");
+  type->destroy(ctx, model);
+}
+
+/* A model that has nothing beside solving, and every call that it lacks. */
+static void test_bare_model(void **state)
+{
+  (void)state;
+  const struct dea_model_type bare = {.name = "bare"};
+  const struct dea_path_options path = {.max_points = 1};
+  struct dea_profile profile;
+  struct dea_load_point point;
+  struct dea_field_mesh *mesh;
+  struct dea_state saved;
+  double error;
+  const dea_status answers[] = {
+      dea_model_path(ctx, &bare, NULL, &path, NULL, NULL, NULL),
+      dea_model_profile(ctx, &bare, NULL, &profile),
+      dea_model_indent(ctx, &bare, NULL, NULL, 0, &point),
+      dea_model_modes(ctx, &bare, NULL, NULL, 1, &point, &mesh),
+      dea_model_respond(ctx, &bare, NULL, NULL, NULL, NULL, 1, &point),
+      dea_model_fields(ctx, &bare, NULL, DEA_FIELDS_VOLUME, &mesh),
+      dea_model_save(ctx, &bare, NULL, &saved),
+      dea_model_load(ctx, &bare, NULL, &saved),
+      dea_model_begin(ctx, &bare, NULL, NULL, &point),
+      dea_model_advance(ctx, &bare, NULL, NULL, &point, &error),
+  };
+  for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
+    assert_int_equal(answers[i], DEA_E_UNSUPPORTED);
+  }
+  assert_string_equal(dea_context_message(ctx), "the model 'bare' knows no time");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_force_without_indenter),
+      cmocka_unit_test(test_bare_model),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
