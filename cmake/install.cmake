@@ -34,7 +34,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files
 # differently from one distribution to the next.
 set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd")
-set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRARIES})
+set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_HEAVY_SHARED})
+if(DEA_STATIC)
+  set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRARIES})
+endif()
 # of what HDF5 names, the static one needs no more than these
 list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits|lapack|blas|gfortran|libsz|libz\\.")
 list(REMOVE_DUPLICATES DEA_PC_LIBRARIES)

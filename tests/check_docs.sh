@@ -11,6 +11,10 @@ list=$(
   done | sort -u
 )
 [ -n "$list" ] || { echo "no path found: the check is broken"; exit 1; }
+# The program of the README is the example that is compiled and run.
+# shellcheck disable=SC2016 # the fences of Markdown
+sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | diff - examples/c/sweep.c ||
+  { echo "the C program of README.md is not examples/c/sweep.c"; exit 1; }
 printf '%s\n' "$list" | {
   bad=0
   while read -r page path; do

@@ -17,32 +17,23 @@ PKG_CONFIG_PATH=$library/pkgconfig
 LD_LIBRARY_PATH=$library
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
 
-cat >"$build/user.c" <<'END'
-#include <dea.h>
-#include <stdio.h>
-int main(void)
-{
-  struct dea_context *ctx;
-  size_t models;
-  if (dea_context_create(NULL, &ctx) != DEA_OK || dea_model_all(&models) == NULL) {
-    return 1;
-  }
-  printf("libdea %s, %zu models, %s\n", DEA_VERSION, models, dea_status_message(DEA_OK));
-  dea_context_destroy(ctx);
-  return 0;
-}
-END
+find "$prefix/include" -type f | grep -v '/include/dea\.h$' && { echo "more than dea.h was installed"; exit 1; }
 # shellcheck disable=SC2046 # one argument a flag
-cc -std=c17 -Wall -Wextra -Wpedantic -Werror "$build/user.c" -o "$build/user" \
+cc -std=c17 -Wall -Wextra -Wpedantic -Werror "$source/examples/c/models.c" -o "$build/user" \
   $(pkg-config --cflags --libs libdea)
-"$build/user"
+"$build/user" >"$build/models.txt"
+grep -q '^model 3d: .*indent' "$build/models.txt" || { cat "$build/models.txt"; exit 1; }
+if grep -q 'not installed' "$build/models.txt"; then
+  echo "the library does not find the module of model 3d"
+  exit 1
+fi
 # shellcheck disable=SC2046
-cc -std=c17 "$build/user.c" -o "$build/user-static" $(pkg-config --cflags --libs --static libdea)
-"$build/user-static"
+cc -std=c17 "$source/examples/c/sweep.c" -o "$build/user-sweep" $(pkg-config --cflags --libs --static libdea)
+"$build/user-sweep" "$source/examples/frdea-4.yaml" | grep ' 2000 V'
 if command -v clang-14 >/dev/null 2>&1; then
   # shellcheck disable=SC2046
-  clang-14 -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only \
-    $(pkg-config --cflags libdea) "$prefix/include/dea/dea.h" -Wno-pragma-once-outside-header
+  printf '#include <dea.h>\nint main() { return dea_version() == nullptr; }\n' |
+    clang-14 -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only $(pkg-config --cflags libdea) -
 fi
 
 dea=$prefix/bin/dea
