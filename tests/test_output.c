@@ -9,7 +9,7 @@
 #include "output/results_h5.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
-#include "result/columns.h"
+#include "result/result.h"
 #include "testing.h"
 
 #include <dirent.h>

@@ -1,7 +1,7 @@
 /* Study "transient" of designs, and what is read from its curve. */
 #include "design_text.h"
 #include "failing_allocator.h"
-#include "result/columns.h"
+#include "result/result.h"
 #include "result/time_series.h"
 #include "study/study.h"
 

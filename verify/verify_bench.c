@@ -6,7 +6,7 @@
 #include "lab/protocol/protocol.h"
 #include "lab/reduce/output.h"
 #include "output/compare_set.h"
-#include "result/columns.h"
+#include "result/result.h"
 #include "study/study.h"
 #include "verify.h"
 

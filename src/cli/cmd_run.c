@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "base/yaml.h"
 #include "cli/models.h"
-#include "cli/print_studies.h"
+#include "cli/print_tables.h"
 #include "output/checkpoint.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
@@ -241,9 +241,7 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     puts(run->design->title.text);
     for (size_t i = 0; i < count; i++) {
       print_model(run->result, types[i]->name);
-      DEA_TRY(ctx, cli_print_convergence(ctx, run->result, types[i]->name));
-      cli_print_designs(run->result, types[i]->name);
-      DEA_TRY(ctx, cli_print_transient(ctx, run->result, types[i]->name));
+      DEA_TRY(ctx, cli_print_tables(ctx, run->result, types[i]->name));
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,

@@ -1,9 +1,9 @@
 #include "output/csv.h"
 
 #include "base/write_file.h"
-#include "result/convergence.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -235,47 +235,58 @@ dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct 
   return status;
 }
 
-/* A line a mesh. */
-static void add_row(struct dea_text *text, const struct dea_convergence *convergence,
-                    const struct dea_convergence_row *row)
+// Tables of studies -------------------------------------------------------------------------------
+
+static bool in_csv(const struct dea_result_column *column)
 {
-  const struct dea_column *column = &dea_point_columns[row->column];
-  for (size_t m = 0; m < convergence->mesh_count; m++) {
-    const struct dea_variant *mesh = convergence->meshes[m];
-    dea_text_add(text, "%s,%s,%.12g,%.12g,%zu,", column->header, column->display_unit,
-                 1e-3 * row->voltage_V, mesh->refinement, mesh->size.unknowns);
-    add_number(text, column->factor * row->values[m]);
-    dea_text_add(text, ",");
-    add_number(text, 100 * row->errors[m]);
-    dea_text_add(text, ",");
-    add_number(text, row->order);
-    dea_text_add(text, ",");
-    add_number(text, column->factor * row->extrapolated);
-    dea_text_add(text, ",%s\n", dea_order_text(row->kind));
-  }
+  return (column->hidden & DEA_IN_CSV) == 0 && column->kind != DEA_CELL_POINTS;
 }
 
-dea_status dea_csv_write_convergence(struct dea_context *ctx, const struct dea_result *result,
-                                     const char *model, const char *directory)
+/* Header (row SIZE_MAX) or a row. */
+static void add_table_row(struct dea_text *text, const struct dea_result_table *table, size_t row)
 {
-  struct dea_convergence *convergence;
+  bool first = true;
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    const struct dea_result_column *column = &table->type.columns[c];
+    for (size_t k = 0; k < dea_result_table_values(table, c) && in_csv(column);
+         k++, first = false) {
+      struct dea_text cell = {.ctx = text->ctx};
+      if (row == SIZE_MAX) {
+        dea_result_table_column_title(column, &cell);
+      } else {
+        dea_result_table_cell_text(table, row, c, k, 12, &cell);
+      }
+      dea_text_add(text, "%s", first ? "" : ",");
+      dea_csv_add_name(text, dea_text_get(&cell));
+      text->failed = text->failed || cell.failed;
+      dea_text_free(&cell);
+    }
+  }
+  dea_text_add(text, "\n");
+}
+
+dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
+                               const char *directory)
+{
   struct dea_text text = {.ctx = ctx};
-  char name[DEA_NAME_SIZE + 32];
-  DEA_TRY(ctx, dea_convergence_create(ctx, result, model, &convergence));
-  if (convergence == NULL) {
+  char name[DEA_RESULT_TABLE_FILE_SIZE];
+  if ((table->type.where & DEA_IN_CSV) == 0) {
     return DEA_OK;
   }
   void *before = dea_c_locale_enter();
-  dea_text_add(&text,
-               "quantity,unit,V (kV),refinement,unknowns,value,estimated error (%%),observed "
-               "order,extrapolated,remark\n");
-  for (size_t i = 0; i < convergence->row_count; i++) {
-    add_row(&text, convergence, &convergence->rows[i]);
+  add_table_row(&text, table, SIZE_MAX);
+  for (size_t row = 0; row < table->row_count; row++) {
+    add_table_row(&text, table, row);
   }
   dea_c_locale_leave(before);
-  snprintf(name, sizeof name, "%s_convergence_errors.csv", model);
+  dea_csv_table_name(table, name);
   dea_status status = dea_text_write(ctx, &text, directory, name);
   dea_text_free(&text);
-  dea_convergence_destroy(ctx, convergence);
   return status;
+}
+
+void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE])
+{
+  snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s_%s_%s.csv", table->model, table->type.study,
+           table->type.name);
 }

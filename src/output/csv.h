@@ -3,7 +3,7 @@
 #define DEA_OUTPUT_CSV_H
 
 #include "base/text.h"
-#include "result/columns.h"
+#include "result/result.h"
 
 /* A name as one field: in quotes where it has a comma or quotes of its own. */
 void dea_csv_add_name(struct dea_text *text, const char *name);
@@ -31,10 +31,12 @@ dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_resu
 dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
                                           const char *model, const char *study,
                                           const char *directory);
-/* Writes directory/MODEL_convergence_errors.csv: a line a quantity, voltage and mesh, with the
- * estimated error in per cent, the order and the extrapolated value. Nothing without that study. */
-dea_status dea_csv_write_convergence(struct dea_context *ctx, const struct dea_result *result,
-                                     const char *model, const char *directory);
+/* Writes directory/MODEL_STUDY_TABLE.csv of a table that is for CSV; else nothing. */
+dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
+                               const char *directory);
+/* The name of that file. */
+enum { DEA_RESULT_TABLE_FILE_SIZE = 3 * DEA_NAME_SIZE + 8 };
+void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE]);
 
 /* Measurements: a curve, and the standard uncertainty of each value where given. */
 struct dea_measurement {

@@ -4,7 +4,7 @@
 #define DEA_OUTPUT_FIGURE_H
 
 #include "output/plot.h"
-#include "result/columns.h"
+#include "result/result.h"
 
 struct dea_figure_options;
 

@@ -4,7 +4,8 @@
 #include "base/h5.h"
 #include "base/write_file.h"
 #include "output/results_h5_surface.h"
-#include "result/columns.h"
+#include "output/results_h5_tables.h"
+#include "result/result.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -218,6 +219,12 @@ static void get_surface(struct h5 *h, hid_t group, const struct entry *entry,
   dea_results_h5_get_surface(h, group, entry->model, result);
 }
 
+static void get_table(struct h5 *h, hid_t group, const struct entry *entry,
+                      struct dea_result *result)
+{
+  dea_results_h5_get_table(h, group, entry->model, result);
+}
+
 static void get_variant_profile(struct h5 *h, hid_t group, struct dea_variant *variant)
 {
   hid_t inner = dea_h5_group_open(h, group, "profile");
@@ -327,6 +334,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
   get_all(&h, file, "profiles", true, get_profile, run->result);
   get_all(&h, file, "surfaces", false, get_surface, run->result);
   get_all(&h, file, "variants", false, get_variant, run->result);
+  get_all(&h, file, "tables", false, get_table, run->result);
   get_rest(&h, file, run);
   dea_h5_close(file);
   dea_h5_end(&h);

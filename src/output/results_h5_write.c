@@ -3,7 +3,8 @@
 
 #include "base/h5.h"
 #include "output/results_h5_surface.h"
-#include "result/columns.h"
+#include "output/results_h5_tables.h"
+#include "result/result.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -173,6 +174,23 @@ static void put_variants(struct h5 *h, hid_t file, const struct dea_result *resu
   dea_h5_close(variants);
 }
 
+/* tables/MODEL/0000, 0001, ... */
+static void put_tables(struct h5 *h, hid_t file, const struct dea_result *result)
+{
+  hid_t tables = result->table_count > 0 ? dea_h5_group_make(h, file, "tables") : H5I_INVALID_HID;
+  for (size_t i = 0; i < result->table_count && h->status == DEA_OK; i++) {
+    hid_t model = dea_h5_group_get(h, tables, result->tables[i].model);
+    char name[24];
+    snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, model));
+    hid_t group = dea_h5_group_make(h, model, name);
+    dea_h5_put_int(h, group, "index", (long long)i);
+    dea_results_h5_put_table(h, group, &result->tables[i]);
+    dea_h5_close(group);
+    dea_h5_close(model);
+  }
+  dea_h5_close(tables);
+}
+
 static bool same_mesh(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
 {
   bool same = a->point_count == b->point_count && a->block_count == b->block_count &&
@@ -267,6 +285,7 @@ dea_status dea_results_h5_write(struct dea_context *ctx, const struct dea_result
   put_profiles(&h, file, result);
   put_surfaces(&h, file, result);
   put_variants(&h, file, result);
+  put_tables(&h, file, result);
   put_design(&h, file, result);
   put_provenance(&h, file, &result->provenance);
   dea_h5_file_write(&h, file);

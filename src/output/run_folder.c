@@ -92,9 +92,12 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       char name[2 * DEA_NAME_SIZE + 32];
       snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
       forget(ctx, directory, name);
-      snprintf(name, sizeof name, "%s_%s_errors.csv", curve->model, curve->kind);
-      forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_%s_profiles.csv", curve->model, curve->kind);
+      forget(ctx, directory, name);
+    }
+    for (size_t i = 0; i < old->result->table_count; i++) {
+      char name[DEA_RESULT_TABLE_FILE_SIZE];
+      dea_csv_table_name(&old->result->tables[i], name);
       forget(ctx, directory, name);
     }
     dea_run_destroy(ctx, old);
@@ -104,6 +107,18 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
   forget(ctx, directory, "summary.json");
   forget(ctx, directory, "design.yaml");
   forget(ctx, directory, "results.h5");
+}
+
+/* Whether a variant is the first of its model and study. */
+static bool first_of_study(const struct dea_result *result, size_t i)
+{
+  const struct dea_curve *curve = &result->variants[i].curve;
+  for (size_t k = 0; k < i; k++) {
+    if (dea_variant_is(&result->variants[k], curve->model, curve->kind)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 static dea_status write_tables(struct dea_context *ctx, const struct dea_result *result,
@@ -117,11 +132,17 @@ static dea_status write_tables(struct dea_context *ctx, const struct dea_result 
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], directory));
-    DEA_TRY(ctx, dea_csv_write_variants(ctx, result, models[m], "convergence", directory));
-    DEA_TRY(ctx, dea_csv_write_variants(ctx, result, models[m], "compare-design", directory));
-    DEA_TRY(ctx,
-            dea_csv_write_variant_profiles(ctx, result, models[m], "compare-design", directory));
-    DEA_TRY(ctx, dea_csv_write_convergence(ctx, result, models[m], directory));
+  }
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (first_of_study(result, i)) {
+      const struct dea_curve *curve = &result->variants[i].curve;
+      DEA_TRY(ctx, dea_csv_write_variants(ctx, result, curve->model, curve->kind, directory));
+      DEA_TRY(ctx,
+              dea_csv_write_variant_profiles(ctx, result, curve->model, curve->kind, directory));
+    }
+  }
+  for (size_t i = 0; i < result->table_count; i++) {
+    DEA_TRY(ctx, dea_csv_write_table(ctx, &result->tables[i], directory));
   }
   return DEA_OK;
 }

@@ -3,7 +3,7 @@
 #include "base/json.h"
 #include "base/write_file.h"
 #include "output/summary_studies.h"
-#include "result/columns.h"
+#include "result/result.h"
 
 #include <math.h>
 #include <string.h>
@@ -62,8 +62,7 @@ static const struct dea_curve *first_stopped(const struct dea_result *result, co
 }
 
 /* Puts what is known of one model into an object. */
-static dea_status put_model(struct dea_context *ctx, json_t *object,
-                            const struct dea_result *result, const char *model)
+static void put_model(json_t *object, const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
@@ -74,7 +73,7 @@ static dea_status put_model(struct dea_context *ctx, json_t *object,
   json_object_set_new(object, "status",
                       json_string(dea_status_name(stopped != NULL ? stopped->status : DEA_OK)));
   json_object_set_new(object, "limits", limits_json(dea_result_find(result, model, "path")));
-  return dea_summary_put_studies(ctx, result, model, object);
+  dea_summary_put_studies(result, model, object);
 }
 
 static json_t *design_json(const struct dea_result *result)
@@ -125,10 +124,9 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
   json_t *more = json_array();
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
-  dea_status status = DEA_OK;
-  for (size_t m = 0; m < count && status == DEA_OK; m++) {
+  for (size_t m = 0; m < count; m++) {
     json_t *object = m == 0 ? root : json_object();
-    status = put_model(ctx, object, result, models[m]);
+    put_model(object, result, models[m]);
     if (m > 0) {
       json_array_append_new(more, object);
     }
@@ -137,11 +135,6 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
     json_object_set_new(root, "points", json_array());
   }
   json_object_set_new(root, "more_models", more);
-  if (status != DEA_OK) {
-    json_decref(root);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
   json_object_set_new(root, "notes", notes_json(ctx));
   json_object_set_new(root, "provenance", provenance_json(&result->provenance));
   return dea_json_text(ctx, root, out);

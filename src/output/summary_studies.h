@@ -1,4 +1,4 @@
-/* Parts of summary.json: what studies of several computations say. */
+/* Parts of summary.json: what studies say. */
 #ifndef DEA_OUTPUT_SUMMARY_STUDIES_H
 #define DEA_OUTPUT_SUMMARY_STUDIES_H
 
@@ -8,11 +8,8 @@
 /* All points of a curve (NULL: none) as objects in a list. NULL when memory is short. */
 json_t *dea_points_json(const struct dea_curve *curve);
 
-/* Adds `transient` of a model to its object where the result has that study. */
-dea_status dea_summary_put_transient(struct dea_context *ctx, const struct dea_result *result,
-                                     const char *model, json_t *object);
-/* Adds `convergence` and `designs` of a model to its object where the result has those studies. */
-dea_status dea_summary_put_studies(struct dea_context *ctx, const struct dea_result *result,
-                                   const char *model, json_t *object);
+/* Adds the tables that studies made of a model, and the points of curves that are listed, to the
+ * model's object. */
+void dea_summary_put_studies(const struct dea_result *result, const char *model, json_t *object);
 
 #endif

@@ -3,7 +3,8 @@
 #ifndef DEA_RESULT_COLUMNS_H
 #define DEA_RESULT_COLUMNS_H
 
-#include "result/result.h"
+#include "result/load_point.h"
+#include "result/profile.h"
 
 #define DEA_COLUMN_ONE(member, si, display, factor, header, meaning) +1
 enum {

@@ -3,7 +3,7 @@
 #define DEA_RESULT_COMPARE_H
 
 #include "base/arena.h"
-#include "result/columns.h"
+#include "result/result.h"
 
 /* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
  * largest |b| when all are equal); relative values are over it. Arrays [count] in its memory. */

@@ -4,7 +4,7 @@
 #define DEA_RESULT_CONVERGENCE_H
 
 #include "base/text.h"
-#include "result/columns.h"
+#include "result/result.h"
 
 enum { DEA_CONVERGENCE_MESHES_MAX = 8 };
 

@@ -1,4 +1,4 @@
-#include "result/columns.h"
+#include "result/result.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -44,6 +44,10 @@ void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
     dea_free(ctx, result->variants[i].profile.columns);
   }
   dea_free(ctx, result->variants);
+  for (size_t i = 0; i < result->table_count; i++) {
+    dea_result_table_free(ctx, &result->tables[i]);
+  }
+  dea_free(ctx, result->tables);
   dea_free(ctx, result->provenance.input);
   dea_free(ctx, result->provenance.overrides);
   dea_free(ctx, result->provenance.command);
@@ -78,6 +82,34 @@ dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *resu
   result->curves = curves;
   *out = &curves[result->curve_count++];
   **out = curve;
+  return DEA_OK;
+}
+
+dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
+                                const struct dea_result_table_type *type, const char *model,
+                                size_t width, struct dea_result_table **out)
+{
+  struct dea_result_table table;
+  *out = NULL;
+  DEA_TRY(ctx, dea_result_table_init(ctx, type, model, width, &table));
+  for (size_t i = 0; i < result->table_count; i++) {
+    struct dea_result_table *old = &result->tables[i];
+    if (strcmp(old->model, model) == 0 && strcmp(old->type.study, type->study) == 0 &&
+        strcmp(old->type.name, type->name) == 0) {
+      dea_result_table_free(ctx, old);
+      *old = table;
+      *out = old;
+      return DEA_OK;
+    }
+  }
+  struct dea_result_table *tables =
+      dea_resize(ctx, result->tables, result->table_count + 1, sizeof *tables);
+  if (tables == NULL) {
+    return DEA_E_MEMORY;
+  }
+  result->tables = tables;
+  *out = &tables[result->table_count++];
+  **out = table;
   return DEA_OK;
 }
 

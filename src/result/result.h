@@ -7,6 +7,7 @@
 #include "result/field_mesh.h"
 #include "result/load_point.h"
 #include "result/profile.h"
+#include "result/table.h"
 
 /* Points in the order computed; a curve of kind "sweep" stays on stable equilibria at the asked
  * voltages, one of kind "path" is the whole equilibrium path. */
@@ -17,6 +18,7 @@ struct dea_curve {
   size_t count, room;
   struct dea_event *events; // of a path
   size_t event_count, event_room;
+  bool listed;       // the summary lists its points under its kind
   bool complete;     // false: stopped early; `stopped` says why
   dea_status status; // DEA_OK or why it stopped
   char stopped[256]; // one sentence; ""
@@ -76,6 +78,8 @@ struct dea_result {
   size_t surface_bytes_max; // of one model's; may be changed before the first
   struct dea_variant *variants;
   size_t variant_count;
+  struct dea_result_table *tables; // [table_count] that studies made of what is above
+  size_t table_count;
   double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
   const struct dea_checkpoint_sink *keeper; // lent, NULL for none
   struct dea_provenance provenance;
@@ -116,6 +120,11 @@ size_t dea_result_models(const struct dea_result *result, const char *models[], 
 /* The curve of that model and kind, a new empty one when there is none; *out as above. */
 dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
                                 const char *model, const char *kind, struct dea_curve **out);
+/* A new table in the place of the model's of that study and name; see dea_result_table_init. *out
+ * lent until the next call of this function. */
+dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
+                                const struct dea_result_table_type *type, const char *model,
+                                size_t width, struct dea_result_table **out);
 /* Surface of a point after those that are there. Where those of the model would take more memory
  * than surface_bytes_max, every second one goes, and from then on one of two points stays, one of
  * four, ...; the first and the last are always there. Takes the mesh, also when it fails. */

@@ -1,6 +1,6 @@
 #include "result/time_series.h"
 
-#include "result/columns.h"
+#include "result/result.h"
 
 #include <math.h>
 

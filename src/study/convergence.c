@@ -1,10 +1,15 @@
 /* Study "convergence": the same device on ever finer meshes, at a few voltages. What the sequence
  * of answers says of each mesh is found in result/convergence.h. */
+#include "result/convergence.h"
 #include "study/study.h"
 #include "study/variant.h"
 
 #include <math.h>
 #include <stdio.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char study_name[] = "convergence";
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
@@ -24,7 +29,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   result->convergence_tolerance = design->compute.convergence.tolerance.si;
   snprintf(what, sizeof what, "%s convergence", type->name);
   struct dea_device device = *result->device; // what it lends stays the original's
-  struct dea_variant_run one = {.study = "convergence",
+  struct dea_variant_run one = {.study = study_name,
                                 .name = name,
                                 .device = &device,
                                 .voltages_V = voltages_V,
@@ -44,14 +49,261 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return first;
 }
 
+// Tables -----------------------------------------------------------------------------------------
+
+enum { ALL = DEA_IN_JSON | DEA_IN_SCREEN };
+
+static const struct dea_result_column fact_columns[] = {
+    {.key = "tolerance",
+     .display_unit = "%",
+     .factor = 100,
+     .title = "tolerance",
+     .meaning = "relative error that is small enough for a displacement"},
+    {.key = "verdict",
+     .kind = DEA_CELL_TEXT,
+     .title = "verdict",
+     .meaning = "voltage by voltage the mesh that is enough"},
+};
+static const struct dea_result_column mesh_columns[] = {
+    {.key = "name", .kind = DEA_CELL_TEXT, .title = "mesh", .meaning = "name of the mesh"},
+    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
+    {.key = "elements", .kind = DEA_CELL_COUNT, .title = "elements", .meaning = "of the mesh"},
+    {.key = "nodes", .kind = DEA_CELL_COUNT, .title = "nodes", .meaning = "of the mesh"},
+    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
+    {.key = "wall_s",
+     .si_unit = "s",
+     .display_unit = "s",
+     .title = "time",
+     .meaning = "that the mesh took"},
+    {.key = "complete", .kind = DEA_CELL_FLAG, .title = "complete", .meaning = "to the last point"},
+    {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it stopped"},
+};
+static const struct dea_result_column quantity_columns[] = {
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .title = "quantity",
+     .meaning = "of load points"},
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    {.key = "values",
+     .kind = DEA_CELL_VALUE,
+     .list = true,
+     .hidden = DEA_IN_SCREEN,
+     .title = "value",
+     .meaning = "on each mesh"},
+    {.key = "errors",
+     .list = true,
+     .display_unit = "%",
+     .factor = 100,
+     .title = "error",
+     .meaning = "estimated relative error on each mesh"},
+    {.key = "order", .title = "order", .meaning = "observed order of convergence"},
+    {.key = "extrapolated",
+     .kind = DEA_CELL_VALUE,
+     .title = "extrapolated",
+     .meaning = "value at element size 0"},
+    {.key = "remark",
+     .kind = DEA_CELL_TEXT,
+     .title = "remark",
+     .meaning = "what is wrong with the sequence"},
+};
+static const struct dea_result_column enough_columns[] = {
+    {.key = "voltage_V", .si_unit = "V", .title = "V", .meaning = "voltage"},
+    {.key = "refinement",
+     .null = true,
+     .title = "refinement",
+     .meaning = "coarsest mesh that is, with all finer ones, within the tolerance"},
+};
+static const struct dea_result_column error_columns[] = {
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .title = "quantity",
+     .meaning = "of load points"},
+    {.key = "unit", .kind = DEA_CELL_TEXT, .title = "unit", .meaning = "of the value"},
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
+    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
+    {.key = "value", .kind = DEA_CELL_VALUE, .title = "value", .meaning = "on this mesh"},
+    {.key = "error",
+     .display_unit = "%",
+     .factor = 100,
+     .title = "estimated error",
+     .meaning = "relative error on this mesh"},
+    {.key = "order", .title = "observed order", .meaning = "of convergence"},
+    {.key = "extrapolated",
+     .kind = DEA_CELL_VALUE,
+     .title = "extrapolated",
+     .meaning = "value at element size 0"},
+    {.key = "remark", .kind = DEA_CELL_TEXT, .title = "remark", .meaning = "on the sequence"},
+};
+
+static const struct dea_result_table_type fact_table = {.study = study_name,
+                                                        .name = "",
+                                                        .title = "convergence",
+                                                        .where = ALL,
+                                                        .one_row = true,
+                                                        .columns = fact_columns,
+                                                        .column_count = COUNT(fact_columns)};
+static const struct dea_result_table_type mesh_table = {.study = study_name,
+                                                        .name = "meshes",
+                                                        .title = "meshes",
+                                                        .where = ALL,
+                                                        .columns = mesh_columns,
+                                                        .column_count = COUNT(mesh_columns)};
+static const struct dea_result_table_type quantity_table = {
+    .study = study_name,
+    .name = "quantities",
+    .title = "estimated errors on each mesh",
+    .where = ALL,
+    .columns = quantity_columns,
+    .column_count = COUNT(quantity_columns)};
+static const struct dea_result_table_type enough_table = {.study = study_name,
+                                                          .name = "enough",
+                                                          .title = "mesh that is enough",
+                                                          .where = DEA_IN_JSON,
+                                                          .columns = enough_columns,
+                                                          .column_count = COUNT(enough_columns)};
+static const struct dea_result_table_type error_table = {.study = study_name,
+                                                         .name = "errors",
+                                                         .title = "estimated errors",
+                                                         .where = DEA_IN_CSV,
+                                                         .columns = error_columns,
+                                                         .column_count = COUNT(error_columns)};
+
+static dea_status put_facts(struct dea_context *ctx, const struct dea_convergence *c,
+                            struct dea_result_table *table)
+{
+  struct dea_text verdict = {.ctx = ctx};
+  dea_convergence_verdict(c, &verdict);
+  const struct dea_result_table_value row[] = {{.number = c->tolerance},
+                                               {.text = dea_text_get(&verdict)}};
+  dea_status status = verdict.failed ? DEA_E_MEMORY : dea_result_table_add_row(ctx, table, row);
+  dea_text_free(&verdict);
+  return status;
+}
+
+static dea_status put_meshes(struct dea_context *ctx, const struct dea_convergence *c,
+                             struct dea_result_table *table)
+{
+  for (size_t m = 0; m < c->mesh_count; m++) {
+    const struct dea_variant *mesh = c->meshes[m];
+    bool sized = mesh->size.nodes > 0;
+    const struct dea_result_table_value row[] = {
+        {.text = mesh->name},
+        {.number = mesh->refinement},
+        {.number = sized ? (double)mesh->size.elements : NAN},
+        {.number = sized ? (double)mesh->size.nodes : NAN},
+        {.number = sized ? (double)mesh->size.unknowns : NAN},
+        {.number = mesh->wall_s},
+        {.number = mesh->curve.complete},
+        {.text = mesh->curve.stopped},
+    };
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+static dea_status put_quantities(struct dea_context *ctx, const struct dea_convergence *c,
+                                 struct dea_result_table *table)
+{
+  for (size_t i = 0; i < c->row_count; i++) {
+    const struct dea_convergence_row *r = &c->rows[i];
+    const struct dea_result_table_value row[] = {
+        {.number = r->column},
+        {.number = r->voltage_V},
+        {.list = r->values},
+        {.list = r->errors},
+        {.number = r->order},
+        {.number = r->extrapolated},
+        {.text = dea_order_text(r->kind)},
+    };
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+/* Voltage by voltage the refinement that is enough, none where no mesh is. */
+static dea_status put_enough(struct dea_context *ctx, const struct dea_convergence *c,
+                             struct dea_result_table *table)
+{
+  for (size_t i = 0; i < c->row_count; i++) {
+    double voltage_V = c->rows[i].voltage_V;
+    if (i == 0 || voltage_V != c->rows[i - 1].voltage_V) {
+      size_t mesh = dea_convergence_enough(c, voltage_V);
+      const struct dea_result_table_value row[] = {
+          {.number = voltage_V},
+          {.number = mesh < c->mesh_count ? c->meshes[mesh]->refinement : NAN}};
+      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    }
+  }
+  return DEA_OK;
+}
+
+/* A line a quantity, voltage and mesh. */
+static dea_status put_errors(struct dea_context *ctx, const struct dea_convergence *c,
+                             struct dea_result_table *table)
+{
+  for (size_t i = 0; i < c->row_count * c->mesh_count; i++) {
+    const struct dea_convergence_row *r = &c->rows[i / c->mesh_count];
+    const struct dea_variant *mesh = c->meshes[i % c->mesh_count];
+    const struct dea_result_table_value row[] = {
+        {.number = r->column},
+        {.text = dea_point_columns[r->column].display_unit},
+        {.number = r->voltage_V},
+        {.number = mesh->refinement},
+        {.number = (double)mesh->size.unknowns},
+        {.number = r->values[i % c->mesh_count]},
+        {.number = r->errors[i % c->mesh_count]},
+        {.number = r->order},
+        {.number = r->extrapolated},
+        {.text = dea_order_text(r->kind)},
+    };
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
+{
+  static const struct {
+    const struct dea_result_table_type *type;
+    dea_status (*put)(struct dea_context *ctx, const struct dea_convergence *c,
+                      struct dea_result_table *table);
+  } parts[] = {{&fact_table, put_facts},
+               {&mesh_table, put_meshes},
+               {&quantity_table, put_quantities},
+               {&enough_table, put_enough},
+               {&error_table, put_errors}};
+  struct dea_convergence *c;
+  DEA_TRY(ctx, dea_convergence_create(ctx, result, model, &c));
+  dea_status status = DEA_OK;
+  for (size_t i = 0; c != NULL && i < COUNT(parts) && status == DEA_OK; i++) {
+    struct dea_result_table *table;
+    status = dea_result_add_table(ctx, result, parts[i].type, model, c->mesh_count, &table);
+    status = status == DEA_OK ? parts[i].put(ctx, c, table) : status;
+  }
+  dea_convergence_destroy(ctx, c);
+  return status;
+}
+
 static bool asked(const struct dea_design *design)
 {
   return design->compute.convergence.asked;
 }
 
 const struct dea_study dea_study_convergence = {
-    .name = "convergence",
+    .name = study_name,
     .asked = asked,
     .own_models = true,
     .run = run,
+    .tables = tables,
 };

@@ -122,6 +122,7 @@ dea_status dea_study_stop_by_stop(
                            "model %s knows no vibrations: no study '%s'", type->name, kind);
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
+  curve->listed = true;
   snprintf(what, sizeof what, "%s %s", type->name, kind);
   dea_status status = type->create(ctx, result->device, &model);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
@@ -143,6 +144,13 @@ dea_status dea_study_stop_by_stop(
   return DEA_OK;
 }
 
+/* Tables of a study, also of one that failed: partial results are results. */
+static dea_status make_tables(struct dea_context *ctx, const struct dea_study *study,
+                              const char *model, struct dea_result *result)
+{
+  return study->tables != NULL ? study->tables(ctx, model, result) : DEA_OK;
+}
+
 dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
                                const char *const names[], size_t name_count,
                                struct dea_result *result)
@@ -159,7 +167,12 @@ dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_t
     }
     dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
     first = first == DEA_OK ? status : first;
-    if (status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
+    if (status == DEA_E_MEMORY) {
+      break;
+    }
+    status = make_tables(ctx, studies[i], type->name, result);
+    first = first == DEA_OK ? status : first;
+    if (first == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
       break;
     }
   }

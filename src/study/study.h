@@ -30,6 +30,8 @@ struct dea_study {
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
                     struct dea_model *model, struct dea_result *result);
+  /* Makes tables (result/table.h) of what the result has of that model; NULL: none. */
+  dea_status (*tables)(struct dea_context *ctx, const char *model, struct dea_result *result);
 };
 
 /* Runs every study that the result's design asks for with one model. Returns the first failure,

@@ -1,10 +1,13 @@
 /* Study "transient": a waveform is played to the model (docs/theory/time.md). Steps as long as the
  * tolerance allows, none across a corner of the waveform; a jump is a step of no length. */
+#include "result/time_series.h"
 #include "study/force.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <stdio.h>
+
+static const char study_name[] = "transient";
 
 enum { POINTS_MAX = 40000 }; // of a curve; beyond, every second point goes
 
@@ -279,7 +282,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                            "model %s knows no time: drive.waveform is without effect there",
                            type->name);
   }
-  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "transient", &p.curve));
+  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient", type->name);
   dea_status status = type->create(ctx, result->device, &p.model);
   status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
@@ -295,15 +298,200 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
+// Tables -----------------------------------------------------------------------------------------
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+enum { ALL = DEA_IN_JSON | DEA_IN_SCREEN };
+
+static const struct dea_result_column fact_columns[] = {
+    {.key = "points", .kind = DEA_CELL_COUNT, .title = "points", .meaning = "points in time"},
+    {.key = "end_s", .si_unit = "s", .display_unit = "s", .title = "end", .meaning = "last time"},
+    {.key = "quantity",
+     .kind = DEA_CELL_TEXT,
+     .title = "cycles of",
+     .meaning = "quantity of load points that the cycles are read from"},
+};
+static const struct dea_result_column energy_columns[] = {
+    {.key = "supply_work_J",
+     .si_unit = "J",
+     .display_unit = "uJ",
+     .factor = 1e6,
+     .title = "the supply gave",
+     .meaning = "work of the supply, from the first to the worst point"},
+    {.key = "stored_J",
+     .si_unit = "J",
+     .display_unit = "uJ",
+     .factor = 1e6,
+     .title = "stored",
+     .meaning = "in the film, its field and its branches"},
+    {.key = "kinetic_J",
+     .si_unit = "J",
+     .display_unit = "uJ",
+     .factor = 1e6,
+     .title = "moving",
+     .meaning = "kinetic energy"},
+    {.key = "dissipated_J",
+     .si_unit = "J",
+     .display_unit = "uJ",
+     .factor = 1e6,
+     .title = "lost",
+     .meaning = "in branches, resistance and leakage"},
+    {.key = "not_accounted",
+     .display_unit = "%",
+     .factor = 100,
+     .title = "not accounted for",
+     .meaning = "difference, relative to the largest of these energies"},
+};
+static const struct dea_result_column cycle_columns[] = {
+    {.key = "start_s", .si_unit = "s", .title = "start", .meaning = "time"},
+    {.key = "end_s", .si_unit = "s", .title = "end", .meaning = "time"},
+    {.key = "level_V", .si_unit = "V", .title = "V", .meaning = "of the waveform"},
+    {.key = "amplitude",
+     .kind = DEA_CELL_VALUE,
+     .title = "amplitude",
+     .meaning = "highest - lowest"},
+    {.key = "farthest",
+     .kind = DEA_CELL_VALUE,
+     .title = "farthest",
+     .meaning = "of the highest and lowest, the one farther from the start"},
+    {.key = "highest", .kind = DEA_CELL_VALUE, .title = "highest", .meaning = "value"},
+    {.key = "lowest", .kind = DEA_CELL_VALUE, .title = "lowest", .meaning = "value"},
+    {.key = "rise_time_10_90_s",
+     .si_unit = "s",
+     .title = "rise 10-90",
+     .meaning = "time from 10 to 90 % of the way to the farthest"},
+};
+static const struct dea_result_column creep_columns[] = {
+    {.key = "level_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "of the waveform"},
+    {.key = "cycles", .kind = DEA_CELL_COUNT, .title = "cycles", .meaning = "at this voltage"},
+    {.key = "first", .kind = DEA_CELL_VALUE, .title = "first", .meaning = "farthest of the first"},
+    {.key = "last", .kind = DEA_CELL_VALUE, .title = "last", .meaning = "farthest of the last"},
+    {.key = "creep", .kind = DEA_CELL_VALUE, .title = "creep", .meaning = "last - first"},
+    {.key = "rise_s",
+     .hidden = DEA_IN_JSON,
+     .si_unit = "s",
+     .display_unit = "s",
+     .title = "rise 10-90",
+     .meaning = "rise time of the first"},
+};
+
+static const struct dea_result_table_type fact_table = {.study = study_name,
+                                                        .name = "",
+                                                        .title = "in time",
+                                                        .where = ALL,
+                                                        .one_row = true,
+                                                        .columns = fact_columns,
+                                                        .column_count = COUNT(fact_columns)};
+static const struct dea_result_table_type energy_table = {.study = study_name,
+                                                          .name = "energy",
+                                                          .title = "energy",
+                                                          .where = ALL,
+                                                          .one_row = true,
+                                                          .columns = energy_columns,
+                                                          .column_count = COUNT(energy_columns)};
+static const struct dea_result_table_type cycle_table = {.study = study_name,
+                                                         .name = "cycles",
+                                                         .title = "cycles",
+                                                         .where = DEA_IN_JSON,
+                                                         .columns = cycle_columns,
+                                                         .column_count = COUNT(cycle_columns)};
+static const struct dea_result_table_type creep_table = {.study = study_name,
+                                                         .name = "creep",
+                                                         .title = "farthest value of each cycle",
+                                                         .where = ALL,
+                                                         .columns = creep_columns,
+                                                         .column_count = COUNT(creep_columns)};
+
+static dea_status put_facts(struct dea_context *ctx, const struct dea_curve *curve, int column,
+                            const char *model, struct dea_result *result)
+{
+  struct dea_energy_balance e;
+  struct dea_result_table *table;
+  const struct dea_result_table_value facts[] = {
+      {.number = (double)curve->count},
+      {.number = curve->points[curve->count - 1].time_s},
+      {.text = column < 0 ? "" : dea_point_columns[column].key}};
+  bool balanced = dea_time_series_balance(curve, &e);
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &fact_table, model, 0, &table));
+  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, facts));
+  if (balanced) {
+    const struct dea_result_table_value energies[] = {{.number = e.supply_work_J},
+                                                      {.number = e.stored_J},
+                                                      {.number = e.kinetic_J},
+                                                      {.number = e.dissipated_J},
+                                                      {.number = e.error}};
+    DEA_TRY(ctx, dea_result_add_table(ctx, result, &energy_table, model, 0, &table));
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, energies));
+  }
+  return DEA_OK;
+}
+
+static dea_status put_cycles(struct dea_context *ctx, const struct dea_cycle *cycles, size_t count,
+                             int column, const char *model, struct dea_result *result)
+{
+  struct dea_result_table *table;
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &cycle_table, model, 0, &table));
+  table->quantity = column;
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_cycle *c = &cycles[i];
+    const struct dea_result_table_value row[] = {
+        {.number = c->start_s},   {.number = c->end_s},      {.number = c->level_V},
+        {.number = c->amplitude}, {.number = c->farthest},   {.number = c->highest},
+        {.number = c->lowest},    {.number = c->rise_time_s}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &creep_table, model, 0, &table));
+  table->quantity = column;
+  for (size_t first = 0, last; first < count; first = last + 1) {
+    last = dea_time_series_level_end(cycles, count, first);
+    const struct dea_cycle *a = &cycles[first], *b = &cycles[last];
+    const struct dea_result_table_value row[] = {{.number = a->level_V},
+                                                 {.number = (double)(last - first + 1)},
+                                                 {.number = a->farthest},
+                                                 {.number = b->farthest},
+                                                 {.number = b->farthest - a->farthest},
+                                                 {.number = a->rise_time_s}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
+{
+  const struct dea_curve *curve = dea_result_find(result, model, study_name);
+  struct dea_cycle *cycles;
+  size_t count;
+  if (curve == NULL || curve->count == 0) {
+    return DEA_OK;
+  }
+  int column = dea_time_series_column(curve);
+  DEA_TRY(ctx, put_facts(ctx, curve, column, model, result));
+  if (column < 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
+                                      &count));
+  dea_status status = put_cycles(ctx, cycles, count, column, model, result);
+  dea_free(ctx, cycles);
+  return status;
+}
+
 static bool asked(const struct dea_design *design)
 {
   return design->drive.waveform != NULL;
 }
 
 const struct dea_study dea_study_transient = {
-    .name = "transient",
+    .name = study_name,
     .asked = asked,
     .needs = "drive.waveform",
     .own_models = true,
     .run = run,
+    .tables = tables,
 };

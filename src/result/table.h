@@ -1,0 +1,94 @@
+/* Tables that studies make of what they computed: named columns with unit and meaning, which CSV,
+ * JSON, HDF5, the terminal and the report write without knowing the study. */
+#ifndef DEA_RESULT_TABLE_H
+#define DEA_RESULT_TABLE_H
+
+#include "base/text.h"
+#include "material/material.h"
+#include "result/columns.h"
+
+enum { DEA_RESULT_TABLE_COLUMNS_MAX = 24, DEA_RESULT_TABLE_WIDTH_MAX = 8 };
+
+enum dea_cell_kind {
+  DEA_CELL_NUMBER,   // in SI; NAN: none
+  DEA_CELL_COUNT,    // a whole number
+  DEA_CELL_FLAG,     // 1: yes, 0: no
+  DEA_CELL_TEXT,     //
+  DEA_CELL_QUANTITY, // quantity of load points that the row is of: index in dea_point_columns
+  DEA_CELL_VALUE,    // a number in the SI unit of the row's quantity; NAN: none
+  DEA_CELL_POINTS,   // index of a variant of the result: JSON lists its points
+};
+
+/* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report. */
+enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4 };
+
+struct dea_result_column {
+  const char *key; // as in JSON and HDF5: "rise_time_s"
+  enum dea_cell_kind kind;
+  const char *si_unit, *display_unit; // NULL: "1"
+  double factor;                      // SI -> display; 0: 1
+  const char *title;                  // for people, without unit: "rise time"
+  const char *meaning;
+  bool list;  // `width` values a row: in JSON an array with null for what is none
+  bool null;  // JSON writes null for what is none, else leaves the key out
+  int hidden; // DEA_IN_*: those that leave the column out
+};
+
+/* What a table is; static in its study's file. */
+struct dea_result_table_type {
+  const char *study; // in JSON an object of that key, in file names
+  const char *name;  // within it; "": the study's own facts
+  const char *key;   // in JSON of the model itself, in place of study and name; NULL: not so
+  const char *title; // a heading for people
+  int where;         // DEA_IN_*
+  bool one_row;      // in JSON an object, not a list
+  const struct dea_result_column *columns; // [column_count]
+  size_t column_count;
+};
+
+struct dea_cell {
+  double number; // NAN: none
+  char *text;    // owned; NULL for what is no text
+};
+
+struct dea_result_table {
+  char model[DEA_NAME_SIZE];
+  struct dea_result_table_type type;     // its names are static, or interned in the context
+  struct dea_result_column *own_columns; // owned: of a table that was read; else NULL
+  int quantity;                          // of all rows, where no column says it; -1: none
+  size_t width;                          // values in each list
+  size_t row_count, room, stride;
+  struct dea_cell *cells; // [row_count][stride], column after column, lists with all their values
+};
+
+/* First cell of a column in a row; lent. */
+const struct dea_cell *dea_result_table_cell(const struct dea_result_table *table, size_t row,
+                                             size_t column);
+/* Values of a row that belong to a column: 1, or the width of lists. */
+size_t dea_result_table_values(const struct dea_result_table *table, size_t column);
+
+/* An empty table. width: of its lists, 0 to DEA_RESULT_TABLE_WIDTH_MAX. Freed with
+ * dea_result_table_free. */
+dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_result_table_type *type,
+                                 const char *model, size_t width, struct dea_result_table *out);
+void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *table);
+/* A value of a row: of its column's kind the one that counts. */
+struct dea_result_table_value {
+  double number;      // of all kinds that are no text
+  const char *text;   // copied
+  const double *list; // [width] of a list
+};
+/* Adds a row. values: one for each column, in their order. */
+dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_table *table,
+                                    const struct dea_result_table_value *values);
+
+/* Quantity of load points that a row is of; NULL: none. */
+const struct dea_column *dea_result_table_quantity(const struct dea_result_table *table,
+                                                   size_t row);
+/* A value as people read it: in the display unit, "" for none. digits: significant ones. */
+void dea_result_table_cell_text(const struct dea_result_table *table, size_t row, size_t column,
+                                size_t value, int digits, struct dea_text *out);
+/* "rise time (s)": the title of a column, without unit for 1 or the row's own. */
+void dea_result_table_column_title(const struct dea_result_column *column, struct dea_text *out);
+
+#endif
