@@ -15,6 +15,11 @@ list=$(
 # shellcheck disable=SC2016 # the fences of Markdown
 sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | diff - examples/c/sweep.c ||
   { echo "the C program of README.md is not examples/c/sweep.c"; exit 1; }
+for page in README.md docs/python.md; do # and so is its script, by the test of the tutorial
+  awk '/^```python$/ { on = 1; next } /^```$/ { if (on) { exit } } on' $page
+  echo ---
+done | awk '/^---$/ { n++; next } { text[n + 0] = text[n + 0] $0 "\n" } END { exit text[0] == "" || text[0] != text[1] }' ||
+  { echo "the script of README.md is not the first one of docs/python.md"; exit 1; }
 printf '%s\n' "$list" | {
   bad=0
   while read -r page path; do

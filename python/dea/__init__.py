@@ -1,0 +1,33 @@
+"""Design and simulation of dielectric elastomer actuators.
+
+    import dea
+
+    design = dea.Design("my.yaml")
+    design["film.thickness"] = "80 um"
+    result = dea.run(design, models="3d", studies="sweep")
+    result["3d/sweep/centre_z_m"]          # a numpy array with .unit
+    result.figure("displacement").save("displacement.svg")
+
+Numbers are SI and say so in their names; texts have any unit. Errors are exceptions: see DeaError.
+Docs: docs/python.md.
+"""
+
+from ._door import (
+    ArgumentError,
+    DeaError,
+    DesignError,
+    FileError,
+    Finding,
+    SolverError,
+    UnsupportedError,
+    version,
+)
+from ._design import Design, Model, Study, Value, models, studies
+from ._result import Actuator, Array, Field, Mesh, Result, Svg, load, run
+
+__version__ = version()
+__all__ = [
+    "Actuator", "ArgumentError", "Array", "DeaError", "Design", "DesignError", "Field", "FileError",
+    "Finding", "Mesh", "Model", "Result", "SolverError", "Study", "Svg", "UnsupportedError", "Value",
+    "load", "models", "run", "studies", "version",
+]
