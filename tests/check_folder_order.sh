@@ -1,6 +1,6 @@
 #!/bin/sh
-# A file of src/X includes headers of X and of the folders before X only; one model knows nothing of
-# another. See ARCHITECTURE.md.
+# A file of src/X includes headers of X and of the folders before X only, and so do the rooms of
+# model/solid; one model knows nothing of another. See ARCHITECTURE.md.
 set -eu
 cd "$1/src"
 # shellcheck disable=SC2016 # awk's own
@@ -8,6 +8,8 @@ find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
     n = split("base material waveform design device result model study output fabricate lab api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
+    n = split("point element mesh load recovery actuator assembly equilibrium motion adapter", order, " ")
+    for (i = 1; i <= n; i++) { room[order[i]] = i } # of model/solid
   }
   function part(path, i, parts) { split(path, parts, "/"); return parts[i] }
   FNR == 1 {
@@ -24,9 +26,18 @@ find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
                part(FILENAME, 2) != part(header, 2)) {
       print FILENAME ":" FNR ": must not depend on the model " part(header, 2); bad = 1
     }
+    if (FILENAME ~ /^model\/solid\/.*\// && header ~ /^model\/solid\/.*\//) {
+      from = part(FILENAME, 3); to = part(header, 3)
+      if (!(from in room) || !(to in room)) {
+        print FILENAME ":" FNR ": a room of model/solid that has no place in the order"; bad = 1
+      } else if (room[to] > room[from]) {
+        print FILENAME ":" FNR ": room " from " must not depend on " to; bad = 1
+      }
+      rooms++
+    }
     checked++
   }
   END {
-    if (checked == 0) { print "no include was found: the check is broken"; bad = 1 }
+    if (checked == 0 || rooms == 0) { print "no include was found: the check is broken"; bad = 1 }
     exit bad
   }'

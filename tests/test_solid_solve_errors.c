@@ -6,7 +6,10 @@
 
 #include "solid_fixture.h"
 
+#include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 static const double gent[DEA_LAW_PARAM_MAX] = {100e3, 3};
@@ -51,7 +54,7 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
   if (grid == NULL) {
     assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 1e-2, &grid), DEA_OK);
   }
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  DEA_TRY(ctx, dea_solid_create(ctx, grid, &options, &solid));
   return dea_solid_solve(ctx, solid, voltage_V, &report);
 }
 
@@ -151,6 +154,70 @@ static void test_voltage_beyond_any_equilibrium(void **state)
   clear();
 }
 
+#if defined __SANITIZE_ADDRESS__ // by the sanitizer, of gcc or clang
+#define ADDRESS_SPACE_IS_TAKEN
+#elif defined __has_feature
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SPACE_IS_TAKEN
+#endif
+#endif
+
+/* Address space of this process [bytes]. */
+static rlim_t address_space(void)
+{
+  unsigned long pages = 0;
+  FILE *file = fopen("/proc/self/statm", "r");
+  if (file == NULL || fscanf(file, "%lu", &pages) != 1) {
+    pages = 0;
+  }
+  if (file != NULL) {
+    fclose(file);
+  }
+  return pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Memory that runs out, in PETSc or MUMPS, is called that, whatever there is of it. */
+static void test_memory_that_runs_out(void **state)
+{
+  (void)state;
+#ifdef ADDRESS_SPACE_IS_TAKEN
+  skip();
+#endif
+  enum { CUTS = 33 };
+  const struct dea_constituent layer = film();
+  static const int held[] = {7, 7};
+  double cuts[CUTS];
+  for (int i = 0; i < CUTS; i++) {
+    cuts[i] = i / (CUTS - 1.0);
+  }
+  const struct dea_block block = {map_square, NULL, cuts, cuts, CUTS - 1, CUTS - 1, 0};
+  const struct dea_ply sheet = {1e-3, 1, 2};
+  struct rlimit before, small;
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 1e-2, &grid), DEA_OK);
+  assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+  small = before;
+  rlim_t now = address_space();
+  assert_true(now > 0);
+  int failed = 0, by_petsc = 0;
+  dea_status status = DEA_E_MEMORY;
+  for (rlim_t room = 8 << 20; status != DEA_OK && room < (rlim_t)4 << 30; room += room / 2) {
+    small.rlim_cur = now + room;
+    assert_int_equal(setrlimit(RLIMIT_AS, &small), 0);
+    status = solve(&layer, held, 0);
+    assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+    if (status != DEA_OK) {
+      assert_int_equal(status, DEA_E_MEMORY);
+      failed++;
+      by_petsc += strstr(dea_context_message(ctx), "PETSc") != NULL;
+    }
+    dea_solid_destroy(ctx, solid);
+    solid = NULL;
+  }
+  assert_int_equal(status, DEA_OK);
+  assert_true(failed > 2 && by_petsc > 0);
+  clear();
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -158,6 +225,7 @@ int main(void)
       cmocka_unit_test(test_inverted_element),
       cmocka_unit_test(test_law_that_ends),
       cmocka_unit_test(test_voltage_beyond_any_equilibrium),
+      cmocka_unit_test(test_memory_that_runs_out),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -264,40 +264,67 @@ static dea_status analyse(struct dea_context *ctx, Mat A, PetscInt room_percent,
   MatFactorInfo info;
   MatFactorInfoInitialize(&info);
   DEA_PETSC(ctx, MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor));
-  MatMumpsSetIcntl(*factor, 24, 1); // null pivots and
-  MatMumpsSetIcntl(*factor, 13, 1); // no parallel root, so that the inertia is counted
-  MatMumpsSetIcntl(*factor, 14, room_percent);
-  dea_status status = dea_solid_petsc(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info),
-                                      "MatCholeskyFactorSymbolic");
-  if (status != DEA_OK) {
-    MatDestroy(factor); // sets it to NULL: not analysed
+  DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 24, 1)); // null pivots and
+  DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 13, 1)); // no parallel root, so that inertia is counted
+  DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 14, room_percent));
+  DEA_PETSC(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info));
+  return DEA_OK;
+}
+
+/* What MUMPS says of a factor that PETSc has made without an error of its own. */
+static dea_status factor_failure(struct dea_context *ctx, Mat factor, MatFactorError error)
+{
+  PetscInt info = 0;
+  switch (error) {
+  case MAT_FACTOR_NOERROR:
+    return DEA_OK;
+  case MAT_FACTOR_OUTMEMORY:
+    return dea_fail(ctx, DEA_E_MEMORY,
+                    "the factors of the tangent find no room in memory: take a coarser mesh");
+  case MAT_FACTOR_STRUCT_ZEROPIVOT:
+  case MAT_FACTOR_NUMERIC_ZEROPIVOT:
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the tangent is singular");
+  default:
+    MatMumpsGetInfog(factor, 1, &info);
+    return dea_fail(ctx, DEA_E_TOOL, "MUMPS failed with INFOG(1) = %d", (int)info);
   }
-  return status;
+}
+
+/* One attempt; *error: what became of the factor. */
+static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_percent, Mat *factor,
+                             MatFactorError *error)
+{
+  MatFactorInfo info;
+  MatFactorInfoInitialize(&info);
+  if (*factor == NULL) {
+    DEA_TRY(ctx, analyse(ctx, A, room_percent, factor));
+  }
+  DEA_PETSC(ctx, MatCholeskyFactorNumeric(*factor, A, &info));
+  DEA_PETSC(ctx, MatFactorGetError(*factor, error));
+  return DEA_OK;
 }
 
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
   enum { ROOM = 25, ROOM_MAX = 400 };
-  MatFactorInfo info;
-  MatFactorError error = MAT_FACTOR_NOERROR;
-  MatFactorInfoInitialize(&info);
-  for (PetscInt room = ROOM; room <= ROOM_MAX; room *= 2) {
-    if (*factor == NULL) {
-      DEA_TRY(ctx, analyse(ctx, A, room, factor));
+  MatFactorError error = MAT_FACTOR_OUTMEMORY;
+  dea_status status = DEA_OK;
+  for (PetscInt room = ROOM; room <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY; room *= 2) {
+    if (room > ROOM) {
+      MatDestroy(factor); // PETSc takes no second attempt with it
     }
-    DEA_PETSC(ctx, MatCholeskyFactorNumeric(*factor, A, &info));
-    DEA_PETSC(ctx, MatFactorGetError(*factor, &error));
-    if (error != MAT_FACTOR_OUTMEMORY) {
+    status = try_factor(ctx, A, room, factor, &error);
+    if (status != DEA_OK) {
       break;
     }
-    MatDestroy(factor); // PETSc takes no second attempt with it
   }
-  if (error == MAT_FACTOR_OUTMEMORY) {
-    return dea_fail(ctx, DEA_E_MEMORY, "the factors of the tangent find no room in memory");
+  if (status == DEA_OK) {
+    status = factor_failure(ctx, *factor, error);
   }
-  return error == MAT_FACTOR_NOERROR
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the tangent cannot be factorised");
+  if (status != DEA_OK) { // what is left of it is of no use: the next one is analysed anew
+    MatDestroy(factor);
+  }
+  return status;
 }
 
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)

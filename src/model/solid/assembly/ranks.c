@@ -24,6 +24,20 @@ static void start_mpi_alone(void)
   }
 }
 
+/* PETSc 3.18 mixes up what it says of memory that runs out: the code where the line should be. */
+static PetscErrorCode give_code(MPI_Comm comm, int line, const char *function, const char *file,
+                                PetscErrorCode code, PetscErrorType type, const char *message,
+                                void *self)
+{
+  (void)comm;
+  (void)file;
+  (void)message;
+  (void)self;
+  bool swapped = type == PETSC_ERROR_INITIAL && line == PETSC_ERR_MEM && function != NULL &&
+                 strncmp(function, "PetscMalloc", strlen("PetscMalloc")) == 0;
+  return swapped ? PETSC_ERR_MEM : code;
+}
+
 dea_status dea_solid_start(struct dea_context *ctx)
 {
   // the signals are the caller's: an interrupt has to keep the points that are there
@@ -42,7 +56,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
   if (SlepcInitializeNoArguments() != 0) {
     return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
   }
-  PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  PetscPushErrorHandler(give_code, NULL);
   if (rank_count() > 1 &&
       atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
     return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
@@ -126,7 +140,29 @@ void dea_solid_share(size_t count, size_t *from, size_t *to)
 
 dea_status dea_solid_petsc(struct dea_context *ctx, int code, const char *call)
 {
-  return code == 0 ? DEA_OK
-                   : dea_fail(ctx, DEA_E_NOT_CONVERGED, "PETSc failed in %.*s (error %d)",
-                              (int)strcspn(call, "("), call, code);
+  int length = (int)strcspn(call, "("); // the function's name
+  switch (code) {
+  case 0:
+    return DEA_OK;
+  case PETSC_ERR_MEM:
+    return dea_fail(ctx, DEA_E_MEMORY, "memory ran out in PETSc's %.*s: take a coarser mesh",
+                    length, call);
+  case PETSC_ERR_SUP:
+  case PETSC_ERR_SUP_SYS:
+  case PETSC_ERR_MISSING_FACTOR:
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "this PETSc cannot do %.*s (error %d)", length, call,
+                    code);
+  case PETSC_ERR_INT_OVERFLOW:
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the mesh is too large for this PETSc (%.*s)", length,
+                    call);
+  case PETSC_ERR_MAT_LU_ZRPVT:
+  case PETSC_ERR_MAT_CH_ZRPVT:
+  case PETSC_ERR_FP:
+  case PETSC_ERR_CONV_FAILED:
+  case PETSC_ERR_NOT_CONVERGED:
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "PETSc's %.*s did not converge (error %d)", length,
+                    call, code);
+  default:
+    return dea_fail(ctx, DEA_E_TOOL, "PETSc failed in %.*s (error %d)", length, call, code);
+  }
 }

@@ -26,7 +26,14 @@ double dea_solid_largest(double value);
 /* This rank's part of `count` things, from *from to before *to. */
 void dea_solid_share(size_t count, size_t *from, size_t *to);
 
-/* PETSc's error code as a status; call: its text, for the message. */
+/* Whether a shorter step may help after this failure; not so where memory runs out or PETSc fails. */
+static inline bool dea_solid_may_shorten(dea_status status)
+{
+  return status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN;
+}
+
+/* PETSc's error code as a status: DEA_E_MEMORY, DEA_E_UNSUPPORTED, DEA_E_NOT_CONVERGED of numerical
+ * failures, DEA_E_TOOL of all others. call: its text, for the message. */
 dea_status dea_solid_petsc(struct dea_context *ctx, int code, const char *call);
 
 /* Returns from a function where a call of PETSc fails. */

@@ -426,7 +426,7 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
     iterations = 0;
     status = attempt_step(ctx, t, &off, &iterations);
     all += iterations;
-    if (status == DEA_OK || status == DEA_E_MEMORY || t->step < 2 * t->step_least) {
+    if (!dea_solid_may_shorten(status) || t->step < 2 * t->step_least) {
       break;
     }
     t->step /= 2;
@@ -631,8 +631,7 @@ static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_con
   dea_status status = solve_at_share(ctx, t, b, *share);
   bool first_half = *share - b->at[0] < b->at[1] - *share;
   double by = (first_half ? aside : -aside) * (b->at[1] - b->at[0]), from = *share;
-  for (int i = 0; i < ASIDE_MAX && (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN);
-       i++, by *= 2) {
+  for (int i = 0; i < ASIDE_MAX && dea_solid_may_shorten(status); i++, by *= 2) {
     dea_context_clear(ctx);
     *share = from + by;
     status = solve_at_share(ctx, t, b, *share);
@@ -753,7 +752,7 @@ dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_sol
   for (int i = 0; i < SIZES_MAX; i++, distance /= 2) {
     dea_context_clear(ctx);
     status = leave_along(ctx, t, side < 0 ? -distance : distance);
-    if (status != DEA_E_NOT_CONVERGED && status != DEA_E_DOMAIN) {
+    if (!dea_solid_may_shorten(status)) {
       break;
     }
   }

@@ -180,7 +180,7 @@ static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int sid
 {
   const struct dea_solid_report before = *report;
   dea_status status = descend(ctx, s, side, false, mode, report);
-  if ((status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) && s->field == NULL) {
+  if (dea_solid_may_shorten(status) && s->field == NULL) {
     dea_context_clear(ctx);
     dea_solid_state_set(s, state);
     s->factor_fits = s->predicted_fits = false;
@@ -262,7 +262,7 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
     *report = before;
     s->factor_fits = s->predicted_fits = false;
   }
-  if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
+  if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
     status = DEA_OK;
   }
@@ -283,7 +283,7 @@ static dea_status leave_unstable(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report)
 {
   dea_status status = descend_from(ctx, s, 0, report);
-  if (status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN) {
+  if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
     return DEA_OK;
   }
@@ -339,7 +339,7 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
       }
     } else {
       part /= 2;
-      if (status == DEA_E_MEMORY || !moves || part < step_smallest) {
+      if (!dea_solid_may_shorten(status) || !moves || part < step_smallest) {
         return status;
       }
     }
