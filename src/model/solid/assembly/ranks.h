@@ -26,7 +26,8 @@ double dea_solid_largest(double value);
 /* This rank's part of `count` things, from *from to before *to. */
 void dea_solid_share(size_t count, size_t *from, size_t *to);
 
-/* Whether a shorter step may help after this failure; not so where memory runs out or PETSc fails. */
+/* Whether a shorter step may help after this failure; not so where memory runs out or PETSc fails.
+ */
 static inline bool dea_solid_may_shorten(dea_status status)
 {
   return status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN;

@@ -1,0 +1,75 @@
+#!/bin/sh
+# No circle of files: a file A depends on B when its object uses a symbol that B defines. Every loop
+# of such ties is printed with its symbols. Usage: check_circles.sh SOURCE_DIR BUILD_DIR
+set -eu
+source=$(cd "$1" && pwd)
+cd "$2"
+list=$(mktemp)
+trap 'rm -f "$list"' EXIT
+# one object of each source, also where it is compiled into several targets
+find src -name '*.c.o' -path '*.dir/*' | sort | awk '
+  { source = $0; sub(/.*\.dir\//, "", source); sub(/\.o$/, "", source) }
+  !(source in seen) { seen[source] = 1; print source, $0 }' | while read -r name object; do
+  if [ -e "$source/src/$name" ]; then echo "$object"; fi # not those of sources that are gone
+done >"$list"
+[ -s "$list" ] || { echo "no object files under $2/src: the check is broken"; exit 1; }
+# Ties that are still to be cut, as beginnings of A and B: this list gets shorter.
+still='api/run.c:api/result.c cli/main.c:cli/ cli/help.c:cli/kinds.c cli/kinds.c:cli/cmd_ cli/usage.c:cli/cmd_
+ output/report/report.c:output/report/section_ study/study.c:study/ lab/import/table.c:lab/import/import_
+ lab/instrument/instrument.c:lab/instrument/instrument_ design/variants.c:design/read.c
+ output/summary.c:output/summary_ lab/protocol/check.c:lab/protocol/check_
+ output/compare_set_figures.c:output/compare_set_
+ model/solid/mesh/fibre_disc_lines.c:model/solid/mesh/fibre_disc.c'
+xargs nm -A -g <"$list" | awk -v still="$still" '
+  { # path:value type name, or path: type name where it is undefined
+    colon = index($0, ":"); file = substr($0, 1, colon - 1)
+    sub(/.*\.dir\//, "", file); sub(/\.o$/, "", file)
+    type = $(NF - 1); name = $NF
+    if (type == "U") { users[++uses] = file; used[uses] = name }
+    else if (type !~ /[wWvV]/) { home[name] = file }
+  }
+  function is_known(a, b, k, pair) {
+    for (k = 1; k <= known; k++) {
+      split(ties_left[k], pair, ":")
+      if (index(a, pair[1]) == 1 && index(b, pair[2]) == 1) { return 1 }
+    }
+    return 0
+  }
+  function visit(a, k, n, to, list) { # Tarjan, strongly connected
+    number[a] = low[a] = ++count; stack[++top] = a; on[a] = 1
+    n = split(next_of[a], list, " ")
+    for (k = 1; k <= n; k++) {
+      to = list[k]
+      if (!(to in number)) { visit(to); if (low[to] < low[a]) { low[a] = low[to] } }
+      else if (on[to] && number[to] < low[a]) { low[a] = number[to] }
+    }
+    if (low[a] == number[a]) {
+      size = 0
+      do { to = stack[top--]; on[to] = 0; group[to] = a; size++ } while (to != a)
+      if (size > 1) { circle[a] = size }
+    }
+  }
+  END {
+    known = split(still, ties_left, " ")
+    for (i = 1; i <= uses; i++) {
+      a = users[i]
+      if (used[i] in home && home[used[i]] != a) {
+        b = home[used[i]]; edges++
+        if (is_known(a, b)) { continue }
+        if (!((a, b) in ties)) { next_of[a] = next_of[a] " " b }
+        ties[a, b] = ties[a, b] " " used[i]
+      }
+    }
+    if (edges == 0) { print "no symbol ties two files: the check is broken"; exit 1 }
+    for (a in next_of) { if (!(a in number)) { visit(a) } }
+    for (c in circle) {
+      bad = 1
+      print "circle of " circle[c] " files:"
+      for (a in group) {
+        if (group[a] != c) { continue }
+        n = split(next_of[a], list, " ")
+        for (k = 1; k <= n; k++) { if (group[list[k]] == c) { print "  " a " -> " list[k] ":" ties[a, list[k]] } }
+      }
+    }
+    exit bad
+  }'
