@@ -214,13 +214,40 @@ static void test_held_terminal(void **state)
   dea_context_destroy(ctx);
 }
 
+/* A second drive does not take away the file of the first; and who lost it says so. */
+static void test_two_into_one_file(void **state)
+{
+  (void)state;
+  int status;
+  pid_t child = start("two.h5");
+  wait_for_recording("two.h5");
+  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --sim -o two.h5 --force"), 5);
+  assert_contains(command_err, "'two.h5' is being written by another program");
+  assert_int_equal(kill(child, SIGINT), 0);
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+  assert_int_equal(command_run("recording two.h5"), 0);
+  assert_contains(command_out, "interrupted");
+  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --sim -o two.h5 --force --set "
+                               "sequence=null --set 'waveform={kind: constant, voltage: 1 kV}'"),
+                   0); // nobody writes it now
+  child = start("lost.h5");
+  wait_for_recording("lost.h5");
+  char file[700];
+  snprintf(file, sizeof file, "%s/lost.h5", command_folder);
+  assert_int_equal(unlink(file), 0);
+  assert_int_equal(kill(child, SIGINT), 0);
+  assert_int_equal(waitpid(child, &status, 0), child);
+  command_read("drive.err", command_err);
+  assert_contains(command_err, "was removed or replaced while it was written");
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_signals_ramp_down),
-      cmocka_unit_test(test_killed_drive),
-      cmocka_unit_test(test_other_signals),
-      cmocka_unit_test(test_held_terminal),
+      cmocka_unit_test(test_signals_ramp_down), cmocka_unit_test(test_killed_drive),
+      cmocka_unit_test(test_other_signals),     cmocka_unit_test(test_held_terminal),
+      cmocka_unit_test(test_two_into_one_file),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -6,6 +6,7 @@
 #include "lab/drive/drive.h"
 #include "lab/instrument/instrument.h"
 #include "lab/protocol/export.h"
+#include "lab/recording/recorder.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -162,6 +163,9 @@ static dea_status clear_output(struct dea_cli *cli, const struct request *reques
   }
   if (!may_be_replaced(file)) {
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' is no recording and is not replaced", file);
+  }
+  if (dea_recording_is_written(file)) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' is being written by another program", file);
   }
   if (remove(file) != 0) {
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' cannot be replaced", file);

@@ -652,6 +652,10 @@ static dea_status finish(struct loop *loop)
   dea_zero_text(report->zero, zero);
   dea_recorder_set_output(loop->recorder, zero);
   dea_status finished = dea_recorder_finish(loop->recorder, report->ended);
+  if (finished != DEA_OK && loop->status != DEA_OK) { // which is told first
+    (void)dea_finding_add(loop->ctx, DEA_WARNING, (struct dea_location){0}, "%s",
+                          dea_context_message(loop->ctx));
+  }
   dea_status noted = note_ranges(loop);
   finished = finished == DEA_OK ? noted : finished;
   bool unknown = report->zero.state == DEA_ZERO_UNKNOWN;

@@ -1,5 +1,7 @@
-#define _POSIX_C_SOURCE 200809L // pread, pwrite, ftruncate
+#define _GNU_SOURCE // pread, pwrite, ftruncate, fsync, F_OFD_SETLK
 #include "lab/recording/disk.h"
+
+#include "lab/recording/recorder.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -24,6 +26,13 @@ struct disk_file {
   ino_t inode;
 };
 
+/* Against other writers. Not with flock, which readers that use HDF5 take. */
+static bool lock_file(int file)
+{
+  struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+  return fcntl(file, F_OFD_SETLK, &all) == 0;
+}
+
 static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t most)
 {
   (void)most;
@@ -40,7 +49,8 @@ static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t
   struct stat info;
   opened->disk = of_list->disk;
   opened->file = open(name, how | O_CLOEXEC, 0666);
-  if (opened->file < 0 || fstat(opened->file, &info) != 0) {
+  bool writes = (how & O_RDWR) != 0;
+  if (opened->file < 0 || (writes && !lock_file(opened->file)) || fstat(opened->file, &info) != 0) {
     opened->disk->error = (flags & H5F_ACC_CREAT) != 0 ? errno : 0;
     if (opened->file >= 0) {
       close(opened->file);
@@ -51,6 +61,7 @@ static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t
   opened->size = (haddr_t)info.st_size;
   opened->device = info.st_dev;
   opened->inode = info.st_ino;
+  opened->disk->file = opened->file;
   return &opened->common;
 }
 
@@ -60,6 +71,7 @@ static herr_t disk_close(H5FD_t *file)
   if (close(own->file) != 0 && own->disk->error == 0) {
     own->disk->error = errno;
   }
+  own->disk->file = -1;
   free(own);
   return 0;
 }
@@ -181,7 +193,7 @@ static herr_t disk_truncate(H5FD_t *file, hid_t transfer, hbool_t closing)
   return 0;
 }
 
-/* The file is new and its name taken: there is nobody to lock out. */
+/* HDF5's own locks; the file is locked since it was opened. */
 static herr_t disk_lock(H5FD_t *file, hbool_t write)
 {
   (void)file;
@@ -228,4 +240,29 @@ bool dea_disk_use(hid_t access, struct dea_disk *disk)
     H5FDunregister(driver); // the list keeps it
   }
   return good;
+}
+
+bool dea_disk_is_named(const struct dea_disk *disk, const char *path)
+{
+  struct stat ours, named;
+  return disk->file >= 0 && fstat(disk->file, &ours) == 0 && stat(path, &named) == 0 &&
+         ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
+}
+
+void dea_disk_sync(struct dea_disk *disk)
+{
+  if (disk->error == 0 && disk->file >= 0 && fsync(disk->file) != 0 && errno != EINVAL) {
+    disk->error = errno; // EINVAL: what is no file on a disk
+  }
+}
+
+bool dea_recording_is_written(const char *path)
+{
+  int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct flock all = {.l_type = F_RDLCK, .l_whence = SEEK_SET};
+  bool written = file >= 0 && fcntl(file, F_OFD_GETLK, &all) == 0 && all.l_type == F_WRLCK;
+  if (file >= 0) {
+    close(file);
+  }
+  return written;
 }

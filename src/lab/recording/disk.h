@@ -11,12 +11,18 @@
 
 struct dea_disk {
   int error;        // errno of the write that failed; 0: none has
+  int file;         // descriptor, locked against other writers; -1: closed
   long writes_left; // for tests: the disk is full after so many more; negative: never
 };
 
 /* Sets the driver in a list of file access properties; false: HDF5 failed. disk: lent, outlives the
  * file. */
 bool dea_disk_use(hid_t access, struct dea_disk *disk);
+
+/* Whether the file still has that name: somebody may have removed or replaced it. */
+bool dea_disk_is_named(const struct dea_disk *disk, const char *path);
+/* Brings what was written so far to the disk itself. */
+void dea_disk_sync(struct dea_disk *disk);
 
 struct dea_recorder;
 /* Of a recorder; lent. */

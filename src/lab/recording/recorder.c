@@ -304,7 +304,8 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   if (recorder == NULL) {
     return DEA_E_MEMORY;
   }
-  *recorder = (struct dea_recorder){.ctx = ctx, .file = H5I_INVALID_HID, .disk.writes_left = -1};
+  *recorder = (struct dea_recorder){
+      .ctx = ctx, .file = H5I_INVALID_HID, .disk = {.writes_left = -1, .file = -1}};
   for (size_t c = 0; c < DEA_CHANNELS_MAX; c++) {
     recorder->channels[c] = (struct recorded_channel){.values = none, .time = none};
   }
@@ -457,6 +458,16 @@ dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
   return end(recorder, &h);
 }
 
+dea_status dea_recorder_sync(struct dea_recorder *recorder)
+{
+  struct h5 h;
+  begin(recorder, &h);
+  if (h.status == DEA_OK) {
+    dea_disk_sync(&recorder->disk);
+  }
+  return end(recorder, &h);
+}
+
 dea_status dea_recorder_flush(struct dea_recorder *recorder)
 {
   struct h5 h;
@@ -488,6 +499,9 @@ dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended)
   set_text(&h, recorder, "state", state);
   if (h.status == DEA_OK && H5Fflush(recorder->file, H5F_SCOPE_GLOBAL) < 0) {
     dea_h5_fail(&h, cannot_write);
+  }
+  if (h.status == DEA_OK && !dea_disk_is_named(&recorder->disk, recorder->path)) {
+    h.status = dea_fail(h.ctx, DEA_E_IO, "%s was removed or replaced while it was written", h.path);
   }
   close_all(recorder); // HDF5 writes here too
   check_disk(&h, recorder);

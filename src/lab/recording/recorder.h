@@ -48,11 +48,16 @@ dea_status dea_recorder_add_profile(struct dea_recorder *recorder, double time_s
 /* Appends a completed cycle and flushes everything: from here on it survives. */
 dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
                                   const struct dea_recorded_cycle *cycle);
+/* Waits until what was flushed is on the disk, so that it survives the computer too. */
+dea_status dea_recorder_sync(struct dea_recorder *recorder);
 dea_status dea_recorder_flush(struct dea_recorder *recorder);
 /* What is known of the output at the end ("at 0 V (2 V read back)"); for dea_recorder_finish. */
 void dea_recorder_set_output(struct dea_recorder *recorder, const char *text);
+/* Whether a program records into that file at this moment. */
+bool dea_recording_is_written(const char *file);
 /* Ends the file and frees the recorder, also after a failure; NULL is fine. ended: why it ended
- * early, NULL or "" when it came to its end. */
+ * early, NULL or "" when it came to its end. DEA_E_IO too when the file has been removed or
+ * replaced meanwhile. */
 dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended);
 
 #endif
