@@ -317,7 +317,7 @@ static void test_out_of_memory(void **state)
   struct trial t;
   trial_open(&t, SQUARE CHANNELS, &fake_good);
   memory_trial = &t;
-  assert_true(failing_each(play_without_memory) > 10);
+  assert_true(failing_each(play_without_memory) > 3); // the recorder has a context of its own
   trial_close(&t);
 }
 

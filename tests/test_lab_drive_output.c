@@ -54,6 +54,28 @@ static void test_corners_fall_on_samples(void **state)
   "  - {name: voltage, quantity: voltage, input: ai0, per_volt: 1 kV}\n"                           \
   "  - {name: current, quantity: current, input: ai1, per_volt: 1 mA}\n"
 
+/* A slow ramp is one of the longest time that the protocol allows: 2 kV by 50 V/s in 1 s, not 40.
+ */
+static void test_longest_ramp(void **state)
+{
+  (void)state;
+  struct dea_drive_output output;
+  double asked_V[3000];
+  struct dea_protocol *p =
+      good_protocol(ctx, "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
+                         "safety: {ramp: 50 V/s, longest_ramp: 1 s}\nrate: 1 kHz\n"
+                         "waveform: {kind: constant, voltage: 2 kV, duration: 2 s}\n");
+  dea_drive_output_start(&output, p);
+  assert_int_equal(dea_drive_output_next(&output, 500, asked_V), 500);
+  dea_drive_output_ramp(&output);
+  size_t n = dea_drive_output_next(&output, 3000, asked_V);
+  assert_true(n >= 999 && n <= 1001 && asked_V[n - 1] == 0);
+  for (size_t i = 0; i + 1 < n; i++) {
+    assert_close(asked_V[i], 2000 - 2 * (double)(i + 1), 0, 1e-6);
+  }
+  dea_protocol_destroy(ctx, p);
+}
+
 /* From any sample on the ramp goes down by 5 V a sample, from either sign. */
 static void test_ramp_from_any_sample(void **state)
 {
@@ -140,6 +162,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_corners_fall_on_samples),
       cmocka_unit_test(test_ramp_from_any_sample),
+      cmocka_unit_test(test_longest_ramp),
       cmocka_unit_test(test_what_ends_a_measurement),
       cmocka_unit_test(test_run_checks_first),
   };

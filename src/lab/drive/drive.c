@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 /* Besides slewing and charging: filters of amplifier and inputs. */
-static const double settle_s = 0.02, stall_s = 3;
+static const double settle_s = 0.02, stall_s = 0.5;
 
 struct opened {
   struct dea_instrument *instruments[DEA_PROTOCOL_INSTRUMENTS_MAX];

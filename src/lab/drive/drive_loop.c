@@ -18,7 +18,10 @@ static const double block_s = 0.05, ahead_s = 0.3;
 static const double wait_s = 0.05;         // for what arrives
 static const double last_frame_wait_s = 1; // for the profile that ends the last cycle
 static const double monitor_s = 0.02;      // mean of a voltage channel that shows 0 V
-static const double rounding = 1e-6;       // of a sample's distance to the next
+// of what waits to be written: so much of all samples, and numbers beside them
+static const double queue_s = 2;
+static const size_t queue_least = 1 << 19;
+static const double rounding = 1e-6; // of a sample's distance to the next
 
 struct loop;
 /* Who gives what arrives. */
@@ -47,7 +50,8 @@ struct loop {
   struct source sources[DEA_PROTOCOL_INSTRUMENTS_MAX + 1];
   size_t count;
   struct source *player, *reader, *sensor; // of sources; NULL: none
-  struct dea_recorder *recorder;
+  struct dea_context *own;                 // of the recorder, which the writer's thread has
+  struct dea_writer *writer;
   struct dea_drive_output output;
   struct dea_drive_watch watch;
   size_t at_end[DEA_PROTOCOL_INPUTS_MAX]; // samples at the end of an input's range
@@ -144,8 +148,8 @@ static void record_columns(struct loop *loop)
 {
   size_t channels = loop->protocol->input_count + 1;
   for (size_t c = 0; c < channels && loop->columns_used > 0; c++) {
-    check_recorder(loop, dea_recorder_add(loop->recorder, c, loop->columns + c * loop->block,
-                                          loop->columns_used));
+    check_recorder(loop, dea_writer_add(loop->ctx, loop->writer, c, loop->columns + c * loop->block,
+                                        loop->columns_used));
   }
   loop->columns_used = 0;
 }
@@ -268,7 +272,8 @@ static dea_status take_profile(void *user, double time_s, const double *z_m)
   loop->last_frame_s = time_s;
   source->heard_s = dea_clock_s();
   if (!is_behind_end(loop, time_s)) {
-    check_recorder(loop, dea_recorder_add_profile(loop->recorder, time_s, z_m));
+    check_recorder(loop, dea_writer_add_profile(loop->ctx, loop->writer, time_s, z_m,
+                                                source->instrument->profile_points));
   }
   return DEA_OK;
 }
@@ -286,8 +291,8 @@ static dea_status take_reading(void *user, size_t reading, double time_s, double
   if (is_behind_end(loop, time_s)) {
     return DEA_OK;
   }
-  check_recorder(loop, dea_recorder_add_timed(loop->recorder, source->first_channel + reading,
-                                              &time_s, &value, 1));
+  check_recorder(loop, dea_writer_add_timed(loop->ctx, loop->writer,
+                                            source->first_channel + reading, time_s, value));
   return DEA_OK;
 }
 
@@ -374,7 +379,7 @@ static void get_all(struct loop *loop, double timeout_s)
   record_asked(loop);
   record_columns(loop);
   check_heard(loop, loop->reader, loop->put > loop->got ? loop->stall_s : INFINITY, "sample");
-  check_heard(loop, loop->sensor, fmax(loop->stall_s, 5 * loop->frame_interval_s), "profile");
+  check_heard(loop, loop->sensor, fmax(6 * loop->stall_s, 5 * loop->frame_interval_s), "profile");
   if (!reads(loop)) { // nothing that would keep the loop from turning idly
     dea_clock_wait(fmin(timeout_s, 0.01) - (dea_clock_s() - before_s));
   }
@@ -461,7 +466,7 @@ static void mark_cycles(struct loop *loop)
   struct dea_recorded_cycle cycle;
   while (dea_protocol_cycle(loop->protocol, loop->report->cycles, &cycle) &&
          is_recorded(loop, &cycle)) {
-    dea_status status = dea_recorder_add_cycle(loop->recorder, &cycle);
+    dea_status status = dea_writer_add_cycle(loop->ctx, loop->writer, &cycle);
     check_recorder(loop, status);
     if (status != DEA_OK) {
       return;
@@ -625,6 +630,21 @@ static dea_status set_rooms(struct loop *loop)
   return good ? DEA_OK : DEA_E_MEMORY;
 }
 
+static dea_status begin_recording(struct loop *loop, const struct dea_drive_bench *bench,
+                                  const char *file, const struct dea_instrument *sensor)
+{
+  struct dea_recorder *recorder;
+  double samples = queue_s * loop->protocol->rate_Hz.si;
+  size_t room = queue_least + (size_t)samples * (loop->protocol->input_count + 1);
+  DEA_TRY(loop->ctx, dea_context_create(NULL, &loop->own));
+  dea_status status = dea_drive_recorder(loop->own, loop->protocol, bench, file, sensor, &recorder);
+  if (status != DEA_OK) {
+    return dea_fail(loop->ctx, status, "%s", dea_context_message(loop->own));
+  }
+  return dea_writer_begin(loop->ctx, recorder, room, loop->player->instrument->patient,
+                          &loop->writer);
+}
+
 /* Names the inputs whose range was too small. */
 static dea_status note_ranges(const struct loop *loop)
 {
@@ -650,9 +670,10 @@ static dea_status finish(struct loop *loop)
   report->largest_current_A = loop->watch.largest_current_A;
   char zero[DEA_ZERO_TEXT_SIZE];
   dea_zero_text(report->zero, zero);
-  dea_recorder_set_output(loop->recorder, zero);
-  dea_status finished = dea_recorder_finish(loop->recorder, report->ended);
-  if (finished != DEA_OK && loop->status != DEA_OK) { // which is told first
+  dea_status finished = dea_writer_finish(loop->ctx, loop->writer, zero, report->ended);
+  if (finished != DEA_OK && report->ended[0] == '\0') { // with what was still waiting
+    snprintf(report->ended, sizeof report->ended, "%s", dea_context_message(loop->ctx));
+  } else if (finished != DEA_OK) { // what came first is told first
     (void)dea_finding_add(loop->ctx, DEA_WARNING, (struct dea_location){0}, "%s",
                           dea_context_message(loop->ctx));
   }
@@ -685,7 +706,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
   status = status == DEA_OK ? set_rooms(&loop) : status;
   if (status == DEA_OK) {
     const struct dea_instrument *sensor = loop.sensor != NULL ? loop.sensor->instrument : NULL;
-    status = dea_drive_recorder(ctx, protocol, bench, file, sensor, &loop.recorder);
+    status = begin_recording(&loop, bench, file, sensor);
   }
   if (status == DEA_OK) {
     // instruments that wait must not end for a signal: they are needed for the ramp
@@ -714,5 +735,6 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
   dea_free(ctx, loop.asked);
   dea_free(ctx, loop.volts);
   dea_free(ctx, loop.columns);
+  dea_context_destroy(loop.own);
   return status;
 }

@@ -4,8 +4,8 @@
 
 #include "lab/drive/drive.h"
 #include "lab/drive/guard.h"
+#include "lab/drive/writer.h"
 #include "lab/instrument/instrument.h"
-#include "lab/recording/recorder.h"
 
 struct dea_drive_bench {
   struct dea_instrument *const *instruments; // [count], open; lent

@@ -46,12 +46,15 @@ size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, doubl
 
 void dea_drive_output_ramp(struct dea_drive_output *output)
 {
+  const struct dea_protocol *protocol = output->protocol;
+  double samples = protocol->safety.longest_ramp_s.si * protocol->rate_Hz.si;
   output->ramping = true; // one that is over has ended with 0 V
+  output->step_V = fmax(output->step_V, fabs(output->last_V) / samples);
 }
 
 void dea_drive_output_ramp_from(struct dea_drive_output *output, double volts)
 {
-  output->ramping = true;
   output->over = false;
   output->last_V = volts;
+  dea_drive_output_ramp(output);
 }

@@ -17,7 +17,8 @@ struct dea_drive_output {
 void dea_drive_output_start(struct dea_drive_output *output, const struct dea_protocol *protocol);
 /* The next asked voltages [V], at most `room`; the number of them, 0 when it is over. */
 size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, double *asked_V);
-/* From here on a ramp from the last voltage to 0 V; nothing more for one that is over. */
+/* From here on a ramp from the last voltage to 0 V, by the protocol's ramp or within its longest
+ * time, whichever is faster; nothing more for one that is over. */
 void dea_drive_output_ramp(struct dea_drive_output *output);
 /* The same from another voltage, also of one that is over. */
 void dea_drive_output_ramp_from(struct dea_drive_output *output, double volts);

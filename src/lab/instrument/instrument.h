@@ -44,6 +44,7 @@ struct dea_instrument {
   size_t reading_count;
   size_t profile_points; // known once opened
   const double *x_m;     // [profile_points], lent by the instrument
+  bool patient;          // its clock stands still while nobody asks
   size_t lost;           // samples, frames or replies that did not arrive or made no sense
 };
 

@@ -254,6 +254,7 @@ static dea_status open_sim(struct dea_context *ctx, const void *data,
   s->protocol = protocol;
   s->random = dea_sim_random_of((uint64_t)raw->seed.si);
   s->real_time = raw->pace.value == REAL;
+  s->base.patient = !s->real_time;
   s->frame_rate_Hz = raw->frame_rate_Hz.si;
   take_noise(raw, &s->noise);
   dea_status status = dea_sim_bench_create(ctx, protocol, &settings, &s->bench);

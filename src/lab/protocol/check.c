@@ -269,22 +269,22 @@ static dea_status check_rate(struct dea_context *ctx, const struct dea_protocol 
                          few_samples / slopes->cycle_s, few_samples);
 }
 
-/* Nothing shortens the ramp, neither a breakdown nor a second Ctrl-C. */
+/* A ramp that takes longer than the protocol allows is a faster one. */
 static dea_status check_ramp(struct dea_context *ctx, const struct dea_protocol *protocol,
                              const struct dea_protocol_plan *plan)
 {
-  static const double long_s = 5, too_long_s = 60;
+  static const double too_long_s = 60;
   const struct dea_quantity *ramp = &protocol->safety.ramp_V_per_s;
   double highest_V = fmax(-plan->lowest_V, plan->highest_V), time_s = highest_V / ramp->si;
+  double long_s = protocol->safety.longest_ramp_s.si;
   if (!(time_s > long_s)) {
     return DEA_OK;
   }
   bool refused = time_s > too_long_s;
   return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, ramp->location,
                          "%sthe ramp from %g kV to 0 V takes %.3g s by %g V/s, also after a "
-                         "breakdown, and nothing shortens it; at most %g s are allowed",
-                         refused ? "refused: " : "", 1e-3 * highest_V, time_s, ramp->si,
-                         too_long_s);
+                         "breakdown; safety.longest_ramp makes it one of %g s",
+                         refused ? "refused: " : "", 1e-3 * highest_V, time_s, ramp->si, long_s);
 }
 
 /* Two steps of one name cannot be told apart later. */

@@ -72,6 +72,7 @@ struct dea_protocol {
     struct dea_quantity voltage_error_V;             // largest |measured - asked| once settled
     struct dea_quantity ramp_V_per_s;                // to 0 V, when it ends early
     struct dea_quantity at_zero_V, zero_time_s;      // what is 0 V, read back, and by when
+    struct dea_quantity longest_ramp_s;              // of that ramp
     struct dea_quantity guard_time_s;                // without a sign of life, for the guard
   } safety;
 

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // pread, pwrite, ftruncate, fsync, F_OFD_SETLK
 #include "lab/recording/disk.h"
 
+#include "base/clock.h"
 #include "lab/recording/recorder.h"
 
 #include <errno.h>
@@ -161,6 +162,9 @@ static herr_t disk_write(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t 
   struct disk_file *own = (struct disk_file *)file;
   const char *from = buffer;
   haddr_t end = address + size;
+  while (own->disk->held != NULL && atomic_load(own->disk->held)) {
+    dea_clock_wait(0.001);
+  }
   if (own->disk->error == 0) {
     size_t left = count_down(own->disk, address, size);
     while (left > 0) {

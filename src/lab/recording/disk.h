@@ -9,10 +9,13 @@
 
 #include "base/h5.h"
 
+#include <stdatomic.h>
+
 struct dea_disk {
-  int error;        // errno of the write that failed; 0: none has
-  int file;         // descriptor, locked against other writers; -1: closed
-  long writes_left; // for tests: the disk is full after so many more; negative: never
+  int error;               // errno of the write that failed; 0: none has
+  int file;                // descriptor, locked against other writers; -1: closed
+  const atomic_bool *held; // for tests: a write waits while it is set; NULL
+  long writes_left;        // for tests: the disk is full after so many more; negative: never
 };
 
 /* Sets the driver in a list of file access properties; false: HDF5 failed. disk: lent, outlives the

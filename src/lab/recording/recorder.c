@@ -510,6 +510,11 @@ dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended)
   return h.status;
 }
 
+struct dea_context *dea_recorder_context(const struct dea_recorder *recorder)
+{
+  return recorder->ctx;
+}
+
 struct dea_disk *dea_recorder_disk(struct dea_recorder *recorder)
 {
   return &recorder->disk;

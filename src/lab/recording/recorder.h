@@ -35,6 +35,8 @@ struct dea_recorder_options {
 dea_status dea_recorder_create(struct dea_context *ctx, const char *file,
                                const struct dea_recorder_options *options,
                                struct dea_recorder **out);
+/* The context that it was made with. */
+struct dea_context *dea_recorder_context(const struct dea_recorder *recorder);
 /* Appends samples of a channel with an interval (a gap: NAN), or with their times, which must rise
  * (DEA_E_ARGUMENT, and nothing is appended). After any other failure all calls but finish do
  * nothing and answer it again. */
