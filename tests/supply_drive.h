@@ -14,11 +14,12 @@
 static const double supply_zero_V = 20;
 
 /* More keys of `safety`. */
-static const char *supply_safety = "";
+static const char *supply_safety = ", guard_time: 2 s";
 
 #define SUPPLY_MEASURES ", measure: \"MEAS:VOLT?\""
 
-/* Writes p.yaml: a triangle of 0 to 2 kV, `seconds` cycles of 1 s. more: keys of the supply. */
+/* Longer times than usual, as the machine may be busy. Writes p.yaml: a triangle of 0 to 2 kV,
+ * `seconds` cycles of 1 s. more: keys of the supply. */
 static inline void supply_protocol(const struct supply *s, int seconds, const char *more)
 {
   char text[2048];
@@ -27,10 +28,11 @@ static inline void supply_protocol(const struct supply *s, int seconds, const ch
            "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: %d, frequency: 1 Hz}\n"
            "amplifier: {gain: 1000, max_voltage: 5 kV}\n"
            "rate: 100 Hz\n"
-           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 2.5 s%s}\n"
+           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s%s}\n"
            "instruments:\n"
            "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
-           "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF%s}\n",
+           "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF,\n"
+           "     queue: 1 s, behind: 1 s%s}\n",
            seconds, supply_zero_V, supply_safety, s->port, more);
   command_write("p.yaml", text);
 }

@@ -14,7 +14,7 @@ static const char protocol[] =
     "channels:\n"
     "  - {name: monitor, quantity: voltage, input: ai0, range: 10 V, per_volt: 1 kV}\n"
     "  - {name: second, quantity: current, input: ai1, range: 10 V, per_volt: 1 uA}\n"
-    "safety: {trip_current: %s, trip_time: 10 ms}\n"
+    "safety: {guard_time: 20 s, trip_current: %s, trip_time: 10 ms}\n"
     "instruments:\n"
     "  - {kind: %s, library: %s/fake_%s.so}\n";
 

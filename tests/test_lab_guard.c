@@ -37,9 +37,9 @@ static void test_killed(void **state)
     print_message("signal %d: at 0 V after %.3f s\n", signals[i], took_s);
     assert_true(isfinite(took_s));
     // it was read back: nothing is in the way of the next
-    dea_clock_wait(1.5);
+    dea_clock_wait(2);
     supply_protocol(&s, 1, SUPPLY_MEASURES);
-    if (supply_wait(supply_arm("next.h5"), 10) != 0) {
+    if (supply_wait(supply_arm("next.h5"), 20) != 0) {
       fail_msg("%s%s", command_out, command_err);
     }
     supply_stop(&s);
@@ -78,7 +78,7 @@ static void test_stopped(void **state)
   assert_true(isfinite(took_s));
   (void)supply_highest(&s);
   kill(child, SIGCONT);
-  assert_int_equal(supply_wait(child, 10), 6);
+  assert_int_equal(supply_wait(child, 20), 6);
   assert_contains(command_err, "its guard has taken over");
   assert_true(supply_highest(&s) <= supply_zero_V);
   supply_stop(&s);
@@ -92,13 +92,14 @@ static void test_stall_is_no_jump(void **state)
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
-  supply_safety = ", guard_time: 10 s";
+  const char *usual = supply_safety;
+  supply_safety = ", guard_time: 20 s";
   supply_protocol(&s, 20, SUPPLY_MEASURES);
-  supply_safety = "";
+  supply_safety = usual;
   pid_t child = supply_arm("stall.h5");
   assert_true(supply_reaches(&s, 1000, 10));
   kill(child, SIGSTOP);
-  dea_clock_wait(1.25);
+  dea_clock_wait(2.25);
   double held_V = supply_volts(&s), last_V = held_V, fall_V = 0;
   (void)supply_highest(&s);
   kill(child, SIGCONT);
@@ -108,7 +109,7 @@ static void test_stall_is_no_jump(void **state)
     fall_V = fmax(fall_V, last_V - volts);
     last_V = volts;
   }
-  assert_int_equal(supply_wait(child, 10), 6);
+  assert_int_equal(supply_wait(child, 20), 6);
   double highest_V = supply_highest(&s);
   print_message("held at %.0f V, then at most %.0f V, falls by %.0f V at most\n", held_V, highest_V,
                 fall_V);

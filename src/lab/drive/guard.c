@@ -58,11 +58,13 @@ static void let_go(int pipe, int supply)
   setsid();
 }
 
-/* Waits for the end. True: the clean one. */
+/* Waits for the end. True: the clean one. Time in which this process itself did not run counts for
+ * little: the other one may not have run either. */
 static bool wait_for_end(int pipe, const struct signs *signs)
 {
   unsigned beats = atomic_load(&signs->beats);
-  for (double heard_s = dea_clock_s();;) {
+  double turned_s = dea_clock_s(), silent_s = 0;
+  for (;;) {
     struct pollfd entry = {.fd = pipe, .events = POLLIN};
     char byte = 0;
     if (poll(&entry, 1, poll_ms) > 0) {
@@ -71,10 +73,13 @@ static bool wait_for_end(int pipe, const struct signs *signs)
         return got == 1 && byte == clean_end;
       }
     }
-    unsigned now = atomic_load(&signs->beats), limit_ms = atomic_load(&signs->limit_ms);
-    heard_s = now != beats || limit_ms == 0 ? dea_clock_s() : heard_s;
+    unsigned limit_ms = atomic_load(&signs->limit_ms), now = atomic_load(&signs->beats);
+    double now_s = dea_clock_s();
+    bool alive = now != beats || limit_ms == 0;
+    silent_s = alive ? 0 : silent_s + fmin(now_s - turned_s, 2e-3 * poll_ms);
+    turned_s = now_s;
     beats = now;
-    if (1e3 * (dea_clock_s() - heard_s) > limit_ms) {
+    if (1e3 * silent_s > limit_ms) {
       return false;
     }
   }
