@@ -333,11 +333,93 @@ dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, cons
  * this actuator. */
 dea_status dea_actuator_mesh(dea_context *ctx, dea_actuator *actuator, const dea_mesh **out);
 
+// Solids: the 3D engine with a mesh of your own -----------------------------------------------
+
+typedef struct dea_solid_handle dea_solid;
+
+typedef struct {
+  const char *name;       // "yeoh"
+  const char *title;      // "Yeoh (1993), third order in I1 - 3"
+  const char *parameters; // in their order: "c1 [Pa], c2 [Pa], c3 [Pa]"
+  size_t parameter_count;
+} dea_law_info;
+
+/* Hyperelastic laws; lent until the next call of this function. */
+const dea_law_info *dea_law_at(dea_context *ctx, size_t index);
+
+/* Material of a part. */
+typedef struct {
+  size_t size;              // set by DEA_PART_INIT
+  const char *law;          // incompressible, of dea_law_at; NULL: compressible, of the next two
+  double young_modulus_Pa;  // with NULL
+  double poisson_ratio;     // with NULL; below 0.49
+  const double *parameters; // [parameter_count] of the law, SI
+  size_t parameter_count;
+  double bulk_modulus_Pa;   // of the law's iteration to volume 1; 0: 100 times the shear modulus
+  double pre_stretch;       // equibiaxial in x and y, of the law; 0: 1
+  double permittivity;      // relative
+  double electrode_gap_m;   // between electrodes: height that the voltage stands over; 0: it is not
+  double density_kg_per_m3; // for modes
+} dea_part;
+
+typedef struct {
+  size_t size;        // set by DEA_SOLID_OPTIONS_INIT
+  int order, order_z; // of the elements, 1 to 3; 0: 2
+  double box_m[3];    // a box from the origin, of part 0, with so many elements; or
+  size_t elements[3];
+  size_t point_count;     // points and hexahedra, nodes as in dea_cells
+  const double *points_m; // [point_count][3]
+  size_t cell_count;
+  const int *cells;             // [cell_count][(order + 1)^2 (order_z + 1)]
+  const int *part_of;           // [cell_count]; NULL: all of part 0
+  const dea_part *const *parts; // [part_count]
+  size_t part_count;
+} dea_solid_options;
+
+/* Copies all. DEA_E_UNSUPPORTED where the 3D engine is not installed. */
+dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea_solid **out);
+void dea_solid_free(dea_solid *solid);
+/* Holds components (1: x, 2: y, 4: z, or sums of them) of the nodes with low <= X <= high at a
+ * displacement that the next solve goes to; NULL frees them. DEA_E_ARGUMENT: no node is there. */
+dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m[3],
+                          const double high_m[3], int components, const double displacement_m[3]);
+/* Adds a force per reference area on the faces of elements whose middles are there; an outer face
+ * of the solid is a box without thickness. */
+dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
+                          const double high_m[3], const double traction_Pa[3]);
+/* Stable equilibrium with these supports, loads and voltage, in steps where they are needed. */
+dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V);
+/* The lowest natural modes at the last equilibrium, 1 to 200: arrays mode_Hz, mode_shape. */
+dea_status dea_solid_modes(dea_context *ctx, dea_solid *solid, size_t count);
+/* Begins a path by arc-length, through unstable equilibria too, from the last equilibrium (load 0)
+ * to what is now asked for (load 1), and beyond. step: length of the first step (below 0: the other
+ * way), unit_m: a displacement that counts as much as the whole load. */
+dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double voltage_V, double step,
+                                double unit_m);
+/* The next point of the path: numbers load, arc, voltage_V, unstable_modes. */
+dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid);
+/* points_m, displacement_m, reaction_N, force_N [points][3], mode_Hz [modes] (negative: unstable),
+ * mode_shape [modes][points][3]. *out: lent until the next call of this function; its numbers until
+ * the next solve, step or modes. DEA_E_ARGUMENT for another name. */
+dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
+                           const dea_array **out);
+/* voltage_V, energy_J, unstable_modes, iterations, load, arc. */
+dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char *name,
+                            double *out);
+
 /* [end] */
 
 #define DEA_CONTEXT_OPTIONS_INIT                                                                   \
   {                                                                                                \
     sizeof(dea_context_options), NULL, NULL, NULL, NULL, NULL, NULL                                \
+  }
+#define DEA_PART_INIT                                                                              \
+  {                                                                                                \
+    sizeof(dea_part), NULL, 0, 0, NULL, 0, 0, 0, 0, 0, 0                                           \
+  }
+#define DEA_SOLID_OPTIONS_INIT                                                                     \
+  {                                                                                                \
+    sizeof(dea_solid_options), 0, 0, {0, 0, 0}, {0, 0, 0}, 0, NULL, 0, NULL, NULL, NULL, 0         \
   }
 #define DEA_RUN_OPTIONS_INIT                                                                       \
   {                                                                                                \

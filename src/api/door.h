@@ -20,6 +20,8 @@ struct dea_context_handle {
   size_t shown_count;
   dea_model_info model; // that dea_model_at lends: one a list entry
   dea_study_info study;
+  dea_law_info law;
+  char law_parameters[256];
 };
 
 /* A value of a design that was set. Both owned. */

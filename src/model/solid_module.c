@@ -3,8 +3,11 @@
  * run. */
 #include "base/module.h"
 #include "model/model.h"
+#include "model/solid_access.h"
 
 static const char module_file[] = "dea_solid_module.so";
+static const char advice[] =
+    "it is built when libpetsc-real-dev and libslepc-real-dev are installed";
 
 struct dea_model {
   const struct dea_model_type *type; // of the module
@@ -20,11 +23,18 @@ bool dea_solid_module_find(char *out, size_t size)
 static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
 {
   const void *type = NULL;
-  DEA_TRY(ctx, dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine",
-                               "it is built when libpetsc-real-dev and libslepc-real-dev are "
-                               "installed",
-                               &type));
+  DEA_TRY(ctx,
+          dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine", advice, &type));
   *out = type;
+  return DEA_OK;
+}
+
+dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out)
+{
+  const void *access = NULL;
+  DEA_TRY(ctx,
+          dea_module_open(ctx, module_file, "dea_solid_access", "the 3D engine", advice, &access));
+  *out = access;
   return DEA_OK;
 }
 

@@ -1,0 +1,256 @@
+/* Solids of the public interface: the engine's module by model/solid_access.h. */
+#include "api/door.h"
+
+#include "material/law.h"
+#include "model/film.h"
+#include "model/solid_access.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double bulk_share = 100; // bulk modulus over the shear modulus
+
+struct dea_solid_handle {
+  dea_context *ctx; // that made it; lent
+  const struct dea_solid_access *access;
+  struct dea_solid_object *object;
+  dea_array shown; // what dea_solid_array lends
+  char name[32];
+};
+
+const dea_law_info *dea_law_at(dea_context *ctx, size_t index)
+{
+  size_t count, used = 0;
+  const struct dea_law *const *all = dea_law_all(&count);
+  if (index >= count) {
+    return NULL;
+  }
+  const struct dea_law *law = all[index];
+  ctx->law_parameters[0] = '\0';
+  for (size_t i = 0; i < law->param_count && used < sizeof ctx->law_parameters; i++) {
+    int length = snprintf(ctx->law_parameters + used, sizeof ctx->law_parameters - used,
+                          "%s%s [%s]", i > 0 ? ", " : "", law->params[i].key, law->params[i].unit);
+    used += length > 0 ? (size_t)length : 0;
+  }
+  ctx->law = (dea_law_info){law->name, law->long_name, ctx->law_parameters, law->param_count};
+  return &ctx->law;
+}
+
+static dea_status find_law(dea_context *ctx, const char *name, const struct dea_law **out)
+{
+  *out = dea_law_find(name);
+  if (*out == NULL) {
+    size_t count;
+    const struct dea_law *const *all = dea_law_all(&count);
+    const char *known[32];
+    for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
+      known[i] = all[i]->name;
+    }
+    return door_unknown(ctx, "law", name, known, count);
+  }
+  return DEA_OK;
+}
+
+static dea_status take_law(dea_context *ctx, const dea_part *part, struct dea_part_spec *out)
+{
+  DEA_TRY(ctx->inner, find_law(ctx, part->law, &out->law));
+  if (part->parameter_count != out->law->param_count) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the law '%s' has %zu parameters, not %zu",
+                    part->law, out->law->param_count, part->parameter_count);
+  }
+  for (size_t i = 0; i < part->parameter_count; i++) {
+    const struct dea_law_param *range = &out->law->params[i];
+    if (!(part->parameters[i] >= range->min && part->parameters[i] <= range->max)) {
+      return dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                      "%s of the law '%s' is %g, but has to be in %g..%g", range->key, part->law,
+                      part->parameters[i], range->min, range->max);
+    }
+    out->param[i] = part->parameters[i];
+  }
+  out->bulk_modulus_Pa = part->bulk_modulus_Pa > 0
+                             ? part->bulk_modulus_Pa
+                             : bulk_share * out->law->shear_modulus(out->param);
+  return DEA_OK;
+}
+
+static dea_status take_part(dea_context *ctx, const dea_part *given, size_t number,
+                            struct dea_part_spec *out)
+{
+  dea_part part = DEA_PART_INIT;
+  memcpy(&part, given, given->size < sizeof part ? given->size : sizeof part);
+  *out = (struct dea_part_spec){.young_modulus_Pa = part.young_modulus_Pa,
+                                .poisson_ratio = part.poisson_ratio,
+                                .pre_stretch = part.pre_stretch > 0 ? part.pre_stretch : 1,
+                                .permittivity_F_per_m = part.permittivity * DEA_EPSILON_0,
+                                .electrode_gap_m = part.electrode_gap_m,
+                                .density_kg_per_m3 = part.density_kg_per_m3};
+  if (part.law != NULL) {
+    return take_law(ctx, &part, out);
+  }
+  if (!(part.young_modulus_Pa > 0) || !(part.poisson_ratio > -1 && part.poisson_ratio < 0.49)) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                    "part %zu has no law: Young's modulus above 0 and Poisson's ratio below 0.49 "
+                    "are needed, not %g Pa and %g",
+                    number, part.young_modulus_Pa, part.poisson_ratio);
+  }
+  return DEA_OK;
+}
+
+/* What the module is asked for; parts: [part_count], of the caller. */
+static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
+                               struct dea_part_spec *parts, struct dea_solid_spec *out)
+{
+  bool box = o->elements[0] > 0 && o->elements[1] > 0 && o->elements[2] > 0;
+  *out = (struct dea_solid_spec){.order = o->order > 0 ? o->order : 2,
+                                 .order_z = o->order_z > 0 ? o->order_z : 2,
+                                 .part_count = o->part_count,
+                                 .parts = parts};
+  if (out->order > 3 || out->order_z > 3) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the order of elements is 1 to 3");
+  }
+  if (box && (!(o->box_m[0] > 0) || !(o->box_m[1] > 0) || !(o->box_m[2] > 0))) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box of %g x %g x %g m", o->box_m[0], o->box_m[1],
+                    o->box_m[2]);
+  }
+  if (!box && (o->point_count == 0 || o->cell_count == 0 || o->points_m == NULL ||
+               o->cells == NULL || o->point_count > 100000000)) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                    "a mesh is a box with elements, or points and cells");
+  }
+  if (box) {
+    memcpy(out->box_m, o->box_m, sizeof out->box_m);
+    memcpy(out->elements, o->elements, sizeof out->elements);
+  } else {
+    out->point_count = o->point_count;
+    out->points_m = o->points_m;
+    out->cell_count = o->cell_count;
+    out->cells = o->cells;
+    out->part_of = o->part_of;
+  }
+  for (size_t i = 0; i < o->part_count; i++) {
+    DEA_TRY(ctx->inner, take_part(ctx, o->parts[i], i, &parts[i]));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea_solid **out)
+{
+  struct dea_context *inner = door_begin(ctx);
+  dea_solid_options all = DEA_SOLID_OPTIONS_INIT;
+  *out = NULL;
+  memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  if (all.part_count == 0 || all.parts == NULL) {
+    return dea_fail(inner, DEA_E_ARGUMENT, "a solid needs a part: what it is made of");
+  }
+  struct dea_solid_spec spec;
+  dea_solid *solid = dea_alloc(inner, 1, sizeof *solid);
+  struct dea_part_spec *parts = dea_alloc(inner, all.part_count, sizeof *parts);
+  dea_status status = solid != NULL && parts != NULL ? DEA_OK : DEA_E_MEMORY;
+  status = status == DEA_OK ? take_options(ctx, &all, parts, &spec) : status;
+  status = status == DEA_OK ? dea_solid_access_open(inner, &solid->access) : status;
+  status = status == DEA_OK ? solid->access->create(inner, &spec, &solid->object) : status;
+  dea_free(inner, parts);
+  if (status != DEA_OK) {
+    dea_free(inner, solid);
+    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
+  }
+  solid->ctx = ctx;
+  *out = solid;
+  return DEA_OK;
+}
+
+void dea_solid_free(dea_solid *solid)
+{
+  if (solid != NULL) {
+    solid->access->destroy(solid->ctx->inner, solid->object);
+    dea_free(solid->ctx->inner, solid);
+  }
+}
+
+/* Begins a call that changes the solid. */
+static dea_status begin(dea_context *ctx, const dea_solid *solid)
+{
+  door_begin(ctx);
+  return door_check_owner(ctx, solid->ctx, "solid");
+}
+
+dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m[3],
+                          const double high_m[3], int components, const double displacement_m[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner,
+          solid->access->hold(ctx->inner, solid->object, (struct dea_solid_place){low_m, high_m},
+                              components, displacement_m));
+  return DEA_OK;
+}
+
+dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
+                          const double high_m[3], const double traction_Pa[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->pull(ctx->inner, solid->object,
+                                          (struct dea_solid_place){low_m, high_m}, traction_Pa));
+  return DEA_OK;
+}
+
+dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->solve(ctx->inner, solid->object, voltage_V));
+  return DEA_OK;
+}
+
+dea_status dea_solid_modes(dea_context *ctx, dea_solid *solid, size_t count)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->modes(ctx->inner, solid->object, count));
+  return DEA_OK;
+}
+
+dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double voltage_V, double step,
+                                double unit_m)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->path(ctx->inner, solid->object, voltage_V, step, unit_m));
+  return DEA_OK;
+}
+
+dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->step(ctx->inner, solid->object));
+  return DEA_OK;
+}
+
+dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
+                           const dea_array **out)
+{
+  static const char *const known[] = {"points_m", "displacement_m", "reaction_N",
+                                      "force_N",  "mode_Hz",        "mode_shape"};
+  const char *unit = "";
+  size_t shape[3] = {0, 0, 0};
+  *out = NULL;
+  const double *data = solid->access->array(solid->object, name, &unit, shape);
+  if (data == NULL) {
+    return door_unknown(ctx, "array", name, known, sizeof known / sizeof known[0]);
+  }
+  snprintf(solid->name, sizeof solid->name, "%s", name);
+  solid->shown = (dea_array){.name = solid->name, .unit = unit, .meaning = "", .data = data};
+  for (int i = 0; i < 3; i++) {
+    solid->shown.rank += shape[i] > 0;
+    solid->shown.shape[i] = shape[i] > 0 ? shape[i] : 1;
+  }
+  *out = &solid->shown;
+  return DEA_OK;
+}
+
+dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char *name, double *out)
+{
+  static const char *const known[] = {"voltage_V",  "energy_J", "unstable_modes",
+                                      "iterations", "load",     "arc"};
+  *out = NAN;
+  return solid->access->number(solid->object, name, out)
+             ? DEA_OK
+             : door_unknown(ctx, "number", name, known, sizeof known / sizeof known[0]);
+}

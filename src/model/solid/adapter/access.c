@@ -1,0 +1,425 @@
+/* The engine with a mesh, materials, supports and loads of the caller's: model/solid_access.h. */
+#include "model/solid_access.h"
+
+#include "base/module.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/load/loads.h"
+#include "model/solid/motion/vibration.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FACES = 6 };
+
+struct dea_solid_object {
+  struct dea_grid *grid;
+  struct dea_hex_shape shape;
+  struct dea_part_spec *parts; // [part_count] what the layers' parameters lie in
+  struct dea_constituent *layers;
+  size_t part_count;
+  double length_m; // of the mesh: what is near enough
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  struct dea_solid_continuation *path;
+  struct dea_continuation_point point; // of the path
+  size_t mode_count;
+  double *mode_square, *mode_shape;
+};
+
+// Mesh -------------------------------------------------------------------------------------------
+
+static void box_map(const void *self, double s, double t, double x[2])
+{
+  const struct dea_solid_spec *spec = self;
+  x[0] = spec->box_m[0] * s;
+  x[1] = spec->box_m[1] * t;
+}
+
+static dea_status make_box(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                           struct dea_grid **out)
+{
+  size_t nx = spec->elements[0], ny = spec->elements[1];
+  double *cuts = dea_alloc(ctx, nx + ny + 2, sizeof *cuts);
+  if (cuts == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i <= nx; i++) {
+    cuts[i] = (double)i / (double)nx;
+  }
+  for (size_t i = 0; i <= ny; i++) {
+    cuts[nx + 1 + i] = (double)i / (double)ny;
+  }
+  const struct dea_block block = {box_map, spec, cuts, cuts + nx + 1, nx, ny, 0};
+  const struct dea_ply ply = {spec->box_m[2], spec->elements[2], spec->order_z};
+  dea_status status = dea_grid_create(ctx, spec->order, &block, 1, &ply, 1, NULL, 0,
+                                      fmax(spec->box_m[0], spec->box_m[1]), out);
+  dea_free(ctx, cuts);
+  return status;
+}
+
+static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                            struct dea_grid *grid)
+{
+  size_t nodes = (size_t)((spec->order + 1) * (spec->order + 1) * (spec->order_z + 1));
+  for (size_t e = 0; e < spec->cell_count; e++) {
+    int part = spec->part_of != NULL ? spec->part_of[e] : 0;
+    if (part < 0 || (size_t)part >= spec->part_count) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "cell %zu is of part %d of %zu", e, part,
+                      spec->part_count);
+    }
+    grid->region[e] = part;
+    for (size_t n = 0; n < nodes; n++) {
+      int node = spec->cells[e * nodes + n];
+      if (node < 0 || (size_t)node >= spec->point_count) {
+        return dea_fail(ctx, DEA_E_ARGUMENT, "cell %zu has node %d of %zu", e, node,
+                        spec->point_count);
+      }
+      grid->nodes[e * DEA_HEX_NODES_MAX + n] = node;
+    }
+  }
+  for (size_t i = 0; i < 3 * spec->point_count; i++) {
+    if (!isfinite(spec->points_m[i])) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "point %zu is nowhere", i / 3);
+    }
+    grid->X[i] = spec->points_m[i];
+  }
+  return DEA_OK;
+}
+
+static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                            struct dea_grid **out)
+{
+  struct dea_grid *grid = dea_alloc(ctx, 1, sizeof *grid);
+  *out = grid;
+  if (grid == NULL) {
+    return DEA_E_MEMORY;
+  }
+  grid->order = spec->order;
+  grid->node_count = spec->point_count;
+  grid->element_count = spec->cell_count;
+  grid->X = dea_alloc(ctx, 3 * spec->point_count, sizeof *grid->X);
+  grid->nodes = dea_alloc(ctx, spec->cell_count * DEA_HEX_NODES_MAX, sizeof *grid->nodes);
+  grid->region = dea_alloc(ctx, spec->cell_count, sizeof *grid->region);
+  grid->sheet = dea_alloc(ctx, spec->cell_count, sizeof *grid->sheet);
+  grid->flat = dea_alloc(ctx, spec->cell_count, sizeof *grid->flat);
+  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->sheet == NULL ||
+      grid->flat == NULL) {
+    return DEA_E_MEMORY;
+  }
+  return fill_grid(ctx, spec, grid);
+}
+
+static double size_of(const struct dea_grid *grid)
+{
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t n = 0; n < grid->node_count; n++) {
+    for (int i = 0; i < 3; i++) {
+      low[i] = fmin(low[i], grid->X[3 * n + (size_t)i]);
+      high[i] = fmax(high[i], grid->X[3 * n + (size_t)i]);
+    }
+  }
+  return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+}
+
+// Parts ------------------------------------------------------------------------------------------
+
+static dea_status make_layer(struct dea_context *ctx, const struct dea_part_spec *part,
+                             struct dea_constituent *out)
+{
+  double E = part->young_modulus_Pa, nu = part->poisson_ratio, l = part->pre_stretch;
+  *out = (struct dea_constituent){.law = part->law,
+                                  .param = part->param,
+                                  .pre_stretch = {l, l, 1 / (l * l)},
+                                  .kappa_Pa = part->bulk_modulus_Pa,
+                                  .permittivity_F_per_m = part->permittivity_F_per_m,
+                                  .thickness_m = part->electrode_gap_m,
+                                  .density_kg_per_m3 = part->density_kg_per_m3};
+  if (part->law == NULL) {
+    out->lame_mu_Pa = E / (2 * (1 + nu));
+    out->lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu));
+  }
+  if (dea_constituent_relax(out) != DEA_OK) {
+    return dea_fail(ctx, DEA_E_DOMAIN, "the law '%s' has no stress at a pre-stretch of %g",
+                    part->law->name, l);
+  }
+  return DEA_OK;
+}
+
+static int layer_of(const void *self, int region, int sheet)
+{
+  (void)self;
+  (void)sheet;
+  return region;
+}
+
+static bool is_active(const void *self, int region, int sheet)
+{
+  const struct dea_solid_object *object = self;
+  (void)sheet;
+  return object->parts[region].electrode_gap_m > 0;
+}
+
+static int nothing_held(const void *self, const double X[3])
+{
+  (void)self;
+  (void)X;
+  return 0;
+}
+
+static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
+{
+  if (object != NULL) {
+    dea_solid_continuation_destroy(ctx, object->path);
+    dea_solid_destroy(ctx, object->solid);
+    dea_grid_destroy(ctx, object->grid);
+    dea_free(ctx, object->parts);
+    dea_free(ctx, object->layers);
+    dea_free(ctx, object->mode_square);
+    dea_free(ctx, object->mode_shape);
+    dea_free(ctx, object);
+  }
+}
+
+static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                       struct dea_solid_object *object)
+{
+  DEA_TRY(ctx, spec->elements[0] > 0 ? make_box(ctx, spec, &object->grid)
+                                     : make_grid(ctx, spec, &object->grid));
+  object->length_m = size_of(object->grid);
+  object->part_count = spec->part_count;
+  object->parts = dea_alloc(ctx, spec->part_count, sizeof *object->parts);
+  object->layers = dea_alloc(ctx, spec->part_count, sizeof *object->layers);
+  if (object->parts == NULL || object->layers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(object->parts, spec->parts, spec->part_count * sizeof *object->parts);
+  for (size_t i = 0; i < spec->part_count; i++) {
+    DEA_TRY(ctx, make_layer(ctx, &object->parts[i], &object->layers[i]));
+  }
+  DEA_TRY(ctx, dea_hex_shape_create(spec->order, spec->order_z, &object->shape));
+  const struct dea_solid_options options = {.order_z = spec->order_z,
+                                            .layer_count = object->part_count,
+                                            .layers = object->layers,
+                                            .layer_of = layer_of,
+                                            .active = is_active,
+                                            .held = nothing_held,
+                                            .self = object};
+  DEA_TRY(ctx, dea_solid_start(ctx));
+  DEA_TRY(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
+  return DEA_OK;
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                         struct dea_solid_object **out)
+{
+  *out = NULL;
+  struct dea_solid_object *object = dea_alloc(ctx, 1, sizeof *object);
+  if (object == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = fill(ctx, spec, object);
+  if (status != DEA_OK) {
+    destroy(ctx, object);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = object;
+  return DEA_OK;
+}
+
+// Supports and loads -----------------------------------------------------------------------------
+
+static bool is_there(const struct dea_solid_object *object, struct dea_solid_place place,
+                     const double X[3])
+{
+  double near = 1e-6 * object->length_m;
+  bool inside = true;
+  for (int i = 0; i < 3; i++) {
+    inside = inside && X[i] >= place.low_m[i] - near && X[i] <= place.high_m[i] + near;
+  }
+  return inside;
+}
+
+/* A path moves the solid alone; whatever else is done with it ends the path. */
+static void end_path(struct dea_context *ctx, struct dea_solid_object *object)
+{
+  dea_solid_continuation_destroy(ctx, object->path);
+  object->path = NULL;
+}
+
+static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
+                       struct dea_solid_place place, int components, const double *displacement_m)
+{
+  size_t found = 0;
+  end_path(ctx, object);
+  for (size_t n = 0; n < object->grid->node_count; n++) {
+    if (is_there(object, place, object->grid->X + 3 * n)) {
+      DEA_TRY(ctx, displacement_m != NULL
+                       ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)
+                       : dea_solid_release(ctx, object->solid, n, components));
+      found++;
+    }
+  }
+  return found > 0 ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "there is no node in that box");
+}
+
+struct selection {
+  const struct dea_solid_object *object;
+  struct dea_solid_place place;
+};
+
+static bool is_selected(const void *self, int region, int sheet, const double middle[3])
+{
+  const struct selection *selection = self;
+  (void)region;
+  (void)sheet;
+  return is_there(selection->object, selection->place, middle);
+}
+
+static dea_status pull(struct dea_context *ctx, struct dea_solid_object *object,
+                       struct dea_solid_place place, const double traction_Pa[3])
+{
+  const struct selection selection = {object, place};
+  size_t found = 0;
+  end_path(ctx, object);
+  for (int side = 0; side < FACES; side++) {
+    struct dea_surface *surface;
+    dea_status status = dea_surface_create(ctx, object->grid, &object->shape, (enum dea_face)side,
+                                           is_selected, &selection, &surface);
+    if (status == DEA_E_ARGUMENT) {
+      continue; // none of this side
+    }
+    DEA_TRY(ctx, status);
+    dea_load_traction(surface, traction_Pa, dea_solid_force(object->solid));
+    found += surface->face_count;
+    dea_surface_destroy(ctx, surface);
+  }
+  if (found == 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "there is no face of an element in that box");
+  }
+  dea_context_clear(ctx);
+  return DEA_OK;
+}
+
+// Solutions --------------------------------------------------------------------------------------
+
+static dea_status solve(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V)
+{
+  end_path(ctx, object);
+  DEA_TRY(ctx, dea_solid_solve(ctx, object->solid, voltage_V, &object->report));
+  return DEA_OK;
+}
+
+static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object, size_t count)
+{
+  size_t dofs = 3 * object->grid->node_count;
+  if (count == 0 || count > DEA_VIBRATIONS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes, not %zu", DEA_VIBRATIONS_MAX, count);
+  }
+  double *square = dea_alloc(ctx, count, sizeof *square);
+  double *shape = dea_alloc(ctx, count * dofs, sizeof *shape);
+  dea_status status = square != NULL && shape != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = dea_solid_vibrations(ctx, object->solid, count, square, shape);
+  }
+  if (status != DEA_OK) {
+    dea_free(ctx, square);
+    dea_free(ctx, shape);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  dea_free(ctx, object->mode_square);
+  dea_free(ctx, object->mode_shape);
+  for (size_t i = 0; i < count; i++) { // omega^2 -> f, negative where it is unstable
+    square[i] = copysign(sqrt(fabs(square[i])), square[i]) / (2 * acos(-1.0));
+  }
+  object->mode_square = square;
+  object->mode_shape = shape;
+  object->mode_count = count;
+  return DEA_OK;
+}
+
+static dea_status path(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V,
+                       double step, double unit_m)
+{
+  end_path(ctx, object);
+  const struct dea_continuation_options options = {.step = step, .unit_m = unit_m};
+  object->point = (struct dea_continuation_point){.voltage_V = dea_solid_voltage(object->solid)};
+  DEA_TRY(ctx,
+          dea_solid_continuation_create(ctx, object->solid, voltage_V, &options, &object->path));
+  return DEA_OK;
+}
+
+static dea_status step(struct dea_context *ctx, struct dea_solid_object *object)
+{
+  if (object->path == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no path was begun, or something else ended it");
+  }
+  DEA_TRY(ctx, dea_solid_continuation_step(ctx, object->path, &object->point));
+  object->report.energy_J = object->point.energy_J;
+  object->report.unstable_modes = object->point.unstable_modes;
+  object->report.iterations = object->point.iterations;
+  return DEA_OK;
+}
+
+static const double *array(struct dea_solid_object *object, const char *name, const char **unit,
+                           size_t shape[3])
+{
+  size_t n = object->grid->node_count;
+  const struct {
+    const char *name, *unit;
+    const double *data;
+    size_t shape[3];
+  } all[] = {
+      {"points_m", "m", object->grid->X, {n, 3}},
+      {"displacement_m", "m", dea_solid_displacement(object->solid), {n, 3}},
+      {"reaction_N", "N", dea_solid_reaction(object->solid), {n, 3}},
+      {"force_N", "N", dea_solid_force(object->solid), {n, 3}},
+      {"mode_Hz", "Hz", object->mode_square, {object->mode_count, 0}},
+      {"mode_shape", "kg^-1/2", object->mode_shape, {object->mode_count, n, 3}},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    if (strcmp(all[i].name, name) == 0 && all[i].data != NULL) {
+      *unit = all[i].unit;
+      memcpy(shape, all[i].shape, sizeof all[i].shape);
+      return all[i].data;
+    }
+  }
+  return NULL;
+}
+
+static bool number(const struct dea_solid_object *object, const char *name, double *out)
+{
+  const struct {
+    const char *name;
+    double value;
+  } all[] = {
+      {"voltage_V", dea_solid_voltage(object->solid)},
+      {"energy_J", object->report.energy_J},
+      {"unstable_modes", object->report.unstable_modes},
+      {"iterations", object->report.iterations},
+      {"load", object->point.load},
+      {"arc", object->point.arc},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    if (strcmp(all[i].name, name) == 0) {
+      *out = all[i].value;
+      return true;
+    }
+  }
+  return false;
+}
+
+extern DEA_MODULE_SYMBOL const struct dea_solid_access dea_solid_access;
+
+const struct dea_solid_access dea_solid_access = {.create = create,
+                                                  .destroy = destroy,
+                                                  .hold = hold,
+                                                  .pull = pull,
+                                                  .solve = solve,
+                                                  .modes = modes,
+                                                  .path = path,
+                                                  .step = step,
+                                                  .array = array,
+                                                  .number = number};

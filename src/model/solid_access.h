@@ -1,0 +1,69 @@
+/* The engine of solids for those who bring a mesh of their own: what its module offers beside the
+ * model "3d". Arrays lie in the order of the mesh's nodes. */
+#ifndef DEA_MODEL_SOLID_ACCESS_H
+#define DEA_MODEL_SOLID_ACCESS_H
+
+#include "base/context.h"
+#include "material/law.h"
+
+/* A material of a part; copied. */
+struct dea_part_spec {
+  const struct dea_law *law; // NULL: compressible, of the next two
+  double young_modulus_Pa, poisson_ratio;
+  double param[DEA_LAW_PARAM_MAX];
+  double bulk_modulus_Pa; // with a law
+  double pre_stretch;     // equibiaxial in the plane
+  double permittivity_F_per_m;
+  double electrode_gap_m; // over which the voltage stands; 0: not between electrodes
+  double density_kg_per_m3;
+};
+
+/* A mesh: a box of plies from the origin, or nodes and elements. All lent. */
+struct dea_solid_spec {
+  int order, order_z;
+  double box_m[3];
+  size_t elements[3]; // all 0: by nodes
+  size_t point_count;
+  const double *points_m; // [point_count][3]
+  size_t cell_count;
+  const int *cells;   // [cell_count][(order + 1)^2 (order_z + 1)]
+  const int *part_of; // [cell_count]; NULL: all of part 0
+  size_t part_count;
+  const struct dea_part_spec *parts;
+};
+
+struct dea_solid_object;
+
+/* Where nodes or the middles of faces are looked for: low_m <= X <= high_m, with a little more. */
+struct dea_solid_place {
+  const double *low_m, *high_m; // [3]
+};
+
+struct dea_solid_access {
+  dea_status (*create)(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                       struct dea_solid_object **out);
+  void (*destroy)(struct dea_context *ctx, struct dea_solid_object *object);
+  /* Holds components (bits 1, 2, 4) of the nodes there; the next solve moves them. displacement_m:
+   * NULL frees them. DEA_E_ARGUMENT where there is no node. */
+  dea_status (*hold)(struct dea_context *ctx, struct dea_solid_object *object,
+                     struct dea_solid_place place, int components, const double *displacement_m);
+  /* Adds a dead load per reference area on the faces whose middles are there. */
+  dea_status (*pull)(struct dea_context *ctx, struct dea_solid_object *object,
+                     struct dea_solid_place place, const double traction_Pa[3]);
+  dea_status (*solve)(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V);
+  dea_status (*modes)(struct dea_context *ctx, struct dea_solid_object *object, size_t count);
+  /* A path of equilibria to these loads and this voltage, and its next point. */
+  dea_status (*path)(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V,
+                     double step, double unit_m);
+  dea_status (*step)(struct dea_context *ctx, struct dea_solid_object *object);
+  /* An array by its name: its unit, its shape (0 beyond its rank); NULL when there is none. */
+  const double *(*array)(struct dea_solid_object *object, const char *name, const char **unit,
+                         size_t shape[3]);
+  /* A number by its name; false when there is none. */
+  bool (*number)(const struct dea_solid_object *object, const char *name, double *out);
+};
+
+/* Loads the module. *out: static storage of it. */
+dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out);
+
+#endif

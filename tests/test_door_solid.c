@@ -1,0 +1,244 @@
+/* The engine by <dea.h> alone, against closed forms. */
+// ctest: solid
+#include <dea.h>
+
+#include "testing.h"
+
+#include <string.h>
+
+static dea_context *ctx;
+static const double nothing[3] = {0, 0, 0};
+
+static void good(dea_status status)
+{
+  if (status != DEA_OK) {
+    fail_msg("%s: %s", dea_error_name(status), dea_error_message(ctx));
+  }
+}
+
+static const dea_array *array(dea_solid *solid, const char *name)
+{
+  const dea_array *found;
+  good(dea_solid_array(ctx, solid, name, &found));
+  return found;
+}
+
+static double number(const dea_solid *solid, const char *name)
+{
+  double value;
+  good(dea_solid_number(ctx, solid, name, &value));
+  return value;
+}
+
+static dea_solid *box(const dea_part *part, const double size_m[3], size_t nx, size_t ny, size_t nz)
+{
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  dea_solid *solid;
+  memcpy(options.box_m, size_m, sizeof options.box_m);
+  options.elements[0] = nx;
+  options.elements[1] = ny;
+  options.elements[2] = nz;
+  options.parts = &part;
+  options.part_count = 1;
+  good(dea_solid_new(ctx, &options, &solid));
+  return solid;
+}
+
+/* Leans on the planes x = 0, y = 0 and z = 0. */
+static void lean(dea_solid *solid, const double size_m[3])
+{
+  for (int i = 0; i < 3; i++) {
+    double high[3] = {size_m[0], size_m[1], size_m[2]};
+    high[i] = 0;
+    good(dea_solid_hold(ctx, solid, nothing, high, 1 << i, nothing));
+  }
+}
+
+static dea_part rubber(const double *mu)
+{
+  dea_part part = DEA_PART_INIT;
+  part.law = "neo-hookean";
+  part.parameters = mu;
+  part.parameter_count = 1;
+  return part;
+}
+
+/* Pulled by a dead load: the stretch where mu (l - 1/l^2) is the traction. */
+static void test_pull(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.04}, stretch = 1.5;
+  const double end[3] = {0, 0, size[2]};
+  const double traction[3] = {0, 0, mu * (stretch - 1 / (stretch * stretch))};
+  dea_part part = rubber(&mu);
+  dea_solid *solid = box(&part, size, 1, 1, 2);
+  lean(solid, size);
+  good(dea_solid_pull(ctx, solid, end, size, traction));
+  good(dea_solid_solve(ctx, solid, 0));
+  const dea_array *X = array(solid, "points_m"), *u;
+  size_t top = 3 * X->shape[0];
+  for (size_t i = 0; i < X->shape[0]; i++) {
+    top = X->data[3 * i + 2] > size[2] * (1 - 1e-9) ? 3 * i : top;
+  }
+  u = array(solid, "displacement_m");
+  assert_close(u->data[top + 2], (stretch - 1) * size[2], 1e-6, 0);
+  assert_int_equal((int)number(solid, "unstable_modes"), 0);
+  // energy: W = mu/2 (l^2 + 2/l - 3) less the work of the load
+  double W = 0.5 * mu * (stretch * stretch + 2 / stretch - 3);
+  double V = size[0] * size[1] * size[2];
+  assert_close(number(solid, "energy_J"), V * (W - traction[2] * (stretch - 1)), 1e-5, 0);
+  dea_solid_free(solid);
+}
+
+/* A film between electrodes, free in its plane: mu (l^2 - l^-4) = eps E^2 with E = V l^2/h. */
+static void test_voltage(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, h = 1e-4, size[3] = {1e-3, 1e-3, h}, eps = 3 * 8.8541878128e-12;
+  const double stretch = 1.1, l2 = stretch * stretch;
+  const double voltage = h / l2 * sqrt(mu * (l2 - 1 / (l2 * l2)) / eps);
+  dea_part part = rubber(&mu);
+  part.permittivity = 3;
+  part.electrode_gap_m = h;
+  dea_solid *solid = box(&part, size, 1, 1, 1);
+  lean(solid, size);
+  good(dea_solid_solve(ctx, solid, voltage));
+  const dea_array *u = array(solid, "displacement_m");
+  double most = 0;
+  for (size_t i = 0; i < u->shape[0]; i++) {
+    most = fmax(most, u->data[3 * i]);
+  }
+  assert_close(most, (stretch - 1) * size[0], 1e-5, 0);
+  assert_close(number(solid, "voltage_V"), voltage, 1e-12, 0);
+
+  // its path: the voltage is highest where l^6 = 4
+  good(dea_solid_solve(ctx, solid, 0));
+  good(dea_solid_path_begin(ctx, solid, 2 * voltage, 0.05, size[0]));
+  double highest = 0, last = 0;
+  for (int i = 0; i < 200 && last >= highest; i++) {
+    good(dea_solid_path_step(ctx, solid));
+    last = number(solid, "voltage_V");
+    highest = fmax(highest, last);
+  }
+  double exact = h * sqrt(mu / eps * (pow(4, -1.0 / 3) - pow(4, -4.0 / 3)));
+  assert_close(highest, exact, 5e-3, 0);
+  assert_true(number(solid, "unstable_modes") >= 1);
+  dea_solid_free(solid);
+}
+
+/* A clamped bar: the lowest bending frequency of a slender beam, twice, by points and cells. */
+static void test_modes(void **state)
+{
+  (void)state;
+  enum { ELEMENTS = 10, ALONG = 2 * ELEMENTS + 1, POINTS = 9 * ALONG };
+  const double size[3] = {0.1, 2e-3, 2e-3}, E = 3e9, density = 1000;
+  double points[3 * POINTS];
+  int cells[ELEMENTS * 27], part_of[ELEMENTS];
+  for (int k = 0; k < 3; k++) {
+    for (int j = 0; j < 3; j++) {
+      for (int i = 0; i < ALONG; i++) {
+        double *X = points + 3 * ((k * 3 + j) * ALONG + i);
+        X[0] = size[0] * i / (ALONG - 1);
+        X[1] = size[1] * j / 2;
+        X[2] = size[2] * k / 2;
+      }
+    }
+  }
+  for (int e = 0; e < ELEMENTS; e++) {
+    part_of[e] = 1;
+    for (int n = 0; n < 27; n++) {
+      cells[27 * e + n] = (n / 9 * 3 + n / 3 % 3) * ALONG + 2 * e + n % 3;
+    }
+  }
+  dea_part soft = DEA_PART_INIT, stiff = DEA_PART_INIT;
+  soft.young_modulus_Pa = 1e6;
+  stiff.young_modulus_Pa = E;
+  soft.density_kg_per_m3 = stiff.density_kg_per_m3 = density;
+  const dea_part *const parts[] = {&soft, &stiff};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  options.point_count = POINTS;
+  options.points_m = points;
+  options.cell_count = ELEMENTS;
+  options.cells = cells;
+  options.part_of = part_of;
+  options.parts = parts;
+  options.part_count = 2;
+  dea_solid *solid;
+  good(dea_solid_new(ctx, &options, &solid));
+  const double end[3] = {0, size[1], size[2]};
+  good(dea_solid_hold(ctx, solid, nothing, end, 7, nothing));
+  good(dea_solid_solve(ctx, solid, 0));
+  good(dea_solid_modes(ctx, solid, 3));
+  const double exact = 1.8751 * 1.8751 / (2 * acos(-1) * size[0] * size[0]) *
+                       sqrt(E * size[1] * size[1] / (12 * density));
+  const dea_array *f = array(solid, "mode_Hz");
+  assert_int_equal(f->shape[0], 3);
+  assert_close(f->data[0], exact, 0.01, 0);
+  assert_close(f->data[1], exact, 0.01, 0);
+  assert_close(f->data[2] / f->data[0], 6.267, 0.02, 0);
+  f = array(solid, "mode_shape");
+  assert_int_equal(f->rank, 3);
+  assert_int_equal(f->shape[1], POINTS);
+
+  cells[5] = POINTS; // a node that is not there
+  dea_solid *bad;
+  assert_int_equal(dea_solid_new(ctx, &options, &bad), DEA_E_ARGUMENT);
+  assert_null(bad);
+  dea_solid_free(solid);
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  const double mu[2] = {0.4e6, 1}, size[3] = {0.01, 0.01, 0.04};
+  dea_part part = rubber(mu);
+  const dea_part *parts[] = {&part};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  dea_solid *solid;
+  memcpy(options.box_m, size, sizeof size);
+  options.elements[0] = options.elements[1] = options.elements[2] = 1;
+  options.parts = parts;
+  assert_int_equal(dea_solid_new(ctx, &options, &solid), DEA_E_ARGUMENT); // no part
+  options.part_count = 1;
+  part.law = "neo-hooke";
+  assert_int_equal(dea_solid_new(ctx, &options, &solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "'neo-hookean'"));
+  part.law = "neo-hookean";
+  part.parameter_count = 2;
+  assert_int_equal(dea_solid_new(ctx, &options, &solid), DEA_E_ARGUMENT);
+  part.law = NULL; // and no modulus
+  assert_int_equal(dea_solid_new(ctx, &options, &solid), DEA_E_ARGUMENT);
+  assert_null(solid);
+  part = rubber(mu);
+  good(dea_solid_new(ctx, &options, &solid));
+  assert_int_equal(dea_solid_path_step(ctx, solid), DEA_E_ARGUMENT); // none was begun
+  const double far[3] = {1, 1, 1};
+  assert_int_equal(dea_solid_hold(ctx, solid, far, far, 7, nothing), DEA_E_ARGUMENT);
+  assert_int_not_equal(dea_solid_solve(ctx, solid, 0), DEA_OK); // nothing holds it
+  const dea_array *none;
+  assert_int_equal(dea_solid_array(ctx, solid, "mode_Hz", &none), DEA_E_ARGUMENT); // not asked for
+  dea_solid_free(solid);
+  const dea_law_info *law;
+  size_t count = 0;
+  while ((law = dea_law_at(ctx, count)) != NULL) {
+    assert_true(law->parameter_count > 0 && strchr(law->parameters, '[') != NULL);
+    count++;
+  }
+  assert_true(count >= 7);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pull),
+      cmocka_unit_test(test_voltage),
+      cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_refused),
+  };
+  if (dea_context_new(NULL, &ctx) != DEA_OK) {
+    return 1;
+  }
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  dea_context_free(ctx);
+  return failed;
+}
