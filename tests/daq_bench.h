@@ -77,6 +77,23 @@ static inline void daq_bench_play(struct dea_context *context, struct daq_bench 
   }
 }
 
+/* Beyond what amplifier and specimen may see nothing goes out, whatever is asked. */
+static inline void daq_bench_check_cap(struct dea_context *context, struct daq_bench *b)
+{
+  static const double beyond[][3] = {
+      {0, 10.01, 0}, {0, 0, -10.01}, {NAN, 0, 0}, {0, INFINITY, 0}, {0, 6.01, 0}};
+  size_t written = b->fake->written;
+  for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+    if (i == 4) {
+      b->protocol.specimen.highest_V = (struct dea_quantity){6e3, DEA_GIVEN, {"", 0, 0}};
+    }
+    assert_int_equal(b->instrument->type->put(context, b->instrument, beyond[i], 3),
+                     DEA_E_INTERLOCK);
+    assert_non_null(strstr(dea_context_message(context), "was about to go out"));
+  }
+  assert_int_equal(b->fake->written, written);
+}
+
 static inline void daq_bench_end(struct dea_context *context, struct daq_bench *b)
 {
   if (b->instrument != NULL) {

@@ -133,6 +133,12 @@ static inline dea_status emulator_open(struct dea_context *ctx, struct dea_proto
   if (status != DEA_OK) {
     return status;
   }
+  if (protocol->amplifier.gain.si == 0) { // one of 10 kV for 10 V
+    protocol->amplifier.gain.si = 1000;
+    protocol->amplifier.control_V.si = 10;
+    protocol->amplifier.highest_V.si = 10e3;
+    protocol->amplifier.lowest_V.si = -10e3;
+  }
   protocol->file = "protocol.yaml";
   protocol->document = yaml;
   protocol->instrument_count = 1;

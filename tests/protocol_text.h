@@ -13,7 +13,8 @@
 /* Up to line 4; what is played follows. */
 #define PROTOCOL_HEAD                                                                              \
   "dea-protocol: 1\n"                                                                              \
-  "design: design.yaml\n" PROTOCOL_AMPLIFIER "safety: {largest_field: 400 V/um}\n"
+  "design: design.yaml\n" PROTOCOL_AMPLIFIER                                                       \
+  "safety: {largest_field: 400 V/um, field_reason: a test}\n"
 
 static inline void write_in_folder(const char *name, const char *text)
 {

@@ -81,6 +81,21 @@ struct refusal {
   size_t line, column;
 };
 
+static void check_refusals(const struct refusal *refusals, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    const struct refusal *r = &refusals[i];
+    dea_status status = check(r->text);
+    assert_int_equal(dea_status_exit_code(DEA_E_INTERLOCK), 6);
+    const struct dea_finding *f = find_finding(ctx, DEA_ERROR, r->part);
+    if (status != DEA_E_INTERLOCK || f == NULL || f->location.line != r->line ||
+        f->location.column != r->column) {
+      print_findings(ctx);
+      fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
+    }
+  }
+}
+
 static void test_refusals(void **state)
 {
   (void)state;
@@ -143,16 +158,142 @@ static void test_refusals(void **state)
        "waveform: {kind: constant, voltage: -6 kV}\n",
        "refused: the ramp from 6 kV to 0 V takes 120 s by 50 V/s", 2, 16},
   };
-  for (size_t i = 0; i < sizeof refusals / sizeof refusals[0]; i++) {
-    const struct refusal *r = &refusals[i];
-    assert_int_equal(check(r->text), DEA_E_INTERLOCK);
-    assert_int_equal(dea_status_exit_code(DEA_E_INTERLOCK), 6);
-    const struct dea_finding *f = find_finding(ctx, DEA_ERROR, r->part);
-    if (f == NULL || f->location.line != r->line || f->location.column != r->column) {
+  check_refusals(refusals, sizeof refusals / sizeof refusals[0]);
+}
+
+#define TRIPS(keys) "dea-protocol: 1\nsafety: {" keys "}\n"
+#define AMPLIFIER(current)                                                                         \
+  "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 700 V/us, current_limit: " current "}"  \
+  "\n"
+#define PLAYS_8_KV "waveform: {kind: constant, voltage: 8 kV}\n"
+
+/* Keys that would switch an interlock off without a word. */
+static void test_interlocks_cannot_be_switched_off(void **state)
+{
+  (void)state;
+  static const struct refusal refusals[] = {
+      {TRIPS("trip_time: 1000 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "refused: a fault would last 1e+03 s until safety.trip_time ends it, by when the amplifier "
+       "has put 8e+04 J into it; at most 0.1 s are allowed",
+       2, 21},
+      {TRIPS("trip_time: 0.11 s") AMPLIFIER("10 mA") PLAYS_8_KV, "at most 0.1 s are allowed", 2,
+       21},
+      {TRIPS("trip_time: 50 ms") AMPLIFIER("40 mA") CHANNELS PLAYS_8_KV,
+       "has put 16 J into it; at most 0.0312 s are allowed", 2, 21},
+      {"dea-protocol: 1\nrate: 10 Hz\n" AMPLIFIER("40 mA") CHANNELS PLAYS_8_KV,
+       "refused: at 10 samples a second a fault is seen after 0.1 s, by when the amplifier has put "
+       "32 J into it; at least 32 samples a second are needed",
+       2, 7},
+      {TRIPS("trip_current: 9.6 mA") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "refused: safety.trip_current of 9.6 mA is never exceeded, as the amplifier gives 10 mA at "
+       "most: set it to 9.5 mA or less",
+       2, 24},
+      {TRIPS("trip_current: 1 uA") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "in whose noise safety.trip_current of 0.001 mA is lost; at least 0.01 mA can be told", 6,
+       56},
+      {TRIPS("voltage_error: 8 kV") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "refused: safety.voltage_error of 8000 V is not below the largest voltage, 8000 V", 2, 25},
+      {TRIPS("voltage_error: 5 V") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "in whose noise safety.voltage_error of 5 V is lost; at least 10 V can be told", 5, 56},
+      {"dea-protocol: 1\n"
+       "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 10 kV/s, current_limit: 10 "
+       "mA}\n" CHANNELS PLAYS_8_KV,
+       "refused: the largest jump takes 0.8 s by the amplifier's limits, and twice as long the "
+       "voltage would not be watched",
+       2, 57},
+      {"dea-protocol: 1\ndesign: design.yaml\n" PROTOCOL_AMPLIFIER
+       "safety: {largest_field: 400 V/um}\n" CHANNELS "waveform: {kind: constant, voltage: 8 kV}\n",
+       "refused: safety.largest_field of 400 V/um allows", 4, 25},
+  };
+  check_refusals(refusals, sizeof refusals / sizeof refusals[0]);
+  static const struct {
+    const char *keys, *part;
+  } out_of_range[] = {
+      {"field_margin: 1e-9", "field_margin must be at least 1"},
+      {"field_margin: 0.99", "field_margin must be at least 1"},
+      {"largest_field: 1e10 V/m", "largest_field must be at most 1e+09 V/m"},
+      {"trip_current: 1000 A", "trip_current must be at most 1 A"},
+      {"trip_count: 101", "trip_count must be at most 100"},
+      {"trip_count: 0", "trip_count must be at least 1"},
+  };
+  for (size_t i = 0; i < sizeof out_of_range / sizeof out_of_range[0]; i++) {
+    char text[512];
+    struct dea_protocol *p;
+    snprintf(text, sizeof text, "dea-protocol: 1\nsafety: {%s}\n" PROTOCOL_AMPLIFIER PLAYS_8_KV,
+             out_of_range[i].keys);
+    dea_finding_clear(ctx);
+    assert_int_equal(protocol_of(ctx, text, &p), DEA_E_DESIGN);
+    assert_non_null(find_finding(ctx, DEA_ERROR, out_of_range[i].part));
+  }
+  // The second check of one context refuses as the first one did.
+  struct dea_protocol *p = good_protocol(ctx, refusals[0].text);
+  assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_E_INTERLOCK);
+  assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_E_INTERLOCK);
+  dea_protocol_destroy(ctx, p);
+}
+
+/* What is allowed is just below. */
+static void test_interlocks_at_their_bounds(void **state)
+{
+  (void)state;
+  static const char *const good[] = {
+      TRIPS("trip_time: 0.1 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      TRIPS("trip_time: 0 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      TRIPS("trip_time: 31 ms") AMPLIFIER("40 mA") CHANNELS PLAYS_8_KV,
+      TRIPS("trip_current: 9.5 mA") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      TRIPS("voltage_error: 3999 V") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      "dea-protocol: 1\nrate: 10 Hz\n" AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      PROTOCOL_HEAD CHANNELS "waveform: {kind: constant, voltage: 8 kV}\n",
+  };
+  for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+    if (check(good[i]) != DEA_OK) {
       print_findings(ctx);
-      fail_msg("no '%s' at %zu:%zu of:\n%s", r->part, r->line, r->column, r->text);
+      fail_msg("%s", good[i]);
     }
   }
+}
+
+/* The specimen's file is stronger than the protocol, than options, and than what comes to a wire.
+ */
+static void test_specimen(void **state)
+{
+  (void)state;
+  static const char text[] = "dea-protocol: 1\nspecimen: f12.yaml\n" PROTOCOL_AMPLIFIER CHANNELS
+                             "waveform: {kind: square, low: -6 kV, high: 5 kV, frequency: 1 Hz}\n";
+  struct dea_protocol *p;
+  const double volts[] = {5.9, -6.01};
+  write_in_folder("f12.yaml", "dea-specimen: 1\nname: F12\nmax_voltage: 6 kV\nnote: new\n");
+  assert_int_equal(check(text), DEA_OK);
+  p = good_protocol(ctx, text);
+  assert_int_equal(dea_protocol_guard(ctx, p, volts, 1), DEA_OK);
+  assert_int_equal(dea_protocol_guard(ctx, p, volts, 2), DEA_E_INTERLOCK);
+  dea_protocol_destroy(ctx, p);
+  write_in_folder("f12.yaml", "dea-specimen: 1\nname: F12\nmax_voltage: 5.5 kV\n");
+  assert_int_equal(check(text), DEA_E_INTERLOCK);
+  const struct dea_finding *f = find_finding(
+      ctx, DEA_ERROR, "asks for -6 kV at step 1, the specimen 'F12' stands 5.5 kV by line 3 of");
+  assert_non_null(f);
+  assert_true(f->location.line == 7 && f->location.column == 31);
+  // No option names another one, nor is a wrong file none.
+  static const struct dea_override others[] = {{"specimen", "g.yaml"}, {"specimen", ""}};
+  write_in_folder("g.yaml", "dea-specimen: 1\nname: G\nmax_voltage: 9 kV\n");
+  for (size_t i = 0; i < 2; i++) {
+    dea_finding_clear(ctx);
+    assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), &others[i], 1, &p),
+                     DEA_E_DESIGN);
+  }
+  static const char *const wrong[] = {"dea-specimen: 1\nname: F12\n", "x", "",
+                                      "dea-specimen: 1\nname: F12\nmax_voltage: 6\n",
+                                      "dea-specimen: 2\nname: F12\nmax_voltage: 6 kV\n"};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    write_in_folder("f12.yaml", wrong[i]);
+    dea_finding_clear(ctx);
+    assert_int_equal(protocol_of(ctx, text, &p), DEA_E_DESIGN);
+  }
+  unlink(in_folder("f12.yaml"));
+  dea_finding_clear(ctx);
+  assert_int_equal(protocol_of(ctx, text, &p), DEA_E_DESIGN);
+  assert_non_null(find_finding(ctx, DEA_ERROR, "specimen: "));
 }
 
 /* What is allowed is where the field reaches it: 80 V/um s^1.5 of this film, over the margin. */
@@ -232,6 +373,13 @@ static void test_warnings(void **state)
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 0.5 mA}\n"
        "waveform: {kind: constant, voltage: 1 kV}\n",
        "safety.trip_current of 1 mA is never exceeded", 2, 60},
+      {"dea-protocol: 1\namplifier: {gain: 100, max_voltage: 10 kV}\n"
+       "waveform: {kind: constant, voltage: 1 kV}\n",
+       "a gain of 100 and 10 V of control voltage make 1 kV, not the 10 kV of the amplifier", 2,
+       19},
+      {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n" CHANNELS
+       "waveform: {kind: constant, voltage: 1 kV}\n",
+       "amplifier.current_limit is not given", 1, 1},
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "safety: {voltage_error: 2 kV}\nwaveform: {kind: constant, voltage: 1 kV}\n",
        "safety.voltage_error of 2000 V is not below the largest voltage, 1000 V", 3, 25},
@@ -292,9 +440,15 @@ static void test_export_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_example_passes),  cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_allowed_voltage), cmocka_unit_test(test_pull_in),
-      cmocka_unit_test(test_warnings),        cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_example_passes),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_allowed_voltage),
+      cmocka_unit_test(test_pull_in),
+      cmocka_unit_test(test_interlocks_cannot_be_switched_off),
+      cmocka_unit_test(test_interlocks_at_their_bounds),
+      cmocka_unit_test(test_specimen),
+      cmocka_unit_test(test_warnings),
+      cmocka_unit_test(test_memory),
       cmocka_unit_test(test_export_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

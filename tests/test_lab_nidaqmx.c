@@ -59,6 +59,7 @@ static void test_starts_with_first_sample(void **state)
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_OK);
   assert_int_equal(b.fake->running, 1);
   assert_int_equal(b.fake->written, 300);
+  daq_bench_check_cap(ctx, &b);
   daq_bench_end(ctx, &b);
   daq_bench_begin(&b, library); // and without start the queue is not endless
   assert_int_equal(begin(&b), DEA_OK);

@@ -179,9 +179,13 @@ static void test_plays(void **state)
       "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 5 s\n"
       "output: \"SOUR:VOLT %%g\"\noutput_factor: 2\noutput_interval: 4 ms\nqueue: 20 ms\n";
   static struct bench b;
+  const double beyond[][2] = {{0, 5.01}, {-1.51, 0}, {0, NAN}, {INFINITY, 0}, {0, -1e300}};
   double volts[60];
   b.protocol.rate_Hz.si = 1000;
-  b.protocol.amplifier.gain.si = 1;
+  b.protocol.amplifier.gain.si = 2; // of a supply that is set in V
+  b.protocol.amplifier.control_V.si = 5;
+  b.protocol.amplifier.highest_V.si = 10;
+  b.protocol.amplifier.lowest_V.si = -3;
   b.protocol.safety.zero_time_s.si = 2;
   assert_int_equal(begin(&b, &usual, plays), DEA_OK);
   assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT);
@@ -193,6 +197,10 @@ static void test_plays(void **state)
   for (int i = 0; i < 20 && strstr(b.emulator.log, "-3") == NULL; i++) {
     const struct dea_sink nothing = {0};
     assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0.01, &nothing), DEA_OK);
+  }
+  for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) { // nothing of it goes out
+    assert_message(b.instrument->type->put(ctx, b.instrument, beyond[i], 2), DEA_E_INTERLOCK,
+                   "was about to go out");
   }
   end(&b);
   const char *log = strstr(b.emulator.log, "SOUR:VOLT 0\n");
@@ -348,6 +356,20 @@ static void test_wrong_keys(void **state)
       {"kind: scpi\naddress: x\noutput: VOLT\n", "must have one %g"},
       {"kind: scpi\naddress: x\noutput: VOLT %s\n", "must have one %g"},
       {"kind: scpi\naddress: x\noutput: VOLT %g %n\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT 1%g\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g0\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT -%g\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g kV\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g;VOLT 9000\n", "must have one %g"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\noutput_factor: 5000\n", "output_factor is 1"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\noutput_factor: -1\n", "output_factor is 1"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\noutput_factor: -1e300\n", "output_factor is 1"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\noutput_factor: 0\n", "output_factor is 1"},
+      {"kind: scpi\naddress: x\noutput: SOUR:VOLT %g\nsetup: [OUTP ON, ':source:voltage 5E3']\n",
+       "':source:voltage 5E3' sets the output"},
+      {"kind: scpi\naddress: x\noutput: \"C1:BSWV OFST,%g\"\nsetup: [\"*RST;C1:BSWV OFST,5\"]\n",
+       "sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nat_stop: [VOLT 1]\n", "'VOLT 1' sets the output"},
       {"kind: scpi\nadress: x\noutput: VOLT %g\n", "did you mean 'address'?"},
       {"kind: scpi\naddress: x\nport: 70000\noutput: VOLT %g\n", "port"},
       {"kind: scpi\naddress: x\nreadings: [{name: a, query: b}, {name: a, query: c}]\n",

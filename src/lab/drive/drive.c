@@ -103,9 +103,12 @@ static dea_status run(struct dea_context *ctx, const struct dea_protocol *protoc
   struct opened opened = {.count = 0};
   dea_status status = open_all(ctx, protocol, options->simulate, &opened);
   if (status == DEA_OK) {
-    struct dea_drive_bench bench = {opened.instruments, opened.count,
+    struct dea_drive_bench bench = {opened.instruments,
+                                    opened.count,
                                     settle_s + (isfinite(plan->rise_s) ? 2 * plan->rise_s : 0),
-                                    stall_s, guard};
+                                    stall_s,
+                                    guard,
+                                    plan->capacitance_F};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
   } else {
     out->zero.state = status == DEA_E_INTERLOCK ? DEA_ZERO_UNKNOWN : DEA_ZERO_NONE;

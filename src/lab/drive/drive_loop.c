@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "lab/drive/drive_output.h"
-#include "lab/instrument/drive_watch.h"
+#include "lab/drive/drive_watch.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -713,7 +713,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
     dea_context_set_interrupt(ctx, NULL);
     dea_drive_output_start(&loop.output, protocol);
-    dea_drive_watch_start(&loop.watch, protocol, bench->settle_s);
+    dea_drive_watch_start(&loop.watch, protocol, bench->settle_s, bench->capacitance_F);
     set_monitor(&loop, bench->settle_s);
     start_all(&loop);
     if (!loop.ending) {

@@ -425,6 +425,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
                       const double *volts, size_t count)
 {
   struct comedi *c = (struct comedi *)instrument;
+  DEA_TRY(ctx, dea_protocol_guard(ctx, c->protocol, volts, count));
   while (count > 0) {
     size_t part, room = c->daq.room;
     DEA_TRY(ctx, dea_daq_part(ctx, &c->daq, c->name, count, &part));

@@ -280,6 +280,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
                       const double *volts, size_t count)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
+  DEA_TRY(ctx, dea_protocol_guard(ctx, n->protocol, volts, count));
   while (count > 0) {
     int32_t written = 0;
     size_t part;

@@ -121,6 +121,37 @@ static const struct dea_field fields[] = {
 const struct dea_record dea_instrument_scpi_record = {
     "scpi", "answers or plays by SCPI on a TCP port", fields, DEA_INSTRUMENT_COUNT(fields)};
 
+/* A voltage that a command sets by itself has passed no check. */
+static dea_status check_command(const struct dea_reader *reader, const struct dea_scpi_raw *raw,
+                                const struct dea_label *command)
+{
+  return !dea_scpi_sets_output(command->text, raw->output.text)
+             ? DEA_OK
+             : dea_schema_error(reader, command->location,
+                                "refused: '%.60s' sets the output, which only the sequence may do",
+                                command->text);
+}
+
+static dea_status check_commands(const struct dea_reader *reader, const struct dea_scpi_raw *raw)
+{
+  const struct dea_label *single[] = {&raw->output_off,    &raw->confirm,
+                                      &raw->measure,       &raw->watchdog.arm,
+                                      &raw->watchdog.feed, &raw->watchdog.disarm};
+  for (size_t i = 0; i < sizeof single / sizeof single[0]; i++) {
+    DEA_TRY(reader->ctx, check_command(reader, raw, single[i]));
+  }
+  for (size_t i = 0; i < raw->setup_count; i++) {
+    DEA_TRY(reader->ctx, check_command(reader, raw, &raw->setup[i]));
+  }
+  for (size_t i = 0; i < raw->at_stop_count; i++) {
+    DEA_TRY(reader->ctx, check_command(reader, raw, &raw->at_stop[i]));
+  }
+  for (size_t i = 0; i < raw->reading_count; i++) {
+    DEA_TRY(reader->ctx, check_command(reader, raw, &raw->readings[i].query));
+  }
+  return DEA_OK;
+}
+
 static dea_status check(const struct dea_reader *reader, const void *data,
                         const struct dea_protocol *protocol)
 {
@@ -137,13 +168,22 @@ static dea_status check(const struct dea_reader *reader, const void *data,
                : dea_schema_error(reader, raw->kind.location,
                                   "it neither reads nor plays: write 'readings' or 'output'");
   }
-  const char *hole = strchr(raw->output.text, '%');
-  if (hole == NULL || hole[1] != 'g' || strchr(hole + 1, '%') != NULL) {
-    return dea_schema_error(reader, raw->output.location,
-                            "the output's command must have one %%g where the voltage in V goes, "
-                            "and no other %%; write for example 'SOUR:VOLT %%g'");
+  if (!dea_protocol_factor_is_known(protocol, raw->output_factor.si)) {
+    DEA_TRY(reader->ctx,
+            dea_schema_error(reader, raw->output_factor.location,
+                             "refused: output_factor is 1 where the control voltage is sent in V, "
+                             "and %g or %g (by the amplifier's gain) where its output is sent in V "
+                             "or in kV, not %g",
+                             protocol->amplifier.gain.si, 1e-3 * protocol->amplifier.gain.si,
+                             raw->output_factor.si));
   }
-  return DEA_OK;
+  if (!dea_scpi_output_is_plain(raw->output.text)) {
+    return dea_schema_error(reader, raw->output.location,
+                            "the output's command must have one %%g where the number goes, alone "
+                            "between blanks or commas, and no second command; write for example "
+                            "'SOUR:VOLT %%g'");
+  }
+  return check_commands(reader, raw);
 }
 
 /* Whether it took its setup: looks at its error queue, which was empty before. */

@@ -292,6 +292,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   static const double longest_s = 1; // that is queued in real time
   struct sim *s = (struct sim *)instrument;
   double most = longest_s * s->protocol->rate_Hz.si;
+  DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
   while (s->real_time && (double)(s->put - due_samples(s)) > most && !dea_interrupted(ctx)) {
     dea_clock_wait(0.01);
   }

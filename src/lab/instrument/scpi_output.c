@@ -62,6 +62,7 @@ static dea_status ask(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi
 static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, double volts)
 {
   char command[DEA_SCPI_COMMAND_SIZE];
+  DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, &volts, 1));
   dea_scpi_output_command(&s->raw, volts, command);
   note_sent(s, volts, dea_clock_s());
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, command));
@@ -224,6 +225,7 @@ dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, cons
 {
   struct dea_scpi_output *o = &s->output;
   double next_s;
+  DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
   for (size_t i = 0; i < count; i++) {
     while (o->count == o->room) {
       if (isnan(o->clock_s)) {

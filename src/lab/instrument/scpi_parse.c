@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -48,4 +49,64 @@ bool dea_scpi_error(const char *answer, int *code, const char **text)
   *code = (int)number;
   *text = *end == ',' ? end + 1 : end;
   return true;
+}
+
+bool dea_scpi_output_is_plain(const char *output)
+{
+  const char *hole = strchr(output, '%');
+  return hole != NULL && hole > output && hole[1] == 'g' && strchr(hole + 1, '%') == NULL &&
+         strchr(" ,", hole[-1]) != NULL && strchr(",", hole[2]) != NULL &&
+         strchr(output, ';') == NULL;
+}
+
+static bool same_letters(const char *a, const char *b, size_t length)
+{
+  for (size_t i = 0; i < length; i++) {
+    if (a[i] == '\0' || tolower((unsigned char)a[i]) != tolower((unsigned char)b[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static bool has_number(const char *text)
+{
+  double value;
+  return dea_scpi_number(text, &value) && value != 0; // NAN is one too
+}
+
+/* The last mnemonic of a header "SOUR:VOLT" that has `length` bytes; *count: letters of it. */
+static const char *last_mnemonic(const char *header, size_t length, size_t *count)
+{
+  size_t start = length;
+  while (start > 0 && header[start - 1] != ':') {
+    start--;
+  }
+  *count = length - start < 4 ? length - start : 4;
+  return header + start;
+}
+
+/* One command of a line. */
+static bool sets(const char *command, const char *output)
+{
+  size_t before = (size_t)(strchr(output, '%') - output), count, wanted;
+  size_t header = strcspn(command, " \t;"), other = strcspn(output, " \t");
+  const char *mine = last_mnemonic(command, header, &count);
+  const char *set = last_mnemonic(output, other, &wanted);
+  if (same_letters(command, output, before)) {
+    return has_number(command + before);
+  }
+  return other + 1 == before && count == wanted && same_letters(mine, set, wanted) &&
+         has_number(command + header);
+}
+
+bool dea_scpi_sets_output(const char *command, const char *output)
+{
+  for (; command != NULL; command = strchr(command, ';')) {
+    command += strspn(command, "; \t");
+    if (sets(command + strspn(command, ":"), output + strspn(output, ":"))) {
+      return true;
+    }
+  }
+  return false;
 }

@@ -1,4 +1,4 @@
-/* Answers of SCPI instruments (SCPI 1999, IEEE 488.2). */
+/* Commands and answers of SCPI instruments (SCPI 1999, IEEE 488.2). */
 #ifndef DEA_LAB_INSTRUMENT_SCPI_PARSE_H
 #define DEA_LAB_INSTRUMENT_SCPI_PARSE_H
 
@@ -16,5 +16,11 @@ void dea_scpi_suffix(const char *answer, char out[DEA_SCPI_SUFFIX_SIZE]);
 /* An entry of the error queue: -113,"Undefined header". The code, 0 for none; *text: from the comma
  * on, lent. false when it is none. */
 bool dea_scpi_error(const char *answer, int *code, const char **text);
+/* Whether a number can be put in place of the one %g of a command, and nothing around it changes
+ * what the number means: no digit, sign or unit beside it, no second command. */
+bool dea_scpi_output_is_plain(const char *output);
+/* Whether a command gives a number other than 0 to what `output` (a plain one) sets: the same text
+ * before the number, or the same last mnemonic by its short form of four letters. */
+bool dea_scpi_sets_output(const char *command, const char *output);
 
 #endif

@@ -97,6 +97,40 @@ static dea_status check_voltage(struct dea_context *ctx, const struct dea_protoc
   return DEA_OK;
 }
 
+/* Its own file says what a specimen stands; the amplifier may give more. */
+static dea_status check_specimen(struct dea_context *ctx, const struct dea_protocol *protocol,
+                                 const struct dea_protocol_peak *peak)
+{
+  const struct dea_specimen *specimen = &protocol->specimen;
+  char step[DEA_STEP_NAME_SIZE];
+  if (specimen->highest_V.origin == DEA_ABSENT ||
+      fabs(peak->voltage_V) <= specimen->highest_V.si * (1 + 1e-9)) {
+    return DEA_OK;
+  }
+  dea_protocol_step_name(protocol, peak->step, step);
+  return dea_finding_add(
+      ctx, DEA_ERROR, dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V),
+      "refused: the sequence asks for %g kV at %s, the specimen '%.60s' stands "
+      "%g kV by line %zu of %.200s, which no option changes",
+      1e-3 * peak->voltage_V, step, specimen->name.text, 1e-3 * specimen->highest_V.si,
+      specimen->highest_V.location.line, specimen->highest_V.location.file);
+}
+
+/* A gain that is written too small drives the output too high. */
+static dea_status check_gain(struct dea_context *ctx, const struct dea_protocol *protocol)
+{
+  double reach_V = protocol->amplifier.gain.si * protocol->amplifier.control_V.si;
+  double most_V = fmax(protocol->amplifier.highest_V.si, -protocol->amplifier.lowest_V.si);
+  if (reach_V >= most_V * (1 - 1e-9)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_WARNING, protocol->amplifier.gain.location,
+                         "a gain of %g and %g V of control voltage make %g kV, not the %g kV of "
+                         "the amplifier; if the gain is larger, the film gets more than is asked",
+                         protocol->amplifier.gain.si, protocol->amplifier.control_V.si,
+                         1e-3 * reach_V, 1e-3 * most_V);
+}
+
 /* "11.4 us" and the like. */
 static void format_time(double time_s, char out[32])
 {
@@ -198,21 +232,6 @@ static dea_status check_range(struct dea_context *ctx, const struct dea_protocol
       input->name.text, input->range_V.si);
 }
 
-/* A current that the input cannot show never ends the measurement. */
-static dea_status check_trip(struct dea_context *ctx, const struct dea_protocol *protocol,
-                             const struct dea_protocol_input *input)
-{
-  double reach_A = (1 - DEA_CHANNEL_END) * fabs(input->range_V.si * input->per_volt);
-  double seen_A = fmax(reach_A - fabs(input->at_zero), 0); // in both signs
-  if (seen_A > protocol->safety.trip_current_A.si) {
-    return DEA_OK;
-  }
-  return dea_finding_add(ctx, DEA_ERROR, input->range_V.location,
-                         "refused: the input of '%s' shows %.4g mA at most, so that "
-                         "safety.trip_current of %.4g mA is never exceeded",
-                         input->name.text, 1e3 * seen_A, 1e3 * protocol->safety.trip_current_A.si);
-}
-
 static dea_status check_inputs(struct dea_context *ctx, const struct dea_protocol *protocol,
                                const struct dea_protocol_plan *plan)
 {
@@ -222,8 +241,6 @@ static dea_status check_inputs(struct dea_context *ctx, const struct dea_protoco
     counts[input->kind.value]++;
     if (input->kind.value == DEA_CHANNEL_VOLTAGE) {
       DEA_TRY(ctx, check_range(ctx, plan, input));
-    } else if (input->kind.value == DEA_CHANNEL_CURRENT) {
-      DEA_TRY(ctx, check_trip(ctx, protocol, input));
     }
     if (input->filter_Hz.si >= 0.5 * protocol->rate_Hz.si) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, input->filter_Hz.location,
@@ -322,30 +339,6 @@ static dea_status check_size(struct dea_context *ctx, const struct dea_protocol 
   return DEA_OK;
 }
 
-/* Limits that nothing can exceed protect nobody. */
-static dea_status check_safety(struct dea_context *ctx, const struct dea_protocol *protocol,
-                               const struct dea_protocol_plan *plan)
-{
-  const struct dea_quantity *trip = &protocol->safety.trip_current_A;
-  const struct dea_quantity *limit = &protocol->amplifier.current_A;
-  const struct dea_quantity *error = &protocol->safety.voltage_error_V;
-  double largest_V = fmax(-plan->lowest_V, plan->highest_V);
-  if (limit->origin != DEA_ABSENT && limit->si <= trip->si) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, limit->location,
-                                 "safety.trip_current of %g mA is never exceeded, as the amplifier "
-                                 "gives %g mA at most: set it lower",
-                                 1e3 * trip->si, 1e3 * limit->si));
-  }
-  if (error->si >= largest_V && largest_V > 0) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_WARNING, error->location,
-                            "safety.voltage_error of %g V is not below the largest voltage, %g "
-                            "V: an amplifier that gives nothing is not noticed",
-                            error->si, largest_V));
-  }
-  return DEA_OK;
-}
-
 dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol *protocol,
                               struct dea_protocol_plan *plan)
 {
@@ -367,6 +360,9 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
   };
   DEA_TRY(ctx, check_voltage(ctx, protocol, &low));
   DEA_TRY(ctx, check_voltage(ctx, protocol, &high));
+  DEA_TRY(ctx, check_specimen(ctx, protocol, &low));
+  DEA_TRY(ctx, check_specimen(ctx, protocol, &high));
+  DEA_TRY(ctx, check_gain(ctx, protocol));
   DEA_TRY(ctx, dea_protocol_check_film(ctx, protocol,
                                        -low.voltage_V > high.voltage_V ? &low : &high, plan));
   DEA_TRY(ctx, check_rise(ctx, protocol, &slopes, plan));
@@ -374,7 +370,7 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
   DEA_TRY(ctx, check_inputs(ctx, protocol, plan));
   DEA_TRY(ctx, check_ramp(ctx, protocol, plan));
   DEA_TRY(ctx, check_rate(ctx, protocol, &slopes));
-  DEA_TRY(ctx, check_safety(ctx, protocol, plan));
+  DEA_TRY(ctx, dea_protocol_check_interlocks(ctx, protocol, plan));
   DEA_TRY(ctx, check_labels(ctx, protocol));
   DEA_TRY(ctx, check_size(ctx, protocol, plan));
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;

@@ -29,6 +29,11 @@ void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
 struct dea_location dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
                                                double voltage_V);
 
+/* Adds what would switch an interlock off: `safety`, and what it depends on. */
+dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
+                                         const struct dea_protocol *protocol,
+                                         const struct dea_protocol_plan *plan);
+
 /* Field, pull-in, capacitance and energy of the film at the peak, by the model `lumped`. */
 dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_protocol *protocol,
                                    const struct dea_protocol_peak *peak,

@@ -44,18 +44,21 @@ static dea_status find_pull_in(const struct film *film, double *pull_in_V)
                         pull_in_V);
 }
 
+/* What the material stands at a point; NAN: not known. */
+static double breakdown_field(const struct film *film, const struct dea_load_point *point)
+{
+  const struct dea_breakdown *breakdown = &film->device->film.breakdown;
+  double stretch = point->electrode_stretch * film->device->pre_stretch;
+  return breakdown->known ? breakdown->at_rest_V_per_m * pow(stretch, breakdown->exponent) : NAN;
+}
+
 /* Field that is allowed at a point; NAN when nobody says. */
 static double allowed_field(const struct film *film, const struct dea_load_point *point)
 {
   const struct dea_quantity *largest = &film->protocol->safety.largest_field_V_per_m;
-  const struct dea_breakdown *breakdown = &film->device->film.breakdown;
-  if (largest->origin != DEA_ABSENT) {
-    return largest->si;
-  }
-  double stretch = point->electrode_stretch * film->device->pre_stretch;
-  return breakdown->known ? breakdown->at_rest_V_per_m * pow(stretch, breakdown->exponent) /
-                                film->protocol->safety.field_margin.si
-                          : NAN;
+  return largest->origin != DEA_ABSENT
+             ? largest->si
+             : breakdown_field(film, point) / film->protocol->safety.field_margin.si;
 }
 
 /* The voltage below which all is allowed, for the message. */
@@ -101,18 +104,36 @@ static dea_status refuse_field(const struct film *film, const struct dea_protoco
       "refused: %g kV at %s makes a true field of %.4g V/um in the film, but %.4g V/um are "
       "allowed, "
       "the breakdown field of %s over a margin of %g, which is %.2f kV; who knows the film better "
-      "sets safety.largest_field",
+      "sets safety.largest_field and safety.field_reason",
       1e-3 * peak->voltage_V, step, 1e-6 * plan->largest_field_V_per_m,
       1e-6 * plan->allowed_field_V_per_m, film->device->film.name, protocol->safety.field_margin.si,
       1e-3 * voltage_V);
 }
 
-/* A film that pulls in mostly breaks down there; who allows a field explicitly knows better. */
+/* A largest_field of the protocol that is above what the material stands needs a reason. */
+static dea_status check_reason(const struct film *film, const struct dea_load_point *point)
+{
+  const struct dea_protocol *protocol = film->protocol;
+  double breakdown = breakdown_field(film, point); // NAN: not known
+  if (protocol->safety.largest_field_V_per_m.origin == DEA_ABSENT ||
+      protocol->safety.field_reason.text[0] != '\0' || !(point->true_field_V_per_m > breakdown)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(film->ctx, DEA_ERROR, protocol->safety.largest_field_V_per_m.location,
+                         "refused: safety.largest_field of %.4g V/um allows %.4g V/um, which is "
+                         "above the breakdown field of %s, %.4g V/um; who knows the film better "
+                         "says why: safety.field_reason",
+                         1e-6 * protocol->safety.largest_field_V_per_m.si,
+                         1e-6 * point->true_field_V_per_m, film->device->film.name,
+                         1e-6 * breakdown);
+}
+
+/* A film that pulls in mostly breaks down there; who gives a reason knows better. */
 static dea_status report_pull_in(const struct film *film, const struct dea_protocol_peak *peak,
                                  double pull_in_V, bool lost)
 {
   char step[DEA_STEP_NAME_SIZE], where[64] = "";
-  bool refused = lost || film->protocol->safety.largest_field_V_per_m.origin == DEA_ABSENT;
+  bool refused = lost || film->protocol->safety.field_reason.text[0] == '\0';
   dea_protocol_step_name(film->protocol, peak->step, step);
   if (isfinite(pull_in_V)) {
     snprintf(where, sizeof where, " at %.4g kV", 1e-3 * pull_in_V);
@@ -145,6 +166,7 @@ static dea_status look(const struct film *film, const struct dea_protocol_peak *
   if (plan->pull_in_V <= voltage_V) {
     DEA_TRY(ctx, report_pull_in(film, peak, plan->pull_in_V, false));
   }
+  DEA_TRY(ctx, check_reason(film, &point));
   if (isnan(plan->allowed_field_V_per_m)) {
     return dea_finding_add(ctx, DEA_WARNING, film->protocol->design_file.location,
                            "no breakdown field of %s is known, so the field of %.4g V/um is not "

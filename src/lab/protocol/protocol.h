@@ -42,13 +42,21 @@ struct dea_protocol_instrument {
   const char *path;               // "instruments[0]"; interned
 };
 
+/* What one film stands, by a file of its own. */
+struct dea_specimen {
+  struct dea_label name;
+  struct dea_quantity highest_V; // of either sign; absent: no specimen is named
+};
+
 struct dea_protocol {
   const char *file; // interned
   struct dea_label title;
   struct dea_label design_file;
   struct dea_design *design; // owned; NULL: none named
-  char *text, *design_text;  // whole files; owned; the second NULL without a design
-  char *overrides;           // of values in the file, "key=value; key=value"; owned; NULL: none
+  struct dea_label specimen_file;
+  struct dea_specimen specimen;
+  char *text, *design_text; // whole files; owned; the second NULL without a design
+  char *overrides;          // of values in the file, "key=value; key=value"; owned; NULL: none
 
   struct dea_protocol_step *steps; // [step_count], owned
   size_t step_count;
@@ -68,12 +76,14 @@ struct dea_protocol {
   struct {
     struct dea_quantity field_margin;          // breakdown field over largest true field, at least
     struct dea_quantity largest_field_V_per_m; // instead of it
+    struct dea_label field_reason;             // why a field above breakdown is allowed
     struct dea_quantity trip_current_A, trip_time_s; // a current above it for that long ends it
-    struct dea_quantity voltage_error_V;             // largest |measured - asked| once settled
-    struct dea_quantity ramp_V_per_s;                // to 0 V, when it ends early
-    struct dea_quantity at_zero_V, zero_time_s;      // what is 0 V, read back, and by when
-    struct dea_quantity longest_ramp_s;              // of that ramp
-    struct dea_quantity guard_time_s;                // without a sign of life, for the guard
+    struct dea_quantity trip_count;             // of excursions above it in 10 s that end it too
+    struct dea_quantity voltage_error_V;        // largest |measured - asked| once settled
+    struct dea_quantity ramp_V_per_s;           // to 0 V, when it ends early
+    struct dea_quantity at_zero_V, zero_time_s; // what is 0 V, read back, and by when
+    struct dea_quantity guard_time_s;           // without a sign of life, for the guard
+    struct dea_quantity longest_ramp_s;         // of that ramp
   } safety;
 
   struct dea_protocol_instrument instruments[DEA_PROTOCOL_INSTRUMENTS_MAX];
@@ -95,6 +105,17 @@ dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, c
                                     size_t override_count, struct dea_protocol **out);
 void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol);
 extern const struct dea_record dea_protocol_record;
+
+/* The largest voltages [V] that may ever go out: of the amplifier, of its control voltage, and of
+ * the specimen. */
+void dea_protocol_cap(const struct dea_protocol *protocol, double *lowest_V, double *highest_V);
+/* The last look before the wire, whatever was checked before: DEA_E_INTERLOCK when one of the
+ * control voltages is beyond the cap or no number. Nothing of them may go out then. */
+dea_status dea_protocol_guard(struct dea_context *ctx, const struct dea_protocol *protocol,
+                              const double *volts, size_t count);
+/* Whether a number that is sent for 1 V of control voltage can be right: an instrument takes the
+ * control voltage in V, or the amplifier's output in V or kV. */
+bool dea_protocol_factor_is_known(const struct dea_protocol *protocol, double factor);
 
 /* The sequence on one clock from 0 on. */
 double dea_protocol_duration_s(const struct dea_protocol *protocol);

@@ -372,6 +372,8 @@ static dea_status read_raw(struct dea_context *ctx, const char *file, const char
     DEA_TRY(ctx, take_amplifier(ctx, protocol));
     DEA_TRY(ctx, take_instruments(ctx, protocol));
     DEA_TRY(ctx, take_design(ctx, protocol));
+    DEA_TRY(ctx,
+            dea_specimen_read(ctx, protocol->file, &protocol->specimen_file, &protocol->specimen));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {

@@ -1,9 +1,10 @@
-#include "lab/instrument/drive_watch.h"
+#include "lab/drive/drive_watch.h"
 
 #include <math.h>
 #include <stdio.h>
 
 static const double blind_s = 0.5;
+static const double cap_margin = 0.1; // above the largest voltage, for errors of the monitor
 
 static size_t samples_of(double time_s, double rate_Hz)
 {
@@ -11,14 +12,57 @@ static size_t samples_of(double time_s, double rate_Hz)
   return samples > 1 ? (size_t)samples : 1;
 }
 
+/* Of the sequence, 0 V included. */
+static double find_span(const struct dea_protocol *protocol)
+{
+  double lowest_V = 0, highest_V = 0;
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    lowest_V = fmin(lowest_V, protocol->steps[i].lowest_V);
+    highest_V = fmax(highest_V, protocol->steps[i].highest_V);
+  }
+  return highest_V - lowest_V;
+}
+
+/* The limits of docs/theory/interlocks.md for one channel of the current. */
+static struct dea_arc_limits find_arc_limits(const struct dea_protocol *protocol,
+                                             const struct dea_protocol_input *input,
+                                             double settle_s, double capacitance_F)
+{
+  static const double growth = 2, cable_F = 100e-12;
+  const struct dea_quantity *limit = &protocol->amplifier.current_A;
+  double span_V = find_span(protocol), trip_s = protocol->safety.trip_time_s.si;
+  struct dea_arc_limits out = {
+      .rate_Hz = protocol->rate_Hz.si,
+      .current_A = protocol->safety.trip_current_A.si,
+      .most_A = fabs(input->range_V.si * input->per_volt) + fabs(input->at_zero),
+      .count = (size_t)protocol->safety.trip_count.si,
+      .settle_s = settle_s,
+  };
+  out.most_A = limit->origin != DEA_ABSENT ? fmin(out.most_A, limit->si) : out.most_A;
+  trip_s = fmax(trip_s, 1 / out.rate_Hz); // one sample is never an arc
+  out.charge_C = out.most_A * trip_s;
+  if (capacitance_F > 0) {
+    out.capacitance_F = growth * capacitance_F + cable_F;
+  } else if (span_V > 0) {
+    out.capacitance_F = out.charge_C / span_V;
+  }
+  return out;
+}
+
 void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
-                           double settle_s)
+                           double settle_s, double capacitance_F)
 {
   double rate_Hz = protocol->rate_Hz.si;
   *watch = (struct dea_drive_watch){.protocol = protocol, .largest_current_A = NAN};
   watch->lasting = samples_of(protocol->safety.trip_time_s.si, rate_Hz);
   watch->blind = samples_of(blind_s, rate_Hz);
   watch->window = samples_of(settle_s, rate_Hz) + 1; // a sample may show what was asked before it
+  dea_protocol_cap(protocol, &watch->cap_V[0], &watch->cap_V[1]);
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    const struct dea_arc_limits limits =
+        find_arc_limits(protocol, &protocol->inputs[i], settle_s, capacitance_F);
+    dea_arc_watch_start(&watch->arcs[i], &limits);
+  }
 }
 
 static void follow(struct dea_drive_watch *watch, double asked_V)
@@ -31,6 +75,29 @@ static void follow(struct dea_drive_watch *watch, double asked_V)
   }
   watch->lowest_V[0] = fmin(watch->lowest_V[0], asked_V);
   watch->highest_V[0] = fmax(watch->highest_V[0], asked_V);
+}
+
+static bool check_arcs(struct dea_drive_watch *watch, size_t i, double change_V, double current_A,
+                       char why[DEA_WHY_ENDED_SIZE])
+{
+  const struct dea_arc_limits *limits = &watch->arcs[i].limits;
+  switch (dea_arc_watch_sample(&watch->arcs[i], change_V, current_A)) {
+  case DEA_ARC_TOO_OFTEN:
+    snprintf(why, DEA_WHY_ENDED_SIZE,
+             "arcs: the current was above safety.trip_current of %.4g uA for the %zuth time within "
+             "10 s without a change of the voltage that explains it (safety.trip_count)",
+             1e6 * limits->current_A, limits->count);
+    return false;
+  case DEA_ARC_TOO_MUCH:
+    snprintf(why, DEA_WHY_ENDED_SIZE,
+             "arcs: more than %.4g uC have flowed above safety.trip_current of %.4g uA within "
+             "about 1 s, beyond what charging the film explains",
+             1e6 * limits->charge_C, 1e6 * limits->current_A);
+    return false;
+  case DEA_ARC_NONE:
+    break;
+  }
+  return true;
 }
 
 static bool check_current(struct dea_drive_watch *watch, size_t i, double current_A,
@@ -54,7 +121,9 @@ static bool check_voltage(struct dea_drive_watch *watch, size_t i, double asked_
   double error_V = watch->protocol->safety.voltage_error_V.si;
   double lowest_V = fmin(watch->lowest_V[0], watch->lowest_V[1]);
   double highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
-  bool wrong = voltage_V < lowest_V - error_V || voltage_V > highest_V + error_V;
+  double margin_V = cap_margin * fmax(watch->cap_V[1], -watch->cap_V[0]);
+  bool wrong = voltage_V < fmax(lowest_V - error_V, watch->cap_V[0] - margin_V) ||
+               voltage_V > fmin(highest_V + error_V, watch->cap_V[1] + margin_V);
   watch->exceeded[i] = wrong ? watch->exceeded[i] + 1 : 0;
   if (watch->exceeded[i] < watch->lasting) {
     return true;
@@ -80,11 +149,16 @@ bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const
                             char why[DEA_WHY_ENDED_SIZE])
 {
   bool good = true;
+  double change_V = asked_V - watch->asked_V;
+  watch->asked_V = asked_V;
   follow(watch, asked_V);
   for (size_t i = 0; i < watch->protocol->input_count && good; i++) {
     int kind = watch->protocol->inputs[i].kind.value;
     if (kind != DEA_CHANNEL_CURRENT && kind != DEA_CHANNEL_VOLTAGE) {
       continue;
+    }
+    if (kind == DEA_CHANNEL_CURRENT && !check_arcs(watch, i, change_V, values[i], why)) {
+      return false;
     }
     if (isnan(values[i])) { // neither good nor bad
       good = check_missing(watch, i, why);

@@ -1,7 +1,8 @@
 /* The limits of a protocol, looked at in every sample that comes in. */
-#ifndef DEA_LAB_INSTRUMENT_DRIVE_WATCH_H
-#define DEA_LAB_INSTRUMENT_DRIVE_WATCH_H
+#ifndef DEA_LAB_DRIVE_DRIVE_WATCH_H
+#define DEA_LAB_DRIVE_DRIVE_WATCH_H
 
+#include "lab/drive/arc_watch.h"
 #include "lab/protocol/protocol.h"
 
 enum { DEA_WHY_ENDED_SIZE = 256 };
@@ -15,15 +16,21 @@ struct dea_drive_watch {
    * settles within a window may be at. */
   double lowest_V[2], highest_V[2];
   size_t window, in_window;
-  double largest_current_A; // by amount; NAN: none came
+  double largest_current_A;                           // by amount; NAN: none came
+  struct dea_arc_watch arcs[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
+  double asked_V;                                     // of the last sample
+  double cap_V[2]; // lowest and highest voltage that may be measured at all
 };
 
-/* settle_s: time that the voltage has to follow what is asked. */
+/* settle_s: time that the voltage has to follow what is asked. capacitance_F: of the film; 0 or
+ * NAN: not known. */
 void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
-                           double settle_s);
+                           double settle_s, double capacitance_F);
 /* Looks at one sample: asked voltage, and the values of all inputs in SI (NAN: lost). False when
  * the measurement must end; `why` then says it. A limit has to be exceeded for the protocol's
- * trip_time; a channel that is watched and gives nothing for half a second ends it too. */
+ * trip_time, or the current
+ * comes and goes as arcs do (arc_watch.h); a channel that is watched and gives nothing for half a
+ * second ends it too. */
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
                             char why[DEA_WHY_ENDED_SIZE]);
 
