@@ -43,19 +43,6 @@ static pid_t start_with(const char *file, const char *err)
   return child;
 }
 
-/* Waits until the recording has some of it. */
-static void wait_for_recording(const char *name)
-{
-  char file[700], command[800];
-  snprintf(file, sizeof file, "%s/%s", command_folder, name);
-  for (int i = 0; i < 200 && access(file, F_OK) != 0; i++) {
-    wait_s(0.05);
-  }
-  wait_s(0.8);
-  snprintf(command, sizeof command, "test -s '%s'", file);
-  assert_int_equal(system(command), 0);
-}
-
 static struct dea_recording *read_recording(struct dea_context *ctx, const char *name)
 {
   char file[700];
@@ -67,6 +54,50 @@ static struct dea_recording *read_recording(struct dea_context *ctx, const char 
   return recording;
 }
 
+/* Samples of the asked voltage that a running recording has; *last_V: of the last one. */
+static size_t look_at(struct dea_context *ctx, const char *name, double *last_V)
+{
+  char file[700];
+  struct dea_recording *recording;
+  size_t count = 0;
+  *last_V = NAN;
+  snprintf(file, sizeof file, "%s/%s", command_folder, name);
+  if (dea_recording_read(ctx, file, &recording) == DEA_OK) {
+    const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
+    count = asked != NULL ? asked->count : 0;
+    *last_V = count > 0 ? asked->values[count - 1] : NAN;
+    dea_recording_destroy(ctx, recording);
+  }
+  dea_context_clear(ctx);
+  return count;
+}
+
+/* Waits until a recording has so many samples, however busy the machine is; the number of them. */
+static size_t wait_for_samples(struct dea_context *ctx, const char *name, size_t samples)
+{
+  for (int i = 0; i < 2400; i++) {
+    double last_V;
+    size_t count = look_at(ctx, name, &last_V);
+    if (count >= samples) {
+      return count;
+    }
+    wait_s(0.05);
+  }
+  fail_msg("%s has less than %zu samples after two minutes", name, samples);
+  return 0;
+}
+
+/* Waits until the voltage in a recording has begun to fall, or has come to 0 V. */
+static double wait_for_fall(struct dea_context *ctx, const char *name, double below_V)
+{
+  double last_V = NAN;
+  for (int i = 0; i < 2400 && !(last_V <= below_V); i++) {
+    wait_s(0.02);
+    look_at(ctx, name, &last_V);
+  }
+  return last_V;
+}
+
 static void test_signals_ramp_down(void **state)
 {
   (void)state;
@@ -74,9 +105,9 @@ static void test_signals_ramp_down(void **state)
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start("signals.h5");
-  wait_for_recording("signals.h5");
+  wait_for_samples(ctx, "signals.h5", 700);
   assert_int_equal(kill(child, SIGINT), 0);
-  wait_s(0.03);
+  wait_for_fall(ctx, "signals.h5", 4999); // or it is over
   kill(child, SIGINT);
   kill(child, SIGHUP);
   kill(child, SIGTERM);
@@ -92,7 +123,7 @@ static void test_signals_ramp_down(void **state)
   const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
   const struct dea_channel *measured = dea_recording_kind(recording, DEA_CHANNEL_VOLTAGE);
   size_t n = asked->count, top = 0;
-  assert_true(n > 500 && n < 20000 && measured->count == n);
+  assert_true(n > 700 && n < 60000 && measured->count == n);
   while (top < n && asked->values[top] == 5000) {
     top++;
   }
@@ -112,13 +143,13 @@ static void test_killed_drive(void **state)
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start("killed.h5");
-  wait_for_recording("killed.h5");
+  wait_for_samples(ctx, "killed.h5", 700);
   assert_int_equal(kill(child, SIGKILL), 0);
   assert_int_equal(waitpid(child, &status, 0), child);
   struct dea_recording *recording = read_recording(ctx, "killed.h5");
   assert_false(recording->complete);
   const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
-  assert_true(asked->count > 200);
+  assert_true(asked->count >= 700);
   for (size_t i = 0; i < asked->count; i++) {
     assert_true(asked->values[i] == 5000);
   }
@@ -141,6 +172,7 @@ static void test_other_signals(void **state)
   struct dea_context *ctx;
   pid_t children[COUNT];
   char names[COUNT][32];
+  size_t counts[COUNT];
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   for (size_t i = 0; i < COUNT; i++) {
@@ -148,12 +180,12 @@ static void test_other_signals(void **state)
     children[i] = start(names[i]);
   }
   for (size_t i = 0; i < COUNT; i++) {
-    wait_for_recording(names[i]);
+    counts[i] = wait_for_samples(ctx, names[i], 300);
     assert_int_equal(kill(children[i], signals[i].number), 0);
   }
-  wait_s(0.1);
   for (size_t i = 0; i < COUNT; i++) {
-    if (!signals[i].ends) {
+    if (!signals[i].ends) { // it plays on
+      wait_for_samples(ctx, names[i], counts[i] + 500);
       assert_int_equal(waitpid(children[i], &status, WNOHANG | WUNTRACED), 0);
       assert_int_equal(kill(children[i], SIGTERM), 0);
     }
@@ -162,7 +194,7 @@ static void test_other_signals(void **state)
     assert_int_equal(WEXITSTATUS(status), 130);
     struct dea_recording *recording = read_recording(ctx, names[i]);
     const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
-    assert_true(asked->count > 250 && asked->values[asked->count - 1] == 0);
+    assert_true(asked->count > 300 && asked->values[asked->count - 1] == 0);
     dea_recording_destroy(ctx, recording);
   }
   dea_context_destroy(ctx);
@@ -176,10 +208,15 @@ static void test_held_terminal(void **state)
   struct dea_context *ctx;
   int status, master = posix_openpt(O_RDWR | O_NOCTTY);
   char taken[4096];
-  double last = NAN;
-  assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+  if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) {
+    print_message("skipped: there are no pseudo-terminals here\n");
+    skip();
+  }
   int slave = open(ptsname(master), O_RDWR | O_NOCTTY | O_NONBLOCK);
-  assert_true(slave >= 0);
+  if (slave < 0) {
+    print_message("skipped: no pseudo-terminal can be opened here\n");
+    skip();
+  }
   memset(taken, '.', sizeof taken);
   for (int i = 0; i < 8; i++) { // what went in makes room once it has gone on
     for (size_t n = sizeof taken; n > 0; n /= 2) {
@@ -190,18 +227,9 @@ static void test_held_terminal(void **state)
   }
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start_with("held.h5", ptsname(master));
-  wait_for_recording("held.h5");
-  struct dea_recording *running = read_recording(ctx, "held.h5");
-  assert_true(dea_recording_kind(running, DEA_CHANNEL_COMMAND)->count > 200); // it plays on
-  dea_recording_destroy(ctx, running);
+  wait_for_samples(ctx, "held.h5", 700); // it plays on
   assert_int_equal(kill(child, SIGINT), 0);
-  for (int i = 0; i < 100 && last != 0; i++) {
-    wait_s(0.05);
-    struct dea_recording *recording = read_recording(ctx, "held.h5");
-    const struct dea_channel *asked = dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
-    last = asked->count > 0 ? asked->values[asked->count - 1] : (double)NAN;
-    dea_recording_destroy(ctx, recording);
-  }
+  double last = wait_for_fall(ctx, "held.h5", 0);
   fcntl(master, F_SETFL, O_NONBLOCK); // now it is read, so that it can say why it ended
   do {
     wait_s(0.02);
@@ -218,9 +246,11 @@ static void test_held_terminal(void **state)
 static void test_two_into_one_file(void **state)
 {
   (void)state;
+  struct dea_context *ctx;
   int status;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start("two.h5");
-  wait_for_recording("two.h5");
+  wait_for_samples(ctx, "two.h5", 100);
   assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --sim -o two.h5 --force"), 5);
   assert_contains(command_err, "'two.h5' is being written by another program");
   assert_int_equal(kill(child, SIGINT), 0);
@@ -232,7 +262,7 @@ static void test_two_into_one_file(void **state)
                                "sequence=null --set 'waveform={kind: constant, voltage: 1 kV}'"),
                    0); // nobody writes it now
   child = start("lost.h5");
-  wait_for_recording("lost.h5");
+  wait_for_samples(ctx, "lost.h5", 100);
   char file[700];
   snprintf(file, sizeof file, "%s/lost.h5", command_folder);
   assert_int_equal(unlink(file), 0);
@@ -240,6 +270,7 @@ static void test_two_into_one_file(void **state)
   assert_int_equal(waitpid(child, &status, 0), child);
   command_read("drive.err", command_err);
   assert_contains(command_err, "was removed or replaced while it was written");
+  dea_context_destroy(ctx);
 }
 
 int main(void)

@@ -1,18 +1,16 @@
-/* lab/recording: a program that records is killed at random moments; what it had announced is
- * there, and every value is the right one. */
+/* lab/recording: a program that records is killed between any two of its calls; what it had
+ * announced is there, and every value is the right one. */
 #define _GNU_SOURCE
 #include "lab/recording/disk.h"
 #include "own_folder.h"
 #include "recording_samples.h"
 
-#include <fcntl.h>
 #include <inttypes.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 
-enum { KILLS = 40, LONGEST_US = 60000, CYCLES = 30 };
+enum { STAGES = 5, KILLS = 40, CYCLES = 30 };
 
 static void need(dea_status status)
 {
@@ -21,38 +19,40 @@ static void need(dea_status status)
   }
 }
 
-/* Records as fast as it can, for ever; says on `out` how many cycles are done. */
+/* Says on `out` that one more call has returned. */
+static void announce(int out, uint32_t *calls)
+{
+  ++*calls;
+  if (write(out, calls, sizeof *calls) != sizeof *calls) {
+    _exit(1);
+  }
+}
+
+/* Records as fast as it can, for ever: STAGES calls a cycle, each announced. */
 static void record_for_ever(const char *file, int out)
 {
   struct dea_context *own;
   struct dea_recorder *recorder;
   need(dea_context_create(NULL, &own));
   need(sample_create(own, file, false, 0.002, &recorder));
-  for (uint32_t i = 0;; i++) {
+  for (uint32_t i = 0, calls = 0;; i++) {
     need(sample_add(recorder, (size_t)i * SAMPLE_CYCLE, 300));
+    announce(out, &calls);
     need(sample_add_reading(recorder, i));
+    announce(out, &calls);
     need(sample_add(recorder, (size_t)i * SAMPLE_CYCLE + 300, SAMPLE_CYCLE - 300));
+    announce(out, &calls);
     need(sample_add_frame(recorder, i));
+    announce(out, &calls);
     struct dea_recorded_cycle cycle = sample_cycle(i);
     need(dea_recorder_add_cycle(recorder, &cycle));
-    uint32_t done = i + 1;
-    if (write(out, &done, sizeof done) != sizeof done) {
-      _exit(1);
-    }
+    announce(out, &calls);
   }
 }
 
-/* Reads what the child has announced so far, without waiting for more once it is dead. */
-static uint32_t last_announced(int in)
-{
-  uint32_t last = 0, number;
-  while (read(in, &number, sizeof number) == sizeof number) {
-    last = number;
-  }
-  return last;
-}
-
-static uint32_t kill_once(const char *file, unsigned wait_us)
+/* Kills it as soon as so many calls have returned, wherever it is by then; the number of cycles
+ * that it had announced. */
+static uint32_t kill_after(const char *file, uint32_t calls)
 {
   int ends[2], status;
   assert_int_equal(pipe(ends), 0);
@@ -63,43 +63,40 @@ static uint32_t kill_once(const char *file, unsigned wait_us)
     record_for_ever(file, ends[1]);
   }
   close(ends[1]);
-  // from the first cycle on, so that the wait covers recording and not the start of a program
-  uint32_t first;
-  assert_int_equal(read(ends[0], &first, sizeof first), sizeof first);
-  fcntl(ends[0], F_SETPIPE_SZ, 1 << 20);
-  nanosleep(&(struct timespec){.tv_nsec = 1000L * wait_us}, NULL);
+  uint32_t last = 0, number;
+  while (last < calls) {
+    assert_int_equal(read(ends[0], &last, sizeof last), sizeof last);
+  }
   assert_int_equal(kill(child, SIGKILL), 0);
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-  uint32_t last = last_announced(ends[0]);
+  while (read(ends[0], &number, sizeof number) == sizeof number) {
+    last = number; // until it was dead
+  }
   close(ends[0]);
-  return last > first ? last : first;
+  return last / STAGES;
 }
 
 static void test_killed_recordings_keep_what_was_announced(void **state)
 {
   (void)state;
-  unsigned seed = (unsigned)time(NULL) ^ (unsigned)getpid();
-  uint32_t most = 0;
-  print_message("seed %u\n", seed);
-  for (int k = 0; k < KILLS; k++) {
+  for (uint32_t k = 0; k < KILLS; k++) {
     struct dea_recording *recording;
     char name[32];
-    snprintf(name, sizeof name, "killed-%d.h5", k);
+    snprintf(name, sizeof name, "killed-%" PRIu32 ".h5", k);
     const char *file = in_folder(name);
-    uint32_t cycles = kill_once(file, (unsigned)rand_r(&seed) % LONGEST_US);
+    uint32_t calls = 1 + k + k * k / 8; // each stage of a cycle, early and late
+    uint32_t cycles = kill_after(file, calls);
+    assert_true(cycles >= calls / STAGES);
     if (dea_recording_read(ctx, file, &recording) != DEA_OK) {
-      fail_msg("%d: %s", k, dea_context_message(ctx));
+      fail_msg("after %" PRIu32 " calls: %s", calls, dea_context_message(ctx));
     }
     assert_false(recording->complete);
     assert_non_null(strstr(recording->ended, "killed"));
     sample_check(recording, (size_t)cycles * SAMPLE_CYCLE, cycles, cycles, cycles);
     dea_recording_destroy(ctx, recording);
-    most = cycles > most ? cycles : most;
     unlink(file);
   }
-  print_message("up to %" PRIu32 " cycles\n", most);
-  assert_true(most > 20);
 }
 
 /* Records some cycles on a disk that takes so many writes only, the last one in part: the file is
