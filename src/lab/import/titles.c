@@ -52,8 +52,27 @@ const char *dea_title_unit(struct dea_context *ctx, const char *unit, double *fa
   return si;
 }
 
+/* The micro sign in UTF-8 and in Latin-1, and the Greek letter mu, become 'u'; false when the unit
+ * is empty or too long for one. */
+static bool fold_unit(struct dea_slice unit, char out[UNIT_SIZE])
+{
+  static const char *const micros[] = {"\xc2\xb5", "\xce\xbc", "\xb5"};
+  size_t skip = 0;
+  for (size_t i = 0; i < sizeof micros / sizeof micros[0] && skip == 0; i++) {
+    size_t n = strlen(micros[i]);
+    skip = unit.length > n && memcmp(unit.text, micros[i], n) == 0 ? n : 0;
+  }
+  if (unit.length == 0 || unit.length >= UNIT_SIZE) {
+    return false;
+  }
+  snprintf(out, UNIT_SIZE, "%s%.*s", skip > 0 ? "u" : "", (int)(unit.length - skip),
+           unit.text + skip);
+  return true;
+}
+
 bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
 {
+  // without a factor to SI
   static const char *const others[] = {"\xc2\xb0"
                                        "C",
                                        "\xb0"
@@ -62,12 +81,7 @@ bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
                                        "a.u.",
                                        "-",
                                        "1",
-                                       "counts",
-                                       "\xb5m",
-                                       "\xb5"
-                                       "A",
-                                       "\xb5s",
-                                       "\xb5N"};
+                                       "counts"};
   char text[UNIT_SIZE];
   double factor;
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
@@ -75,73 +89,27 @@ bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
       return true;
     }
   }
-  if (unit.length == 0 || unit.length >= sizeof text) {
-    return false;
-  }
-  memcpy(text, unit.text, unit.length);
-  text[unit.length] = '\0';
-  return dea_title_unit(ctx, text, &factor) != NULL;
+  return fold_unit(unit, text) && dea_title_unit(ctx, text, &factor) != NULL;
 }
 
 /* Units that are taken without brackets: what udunits knows beside these ("in", "a", "d") stands at
  * the end of names that mean something else. */
 static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
 {
-  // the micro sign in UTF-8 and in Latin-1, the Greek letter mu
-  static const char *const units[] = {"\xb5s",
-                                      "\xb5m",
-                                      "\xb5N",
-                                      "\xb5V",
-                                      "\xc2\xb5V",
-                                      "uV",
-                                      "KV",
-                                      "\xce\xbcs",
-                                      "\xce\xbcm",
-                                      "\xce\xbcN",
-                                      "\xce\xbcV",
-                                      "\xce\xbc"
-                                      "A",
-                                      "\xc2\xb5"
-                                      "A",
-                                      "\xb5"
-                                      "A",
-                                      "msec",
-                                      "usec",
-                                      "sec",
-                                      "s",
-                                      "ms",
-                                      "us",
-                                      "\xc2\xb5s",
-                                      "ns",
-                                      "min",
-                                      "V",
-                                      "kV",
-                                      "mV",
-                                      "mA",
-                                      "uA",
-                                      "nA",
-                                      "m",
-                                      "mm",
-                                      "um",
-                                      "\xc2\xb5m",
-                                      "nm",
-                                      "cm",
-                                      "N",
-                                      "mN",
-                                      "\xc2\xb5N",
-                                      "uN",
-                                      "kHz",
-                                      "Hz",
-                                      "MV",
-                                      "MHz"};
-  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-    if (unit.length == strlen(units[i]) && memcmp(unit.text, units[i], unit.length) == 0) {
-      return true;
+  static const char *const units[] = {
+      "s",  "ms", "us", "ns", "min", "sec", "msec", "usec", "V", "kV", "KV", "mV",  "uV", "MV",
+      "mA", "uA", "nA", "m",  "mm",  "um",  "nm",   "cm",   "N", "mN", "uN", "kHz", "Hz", "MHz"};
+  char text[UNIT_SIZE];
+  bool known = false;
+  if (fold_unit(unit, text)) {
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+      known = known || strcmp(text, units[i]) == 0;
     }
   }
   // "channel_A" is no current
-  return unit.length == 1 && unit.text[0] == 'A' &&
-         (dea_slice_is(name, "i") || dea_slice_is(name, "current") || dea_slice_is(name, "strom"));
+  return known || (unit.length == 1 && unit.text[0] == 'A' &&
+                   (dea_slice_is(name, "i") || dea_slice_is(name, "current") ||
+                    dea_slice_is(name, "strom")));
 }
 
 /* How many letters part name and unit there: '/', '_' or " in "; weak: ':', ',', and a blank before
