@@ -120,6 +120,54 @@ static void test_stall_is_no_jump(void **state)
   supply_stop(&s);
 }
 
+/* Kills all children of a process. */
+static void kill_children(pid_t parent)
+{
+  char path[64];
+  int child;
+  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+  FILE *file = fopen(path, "r");
+  if (file == NULL) {
+    skip(); // a kernel without that list
+  }
+  size_t killed = 0;
+  while (fscanf(file, "%d", &child) == 1) {
+    killed += kill(child, SIGKILL) == 0;
+  }
+  fclose(file);
+  assert_int_equal(killed, 1);
+}
+
+/* The computer dies, and the guard with it: the supply's own watchdog is fed while all is well,
+ * disarmed at the end, and switches off when nobody feeds it. */
+static void test_watchdog_of_the_supply(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){.watchdog_s = 1.5};
+  supply_start(&s);
+  const char *keys =
+      SUPPLY_MEASURES ", watchdog: {arm: WDOG ON, feed: WDOG FEED, disarm: WDOG OFF, "
+                      "period: 0.2 s}";
+  supply_protocol(&s, 3, keys);
+  assert_int_equal(supply_wait(supply_arm("fed.h5"), 20), 0);
+  assert_true(isnan(s.fed_s));
+  supply_protocol(&s, 20, keys);
+  pid_t child = supply_arm("dead.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  kill(child, SIGSTOP); // it must not notice
+  kill_children(child);
+  kill(child, SIGKILL);
+  assert_int_equal(supply_wait(child, 5), -SIGKILL);
+  double took_s = comes_down(&s, 10);
+  print_message("watchdog: at 0 V after %.3f s\n", took_s);
+  assert_true(isfinite(took_s));
+  // nobody has read that back
+  assert_int_equal(supply_wait(supply_arm("next.h5"), 20), 6);
+  assert_contains(command_err, "which did not end");
+  supply_stop(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -127,6 +175,7 @@ int main(void)
       cmocka_unit_test(test_interrupted),
       cmocka_unit_test(test_stopped),
       cmocka_unit_test(test_stall_is_no_jump),
+      cmocka_unit_test(test_watchdog_of_the_supply),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }
