@@ -106,6 +106,8 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
     supply_answer(s, line->client, "ACME,Supply,1,1");
   } else if (strcmp(line->text, "*OPC?") == 0) {
     supply_answer(s, line->client, "1");
+  } else if (strcmp(line->text, "OUTP?") == 0) {
+    supply_answer(s, line->client, s->on ? "1" : "0");
   } else if (strcmp(line->text, "SYST:ERR?") == 0) {
     supply_answer(s, line->client, "0,\"No error\"");
   } else if (strcmp(line->text, "MEAS:VOLT?") == 0) {

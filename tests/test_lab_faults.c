@@ -89,7 +89,7 @@ static pid_t start_drive(const struct run *r, const char *folder, int port)
           "instruments:\n"
           "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
           "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF%s}\n",
-          zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\"" : "");
+          zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\", is_off: \"OUTP?\"" : "");
   fclose(file);
   snprintf(command, sizeof command,
            "cd '%s' && %s XDG_STATE_HOME='%s' exec '%s' drive p.yaml --arm -o r.h5 >out 2>err",

@@ -565,10 +565,12 @@ static void stop_all(struct loop *loop)
       continue;
     }
     dea_drive_take_zero(loop->protocol, known, loop->report);
-    if (apart && loop->output.over) { // it measures on
+    if (apart) { // it measures on, also what could not be played to its end
+      loop->output.over = true;
       m->seen = 0;
       m->zero = false;
-      read_monitor(loop, until_s);
+      m->volts = NAN;
+      read_monitor(loop, dea_clock_s() + loop->protocol->safety.zero_time_s.si);
     }
   }
   if (m->window == 0 || loop->output.played == 0 || zero->state == DEA_ZERO_UNKNOWN) {

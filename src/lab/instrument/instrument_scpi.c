@@ -101,6 +101,11 @@ static const struct dea_field fields[] = {
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw, output_off, "output_off",
                          "command that switches its output off, before it is set to 0 V at the end",
                          "OUTP OFF", .absent_text = "it is only set to 0 V"),
+    DEA_INSTRUMENT_LABEL(
+        struct dea_scpi_raw, is_off, "is_off",
+        "question that it answers with 0 or OFF once its output is off; without it "
+        "a supply that confirms what it has yet to do may be believed",
+        "OUTP?", .absent_text = "it is not asked"),
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw, confirm, "confirm",
                          "question sent behind each voltage; no other is sent before its answer",
                          "*OPC?", .default_text = "*OPC?"),

@@ -28,7 +28,7 @@ struct dea_scpi_raw {
   struct dea_scpi_raw_reading readings[DEA_INSTRUMENT_READINGS_MAX];
   size_t reading_count;
   // of the output
-  struct dea_label output, output_off, confirm, measure;
+  struct dea_label output, output_off, is_off, confirm, measure;
   struct dea_quantity output_factor, output_interval_s, queue_s, behind_s;
   struct {
     struct dea_label arm, feed, disarm;

@@ -36,6 +36,23 @@ static void command_end(const struct dea_scpi_link *link, const struct dea_scpi_
   }
 }
 
+/* Whether it says that its output is off, or need not. False: it does not answer. */
+static bool ask_off(struct dea_context *ctx, struct dea_scpi_link *link,
+                    const struct dea_scpi_raw *raw, double timeout_s, bool *off)
+{
+  const char *answer;
+  double value;
+  *off = raw->is_off.origin == DEA_ABSENT;
+  if (*off) {
+    return true;
+  }
+  if (dea_scpi_ask(ctx, link, timeout_s, raw->is_off.text, &answer) != DEA_OK || answer == NULL) {
+    return false;
+  }
+  *off = strncmp(answer, "OFF", 3) == 0 || (dea_scpi_number(answer, &value) && value == 0);
+  return true;
+}
+
 /* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
 static bool read_back(struct dea_context *ctx, struct dea_scpi_link *link,
                       const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
@@ -44,17 +61,18 @@ static bool read_back(struct dea_context *ctx, struct dea_scpi_link *link,
   double since_s = NAN;
   for (;;) {
     const char *answer;
-    double asked_s = dea_clock_s(), value;
+    double asked_s = dea_clock_s(), value, wait_s = fmax(share * (until_s - asked_s), poll_s);
+    bool off = false;
     if (asked_s >= until_s) {
       return true;
     }
-    if (dea_scpi_ask(ctx, link, fmax(share * (until_s - asked_s), poll_s), raw->measure.text,
-                     &answer) != DEA_OK ||
-        answer == NULL || !dea_scpi_number(answer, &value) || isnan(value)) {
+    if (dea_scpi_ask(ctx, link, wait_s, raw->measure.text, &answer) != DEA_OK || answer == NULL ||
+        !dea_scpi_number(answer, &value) || isnan(value) ||
+        !ask_off(ctx, link, raw, wait_s, &off)) {
       return false;
     }
     zero->volts = value / raw->output_factor.si;
-    if (fabs(zero->volts * protocol->amplifier.gain.si) > protocol->safety.at_zero_V.si) {
+    if (!off || fabs(zero->volts * protocol->amplifier.gain.si) > protocol->safety.at_zero_V.si) {
       since_s = NAN;
     } else if (isnan(since_s)) {
       since_s = asked_s;
