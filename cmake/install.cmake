@@ -21,6 +21,10 @@ endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
   PATTERN ".gitkeep" EXCLUDE PATTERN "*.run" EXCLUDE)
 
+# The package for Octave and MATLAB; its MEX file is compiled where it is used (dea_build.m).
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/matlab DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
+  FILES_MATCHING PATTERN "*.m" PATTERN "*.c")
+
 install(FILES ${PROJECT_BINARY_DIR}/src/dea.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/src/completion.bash RENAME dea
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

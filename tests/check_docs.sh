@@ -5,7 +5,7 @@ cd "$1"
 list=$(
   for page in *.md docs/*.md docs/*/*.md; do
     [ "$page" = CHANGELOG.md ] && continue # it tells the past
-    grep -oE '(src|tests|verify|scripts|examples|cmake|web)/[A-Za-z0-9_./-]*[*<]?' "$page" |
+    grep -oE '(src|tests|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
       grep -v '[*<]$' | sed "s|[.-]*\$||; s|^|$page .|; s| \\.| |" || true
     grep -oE '\]\([^)#: ]+[)#]' "$page" | sed "s/^](//; s/[)#]\$//; s|^|$page $(dirname "$page")/|" || true
   done | sort -u

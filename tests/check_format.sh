@@ -3,4 +3,4 @@
 set -eu
 cd "$1"
 command -v clang-format-14 >/dev/null 2>&1 || exit 77
-find src tests bench verify web -name '*.[ch]' -exec clang-format-14 --dry-run -Werror {} +
+find src tests bench verify web matlab -name '*.[ch]' -exec clang-format-14 --dry-run -Werror {} +

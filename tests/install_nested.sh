@@ -36,6 +36,12 @@ if command -v clang-14 >/dev/null 2>&1; then
     clang-14 -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only $(pkg-config --cflags libdea) -
 fi
 
+# The MEX file, through pkg-config; a static library cannot be in one (its HDF5 is not made for it).
+if [ -e "$library/libdea.so" ] && command -v mkoctfile >/dev/null 2>&1; then
+  (cd "$prefix/share/dea/matlab" && env -u LD_LIBRARY_PATH octave-cli --no-init-file --eval \
+    "dea_build; d = dea.Design('$source/examples/plain-disc.yaml'); r = dea.run(d); disp(r)")
+fi
+
 dea=$prefix/bin/dea
 "$dea" --version
 "$dea" materials >"$build/materials.txt"

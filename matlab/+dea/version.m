@@ -1,0 +1,4 @@
+function found = version()
+  % Version of libdea, such as '0.1.0'.
+  found = dea_mex('version');
+end
