@@ -11,12 +11,12 @@
 
 enum { ROOM = 4000, BLOCK = 100 };
 static atomic_bool held;
+static struct dea_context *own; // of the recorder
 
 static struct dea_writer *begin(const char *file, bool waits)
 {
   static const struct dea_recorder_channel channel = {
       .name = "command", .kind = DEA_CHANNEL_COMMAND, .interval_s = 1e-3, .filter_Hz = (double)NAN};
-  static struct dea_context *own;
   const struct dea_recorder_options options = {.channels = &channel, .channel_count = 1};
   struct dea_recorder *recorder;
   struct dea_writer *writer;
@@ -72,6 +72,7 @@ static void test_disk_that_blocks(void **state)
   assert_int_equal(dea_writer_add(ctx, writer, 0, &(double){0}, 1), DEA_E_IO); // no gap
   atomic_store(&held, false);
   assert_int_equal(dea_writer_finish(ctx, writer, "", "it was too slow"), DEA_E_IO);
+  dea_context_destroy(own);
   check(file, blocks, false);
 }
 
@@ -85,6 +86,7 @@ static void test_waits_for_room(void **state)
   struct dea_writer *writer = begin(file, true);
   assert_int_equal(add_blocks(writer, 300, &status), 300);
   assert_int_equal(dea_writer_finish(ctx, writer, "", NULL), DEA_OK);
+  dea_context_destroy(own);
   check(file, 300, true);
 }
 
