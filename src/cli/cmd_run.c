@@ -1,20 +1,17 @@
 /* dea run: design -> models -> studies -> run folder, or JSON on stdout. */
-#define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "base/file.h"
 #include "base/text.h"
 #include "base/yaml.h"
 #include "cli/models.h"
 #include "cli/print_tables.h"
-#include "output/checkpoint.h"
+#include "output/job.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
-#include "study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
 
@@ -33,7 +30,7 @@ struct run {
   struct dea_result *result;
   struct dea_text directory;
   struct dea_text others; // the designs that it is compared with, as a value of the design
-  struct dea_keep *keep;
+  struct dea_job job;
 };
 
 static int take_model(struct dea_cli *cli, const struct dea_command *command,
@@ -69,18 +66,16 @@ static void choose_directory(const struct request *request, struct dea_text *out
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
  * ones. */
 static dea_status choose_models(struct dea_cli *cli, const struct request *request,
-                                const struct dea_design *design,
-                                const struct dea_model_type *out[DEA_DESIGN_MODELS_MAX],
-                                size_t *count)
+                                const struct dea_design *design, struct dea_job *job)
 {
   bool given = request->models.count > 0, bad = false;
-  *count = given ? request->models.count : design->compute.model_count;
-  for (size_t i = 0; i < *count; i++) {
+  job->model_count = given ? request->models.count : design->compute.model_count;
+  for (size_t i = 0; i < job->model_count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_location option = {.file = "--model"};
-    out[i] = given ? cli_model_find(cli, request->models.at[i], option)
-                   : cli_model_find(cli, label->text, label->location);
-    bad = bad || out[i] == NULL;
+    job->models[i] = given ? cli_model_find(cli, request->models.at[i], option)
+                           : cli_model_find(cli, label->text, label->location);
+    bad = bad || job->models[i] == NULL;
   }
   if (bad) {
     return dea_fail(cli->ctx, given ? DEA_E_USAGE : DEA_E_DESIGN, "a model is not known");
@@ -133,7 +128,7 @@ static void release(struct dea_cli *cli, struct run *run)
   if (run->others.ctx != NULL) {
     dea_text_free(&run->others);
   }
-  dea_checkpoint_destroy(cli->ctx, run->keep);
+  dea_job_end(cli->ctx, &run->job);
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
@@ -220,8 +215,7 @@ static void print_model(const struct dea_result *result, const char *model)
 }
 
 /* Writes what there is, whatever happened before: partial results are results. */
-static dea_status deliver(struct dea_cli *cli, const struct request *request, struct run *run,
-                          const struct dea_model_type *const *types, size_t count)
+static dea_status deliver(struct dea_cli *cli, const struct request *request, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
   if (request->json) {
@@ -230,84 +224,45 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     fputs(text, stdout);
     dea_free(ctx, text);
   }
-  const char *directory = dea_text_get(&run->directory);
-  dea_status status = DEA_OK;
-  if (directory[0] != '\0') {
-    const struct dea_run_folder_options folder = {.started = true,
-                                                  .no_figures = request->no_figures};
-    status = dea_run_folder_write(ctx, run->result, directory, &folder);
-  }
+  dea_status status = dea_job_write(ctx, &run->job, run->result);
   if (!request->json && !cli->quiet) {
     puts(run->design->title.text);
-    for (size_t i = 0; i < count; i++) {
-      print_model(run->result, types[i]->name);
-      DEA_TRY(ctx, cli_print_tables(ctx, run->result, types[i]->name));
+    for (size_t i = 0; i < run->job.model_count; i++) {
+      print_model(run->result, run->job.models[i]->name);
+      DEA_TRY(ctx, cli_print_tables(ctx, run->result, run->job.models[i]->name));
     }
     if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
-      printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", directory,
+      printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", run->job.folder,
              request->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
     }
   }
   return status;
 }
 
-/* Makes the folder ready, and what is to be kept in it while the run goes. */
-static dea_status open_folder(struct dea_cli *cli, const struct request *request, struct run *run)
-{
-  struct dea_context *ctx = cli->ctx;
-  run->directory.ctx = ctx;
-  choose_directory(request, &run->directory);
-  const char *directory = dea_text_get(&run->directory);
-  if (directory[0] == '\0') {
-    return DEA_OK;
-  }
-  if (request->resume) {
-    DEA_TRY(ctx, dea_checkpoint_restore(ctx, directory, run->result));
-  }
-  DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, request->force || request->resume));
-  if (request->force) {
-    dea_run_folder_clear(ctx, directory);
-  }
-  DEA_TRY(ctx, dea_checkpoint_create(ctx, directory, &run->keep));
-  run->result->keeper = dea_checkpoint_get_sink(run->keep);
-  return DEA_OK;
-}
-
-/* Names of studies, NULL for those that the design asks for. */
-static const char *const *chosen_studies(const struct request *request)
-{
-  return request->studies.count > 0 ? request->studies.at : NULL;
-}
-
 static dea_status run_all(struct dea_cli *cli, const struct request *request, struct run *run)
 {
-  const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
   struct dea_context *ctx = cli->ctx;
-  size_t count;
-  struct timespec start, end;
+  bool began, given = request->studies.count > 0; // else those that the design asks for
+  char message[1024];
   DEA_TRY(ctx, prepare(cli, request, run));
-  DEA_TRY(ctx, choose_models(cli, request, run->design, types, &count));
-  DEA_TRY(ctx, dea_study_check(ctx, chosen_studies(request), request->studies.count, run->design));
-  DEA_TRY(ctx, open_folder(cli, request, run));
-  dea_status first = DEA_OK;
-  char message[1024] = "";
-  clock_gettime(CLOCK_MONOTONIC, &start);
-  for (size_t i = 0; i < count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(run->keep);
-       i++) {
-    dea_status status = dea_study_run_named(ctx, types[i], chosen_studies(request),
-                                            request->studies.count, run->result);
-    if (status != DEA_OK && first == DEA_OK) {
-      first = status;
-      snprintf(message, sizeof message, "%s: %s", types[i]->name, dea_context_message(ctx));
-    }
+  run->directory.ctx = ctx;
+  choose_directory(request, &run->directory);
+  run->job = (struct dea_job){.studies = given ? request->studies.at : NULL,
+                              .study_count = request->studies.count,
+                              .folder = dea_text_get(&run->directory),
+                              .force = request->force,
+                              .resume = request->resume,
+                              .no_figures = request->no_figures};
+  DEA_TRY(ctx, choose_models(cli, request, run->design, &run->job));
+  dea_status status = dea_job_run(ctx, &run->job, run->result, &began);
+  snprintf(message, sizeof message, "%s", dea_context_message(ctx));
+  if (!began) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  clock_gettime(CLOCK_MONOTONIC, &end);
-  run->result->provenance.wall_s =
-      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-  if (!dea_checkpoint_refused(run->keep)) {
-    DEA_TRY(ctx, deliver(cli, request, run, types, count));
+  if (!dea_checkpoint_refused(run->job.keep)) {
+    DEA_TRY(ctx, deliver(cli, request, run));
   }
-  return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
+  return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 
 static int run(struct dea_cli *cli, void *user)
