@@ -11,6 +11,11 @@ void dea_json_put(json_t *object, const char *key, double value)
   }
 }
 
+void dea_json_put_count(json_t *object, const char *key, size_t count)
+{
+  json_object_set_new(object, key, json_integer((json_int_t)count));
+}
+
 void dea_json_put_text(json_t *object, const char *key, const char *text)
 {
   json_t *value = json_string(text != NULL ? text : "");

@@ -221,8 +221,6 @@ json_t *cli_findings_json(const struct dea_context *ctx);
 void cli_print_json(json_t *json);
 /* Prints a text to stdout if `status` is good and it is whole, and frees it. */
 dea_status cli_print_text(dea_status status, struct dea_text *text);
-/* Progress on stderr: one line that is rewritten on a terminal, a plain line otherwise. */
-void cli_progress(void *cli, const char *what, size_t done, size_t total);
 /* From here on no signal ends or stops the program at once, not a second one either, because the
  * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
  * not under nohup). Progress is left out while stderr does not take it. */

@@ -118,9 +118,9 @@ static void print_plan(const struct dea_protocol *protocol, const struct dea_pro
 static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
 {
   json_t *json = json_object();
-  json_object_set_new(json, "cycles", json_integer((json_int_t)plan->cycles));
-  json_object_set_new(json, "samples", json_integer((json_int_t)plan->samples));
-  json_object_set_new(json, "channels", json_integer((json_int_t)protocol->input_count));
+  dea_json_put_count(json, "cycles", plan->cycles);
+  dea_json_put_count(json, "samples", plan->samples);
+  dea_json_put_count(json, "channels", protocol->input_count);
   dea_json_put(json, "duration_s", plan->duration_s);
   dea_json_put(json, "rate_Hz", protocol->rate_Hz.si);
   dea_json_put(json, "lowest_V", plan->lowest_V);
@@ -264,8 +264,8 @@ static json_t *report_json(const struct dea_drive_report *report, const char *fi
   json_t *json = json_object();
   dea_json_put_text(json, "file", file);
   dea_json_put(json, "played_s", report->played_s);
-  json_object_set_new(json, "cycles", json_integer((json_int_t)report->cycles));
-  json_object_set_new(json, "lost", json_integer((json_int_t)report->lost));
+  dea_json_put_count(json, "cycles", report->cycles);
+  dea_json_put_count(json, "lost", report->lost);
   dea_json_put_text(json, "output", dea_zero_name(report->zero.state));
   dea_json_put(json, "output_V", report->zero.volts);
   json_object_set_new(json, "reached_zero", json_boolean(report->zero.state == DEA_ZERO_READ_BACK));

@@ -143,8 +143,8 @@ static json_t *json_of_channel(const struct dea_channel *channel)
   dea_json_put_text(json, "name", channel->name);
   dea_json_put_text(json, "quantity", dea_channel_meanings[channel->kind].name);
   dea_json_put_text(json, "unit", channel->unit);
-  json_object_set_new(json, "count", json_integer((json_int_t)channel->count));
-  json_object_set_new(json, "missing", json_integer((json_int_t)range.missing));
+  dea_json_put_count(json, "count", channel->count);
+  dea_json_put_count(json, "missing", range.missing);
   if (channel->interval_s > 0) {
     dea_json_put(json, "start_s", channel->start_s);
     dea_json_put(json, "interval_s", channel->interval_s);

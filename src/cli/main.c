@@ -45,7 +45,8 @@ static bool has_room(void)
   return poll(&entry, 1, 0) > 0 && (entry.revents & POLLOUT) != 0;
 }
 
-void cli_progress(void *user, const char *what, size_t done, size_t total)
+/* One line that is rewritten on a terminal, a plain line otherwise. */
+static void show_progress(void *user, const char *what, size_t done, size_t total)
 {
   const struct dea_cli *cli = user;
   if (cli->quiet || (voltage_flag != 0 && !has_room())) {
@@ -305,7 +306,7 @@ int main(int argc, char **argv)
     dea_text_add(&line, "%s%s", i > 0 ? " " : "", i > 0 ? argv[i] : "dea");
   }
   cli.command_line = dea_text_get(&line);
-  dea_context_set_progress(cli.ctx, cli_progress, &cli);
+  dea_context_set_progress(cli.ctx, show_progress, &cli);
   dea_context_set_interrupt(cli.ctx, &interrupt_flag);
   int code = 0;
   argc = take_common_options(&cli, argc, argv);

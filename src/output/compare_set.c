@@ -461,7 +461,7 @@ static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, doub
   snprintf(at, sizeof at, "largest_at_%s", at_unit);
   dea_json_put_text(object, "quantity", column->key);
   dea_json_put_text(object, "unit", column->si_unit);
-  json_object_set_new(object, "points", json_integer((json_int_t)m->count));
+  dea_json_put_count(object, "points", m->count);
   dea_json_put(object, "rms", m->rms);
   dea_json_put(object, "largest", m->largest);
   dea_json_put(object, at, m->largest_at);
@@ -470,7 +470,7 @@ static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, doub
   dea_json_put(object, "relative_rms", m->relative_rms);
   dea_json_put(object, "relative_largest", m->relative_largest);
   if (m->std_count > 0) {
-    json_object_set_new(object, "std_points", json_integer((json_int_t)m->std_count));
+    dea_json_put_count(object, "std_points", m->std_count);
     dea_json_put(object, "chi_square_per_point", m->chi_square);
     dea_json_put(object, "within_1_std", m->within_1_std);
     dea_json_put(object, "within_2_std", m->within_2_std);
@@ -526,7 +526,7 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
     json_t *one = misfit_json(&h->misfit, "s", NAN);
     dea_json_put_text(one, "a", set->curves[h->curve].name);
     dea_json_put(one, "shift_s", h->clock.shift_s);
-    json_object_set_new(one, "edges", json_integer((json_int_t)h->clock.edges));
+    dea_json_put_count(one, "edges", h->clock.edges);
     json_array_append_new(histories, one);
   }
   json_object_set_new(root, "comparisons", curves);

@@ -29,11 +29,6 @@ dea_status dea_set_figure_finish(struct dea_set_figures *f, struct dea_plot *plo
   return status;
 }
 
-struct dea_series dea_set_style(const struct dea_compare_set *set, size_t curve)
-{
-  return dea_figure_style(set->curves[curve].name, curve);
-}
-
 void dea_set_range(struct dea_panel *panel)
 {
   double low = INFINITY, high = -INFINITY;
@@ -155,7 +150,7 @@ static dea_status fill_quantity(struct dea_set_figures *f, int column, struct de
     DEA_TRY(f->ctx, add_measured(f->ctx, panel, m, column, true));
   }
   for (size_t i = 0; i < set->curve_count; i++) {
-    struct dea_series look = dea_set_style(set, i);
+    struct dea_series look = dea_figure_style(set->curves[i].name, i);
     DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, set->curves[i].curve, column,
                                    dea_point_columns[column].factor, 0.0, &look));
   }
@@ -237,7 +232,7 @@ static dea_status add_line(struct dea_set_figures *f, struct dea_panel *panel,
                            const struct dea_set_profile *p)
 {
   const struct dea_film_line *line = &p->line;
-  struct dea_series *series, look = dea_set_style(f->set, p->curve);
+  struct dea_series *series, look = dea_figure_style(f->set->curves[p->curve].name, p->curve);
   size_t n = line->count;
   look.style = p->half == DEA_HALF_FIBRE ? DEA_LINE : DEA_DASHED;
   if (p->half == DEA_HALF_BETWEEN) {
@@ -256,13 +251,9 @@ static dea_status add_line(struct dea_set_figures *f, struct dea_panel *panel,
 static dea_status add_halves(struct dea_set_figures *f, struct dea_panel *panel, double film_m)
 {
   for (int half = 0; half < DEA_HALVES; half++) {
-    struct dea_series *entry;
-    DEA_TRY(f->ctx, dea_panel_add(f->ctx, panel, 1, &entry));
-    entry->style = half == DEA_HALF_FIBRE ? DEA_LINE : DEA_DASHED;
-    entry->colour = DEA_GREY;
-    snprintf(entry->title, sizeof entry->title, "%s", dea_half_names[half]);
-    entry->values[0] = 1e3 * film_m;
-    entry->values[1] = 0.0;
+    DEA_TRY(f->ctx,
+            dea_figure_add_entry(f->ctx, panel, half == DEA_HALF_FIBRE ? DEA_LINE : DEA_DASHED,
+                                 dea_half_names[half], 1e3 * film_m, 0.0));
   }
   return DEA_OK;
 }

@@ -46,7 +46,7 @@ static dea_status add_computed(struct dea_set_figures *f, struct dea_panel *pane
   struct dea_context *ctx = f->ctx;
   size_t n = h->transient->count;
   double *time = dea_alloc(ctx, n, sizeof *time), *values = dea_alloc(ctx, n, sizeof *values);
-  struct dea_series look = dea_set_style(f->set, h->curve);
+  struct dea_series look = dea_figure_style(f->set->curves[h->curve].name, h->curve);
   dea_status status = time != NULL && values != NULL ? DEA_OK : DEA_E_MEMORY;
   for (size_t i = 0; status == DEA_OK && i < n; i++) {
     time[i] = h->transient->points[i].time_s + h->clock.shift_s;

@@ -25,8 +25,6 @@ dea_status dea_set_figure_begin(struct dea_set_figures *f, const char *name, con
 /* Writes a plot that was filled with that status, if it shows anything, and destroys it. */
 dea_status dea_set_figure_finish(struct dea_set_figures *f, struct dea_plot *plot,
                                  dea_status status);
-/* Look of a curve, the same in all figures. */
-struct dea_series dea_set_style(const struct dea_compare_set *set, size_t curve);
 /* Vertical range: that of the panel's series with their bands, and a little more. */
 void dea_set_range(struct dea_panel *panel);
 /* Puts the key above the panel in as many columns as its titles leave room for. */

@@ -50,6 +50,13 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
                           const struct dea_series *look);
 /* Look of the m-th model. */
 struct dea_series dea_figure_style(const char *model, size_t m);
+/* Adds that column of all models, in the units of figures. */
+dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, bool prefer_path);
+/* Adds an entry of the key alone, a grey line of that style; of its series only a point shows, at
+ * x, y, which lies on a curve that is there. */
+dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel,
+                                enum dea_series_style style, const char *title, double x, double y);
 /* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
 void dea_figure_voltage_axis(struct dea_panel *panel);
 /* Marks the events of all paths on their curves, with a key entry a kind. column, factor, shift: as

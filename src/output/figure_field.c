@@ -95,11 +95,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   if (furthest != NULL) {
     DEA_TRY(ctx, add_breakdown(ctx, panel, furthest, top));
   }
-  for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_style(models[m], m);
-    DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false), column,
-                                dea_point_columns[column].factor, 0.0, &look));
-  }
+  DEA_TRY(ctx, dea_figure_add_models(ctx, panel, result, column, false));
   snprintf(panel->y_label, sizeof panel->y_label, "True field {/:Italic E} (V/\302\265m)");
   panel->y_min = 0.0;
   panel->key = "at graph 0.03, 0.66 top left";

@@ -28,6 +28,19 @@ struct dea_series dea_figure_style(const char *model, size_t m)
   return look;
 }
 
+dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel,
+                                enum dea_series_style style, const char *title, double x, double y)
+{
+  struct dea_series *entry;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
+  entry->style = style;
+  entry->colour = DEA_GREY;
+  snprintf(entry->title, sizeof entry->title, "%s", title);
+  entry->values[0] = x;
+  entry->values[1] = y;
+  return DEA_OK;
+}
+
 /* Series of the points with that stability; where the two meet both have the point of the dashed
  * side's start, so that no gap opens. */
 static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
@@ -66,6 +79,19 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
       panel->says_unstable = true;
       return add_part(ctx, panel, curve, column, factor, shift, look, false);
     }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, bool prefer_path)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t m = 0; m < count; m++) {
+    struct dea_series look = dea_figure_style(models[m], m);
+    DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], prefer_path),
+                                column, dea_point_columns[column].factor, 0.0, &look));
   }
   return DEA_OK;
 }

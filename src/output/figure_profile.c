@@ -38,21 +38,15 @@ static dea_status add_record(struct dea_context *ctx, struct dea_plot *plot,
   return DEA_OK;
 }
 
-/* Key entries of the two directions; of their series only a point shows, on a curve that is there.
- */
+/* Key entries of the two directions. */
 static dea_status add_directions(struct dea_context *ctx, struct dea_panel *panel,
                                  const struct dea_profile_record *record)
 {
   static const char *const titles[2] = {"radial", "hoop"};
-  for (int d = 0; d < 2; d++) {
-    struct dea_series *entry;
-    DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
-    entry->style = d == 0 ? DEA_LINE : DEA_DASHED;
-    entry->colour = DEA_GREY;
-    snprintf(entry->title, sizeof entry->title, "%s", titles[d]);
-    entry->values[0] = 0.0;
-    entry->values[1] =
-        dea_profile_columns[4 + d].factor * record->columns[(size_t)(4 + d) * record->count];
+  for (size_t d = 0; d < 2; d++) {
+    double tension = dea_profile_columns[4 + d].factor * record->columns[(4 + d) * record->count];
+    DEA_TRY(ctx, dea_figure_add_entry(ctx, panel, d == 0 ? DEA_LINE : DEA_DASHED, titles[d], 0.0,
+                                      tension));
   }
   return DEA_OK;
 }

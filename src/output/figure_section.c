@@ -50,23 +50,6 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   return status;
 }
 
-/* Key entries of the two diameters; of their series only a point shows, on a curve that is there.
- */
-static dea_status add_directions(struct dea_context *ctx, struct dea_panel *panel)
-{
-  static const char *const titles[2] = {"along fibres", "between"};
-  for (int d = 0; d < 2; d++) {
-    struct dea_series *entry;
-    DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
-    entry->style = d == 0 ? DEA_LINE : DEA_DASHED;
-    entry->colour = DEA_GREY;
-    snprintf(entry->title, sizeof entry->title, "%s", titles[d]);
-    entry->values[0] = panel->x_min;
-    entry->values[1] = 0;
-  }
-  return DEA_OK;
-}
-
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
@@ -82,7 +65,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     return DEA_OK;
   }
   if (records[0]->mesh->fibres > 0) {
-    DEA_TRY(ctx, add_directions(ctx, panel));
+    DEA_TRY(ctx, dea_figure_add_entry(ctx, panel, DEA_LINE, "along fibres", panel->x_min, 0));
+    DEA_TRY(ctx, dea_figure_add_entry(ctx, panel, DEA_DASHED, "between", panel->x_min, 0));
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Place across the film (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");

@@ -7,13 +7,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
                         struct dea_plot *plot)
 {
   struct dea_panel *panel = &plot->panels[0];
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
-  for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_style(models[m], m);
-    DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], true),
-                                dea_point_column_find("electrode_stretch"), 1.0, 0.0, &look));
-  }
+  DEA_TRY(ctx, dea_figure_add_models(ctx, panel, result, dea_point_column_find("electrode_stretch"),
+                                     true));
   DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, dea_point_column_find("electrode_stretch"),
                                      1.0, 0.0, true));
   snprintf(panel->y_label, sizeof panel->y_label, "Electrode stretch {/:Italic \316\273}_a");

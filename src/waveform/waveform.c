@@ -24,12 +24,6 @@ const struct dea_record *const dea_wave_records[] = {
 #undef WAVE_RECORD
         NULL};
 
-const struct dea_wave_type *const *dea_wave_all(size_t *count)
-{
-  *count = TYPES;
-  return types;
-}
-
 /* The kind that a section names, or NULL after a finding. */
 static dea_status find_type(const struct dea_reader *reader, const struct dea_node *node,
                             const struct dea_wave_type **out)

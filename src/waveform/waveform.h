@@ -76,9 +76,7 @@ bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
 dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform *waveform,
                               double slew_V_per_s, double until_s, struct dea_waveform **out);
 
-/* All kinds in the order of the list, and their tables for printing, ended by NULL; static storage.
- */
-const struct dea_wave_type *const *dea_wave_all(size_t *count);
+/* Tables of all kinds for printing, ended by NULL. */
 extern const struct dea_record *const dea_wave_records[];
 
 #endif

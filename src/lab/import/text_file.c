@@ -60,8 +60,9 @@ bool dea_text_file_is(const unsigned char *head, size_t length)
   return utf16_mark(head, length) != 0 || memchr(head, 0, length) == NULL;
 }
 
-dea_status dea_text_file_open(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                              size_t length, char **copy, struct dea_slice *text)
+/* *copy: the text where it had to be converted, the caller's; else NULL and the bytes are lent. */
+static dea_status open_text(struct dea_context *ctx, const char *file, const unsigned char *bytes,
+                            size_t length, char **copy, struct dea_slice *text)
 {
   int mark = utf16_mark(bytes, length);
   *copy = NULL;
@@ -94,7 +95,7 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
 {
   char *copy;
   struct dea_slice text;
-  dea_status status = dea_text_file_open(ctx, out->file, bytes, length, &copy, &text);
+  dea_status status = open_text(ctx, out->file, bytes, length, &copy, &text);
   if (status == DEA_OK) {
     status = read(ctx, text, out);
   }

@@ -5,13 +5,9 @@
 #include "lab/import/import.h"
 #include "lab/import/slices.h"
 
-/* Takes off a byte order mark; UTF-16 with one becomes UTF-8 in *copy (the caller's, NULL when the
- * bytes themselves are lent). UTF-8 and Latin-1 stay as they are: what is not ASCII is in names
- * only, which dea_table_add converts. DEA_E_IO after a finding when a byte 0 says that it is no
- * text. */
-dea_status dea_text_file_open(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                              size_t length, char **copy, struct dea_slice *text);
-/* Opens the bytes and hands the text to a reader. */
+/* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8. UTF-8
+ * and Latin-1 stay as they are: what is not ASCII is in names only, which dea_table_add converts.
+ * DEA_E_IO when a byte 0 says that it is no text. */
 dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
                               dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
                                                  struct dea_table *out),

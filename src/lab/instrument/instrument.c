@@ -21,12 +21,6 @@ const struct dea_record *const dea_instrument_records[] = {
 #undef INSTRUMENT_RECORD
         NULL};
 
-const struct dea_instrument_type *const *dea_instrument_all(size_t *count)
-{
-  *count = TYPES;
-  return types;
-}
-
 const struct dea_instrument_type *dea_instrument_find(const char *name)
 {
   for (size_t i = 0; types[i] != NULL; i++) {

@@ -92,8 +92,7 @@ struct dea_instrument_type {
   void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
 };
 
-/* All kinds in the order of the list; static storage. NULL when there is none of that name. */
-const struct dea_instrument_type *const *dea_instrument_all(size_t *count);
+/* NULL when there is none of that name. */
 const struct dea_instrument_type *dea_instrument_find(const char *name);
 /* Tables of all kinds for printing, ended by NULL. */
 extern const struct dea_record *const dea_instrument_records[];

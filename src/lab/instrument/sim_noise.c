@@ -19,20 +19,22 @@ static uint64_t draw(struct dea_sim_random *random)
   return z ^ (z >> 31);
 }
 
-double dea_sim_uniform(struct dea_sim_random *random)
+/* In [0, 1). */
+static double uniform(struct dea_sim_random *random)
 {
   return ldexp((double)(draw(random) >> 11), -53);
 }
 
-double dea_sim_normal(struct dea_sim_random *random) // Box and Muller
+/* Of mean 0 and standard deviation 1 (Box and Muller). */
+static double normal(struct dea_sim_random *random)
 {
   if (!isnan(random->spare)) {
     double spare = random->spare;
     random->spare = NAN;
     return spare;
   }
-  double radius = sqrt(-2 * log(1 - dea_sim_uniform(random)));
-  double angle = two_pi * dea_sim_uniform(random);
+  double radius = sqrt(-2 * log(1 - uniform(random)));
+  double angle = two_pi * uniform(random);
   random->spare = radius * sin(angle);
   return radius * cos(angle);
 }
@@ -66,15 +68,15 @@ void dea_sim_read_inputs(const struct dea_protocol *protocol, const struct dea_s
                          double *volts)
 {
   double interval_s = 1 / protocol->rate_Hz.si, spike_A = 0;
-  bool lost = dea_sim_uniform(random) < noise->lost;
-  bool discharge = dea_sim_uniform(random) < noise->discharges_per_s * interval_s;
+  bool lost = uniform(random) < noise->lost;
+  bool discharge = uniform(random) < noise->discharges_per_s * interval_s;
   if (discharge && fabs(state->film_V) > noise->discharge_above_V) {
     spike_A = copysign(noise->discharge_C / interval_s, state->film_V);
   }
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_protocol_input *input = &protocol->inputs[i];
     int kind = input->kind.value;
-    double value = true_value(noise, state, kind) + noise->sigma[kind] * dea_sim_normal(random);
+    double value = true_value(noise, state, kind) + noise->sigma[kind] * normal(random);
     value += kind == DEA_CHANNEL_CURRENT ? spike_A : 0;
     volts[i] = lost ? NAN : convert((value - input->at_zero) / input->per_volt, input->range_V.si);
   }
@@ -91,10 +93,10 @@ void dea_sim_read_profile(struct dea_sim_bench *bench, const struct dea_sim_nois
     double radius_m = fabs(x_m[i] - noise->centre_m);
     double film_m =
         radius_m < frame_m ? dea_sim_bench_height(bench, radius_m) : noise->frame_height_m;
-    double error_m = noise->profile_sigma_m * dea_sim_normal(random);
-    bool outlier = dea_sim_uniform(random) < noise->outliers;
-    double spike_m = largest_outlier_m * (2 * dea_sim_uniform(random) - 1);
-    bool missing = dea_sim_uniform(random) < noise->missing;
+    double error_m = noise->profile_sigma_m * normal(random);
+    bool outlier = uniform(random) < noise->outliers;
+    double spike_m = largest_outlier_m * (2 * uniform(random) - 1);
+    bool missing = uniform(random) < noise->missing;
     z_m[i] = missing ? NAN : film_m + drift_m + slope * x_m[i] + error_m + (outlier ? spike_m : 0);
   }
 }

@@ -24,9 +24,6 @@ struct dea_sim_random {
   double spare; // second one of a pair of normal numbers; NAN: none
 };
 struct dea_sim_random dea_sim_random_of(uint64_t seed);
-/* In [0, 1), and of mean 0 and standard deviation 1. */
-double dea_sim_uniform(struct dea_sim_random *random);
-double dea_sim_normal(struct dea_sim_random *random);
 
 /* Volts at the wires of all inputs of the protocol for a sample; all NAN when it is lost. volts:
  * [inputs]. */

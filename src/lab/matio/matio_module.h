@@ -8,8 +8,6 @@
 
 /* Silences libmatio; before every use of it. */
 void dea_matio_quiet(void);
-/* What a code of libmatio means, as the end of a sentence. */
-const char *dea_matio_reason(int error);
 
 dea_status dea_matio_write(struct dea_context *ctx, const char *file,
                            const struct dea_mat_variable *variables, size_t count,

@@ -18,7 +18,8 @@ void dea_matio_quiet(void)
   Mat_LogInitFunc("dea", be_quiet);
 }
 
-const char *dea_matio_reason(int error)
+/* What a code of libmatio means, as the end of a sentence. */
+static const char *reason(int error)
 {
   switch (error) {
   case MATIO_E_OUT_OF_MEMORY:
@@ -120,7 +121,7 @@ dea_status dea_matio_write(struct dea_context *ctx, const char *file,
   }
   if (error != MATIO_E_NO_ERROR) {
     return dea_fail(ctx, error == MATIO_E_OUT_OF_MEMORY ? DEA_E_MEMORY : DEA_E_IO,
-                    "cannot write %s: %s", file, dea_matio_reason(error));
+                    "cannot write %s: %s", file, reason(error));
   }
   return DEA_OK;
 }

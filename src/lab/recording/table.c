@@ -84,13 +84,6 @@ const char *dea_channel_display_unit(const struct dea_channel *channel)
                                             : dea_channel_meanings[channel->kind].display_unit;
 }
 
-void dea_channel_title(const struct dea_channel *channel, char *out, size_t size)
-{
-  const char *unit = dea_channel_display_unit(channel);
-  bool any = unit[0] != '\0' && strcmp(unit, "1") != 0;
-  snprintf(out, size, "%s%s%s%s", channel->name, any ? " (" : "", any ? unit : "", any ? ")" : "");
-}
-
 static bool same_clock(const struct dea_channel *a, const struct dea_channel *b)
 {
   return a->interval_s > 0 && a->interval_s == b->interval_s && a->start_s == b->start_s;
@@ -99,7 +92,10 @@ static bool same_clock(const struct dea_channel *a, const struct dea_channel *b)
 static void add_title(struct table *t, const struct dea_channel *channel)
 {
   char title[2 * DEA_CHANNEL_NAME_SIZE + 4];
-  dea_channel_title(channel, title, sizeof title);
+  const char *unit = dea_channel_display_unit(channel);
+  bool any = unit[0] != '\0' && strcmp(unit, "1") != 0;
+  snprintf(title, sizeof title, "%s%s%s%s", channel->name, any ? " (" : "", any ? unit : "",
+           any ? ")" : "");
   dea_text_add(&t->lines, ",");
   dea_csv_add_name(&t->lines, title);
 }

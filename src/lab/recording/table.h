@@ -11,8 +11,7 @@
  * field. DEA_E_INTERRUPTED leaves no half file. */
 dea_status dea_recording_write_tables(struct dea_context *ctx,
                                       const struct dea_recording *recording, const char *folder);
-/* "voltage (kV)": name of a channel and its display unit, and the factor to it. */
-void dea_channel_title(const struct dea_channel *channel, char *out, size_t size);
+/* Unit that the values times the factor of their kind are in; lent. */
 const char *dea_channel_display_unit(const struct dea_channel *channel);
 
 #endif

@@ -7,11 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static void put_count(json_t *object, const char *key, size_t value)
-{
-  json_object_set_new(object, key, json_integer((json_int_t)value));
-}
-
 /* "NAME_UNIT", the number under it. */
 static void put_kind(json_t *object, const char *name, enum dea_reduced_kind kind, double value)
 {
@@ -52,11 +47,11 @@ static json_t *levelling_json(const struct dea_levelling *l)
   dea_json_put(object, "film_radius_m", l->film_radius_m);
   dea_json_put(object, "electrode_radius_m", l->electrode_radius_m);
   dea_json_put(object, "averaging_width_m", l->width_m);
-  put_count(object, "frames", l->frames);
-  put_count(object, "frames_at_rest", l->frames_at_rest);
-  put_count(object, "points", l->total);
-  put_count(object, "invalid_points", l->invalid);
-  put_count(object, "outliers", l->outliers);
+  dea_json_put_count(object, "frames", l->frames);
+  dea_json_put_count(object, "frames_at_rest", l->frames_at_rest);
+  dea_json_put_count(object, "points", l->total);
+  dea_json_put_count(object, "invalid_points", l->invalid);
+  dea_json_put_count(object, "outliers", l->outliers);
   return object;
 }
 
@@ -64,8 +59,8 @@ static json_t *level_json(const struct dea_reduced_level *level)
 {
   json_t *object = json_object();
   dea_json_put(object, "voltage_V", level->voltage_V);
-  put_count(object, "step", level->step);
-  put_count(object, "cycles", level->cycles);
+  dea_json_put_count(object, "step", level->step);
+  dea_json_put_count(object, "cycles", level->cycles);
   dea_json_put(object, "shape", level->shape);
   dea_json_put(object, "shape_uncertainty", level->shape_uncertainty);
   for (int k = 0; k < DEA_REDUCED_KINDS; k++) {
@@ -91,8 +86,8 @@ static json_t *level_json(const struct dea_reduced_level *level)
 static json_t *cycle_json(const struct dea_reduced_cycle *cycle)
 {
   json_t *object = json_object();
-  put_count(object, "step", cycle->cycle.step);
-  put_count(object, "number", cycle->cycle.number);
+  dea_json_put_count(object, "step", cycle->cycle.step);
+  dea_json_put_count(object, "number", cycle->cycle.number);
   dea_json_put(object, "start_s", cycle->cycle.start_s);
   dea_json_put(object, "end_s", cycle->cycle.end_s);
   dea_json_put(object, "asked_V", cycle->cycle.level_V);
@@ -145,7 +140,7 @@ static json_t *current_json(const struct dea_current_limits *limits)
   dea_json_put(object, "noise_A", limits->noise_A);
   dea_json_put(object, "threshold_in_noise", limits->factor);
   dea_json_put(object, "blind_after_corner_s", limits->blind_s);
-  put_count(object, "samples", limits->samples);
+  dea_json_put_count(object, "samples", limits->samples);
   return object;
 }
 
