@@ -2,6 +2,7 @@
 #include "devices.h"
 #include "failing_allocator.h"
 #include "model/solid/mesh/grid.h"
+#include "quarter_grid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above

@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "membrane_samples.h"
 #include "model/solid/load/loads.h"
+#include "quarter_grid.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 

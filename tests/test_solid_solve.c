@@ -5,6 +5,7 @@
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 #include "solid_node.h"
 #include "testing.h"
 

@@ -2,6 +2,7 @@
 // ctest: solid
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
+#include "quarter_grid.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"

@@ -2,6 +2,7 @@
 // ctest: solid
 #include "failing_allocator.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 #include "solid_node.h"
 #include "testing.h"
 

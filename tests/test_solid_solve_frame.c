@@ -4,6 +4,7 @@
 // ctest: solid
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

@@ -6,6 +6,7 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

@@ -6,6 +6,7 @@
 #include "devices.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 
 #include <jansson.h>
 

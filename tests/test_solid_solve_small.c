@@ -3,6 +3,7 @@
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "quarter_grid.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above

@@ -5,6 +5,8 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
 
+#include "../tests/quarter_grid.h"
+
 static struct dea_context *ctx;
 static const double frame_m = 15e-3;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3}; // paper Table 1

@@ -5,6 +5,8 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 
+#include "../tests/quarter_grid.h"
+
 static struct dea_context *ctx;
 
 /* A thin solid under follower pressure on its bottom side; modulus mu 1, radius R 1. */

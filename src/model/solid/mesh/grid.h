@@ -59,27 +59,4 @@ size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
  * element: 1 for a parallelogram, 0 or less for an element that is folded. */
 double dea_grid_smallest_jacobian(const struct dea_grid *grid);
 
-/* Quarter (x, y >= 0) of a film in a ring, its middle plane at z = 0, with electrodes inside the
- * circle a and fibres from there to the frame, on top of the film: with 4 half a fibre along each
- * axis, with 8 a whole one on the diagonal as well. Lengths in m. */
-struct dea_quarter {
-  int order, order_z;
-  double a, b;           // electrode radius, frame radius
-  double film_thickness; // h
-  int fibres;            // of the whole actuator: 0, 4 or 8
-  double fibre_width, fibre_thickness;
-  size_t fine;   // elements along an eighth of the circle a, beside those of the fibres
-  size_t across; // elements across half a fibre
-  double edge;   // width of the elements on both sides of the circle a, from where they double
-                 // up to about square; 0 for no grading
-  bool membrane; // the film is a surface, see the sheets below
-};
-enum { DEA_REGION_ELECTRODE, DEA_REGION_FILM, DEA_REGION_FIBRE };
-enum { DEA_SHEET_FILM, DEA_SHEET_FIBRE };
-/* The sheets with a membrane: the film as a surface at z = 0; under fibres only the layer from
- * there to h/2 that joins them to it (dea_membrane_bond); fibres. */
-enum { DEA_SHEET_SURFACE, DEA_SHEET_BOND, DEA_SHEET_FIBRE_ON_BOND };
-dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *quarter,
-                            struct dea_grid **out);
-
 #endif
