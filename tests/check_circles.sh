@@ -26,8 +26,10 @@ xargs nm -A -g <"$list" | awk -v still="$still" '
     sub(/.*\.dir\//, "", file); sub(/\.o$/, "", file)
     type = $(NF - 1); name = $NF
     if (type == "U") { users[++uses] = file; used[uses] = name }
-    else if (type !~ /[wWvV]/) { home[name] = file }
+    else if (type !~ /[wWvV]/) { home[name] = file; near[folder(file), name] = file; own[file, name] = 1 }
   }
+  # the module of the engine and the library may have a name each: the nearer one is meant
+  function folder(path, parts) { split(path, parts, "/"); return parts[1] }
   function is_known(a, b, k, pair) {
     for (k = 1; k <= known; k++) {
       split(ties_left[k], pair, ":")
@@ -53,8 +55,9 @@ xargs nm -A -g <"$list" | awk -v still="$still" '
     known = split(still, ties_left, " ")
     for (i = 1; i <= uses; i++) {
       a = users[i]
-      if (used[i] in home && home[used[i]] != a) {
-        b = home[used[i]]; edges++
+      if (used[i] in home && !((a, used[i]) in own)) {
+        b = (folder(a), used[i]) in near ? near[folder(a), used[i]] : home[used[i]]
+        edges++
         if (is_known(a, b)) { continue }
         if (!((a, b) in ties)) { next_of[a] = next_of[a] " " b }
         ties[a, b] = ties[a, b] " " used[i]

@@ -183,7 +183,7 @@ static void test_memory_that_runs_out(void **state)
 #ifdef ADDRESS_SPACE_IS_TAKEN
   skip();
 #endif
-  enum { CUTS = 33 };
+  enum { CUTS = 25 };
   const struct dea_constituent layer = film();
   static const int held[] = {7, 7};
   double cuts[CUTS];
@@ -200,7 +200,7 @@ static void test_memory_that_runs_out(void **state)
   assert_true(now > 0);
   int failed = 0, by_petsc = 0;
   dea_status status = DEA_E_MEMORY;
-  for (rlim_t room = 8 << 20; status != DEA_OK && room < (rlim_t)4 << 30; room += room / 2) {
+  for (rlim_t room = 8 << 20; status != DEA_OK && room < (rlim_t)4 << 30; room *= 2) {
     small.rlim_cur = now + room;
     assert_int_equal(setrlimit(RLIMIT_AS, &small), 0);
     status = solve(&layer, held, 0);

@@ -4,7 +4,8 @@
 #include "devices.h"
 #include "material/plane.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/motion/response.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -137,7 +138,7 @@ static void test_one_degree_of_freedom(void **state)
   strip_create(&film, V);
   film_force(&film, displacement, V, &force, &stiffness);
   assert_close(force, weight, 1e-4, 0); // the bar gives way, and K has 1e-10 of its stiffness
-  assert_int_equal(dea_solid_vibrations(ctx, solid, 1, &square, NULL), DEA_OK);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL), DEA_OK);
   assert_close(square, stiffness / mass, 1e-4, 0);
   double push = strip_push(&film, V), omega_0 = sqrt(stiffness / mass);
   assert_int_equal(dea_solid_response_create(ctx, solid, 2 * omega_0, &response), DEA_OK);
@@ -303,7 +304,7 @@ static void test_bender_against_static_solves(void **state)
   assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, sheets, 2, NULL, 0, 10e-3, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
-  assert_int_equal(dea_solid_vibrations(ctx, solid, 3, square, NULL), DEA_OK);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 3, square, NULL), DEA_OK);
   double first = sqrt(square[0]);
   assert_int_equal(dea_solid_response_create(ctx, solid, 3 * first, &response), DEA_OK);
   assert_true(dea_solid_response_modes(response) >= 1);

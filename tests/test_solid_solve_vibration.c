@@ -3,7 +3,8 @@
 #include "devices.h"
 #include "material/plane.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/motion/response.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -92,7 +93,7 @@ static void modes_out_of_plane(struct dea_solid *solid, const struct dea_grid *g
   int count = 0;
   assert_non_null(vector);
   if (dea_solid_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_vibrations(ctx, solid, ALL, square, vector) != DEA_OK) {
+      dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, ALL, square, vector) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   for (size_t k = 0; k < ALL && count < MODES; k++) {
@@ -139,7 +140,7 @@ static void lowest(const struct dea_constituent *layer, const struct block *bloc
   struct dea_solid *solid = block_solid(ctx, grid, block->order_z, layer, all_around);
   struct dea_solid_report report;
   if (dea_solid_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_vibrations(ctx, solid, count, square, NULL) != DEA_OK) {
+      dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   dea_solid_destroy(ctx, solid);
@@ -189,7 +190,7 @@ static void test_voltage_takes_tension_away(void **state)
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   dea_solid_accept_unstable(solid, true);
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_vibrations(ctx, solid, 1, rest, NULL), DEA_OK);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, rest, NULL), DEA_OK);
   for (int i = 0; i < 2; i++) {
     double left = i == 0 ? 0.3 : -0.2,
            V = h * sqrt((1 - left) * sigma / layer.permittivity_F_per_m);
@@ -197,7 +198,7 @@ static void test_voltage_takes_tension_away(void **state)
     int unstable = report.unstable_modes;
     assert_true(left > 0 ? unstable == 0 : unstable >= OUT_OF_PLANE && unstable < UNSTABLE_MAX);
     size_t count = left > 0 ? 1 : (size_t)unstable;
-    assert_int_equal(dea_solid_vibrations(ctx, solid, count, square, NULL), DEA_OK);
+    assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL), DEA_OK);
     double nearest = INFINITY;
     for (size_t k = 0; k < count; k++) {
       assert_true(left > 0 || square[k] < 0);
@@ -248,8 +249,8 @@ static void test_what_is_refused(void **state)
   struct dea_solid *solid = block_solid(ctx, grid, 1, &layer, all_around);
   struct dea_solid_report report;
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_vibrations(ctx, solid, 1, square, NULL), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_vibrations(ctx, solid, 0, square, NULL), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, square, NULL), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 0, square, NULL), DEA_E_ARGUMENT);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }

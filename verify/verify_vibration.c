@@ -5,7 +5,8 @@
 #include "material/plane.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/motion/response.h"
 
 static const double pi = 3.14159265358979323846;
 static bool small;
@@ -93,7 +94,7 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &sheet, 1, NULL, 0, film->size[0], &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   verify_ok(ctx, dea_solid_solve(ctx, solid, voltage_V, &report));
-  verify_ok(ctx, dea_solid_vibrations(ctx, solid, 1, &square, NULL));
+  verify_ok(ctx, dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
   return sqrt(square) / (2 * pi);

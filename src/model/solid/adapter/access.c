@@ -7,7 +7,6 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/load/loads.h"
-#include "model/solid/motion/vibration.h"
 
 #include <math.h>
 #include <string.h>
@@ -315,14 +314,14 @@ static dea_status solve(struct dea_context *ctx, struct dea_solid_object *object
 static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object, size_t count)
 {
   size_t dofs = 3 * object->grid->node_count;
-  if (count == 0 || count > DEA_VIBRATIONS_MAX) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes, not %zu", DEA_VIBRATIONS_MAX, count);
+  if (count == 0 || count > DEA_MODES_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes, not %zu", DEA_MODES_MAX, count);
   }
   double *square = dea_alloc(ctx, count, sizeof *square);
   double *shape = dea_alloc(ctx, count * dofs, sizeof *shape);
   dea_status status = square != NULL && shape != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    status = dea_solid_vibrations(ctx, object->solid, count, square, shape);
+    status = dea_solid_modes(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape);
   }
   if (status != DEA_OK) {
     dea_free(ctx, square);

@@ -2,7 +2,8 @@
 
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/solid_of_actuator.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/motion/response.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -106,7 +107,7 @@ static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *
 {
   size_t dofs = 3 * m->grid->node_count;
   double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
-  DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, count, square, vector));
+  DEA_TRY(ctx, dea_solid_modes(ctx, m->solid, DEA_MODES_BY_MASS, count, square, vector));
   DEA_TRY(ctx, fill_points(ctx, m, at, count, square, vector, work, points));
   DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, sheet, shapes));
   dea_status status = DEA_OK;
@@ -175,7 +176,7 @@ static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions
   if (damping->ratio == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_solid_vibrations(ctx, m->solid, 1, &square, NULL));
+  DEA_TRY(ctx, dea_solid_modes(ctx, m->solid, DEA_MODES_BY_MASS, 1, &square, NULL));
   if (!(square > 0)) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
                     "the equilibrium that the voltage oscillates about is unstable");

@@ -1,164 +1,209 @@
-/* Softest modes: Lanczos on K^-1 M with the factor of K (docs/theory/branches.md). The factor is
- * there anyway and vectors are whole on every rank, so that this takes no more than solves. */
 #include "model/solid/equilibrium/modes.h"
 
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/check.h"
 
-#include <petscblaslapack.h>
+#include <slepceps.h>
 
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS_MAX = 12, BASIS_MAX = DEA_MODES_MAX + 40 };
+/* SLEPc's Krylov-Schur on K^-1 B with the factor of K that the solver of equilibria makes. Its
+ * eigenvalues 1/lambda are extreme at both ends for the modes that are wanted: unstable ones at
+ * one, the softest stable ones at the other. Each end is searched by itself. */
 
-static const double ritz_small = 1e-9; // residual over the eigenvalue
+enum { ROUNDS_MAX = 6, EXTRA = 4 };
 
-struct lanczos {
-  size_t dofs, room, locked, most; // room: of the basis; locked: modes that were found, of most
-  double *mass;                    // [dofs], 0 for what is held
-  double *basis;                   // [room + 1][dofs], orthonormal in M
-  double *mode, *nu;               // [most][dofs], [most] 1/lambda
-  double *work;                    // [dofs]
-  double alpha[BASIS_MAX], beta[BASIS_MAX], ritz[BASIS_MAX * BASIS_MAX], theta[BASIS_MAX];
+static const double sharp = 1e-10;    // relative residual of a mode
+static const double apart = 1e-6;     // relative distance of two modes that a count can tell
+static const double room_share = 0.5; // of the modes, that more are asked for at first
+
+struct eigen {
+  struct dea_solid *solid;
+  Mat B;
+  Vec *vectors;     // [count] of them, room for `room`
+  PetscReal *value; // [count]
+  int *order;       // [count] the k-th lowest
+  PetscInt count, room;
+  bool below; // the end that is searched: unstable modes
 };
 
-static double dot(const struct lanczos *l, const double *a, const double *b)
+#define CHECK(call)                                                                                \
+  do {                                                                                             \
+    PetscErrorCode code_ = (call);                                                                 \
+    if (code_ != 0) {                                                                              \
+      return code_;                                                                                \
+    }                                                                                              \
+  } while (0)
+
+/* y = K^-1 x with the factor that is there. */
+static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
 {
-  double sum = 0;
-  for (size_t i = 0; i < l->dofs; i++) {
-    sum += l->mass[i] * a[i] * b[i];
-  }
-  return sum;
+  struct dea_solid *s;
+  CHECK(PCShellGetContext(pc, &s));
+  return MatSolve(s->factor, x, y);
 }
 
-static void add(size_t count, double factor, const double *a, double *to)
+/* *which: below 0 where eigenvalue a is wanted before b. */
+static PetscErrorCode compare_eigenvalues(PetscScalar a, PetscScalar a_i, PetscScalar b,
+                                          PetscScalar b_i, PetscInt *which, void *self)
 {
-  for (size_t i = 0; i < count; i++) {
-    to[i] += factor * a[i];
-  }
+  const struct eigen *f = self;
+  double difference = 1 / a - 1 / b;
+  (void)a_i;
+  (void)b_i;
+  *which = difference == 0 ? 0 : (difference < 0) == f->below ? -1 : 1;
+  return 0;
 }
 
-/* Takes the found modes and the first `count` of the basis out of v, twice, for rounding. */
-static void purge(const struct lanczos *l, size_t count, double *v)
+/* `wanted` modes K v = lambda B v of one end, beside those found. */
+static PetscErrorCode configure(EPS eps, struct eigen *f, PetscInt wanted)
 {
-  for (int pass = 0; pass < 2; pass++) {
-    for (size_t k = 0; k < l->locked; k++) {
-      const double *mode = l->mode + k * l->dofs;
-      add(l->dofs, -dot(l, mode, v), mode, v);
+  ST st;
+  KSP ksp;
+  PC pc;
+  CHECK(EPSSetOperators(eps, f->solid->K, f->B));
+  CHECK(EPSSetProblemType(eps, EPS_GHEP));
+  CHECK(EPSSetType(eps, EPSKRYLOVSCHUR));
+  CHECK(EPSSetTarget(eps, 0));
+  CHECK(EPSSetEigenvalueComparison(eps, compare_eigenvalues, f));
+  CHECK(EPSSetWhichEigenpairs(eps, EPS_WHICH_USER));
+  CHECK(EPSSetDimensions(eps, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  CHECK(EPSSetTolerances(eps, sharp, 1000));
+  CHECK(EPSSetDeflationSpace(eps, f->count, f->vectors));
+  CHECK(EPSGetST(eps, &st));
+  CHECK(STSetType(st, STSINVERT));
+  CHECK(STSetShift(st, 0));
+  CHECK(STGetKSP(st, &ksp));
+  CHECK(KSPSetType(ksp, KSPPREONLY));
+  CHECK(KSPGetPC(ksp, &pc));
+  CHECK(PCSetType(pc, PCSHELL));
+  CHECK(PCShellSetContext(pc, f->solid));
+  CHECK(PCShellSetApply(pc, apply_factor));
+  return 0;
+}
+
+/* Takes what has converged at the end that was searched. */
+static PetscErrorCode collect(EPS eps, struct eigen *f)
+{
+  PetscInt converged;
+  CHECK(EPSGetConverged(eps, &converged));
+  for (PetscInt i = 0; i < converged && f->count < f->room; i++) {
+    PetscScalar value;
+    CHECK(EPSGetEigenpair(eps, i, &value, NULL, f->vectors[f->count], NULL));
+    f->value[f->count] = value;
+    f->count += (value < 0) == f->below;
+  }
+  return 0;
+}
+
+static PetscErrorCode search_end(struct eigen *f, PetscInt wanted)
+{
+  EPS eps;
+  CHECK(EPSCreate(PETSC_COMM_WORLD, &eps));
+  PetscErrorCode code = configure(eps, f, wanted);
+  code = code == 0 ? EPSSolve(eps) : code;
+  code = code == 0 ? collect(eps, f) : code;
+  EPSDestroy(&eps);
+  return code;
+}
+
+static void sort(struct eigen *f)
+{
+  int *order = f->order;
+  for (int i = 0; i < f->count; i++) {
+    int at = i;
+    while (at > 0 && f->value[order[at - 1]] > f->value[i]) {
+      order[at] = order[at - 1];
+      at--;
     }
-    for (size_t k = 0; k < count; k++) {
-      const double *base = l->basis + k * l->dofs;
-      add(l->dofs, -dot(l, base, v), base, v);
-    }
+    order[at] = i;
   }
 }
 
-/* A start that no symmetry is orthogonal to, the same on every rank. */
-static void start(const struct dea_solid *s, struct lanczos *l, int round)
+/* Modes below a value: negative pivots of K - value B. Leaves K as it was and no factor of it. */
+static dea_status count_below(struct dea_context *ctx, struct eigen *f, double value, int *count)
 {
-  for (size_t i = 0; i < l->dofs; i++) {
-    double x = sin(12.9898 * (double)(i + 1) + 78.233 * (round + 1));
-    l->basis[i] = l->mass[i] > 0 ? x : 0;
-  }
-  dea_solid_release_held(s, l->basis);
+  struct dea_solid *s = f->solid;
+  DEA_PETSC(ctx, MatAXPY(s->K, -value, f->B, SAME_NONZERO_PATTERN));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
+  DEA_PETSC(ctx, MatAXPY(s->K, value, f->B, SAME_NONZERO_PATTERN));
+  return DEA_OK;
 }
 
-/* Builds the basis; *count: its vectors, fewer than the room when nothing is left. */
-static dea_status build(struct dea_context *ctx, struct dea_solid *s, struct lanczos *l, int round,
-                        size_t *count)
+/* Whether the `count` lowest found are the lowest there are: there is a gap behind some of those
+ * found, at least `count` of them, and as many lie below it. */
+static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, bool *all)
 {
-  start(s, l, round);
-  purge(l, 0, l->basis);
-  double size = sqrt(dot(l, l->basis, l->basis));
-  *count = 0;
-  for (size_t k = 0; k < l->room && size > 0; k++) {
-    double *v = l->basis + k * l->dofs, *next = v + l->dofs;
-    for (size_t i = 0; i < l->dofs; i++) {
-      v[i] /= size;
-      l->work[i] = l->mass[i] * v[i];
+  *all = false;
+  for (int k = count; k <= f->count; k++) { // behind the last found there may be none
+    double low = f->value[f->order[k - 1]];
+    double high = k < f->count ? f->value[f->order[k]] : low + fabs(low);
+    if (high - low > apart * (fabs(low) + fabs(high))) {
+      int below;
+      DEA_TRY(ctx, count_below(ctx, f, 0.5 * (low + high), &below));
+      *all = below == k;
+      return DEA_OK;
     }
-    DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, l->work, next));
-    dea_solid_release_held(s, next);
-    l->alpha[k] = dot(l, v, next);
-    double before = sqrt(dot(l, next, next));
-    purge(l, k + 1, next);
-    size = sqrt(dot(l, next, next));
-    size = size > 1e-12 * before ? size : 0;
-    l->beta[k] = size;
-    *count = k + 1;
   }
   return DEA_OK;
 }
 
-/* Ritz values of the tridiagonal into l->theta (ascending), vectors into l->ritz [column][row]. */
-static dea_status solve_small(struct dea_context *ctx, struct lanczos *l, size_t count)
+/* Rounds at one end until `count` modes are there: of unstable ones those that the inertia has
+ * counted, of others until a count says that none is missing. Lanczos finds one of several equal
+ * ones in a round. */
+static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, bool below)
 {
-  double off[BASIS_MAX], work[2 * BASIS_MAX];
-  PetscBLASInt n = (PetscBLASInt)count, info = 0;
-  memcpy(l->theta, l->alpha, count * sizeof *l->theta);
-  memcpy(off, l->beta, count * sizeof *off);
-  LAPACKsteqr_("I", &n, l->theta, off, l->ritz, &n, work, &info);
-  return info == 0 ? DEA_OK : dea_fail(ctx, DEA_E_NOT_CONVERGED, "LAPACK failed in dsteqr");
+  PetscInt wanted = below ? count : count - f->count + EXTRA + (PetscInt)(room_share * count);
+  f->below = below;
+  for (int round = 0; round < ROUNDS_MAX; round++) {
+    PetscInt before = f->count;
+    wanted = wanted < f->room - f->count ? wanted : f->room - f->count;
+    if (wanted < 1) {
+      break;
+    }
+    DEA_TRY(ctx, dea_solid_petsc(ctx, search_end(f, wanted), "EPSSolve"));
+    sort(f);
+    bool all = f->count >= count;
+    if (!below) {
+      DEA_TRY(ctx, certify(ctx, f, count, &all));
+    }
+    if (all) {
+      return DEA_OK;
+    }
+    if (f->count == before) {
+      break;
+    }
+    if (!below) {
+      DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->K, &f->solid->factor));
+    }
+    wanted = below ? count - f->count : EXTRA + count / 2;
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",
+                  (int)f->count, count);
 }
 
-/* The found modes on one side, and how many of them there are. */
-static size_t found_below(const struct lanczos *l)
+static dea_status create_metric(struct dea_context *ctx, struct dea_solid *s,
+                                enum dea_mode_metric metric, Mat *B)
 {
-  size_t count = 0;
-  for (size_t k = 0; k < l->locked; k++) {
-    count += l->nu[k] < 0;
+  if (metric == DEA_MODES_BY_MASS) {
+    return dea_solid_create_mass(ctx, s, B);
   }
-  return count;
-}
-
-/* What a positive nu has to exceed to be among the `wanted` largest; 0 while there are fewer. */
-static double threshold(const struct lanczos *l, size_t wanted)
-{
-  double at = INFINITY;
-  for (size_t k = 0; k < wanted; k++) {
-    double next = 0;
-    size_t equal = 0;
-    for (size_t j = 0; j < l->locked; j++) {
-      next = l->nu[j] < at ? fmax(next, l->nu[j]) : next;
+  PetscScalar *rows;
+  DEA_PETSC(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, B));
+  dea_solid_lump_volume(s, s->trial);
+  DEA_PETSC(ctx, VecGetArray(s->right, &rows));
+  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
+    for (int i = 0; i < s->per_node; i++) { // the same in local axes as in global ones
+      size_t at = dea_solid_at(s, (int)n, i);
+      rows[k++] = s->held[at] ? 0 : s->trial[at];
     }
-    for (size_t j = 0; j < l->locked; j++) {
-      equal += l->nu[j] == next;
-    }
-    if (next <= 0) {
-      return 0;
-    }
-    k += equal - 1;
-    at = next;
   }
-  return wanted > 0 ? at : INFINITY;
-}
-
-/* Locks the converged Ritz pairs that are wanted: `negative` below 0, and those that are among the
- * `positive` largest. Returns how many are new. */
-static size_t lock(struct lanczos *l, size_t count, size_t negative, size_t positive)
-{
-  size_t found = 0;
-  for (size_t step = 0; step < 2 * count && l->locked < l->most; step++) {
-    bool below = step < count; // first from the most negative on, then from the largest on
-    size_t j = below ? step : 2 * count - 1 - step;
-    const double *ritz = l->ritz + j * count;
-    double nu = l->theta[j];
-    bool sharp = fabs(l->beta[count - 1] * ritz[count - 1]) <= ritz_small * fabs(nu);
-    bool want = below ? nu < 0 && found_below(l) < negative : nu > 0 && nu > threshold(l, positive);
-    if (!sharp || !want) {
-      continue;
-    }
-    double *mode = l->mode + l->locked * l->dofs;
-    memset(mode, 0, l->dofs * sizeof *mode);
-    for (size_t k = 0; k < count; k++) {
-      add(l->dofs, ritz[k], l->basis + k * l->dofs, mode);
-    }
-    l->nu[l->locked++] = nu;
-    found++;
-  }
-  return found;
+  DEA_PETSC(ctx, VecRestoreArray(s->right, &rows));
+  DEA_PETSC(ctx, MatDiagonalSet(*B, s->right, INSERT_VALUES));
+  return DEA_OK;
 }
 
 void dea_mode_orient(size_t count, double *v)
@@ -172,130 +217,103 @@ void dea_mode_orient(size_t count, double *v)
   }
 }
 
-/* Unit size in M, largest component positive. */
-static void normalise(const struct lanczos *l, double *v)
+static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size_t count,
+                            double *value, double *vector)
 {
-  double size = sqrt(dot(l, v, v));
-  dea_mode_orient(l->dofs, v);
-  for (size_t i = 0; i < l->dofs; i++) {
-    v[i] /= size;
-  }
-}
-
-/* The lowest modes in ascending order. */
-static void hand_over(struct lanczos *l, size_t nodes, size_t count, double *value, double *vector)
-{
+  struct dea_solid *s = f->solid;
+  size_t dofs = 3 * s->grid->node_count;
   for (size_t k = 0; k < count; k++) {
-    size_t lowest = 0;
-    for (size_t j = 1; j < l->locked; j++) {
-      lowest = 1 / l->nu[j] < 1 / l->nu[lowest] ? j : lowest;
-    }
-    double *mode = l->mode + lowest * l->dofs;
-    value[k] = 1 / l->nu[lowest];
+    value[k] = f->value[f->order[k]];
     if (vector != NULL) {
-      normalise(l, mode);
-      memcpy(vector + k * 3 * nodes, mode, 3 * nodes * sizeof *vector);
-    }
-    l->nu[lowest] = 0; // done: 1/nu is infinite
-  }
-}
-
-/* Rounds until all are there and one more adds none: an eigenvalue that comes twice shows once in a
- * round. */
-static dea_status find(struct dea_context *ctx, struct dea_solid *s, struct lanczos *l,
-                       size_t negative, size_t positive)
-{
-  bool all = false;
-  for (int round = 0; round < ROUNDS_MAX; round++) {
-    size_t built, found = 0;
-    DEA_TRY(ctx, build(ctx, s, l, round, &built));
-    if (built > 0) {
-      DEA_TRY(ctx, solve_small(ctx, l, built));
-      found = lock(l, built, negative, positive);
-    }
-    all = found_below(l) >= negative && threshold(l, positive) > 0;
-    if (built == 0 || (all && (found == 0 || positive == 0))) {
-      break;
+      DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], s->trial));
+      memcpy(vector + k * dofs, s->trial, dofs * sizeof *vector);
+      dea_mode_orient(dofs, vector + k * dofs);
     }
   }
-  return all ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %zu of %zu modes were found", l->locked,
-                        negative + positive);
-}
-
-static void release(struct dea_context *ctx, struct lanczos *l)
-{
-  void *const memory[] = {l->mass, l->work, l->basis, l->mode, l->nu, l};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(ctx, memory[i]);
-  }
-}
-
-static dea_status make(struct dea_context *ctx, const struct dea_solid *s, size_t wanted,
-                       struct lanczos **out)
-{
-  struct lanczos *l = *out = dea_alloc(ctx, 1, sizeof *l);
-  if (dea_solid_any(l == NULL)) {
-    dea_free(ctx, l);
-    *out = NULL;
-    return DEA_E_MEMORY;
-  }
-  l->dofs = s->dofs;
-  l->most = 2 * wanted + 4; // those that later ones push out stay
-  l->room = 2 * wanted + 20 < BASIS_MAX ? 2 * wanted + 20 : BASIS_MAX;
-  l->mass = dea_alloc(ctx, s->dofs, sizeof(double));
-  l->work = dea_alloc(ctx, s->dofs, sizeof(double));
-  l->basis = dea_alloc(ctx, (l->room + 1) * s->dofs, sizeof(double));
-  l->mode = dea_alloc(ctx, l->most * s->dofs, sizeof(double));
-  l->nu = dea_alloc(ctx, l->most, sizeof(double));
-  bool all =
-      l->mass != NULL && l->work != NULL && l->basis != NULL && l->mode != NULL && l->nu != NULL;
-  if (dea_solid_any(!all)) {
-    release(ctx, l);
-    *out = NULL;
-    return DEA_E_MEMORY;
-  }
-  dea_solid_lump_volume(s, l->mass);
   return DEA_OK;
 }
 
-/* The `count` lowest found of `negative` negative modes and as many positive ones as that takes. */
-static dea_status modes(struct dea_context *ctx, struct dea_solid *s, size_t negative, size_t count,
-                        double *value, double *vector)
+/* `unstable` modes of those that are, and the lowest of all up to `count`. */
+static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_mode_metric metric,
+                             int unstable, int count)
 {
-  struct lanczos *l;
-  size_t positive = count > negative ? count - negative : 0;
-  DEA_TRY(ctx, make(ctx, s, negative + positive, &l));
-  dea_status status = find(ctx, s, l, negative, positive);
-  if (status == DEA_OK) {
-    hand_over(l, s->grid->node_count, count, value, vector);
+  f->room = 3 * (unstable > count ? unstable : count) + 8 * EXTRA;
+  f->order = dea_alloc(ctx, (size_t)f->room, sizeof *f->order);
+  f->value = dea_alloc(ctx, (size_t)f->room, sizeof *f->value);
+  if (dea_solid_any(f->order == NULL || f->value == NULL)) {
+    return DEA_E_MEMORY;
   }
-  release(ctx, l);
-  return status;
+  DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
+  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->right, f->room, &f->vectors));
+  if (unstable > 0) {
+    DEA_TRY(ctx, find_end(ctx, f, unstable, true));
+  }
+  if (count > unstable) {
+    DEA_TRY(ctx, find_end(ctx, f, count, false));
+  }
+  return DEA_OK;
 }
 
-dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                           double *value, double *vector)
+static void release(struct dea_context *ctx, struct eigen *f)
 {
+  if (f->vectors != NULL) {
+    VecDestroyVecs(f->room, &f->vectors);
+  }
+  MatDestroy(&f->B);
+  dea_free(ctx, f->value);
+  dea_free(ctx, f->order);
+  f->solid->factor_fits = f->solid->predicted_fits = false;
+}
+
+dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s,
+                           enum dea_mode_metric metric, size_t count, double *value, double *vector)
+{
+  struct eigen f = {.solid = s};
   int negative = 0;
   if (count == 0 || count > DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes can be asked for", DEA_MODES_MAX);
   }
+  DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
   if (negative > DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%d modes are unstable: too many to find each",
                     negative);
   }
-  DEA_TRY(ctx, modes(ctx, s, (size_t)negative, count, value, vector));
-  return DEA_OK;
+  dea_status status = find_modes(ctx, &f, metric, negative, (int)count);
+  if (status == DEA_OK) {
+    status = hand_over(ctx, &f, count, value, vector);
+  }
+  release(ctx, &f);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
                                    double *vector)
 {
+  struct eigen f = {.solid = s};
   int negative;
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
-  size_t wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : (size_t)negative;
-  DEA_TRY(ctx, modes(ctx, s, wanted, 1, value, vector));
-  return DEA_OK;
+  int wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : negative;
+  dea_status status = find_modes(ctx, &f, DEA_MODES_BY_VOLUME, wanted, 1);
+  if (status == DEA_OK) {
+    status = hand_over(ctx, &f, 1, value, vector);
+  }
+  release(ctx, &f);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *s,
+                                 enum dea_mode_metric metric, double value, size_t *count)
+{
+  struct eigen f = {.solid = s};
+  int below = 0;
+  DEA_TRY(ctx, dea_solid_check(ctx, s));
+  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &below));
+  dea_status status = create_metric(ctx, s, metric, &f.B);
+  if (status == DEA_OK && value != 0) {
+    status = count_below(ctx, &f, value, &below);
+  }
+  release(ctx, &f);
+  *count = (size_t)below;
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

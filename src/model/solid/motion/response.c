@@ -1,12 +1,14 @@
-/* Response to an AC excitation of the voltage: superposition of modes, and a series for those that
- * are higher (docs/theory/vibration.md). */
+#include "model/solid/motion/response.h"
+
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/matrix.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/equilibrium/modes.h"
 
 #include <complex.h>
 #include <math.h>
 #include <string.h>
+
+/* Superposition of modes, and a series for those that are higher (docs/theory/vibration.md). */
 
 /* Modes that there are at least, where there are so many: what is far below the first one still has
  * its damping from them. */
@@ -100,22 +102,22 @@ static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, doub
                               size_t *count)
 {
   size_t unstable;
-  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, 0, &unstable));
+  DEA_TRY(ctx, dea_solid_modes_below(ctx, s, DEA_MODES_BY_MASS, 0, &unstable));
   if (unstable > 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
                     "the equilibrium that the voltage oscillates about is unstable (%zu modes)",
                     unstable);
   }
   double range = beyond * highest;
-  DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
-  if (*count > DEA_VIBRATIONS_MAX) {
+  DEA_TRY(ctx, dea_solid_modes_below(ctx, s, DEA_MODES_BY_MASS, range * range, count));
+  if (*count > DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "%zu modes lie below %g times the highest frequency, more than %d", *count,
-                    beyond, DEA_VIBRATIONS_MAX);
+                    beyond, DEA_MODES_MAX);
   }
   for (int i = 0; i < DOUBLINGS && *count < MODES_LEAST; i++) {
     range *= 2;
-    DEA_TRY(ctx, dea_solid_vibration_count(ctx, s, range * range, count));
+    DEA_TRY(ctx, dea_solid_modes_below(ctx, s, DEA_MODES_BY_MASS, range * range, count));
     *count = *count < MODES_LEAST ? *count : MODES_LEAST;
   }
   return DEA_OK;
@@ -129,7 +131,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   DEA_TRY(ctx, make_room(ctx, s, count, r));
   DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, force));
   if (count > 0) { // K stays there for the rest
-    DEA_TRY(ctx, dea_solid_vibrations(ctx, s, count, r->square, r->shape));
+    DEA_TRY(ctx, dea_solid_modes(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));
   }
   for (size_t k = 0; k < count; k++) {
     for (size_t i = 0; i < r->dofs; i++) {

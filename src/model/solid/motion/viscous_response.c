@@ -4,7 +4,7 @@
 #include "model/solid/assembly/internal_variables.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
-#include "model/solid/motion/vibration.h"
+#include "model/solid/motion/response.h"
 
 #include <complex.h>
 #include <string.h>

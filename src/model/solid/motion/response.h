@@ -1,26 +1,10 @@
 /* Small motions of a solid about its last equilibrium (docs/theory/vibration.md): K v = omega^2 M v
  * with the tangent K there and the consistent mass M, and the response to an AC excitation of the
  * voltage. */
-#ifndef DEA_MODEL_SOLID_MOTION_VIBRATION_H
-#define DEA_MODEL_SOLID_MOTION_VIBRATION_H
+#ifndef DEA_MODEL_SOLID_MOTION_RESPONSE_H
+#define DEA_MODEL_SOLID_MOTION_RESPONSE_H
 
 #include "model/solid/assembly/internal_variables.h"
-
-enum { DEA_VIBRATIONS_MAX = 200 };
-
-/* The `count` lowest modes. square: [count] omega^2 [rad^2/s^2], ascending, negative of one that is
- * unstable; vector: [count][3 node_count], v . M v = 1 [kg^-1/2], its largest component positive;
- * NULL: not wanted. That none is missing is counted by the inertia of K - sigma M. DEA_E_ARGUMENT
- * for a count of 0 or above DEA_VIBRATIONS_MAX or above the number of modes there are,
- * DEA_E_NOT_CONVERGED when they cannot be had. */
-dea_status dea_solid_vibrations(struct dea_context *ctx, struct dea_solid *solid, size_t count,
-                                double *square, double *vector);
-
-/* How many modes have omega^2 below that. */
-dea_status dea_solid_vibration_count(struct dea_context *ctx, struct dea_solid *solid,
-                                     double square, size_t *count);
-
-/* ---- response to an AC excitation of the voltage ---- */
 
 /* Viscous damping: a matrix mass M + stiffness K, and for each mode this ratio of its critical one,
  * which those above the modes of the response do without. */
@@ -35,7 +19,7 @@ struct dea_solid_response;
 /* Prepares answers up to a frequency: all modes up to twice that, and of what the higher ones do a
  * series in omega^2. The solid has to be at a stable equilibrium and stays as it is; lent, outlives
  * the response. DEA_E_NOT_CONVERGED at an unstable one; DEA_E_UNSUPPORTED for a coupled field or
- * more than DEA_VIBRATIONS_MAX modes. out: owned by the caller, NULL on failure. */
+ * more than DEA_MODES_MAX modes. out: owned by the caller, NULL on failure. */
 dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *solid,
                                      double highest_rad_per_s, struct dea_solid_response **out);
 void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *response);
