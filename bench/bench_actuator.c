@@ -7,6 +7,7 @@
 #include "bench.h"
 #include "design/design.h"
 #include "model/model.h"
+#include "study/design_file.h"
 
 #include <math.h>
 

@@ -4,6 +4,7 @@
  * less. */
 #include "bench.h"
 #include "model/model.h"
+#include "study/design_file.h"
 
 #include <math.h>
 

@@ -2,6 +2,7 @@
  * costs beside an equilibrium, elastic, with branches, with inertia. Times are the processor's. */
 #include "bench.h"
 #include "model/model.h"
+#include "study/design_file.h"
 
 #include <math.h>
 

@@ -3,6 +3,7 @@
 #define DEA_TESTS_DESIGN_TEXT_H
 
 #include "device/device.h"
+#include "study/design_file.h"
 #include "testing.h"
 
 #include <stdio.h>

@@ -1,5 +1,6 @@
 /* design and device: what a good file gives, with defaults, overrides and the list of values. */
 #include "design_text.h"
+#include "study/design_file.h"
 
 static struct dea_context *ctx;
 static struct dea_design *design;
@@ -278,6 +279,36 @@ static void test_taper_and_free_end(void **state)
   assert_int_equal(device->solid_order_z, 1);
 }
 
+/* An older word of a key is read as the key; the list of values knows the key only. */
+static void test_older_words_of_keys(void **state)
+{
+  (void)state;
+  const struct dea_override old[] = {{"compute.solid.side", "fibres"}};
+  const struct dea_override new[] = {{"compute.solid.buckling_branch", "fibres"}};
+  const struct dea_override both[] = {{"compute.solid.buckling_branch", "fibres"},
+                                      {"compute.solid.side", "back"}};
+  for (int i = 0; i < 2; i++) {
+    bool listed = false;
+    read_good(GOOD_DESIGN, i == 0 ? old : new, 1);
+    assert_int_equal(design->compute.solid.buckling_branch.value, DEA_BRANCH_FIBRES);
+    for (size_t k = 0; k < design->values.count; k++) {
+      const struct dea_listed *value = &design->values.items[k];
+      assert_string_not_equal(value->path, "compute.solid.side");
+      listed = listed || (strcmp(value->path, "compute.solid.buckling_branch") == 0 &&
+                          value->origin == DEA_OVERRIDE);
+    }
+    assert_true(listed);
+  }
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  device = NULL;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "t.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), both, 2, &design),
+      DEA_E_DESIGN);
+  assert_true(dea_finding_count(ctx, DEA_ERROR) == 1);
+  dea_finding_clear(ctx);
+}
+
 static void test_straight_clamped_fibres_are_the_default(void **state)
 {
   (void)state;
@@ -329,6 +360,7 @@ int main(void)
       TEST(test_pre_stretch_beyond_the_data_is_a_warning),
       TEST(test_fibres_that_just_touch_are_good),
       TEST(test_taper_and_free_end),
+      TEST(test_older_words_of_keys),
       TEST(test_straight_clamped_fibres_are_the_default),
       TEST(test_examples_are_good),
   };

@@ -1,6 +1,7 @@
 /* design and device: what a bad file says, and where. */
 #include "base/yaml.h"
 #include "design_text.h"
+#include "study/design_file.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the header above
 

@@ -1,6 +1,7 @@
 /* design and device: each allocation failed in turn, without crash or leak. */
 #include "design_text.h"
 #include "failing_allocator.h"
+#include "study/design_file.h"
 
 static dea_status read_good(struct dea_context *ctx)
 {

@@ -4,6 +4,7 @@
 #include "lab/protocol/export.h"
 #include "model/lumped/lumped.h"
 #include "protocol_text.h"
+#include "study/design_file.h"
 
 #include <math.h>
 

@@ -5,6 +5,7 @@
 #include "lab/instrument/instrument_sim.h"
 #include "model/lumped/lumped.h"
 #include "protocol_text.h"
+#include "study/design_file.h"
 #include "study/study.h"
 
 #include <math.h>

@@ -1,22 +1,26 @@
 /* What a model cannot do is an error with a message, not a call to nowhere. */
-#include "context_fixture.h"
-#include "devices.h"
+#include "design_text.h"
 #include "study/force.h"
 #include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
 
 /* The axisymmetric model has no indenter: pressing one in called a null pointer. */
 static void test_force_without_indenter(void **state)
 {
   (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
-  struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
-  struct dea_design design = {.compute = {.force = {.radius_m = {.si = 1e-3}, .depth_count = 1}}};
-  design.compute.force.depths_m[0].si = 1e-4;
+  const struct dea_override depth = {"compute.force", "{radius: 1 mm, depth: [0.1 mm]}"};
+  struct dea_design *design;
+  struct dea_device *device;
   struct dea_model *model;
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
-  assert_int_equal(dea_force_indent(ctx, type, model, &design, 0), DEA_E_UNSUPPORTED);
+  assert_int_equal(read_and_build(ctx, GOOD_DESIGN, &depth, 1, &design, &device), DEA_OK);
+  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(dea_force_indent(ctx, type, model, design, 0), DEA_E_UNSUPPORTED);
   assert_string_equal(dea_context_message(ctx), "the model 'axisymmetric' knows no indenter");
   type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
 }
 
 /* A model that has nothing beside solving, and every call that it lacks. */

@@ -8,6 +8,7 @@
 #include "study/study.h"
 
 #include "own_folder.h"
+#include "study/design_file.h"
 
 #include <math.h>
 

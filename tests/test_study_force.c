@@ -1,6 +1,7 @@
 /* Study "force" with a model of one spring: F = k d + c d^3 - b V^2 on a tip at depth d. */
 #include "design_text.h"
 #include "output/figure_stops.h"
+#include "study/design_file.h"
 #include "study/study.h"
 
 #include "context_fixture.h"

@@ -6,6 +6,7 @@
 #include "output/results_h5.h"
 #include "output/run_folder.h"
 #include "own_folder.h"
+#include "study/design_file.h"
 #include "study/study.h"
 
 struct dea_model {

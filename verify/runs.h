@@ -5,6 +5,7 @@
 
 #include "design/design.h"
 #include "model/model.h"
+#include "study/design_file.h"
 #include "verify.h"
 
 enum { VOLTAGES_MAX = 40, SETS_MAX = 12 };

@@ -7,6 +7,7 @@
 #include "lab/reduce/output.h"
 #include "output/compare_set.h"
 #include "result/result.h"
+#include "study/design_file.h"
 #include "study/study.h"
 #include "verify.h"
 

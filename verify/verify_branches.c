@@ -10,6 +10,7 @@
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "study/design_file.h"
 
 extern const struct dea_model_type dea_solid_module;
 

@@ -2,6 +2,7 @@
  * of pull-in of VHB 4910 against the rate of the voltage. */
 #include "verify.h"
 
+#include "study/design_file.h"
 #include "study/study.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 #include "api/door.h"
 
 #include "result/columns.h"
+#include "study/force.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -130,7 +131,8 @@ dea_status dea_actuator_indent(dea_context *ctx, dea_actuator *actuator, dea_ind
   }
   const struct dea_probe probe = {.shape = shapes[shape],
                                   .radius_m = radius_m,
-                                  .edge_radius_m = actuator->design->compute.force.edge_radius_m.si,
+                                  .edge_radius_m =
+                                      dea_force_indenter(actuator->design).edge_radius_m,
                                   .from_fibre_side = true};
   struct dea_load_point point;
   DEA_TRY(ctx->inner,

@@ -5,6 +5,7 @@
 #include "base/write_file.h"
 #include "base/yaml_write.h"
 #include "output/report/section.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <stdint.h>

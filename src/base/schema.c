@@ -19,6 +19,11 @@ struct section {
 
 static dea_status read_section(const struct dea_reader *reader, const struct section *section);
 
+bool dea_field_has_record(const struct dea_field *field)
+{
+  return field->kind == DEA_FIELD_RECORD || field->kind == DEA_FIELD_SETTINGS;
+}
+
 /* Sets every member of a section that is not there. */
 static void absent_section(const struct dea_record *record, char *base,
                            struct dea_location location)
@@ -30,7 +35,7 @@ static void absent_section(const struct dea_record *record, char *base,
     }
     if (field->kind == DEA_FIELD_RECORD) {
       absent_section(field->record, base + field->offset, location);
-    } else {
+    } else if (field->kind != DEA_FIELD_SETTINGS) {
       dea_schema_value_absent(field, base + field->offset, location);
     }
   }
@@ -41,7 +46,7 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
                              const struct dea_node *node, bool element, bool *good)
 {
   bool list = field->list_max > 0 && !element;
-  bool section = field->kind == DEA_FIELD_RECORD || field->kind == DEA_FIELD_SECTION;
+  bool section = dea_field_has_record(field) || field->kind == DEA_FIELD_SECTION;
   enum dea_node_kind due = list ? DEA_NODE_LIST : section ? DEA_NODE_SECTION : DEA_NODE_VALUE;
   *good = node->kind == due && !(due == DEA_NODE_VALUE && node->empty);
   if (*good) {
@@ -60,6 +65,20 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
       field->example != NULL ? field->example : "", field->example != NULL ? "'" : "");
 }
 
+/* A section with memory of its own; node NULL: its defaults. */
+static dea_status read_settings(const struct dea_reader *reader, const struct dea_field *field,
+                                const struct dea_node *node, const char *path,
+                                struct dea_location location, char *target)
+{
+  void *values = dea_alloc(reader->ctx, 1, field->element_size);
+  if (values == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(target, &values, sizeof values);
+  const struct section inner = {field->record, node, path, values, location};
+  return read_section(reader, &inner);
+}
+
 /* One given value, or one element of a given list. */
 static dea_status read_node(const struct dea_reader *reader, const struct dea_field *field,
                             const struct dea_node *node, const char *path, enum dea_origin origin,
@@ -69,6 +88,9 @@ static dea_status read_node(const struct dea_reader *reader, const struct dea_fi
     struct section inner = {field->record, node, path, target, node->key_place};
     inner.location = node->key != NULL ? node->key_place : node->location;
     return read_section(reader, &inner);
+  }
+  if (field->kind == DEA_FIELD_SETTINGS) {
+    return read_settings(reader, field, node, path, node->key_place, target);
   }
   if (field->kind == DEA_FIELD_SECTION) {
     *(const struct dea_node **)target = node;
@@ -160,6 +182,9 @@ static dea_status read_absent(const struct dea_reader *reader, const struct sect
                               const struct dea_field *field, const char *path)
 {
   char *target = section->base + field->offset;
+  if (field->kind == DEA_FIELD_SETTINGS) {
+    return read_settings(reader, field, NULL, path, section->location, target);
+  }
   if (field->kind == DEA_FIELD_RECORD && field->list_max == 0) {
     if (!field->required && field->present_offset == 0) {
       struct section inner = {field->record, NULL, path, target, section->location};
@@ -181,9 +206,16 @@ static dea_status read_absent(const struct dea_reader *reader, const struct sect
   return DEA_OK;
 }
 
-static const struct dea_node *child_of(const struct section *section, const char *key)
+/* The node of a field under its key or its older word; where both are there, what --set says. */
+static const struct dea_node *child_of(const struct section *section, const struct dea_field *field)
 {
-  return section->node != NULL ? dea_node_find(section->node, key) : NULL;
+  if (section->node == NULL) {
+    return NULL;
+  }
+  const struct dea_node *node = dea_node_find(section->node, field->key);
+  const struct dea_node *old =
+      field->alias != NULL ? dea_node_find(section->node, field->alias) : NULL;
+  return node == NULL || (old != NULL && old->overridden && !node->overridden) ? old : node;
 }
 
 /* Option of a group that counts; 0: none is given and none has a default. Errors (two options
@@ -203,7 +235,7 @@ static dea_status choose_option(const struct dea_reader *reader, const struct se
     }
     is_first = is_first && field >= asking;
     by_default = by_default == 0 && field->default_text != NULL ? field->option : by_default;
-    const struct dea_node *node = child_of(section, field->key);
+    const struct dea_node *node = child_of(section, field);
     if (node == NULL || field->option == *option) {
       continue;
     }
@@ -244,7 +276,7 @@ static dea_status read_field(const struct dea_reader *reader, const struct secti
   char path[DEA_PATH_SIZE];
   snprintf(path, sizeof path, "%s%s%s", section->path, section->path[0] != '\0' ? "." : "",
            field->key);
-  const struct dea_node *node = child_of(section, field->key);
+  const struct dea_node *node = child_of(section, field);
   if (field->group > 0) {
     int option;
     DEA_TRY(reader->ctx, choose_option(reader, section, field, &option));
@@ -274,6 +306,24 @@ static const char *section_with(const struct dea_record *record, const char *key
   return NULL;
 }
 
+static bool is_key(const struct dea_field *field, const char *key)
+{
+  return strcmp(field->key, key) == 0 || (field->alias != NULL && strcmp(field->alias, key) == 0);
+}
+
+/* An older word beside the key itself. */
+static dea_status check_twice(const struct dea_reader *reader, const struct section *section,
+                              const struct dea_field *field, const struct dea_node *node)
+{
+  const struct dea_node *chosen = child_of(section, field);
+  if (strcmp(chosen->key, node->key) == 0 || node->overridden != chosen->overridden) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, node->key_place,
+                          "'%s' and '%s' are the same key; write one of them", field->key,
+                          field->alias);
+}
+
 static dea_status check_unknown_keys(const struct dea_reader *reader, const struct section *section)
 {
   const struct dea_record *record = section->record;
@@ -289,10 +339,11 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
   }
   for (const struct dea_node *node = section->node->child; node != NULL; node = node->next) {
     size_t i = 0;
-    while (i < count && strcmp(keys[i], node->key) != 0) {
+    while (i < count && !is_key(&record->fields[i], node->key)) {
       i++;
     }
     if (i < count) {
+      DEA_TRY(reader->ctx, check_twice(reader, section, &record->fields[i], node));
       continue;
     }
     const char *nearest = dea_nearest_name(node->key, keys, count);

@@ -20,12 +20,15 @@ enum dea_field_kind {
   DEA_FIELD_CHOICE,    // struct dea_choice: one of `choices`, value is its index
   DEA_FIELD_RECORD,    // a section; its fields' offsets count from this record's offset
   DEA_FIELD_SECTION,   // const struct dea_node *: a section whose keys another table knows
+  DEA_FIELD_SETTINGS,  // void *: a section read into zeroed memory of its own, of element_size
+                       // bytes, also where the file has none; owned by the struct
 };
 
 struct dea_record;
 
 struct dea_field {
   const char *key;
+  const char *alias; // an older word that is read as well; NULL: none
   enum dea_field_kind kind;
   size_t offset;       // of the member in the record's struct
   const char *doc;     // meaning, one clause
@@ -45,7 +48,8 @@ struct dea_field {
   const char *const *choices; // NULL-terminated
 
   const struct dea_record *record; // of a section
-  size_t present_offset;           // bool member set when the section is there; 0: defaults apply
+  size_t
+      present_offset; // bool member set when it is there; of a DEA_FIELD_RECORD: 0: defaults apply
 
   /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
    * count_offset. */
@@ -55,6 +59,9 @@ struct dea_field {
    */
   const struct dea_record *const *kinds;
 };
+
+/* Whether the keys of a section are those of the field's record. */
+bool dea_field_has_record(const struct dea_field *field);
 
 struct dea_record {
   const char *name; // "film"; for messages

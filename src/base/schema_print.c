@@ -72,10 +72,10 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
     const struct dea_field *field = &record->fields[i];
     struct dea_text inner = {.ctx = out->ctx};
     dea_text_add(&inner, "%s%s%s%s", path, path[0] != '\0' ? "." : "", field->key,
-                 field->list_max > 0 && field->kind == DEA_FIELD_RECORD ? "[]" : "");
+                 field->list_max > 0 && dea_field_has_record(field) ? "[]" : "");
     out->failed = out->failed || inner.failed;
     print(record, field, dea_text_get(&inner), out);
-    if (field->kind == DEA_FIELD_RECORD) {
+    if (dea_field_has_record(field)) {
       walk(field->record, dea_text_get(&inner), print, out);
     }
     for (size_t k = 0; field->kinds != NULL && field->kinds[k] != NULL; k++) {
@@ -95,7 +95,7 @@ static void print_plain(const struct dea_record *record, const struct dea_field 
   char form[200];
   const char *need = describe_need(record, field);
   describe_form(field, form, sizeof form);
-  if (field->kind == DEA_FIELD_RECORD) {
+  if (dea_field_has_record(field)) {
     dea_text_add(out, "\n%s: %s%s%s%s\n", path, field->doc, need[0] != '\0' ? " [" : "", need,
                  need[0] != '\0' ? "]" : "");
     return;
@@ -209,6 +209,7 @@ static json_t *value_json(const struct dea_field *field)
 {
   switch (field->kind) {
   case DEA_FIELD_RECORD:
+  case DEA_FIELD_SETTINGS:
     return record_json(field->record);
   case DEA_FIELD_SECTION:
     return field->kinds != NULL ? kinds_json(field) : json_pack("{s:s}", "type", "object");
@@ -273,6 +274,11 @@ static json_t *record_json(const struct dea_record *record)
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
     json_object_set_new(properties, field->key, field_json(field));
+    if (field->alias != NULL) {
+      json_t *old = field_json(field);
+      json_object_set_new(old, "deprecated", json_true());
+      json_object_set_new(properties, field->alias, old);
+    }
     if (field->required && field->group == 0) {
       json_array_append_new(required, json_string(field->key));
     }

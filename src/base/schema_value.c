@@ -84,6 +84,7 @@ void dea_schema_value_absent(const struct dea_field *field, char *target,
   case DEA_FIELD_TEXT:
   case DEA_FIELD_RECORD:
   case DEA_FIELD_SECTION:
+  case DEA_FIELD_SETTINGS:
     break; // zeroed memory says it
   }
 }
@@ -293,6 +294,7 @@ dea_status dea_schema_value_read(const struct dea_reader *reader,
     break;
   case DEA_FIELD_RECORD:
   case DEA_FIELD_SECTION:
+  case DEA_FIELD_SETTINGS:
     return DEA_OK; // read_field has done these
   }
   // The list holds what was written, so a diameter stays one although the struct keeps the radius.

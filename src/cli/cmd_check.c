@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "device/device.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <stdlib.h>

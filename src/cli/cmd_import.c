@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "lab/import/import.h"
 #include "result/provenance.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <stdint.h>

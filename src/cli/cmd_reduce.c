@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include "lab/reduce/output.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <string.h>

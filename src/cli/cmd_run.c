@@ -8,6 +8,7 @@
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "cli/cli.h"
 
-#include "design/schema.h"
 #include "lab/import/import.h"
 #include "lab/protocol/protocol.h"
+#include "study/design_file.h"
 
 struct request {
   bool json, markdown, material, protocol, mapping;
@@ -11,10 +11,12 @@ struct request {
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
+  struct dea_design_schema design;
+  dea_design_file_schema(&design);
   const struct dea_record *record = request->material   ? &dea_material_file_record
                                     : request->protocol ? &dea_protocol_record
                                     : request->mapping  ? &dea_mapping_record
-                                                        : &dea_design_record;
+                                                        : &design.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   if (request->json) {

@@ -2,13 +2,13 @@
 #include "base/schema.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
-#include "design/schema.h"
 #include "lab/import/import.h"
 #include "lab/protocol/protocol.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "output/figure.h"
 #include "result/columns.h"
+#include "study/design_file.h"
 #include "study/study.h"
 
 /* The names of what a registry holds. */
@@ -71,7 +71,9 @@ static dea_status list_quantities(struct dea_context *ctx, struct dea_text *out)
 static dea_status list_keys(struct dea_context *ctx, struct dea_text *out)
 {
   (void)ctx;
-  dea_schema_print_keys(&dea_design_record, out);
+  struct dea_design_schema schema;
+  dea_design_file_schema(&schema);
+  dea_schema_print_keys(&schema.record, out);
   return DEA_OK;
 }
 

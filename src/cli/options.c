@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "output/plot.h"
+#include "study/design_file.h"
 
 #include <getopt.h>
 #include <math.h>

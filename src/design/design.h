@@ -19,7 +19,7 @@ enum {
   DEA_DESIGN_STOPS_MAX = 32,
   DEA_DESIGN_MODES_MAX = 10, // their shapes are fields of one mesh
   DEA_DESIGN_FIELDS_MAX = 100,
-  DEA_DESIGN_MESHES_MAX = 8,
+  DEA_DESIGN_SECTIONS_MAX = 16,
   DEA_DESIGN_VARIANTS_MAX = 8,
 };
 
@@ -34,6 +34,9 @@ enum dea_gravity { DEA_GRAVITY_OFF, DEA_GRAVITY_FIBRES_UP, DEA_GRAVITY_FIBRES_DO
 enum dea_buckling_branch { DEA_BRANCH_ANY, DEA_BRANCH_FIBRES, DEA_BRANCH_BACK }; // of the centre
 
 struct dea_design;
+struct dea_device;
+struct dea_record;
+struct dea_settings;
 
 /* A design that another one is compared with. */
 struct dea_design_variant {
@@ -42,6 +45,30 @@ struct dea_design_variant {
   const struct dea_node
       *set;                  // values in the place of that file's; NULL: none; lent by the document
   struct dea_design *design; // owned; NULL: the design itself, without a file or changes
+};
+
+/* A section of `compute` whose keys, and the struct that they fill, belong to who reads it: a
+ * study. */
+struct dea_design_section {
+  const char *key;                 // "convergence"
+  const struct dea_record *record; // its keys; offsets count from the settings
+  size_t size;                     // of the settings
+  /* Adds findings where values do not go together; NULL: they always do. */
+  dea_status (*check)(struct dea_context *ctx, const struct dea_design *design,
+                      const struct dea_settings *settings);
+  /* The same where they do not fit the device; NULL. */
+  dea_status (*fit)(struct dea_context *ctx, const struct dea_settings *settings,
+                    const struct dea_device *device);
+};
+struct dea_design_sections {
+  const struct dea_design_section *const *items; // [count]
+  size_t count;
+};
+
+struct dea_settings {
+  const struct dea_design_section *section;
+  void *values; // owned
+  bool written; // the section is in the file; its values are there without it too
 };
 
 struct dea_design {
@@ -102,48 +129,15 @@ struct dea_design {
     size_t voltage_count;
     struct dea_location voltages_place;
     struct dea_quantity path_max_stretch; // of the electrode, total; DEA_DEFAULT: or beyond
-    struct { // force on a rigid tip; without depths and preloads nothing is computed
-      struct dea_choice tip;  // enum dea_indenter_shape
-      struct dea_choice side; // 0: it comes from the fibres' side, 1: from the other
-      struct dea_quantity radius_m, edge_radius_m;
-      struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
-      size_t depth_count, preload_count;
-    } force;
-    struct {      // study of convergence, of models with a mesh
-      bool asked; // the section is there; the values are there without it too
-      struct dea_quantity refinements[DEA_DESIGN_MESHES_MAX]; // rising
-      struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX];   // none: quarters of the highest
-      size_t refinement_count, voltage_count;
-      struct dea_quantity tolerance; // relative
-    } convergence;
-    struct {                              // study transient
-      struct dea_quantity until_s;        // absent: the waveform's end
-      struct dea_quantity tolerance;      // error of a step over the largest motion so far
-      struct dea_quantity longest_step_s; // absent: a twentieth of a cycle
-      struct dea_quantity interval_s;     // of points that are kept; absent: every step
-      struct dea_choice press;            // 0: no, 1: the tip of `force` first
-      struct dea_choice inertia;          // 0: no, 1: yes
-      struct dea_quantity rho_inf;        // spectral radius of generalised alpha
-    } transient;
-    struct {                                                // study of vibrations
-      bool asked;                                           // the section is there
-      struct dea_quantity count;                            // modes
-      struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: 0 and quarters of the highest
-      size_t voltage_count;
-    } modal;
-    struct { // study of the response to an AC excitation; without a bias nothing is computed
-      struct dea_quantity biases_V[DEA_DESIGN_STOPS_MAX];
-      size_t bias_count;
-      struct dea_quantity ripple_V, from_Hz, to_Hz, points;
-      struct dea_quantity damping, damping_mass_per_s, damping_stiffness_s;
-    } frequency;
+    struct dea_settings settings[DEA_DESIGN_SECTIONS_MAX]; // of sections that studies own
+    size_t settings_count;
     struct dea_design_variant compare[DEA_DESIGN_VARIANTS_MAX]; // study compare-design
     size_t compare_count;
     struct dea_choice coverage_by;        // enum dea_coverage_by, paper eq 17
     struct dea_quantity coverage;         // R itself; absent: from coverage_by
     struct {                              // model 3d
       struct dea_choice film, domain;     // enum dea_solid_film, enum dea_solid_domain
-      struct dea_choice side;             // enum dea_buckling_branch
+      struct dea_choice buckling_branch;  // enum dea_buckling_branch
       struct dea_choice field;            // enum dea_solid_electrostatics
       struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
       struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes
@@ -169,16 +163,9 @@ struct dea_override {
   const char *key, *value;
 };
 
-/* Reads and checks a file. All findings go to the context with file:line:column; any error gives
- * DEA_E_DESIGN (DEA_E_IO when the file cannot be read at all) after the whole file was looked at.
- * out: owned by the caller, NULL on failure. */
-dea_status dea_design_read(struct dea_context *ctx, const char *file,
-                           const struct dea_override *overrides, size_t override_count,
-                           struct dea_design **out);
-/* The same from memory; name stands for the file in messages. */
-dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
-                                  size_t length, const struct dea_override *overrides,
-                                  size_t override_count, struct dea_design **out);
+/* Settings of a section, NULL when the design was read without it; lent. */
+const struct dea_settings *dea_design_settings(const struct dea_design *design,
+                                               const struct dea_design_section *section);
 /* The highest of the voltages to be computed; 0 when none is above it. */
 double dea_design_highest_V(const struct dea_design *design);
 /* NULL is fine. */

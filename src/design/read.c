@@ -1,6 +1,6 @@
+#include "design/read.h"
 #include "base/file.h"
 #include "design/schema.h"
-#include "design/variants.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -121,60 +121,29 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
   return DEA_OK;
 }
 
-/* Whether a section of `compute` is written. */
-static bool has_section(const struct dea_design *design, const char *key)
-{
-  const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
-  return compute != NULL && dea_node_find(compute, key) != NULL;
-}
-
-/* Meshes of a study of convergence become finer. */
-static dea_status take_convergence(struct dea_context *ctx, struct dea_design *design)
-{
-  const struct dea_quantity *n = design->compute.convergence.refinements;
-  design->compute.convergence.asked = has_section(design, "convergence");
-  for (size_t i = 1; i < design->compute.convergence.refinement_count; i++) {
-    if (n[i].si <= n[i - 1].si) {
-      DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_ERROR, n[i].location,
-                              "refinement: %g after %g, but each mesh has to be finer than the "
-                              "one before",
-                              n[i].si, n[i - 1].si));
-    }
-  }
-  return DEA_OK;
-}
-
 static dea_status take_drive(const struct dea_reader *reader, struct dea_design *design)
 {
   struct dea_context *ctx = reader->ctx;
   if (design->drive.section != NULL) {
     DEA_TRY(ctx, dea_waveform_read(reader, design->drive.section, "drive.waveform", design->file,
                                    &design->drive.waveform));
-  } else if (has_section(design, "transient")) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, design->compute.transient.until_s.location,
-                                 "transient: without drive.waveform nothing happens in time"));
-  }
-  if (design->compute.transient.press.value == 1 &&
-      design->compute.force.depth_count + design->compute.force.preload_count == 0) {
-    return dea_finding_add(ctx, DEA_ERROR, design->compute.transient.press.location,
-                           "press: how far? compute.force.depth or compute.force.preload says it");
   }
   return DEA_OK;
 }
 
-/* Frequencies rise. */
-static dea_status take_vibration(struct dea_context *ctx, struct dea_design *design)
+/* Sections of studies, whose checks may look at the whole design. */
+static dea_status take_sections(struct dea_context *ctx, const struct dea_design_sections *sections,
+                                struct dea_design *design)
 {
-  const struct dea_quantity *to = &design->compute.frequency.to_Hz;
-  design->compute.modal.asked = has_section(design, "modal");
-  if (has_section(design, "frequency") && design->compute.frequency.bias_count == 0) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, to->location,
-                                 "frequency: without `bias` there is no such study"));
+  design->compute.settings_count = sections->count;
+  for (size_t i = 0; i < sections->count; i++) {
+    design->compute.settings[i].section = sections->items[i];
   }
-  if (to->si <= design->compute.frequency.from_Hz.si) {
-    return dea_finding_add(ctx, DEA_ERROR, to->location, "to: %g Hz is not above `from`, %g Hz",
-                           to->si, design->compute.frequency.from_Hz.si);
+  for (size_t i = 0; i < sections->count; i++) {
+    const struct dea_settings *settings = &design->compute.settings[i];
+    if (settings->section->check != NULL && settings->values != NULL) {
+      DEA_TRY(ctx, settings->section->check(ctx, design, settings));
+    }
   }
   return DEA_OK;
 }
@@ -291,16 +260,16 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
                                  "key 'design' names the design"));
     return dea_fail(ctx, DEA_E_DESIGN, "'%s' is no design", design->file);
   }
-  DEA_TRY(ctx,
-          dea_schema_read(&reader, &dea_design_record, dea_yaml_root(design->document), "", raw));
+  struct dea_design_schema schema;
+  dea_design_schema_fill(source->sections, &schema);
+  DEA_TRY(ctx, dea_schema_read(&reader, &schema.record, dea_yaml_root(design->document), "", raw));
   if (dea_yaml_root(design->document)->kind == DEA_NODE_SECTION) {
     DEA_TRY(ctx, take_materials(&reader, raw));
     DEA_TRY(ctx, take_voltages(ctx, raw));
     DEA_TRY(ctx, take_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
     DEA_TRY(ctx, take_drive(&reader, design));
-    DEA_TRY(ctx, take_convergence(ctx, design));
-    DEA_TRY(ctx, take_vibration(ctx, design));
+    DEA_TRY(ctx, take_sections(ctx, source->sections, design));
     take_figures(raw);
     DEA_TRY(ctx, take_fields(ctx, raw));
   }
@@ -318,6 +287,9 @@ static void clear_design(struct dea_context *ctx, struct dea_design *design)
   for (size_t i = 0; i < design->compute.compare_count; i++) {
     dea_design_destroy(ctx, design->compute.compare[i].design);
   }
+  for (size_t i = 0; i < DEA_DESIGN_SECTIONS_MAX; i++) {
+    dea_free(ctx, design->compute.settings[i].values);
+  }
   dea_waveform_destroy(design->drive.waveform);
   dea_free(ctx, design->compute.voltages_V);
   dea_free(ctx, design->materials);
@@ -325,9 +297,8 @@ static void clear_design(struct dea_context *ctx, struct dea_design *design)
   dea_yaml_destroy(ctx, design->document);
 }
 
-/* One design, without those that it compares itself with. */
-static dea_status read_one(struct dea_context *ctx, const struct dea_design_source *source,
-                           const struct dea_node *changes, struct dea_design **out)
+dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_design_source *source,
+                                  const struct dea_node *changes, struct dea_design **out)
 {
   *out = NULL;
   struct dea_design_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
@@ -348,41 +319,15 @@ static dea_status read_one(struct dea_context *ctx, const struct dea_design_sour
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-dea_status dea_design_read_changed(struct dea_context *ctx, const struct dea_design_source *source,
-                                   const struct dea_node *changes, struct dea_design **out)
+const struct dea_settings *dea_design_settings(const struct dea_design *design,
+                                               const struct dea_design_section *section)
 {
-  DEA_TRY(ctx, read_one(ctx, source, changes, out));
-  (*out)->compute.compare_count = 0; // they are those of the first design
-  return DEA_OK;
-}
-
-dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, const char *bytes,
-                                  size_t length, const struct dea_override *overrides,
-                                  size_t override_count, struct dea_design **out)
-{
-  const struct dea_design_source source = {name, bytes, length, overrides, override_count};
-  DEA_TRY(ctx, read_one(ctx, &source, NULL, out));
-  dea_status status = dea_design_read_variants(ctx, &source, *out);
-  if (status != DEA_OK) {
-    dea_design_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  for (size_t i = 0; design != NULL && i < design->compute.settings_count; i++) {
+    if (design->compute.settings[i].section == section) {
+      return &design->compute.settings[i];
+    }
   }
-  return DEA_OK;
-}
-
-dea_status dea_design_read(struct dea_context *ctx, const char *file,
-                           const struct dea_override *overrides, size_t override_count,
-                           struct dea_design **out)
-{
-  char *bytes;
-  size_t length;
-  *out = NULL;
-  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  dea_status status =
-      dea_design_read_memory(ctx, file, bytes, length, overrides, override_count, out);
-  dea_free(ctx, bytes);
-  return status;
+  return NULL;
 }
 
 void dea_design_destroy(struct dea_context *ctx, struct dea_design *design)

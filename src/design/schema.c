@@ -1,7 +1,9 @@
 /* The table of all keys of a design file: `dea schema` prints it, the reader reads with it. */
 #include "design/schema.h"
 
+#include <assert.h>
 #include <stddef.h>
+#include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_design_raw, design.member)
@@ -208,10 +210,6 @@ static const struct dea_field compute_fields[] = {
      .record = &voltage_record,
      .doc = "voltages of the sweep"},
     {.key = "path", .kind = DEA_FIELD_RECORD, .record = &path_record, .doc = "equilibrium path"},
-    {.key = "force",
-     .kind = DEA_FIELD_RECORD,
-     .record = &dea_force_record,
-     .doc = "force on a rigid tip against the middle of the film (3d)"},
     {.key = "solid",
      .kind = DEA_FIELD_RECORD,
      .record = &dea_solid_record,
@@ -226,26 +224,6 @@ static const struct dea_field compute_fields[] = {
      .count_offset = AT(compute.compare_count),
      .absent_text = "none",
      .doc = "study compare-design: other designs in one figure with this one"},
-    {.key = "convergence",
-     .kind = DEA_FIELD_RECORD,
-     .record = &dea_convergence_record,
-     .doc =
-         "study of convergence, made when this section is there ({}) or with --study: the same on "
-         "ever finer meshes (3d)"},
-    {.key = "transient",
-     .kind = DEA_FIELD_RECORD,
-     .record = &dea_transient_record,
-     .doc = "study of what happens in time, made when there is a waveform (drive)"},
-    {.key = "modal",
-     .kind = DEA_FIELD_RECORD,
-     .record = &dea_modal_record,
-     .doc =
-         "study of vibrations, made when this section is there ({}) or with --study: frequencies "
-         "and shapes about voltages (3d)"},
-    {.key = "frequency",
-     .kind = DEA_FIELD_RECORD,
-     .record = &dea_frequency_record,
-     .doc = "study of the response to a small AC excitation of the voltage about a bias (3d)"},
     {.key = "coverage_by",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(compute.coverage_by),
@@ -416,6 +394,42 @@ static const struct dea_field design_fields[] = {
     {.key = "report", .kind = DEA_FIELD_RECORD, .record = &report_record, .doc = "how to report"},
 };
 
-const struct dea_record dea_design_record = {"design file",
-                                             "design of a dielectric elastomer actuator",
-                                             design_fields, COUNT(design_fields)};
+static const struct dea_record design_record = {"design file",
+                                                "design of a dielectric elastomer actuator",
+                                                design_fields, COUNT(design_fields)};
+
+/* The row of a study's section. */
+static struct dea_field section_field(const struct dea_design_section *section, size_t index)
+{
+  size_t at = AT(compute.settings) + index * sizeof(struct dea_settings);
+  return (struct dea_field){.key = section->key,
+                            .kind = DEA_FIELD_SETTINGS,
+                            .offset = at + offsetof(struct dea_settings, values),
+                            .present_offset = at + offsetof(struct dea_settings, written),
+                            .element_size = section->size,
+                            .record = section->record,
+                            .doc = section->record->doc};
+}
+
+void dea_design_schema_fill(const struct dea_design_sections *sections,
+                            struct dea_design_schema *out)
+{
+  static_assert(COUNT(design_fields) <= DEA_DESIGN_TOP_MAX, "room for all sections");
+  static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
+                "room for all of compute");
+  size_t count = COUNT(compute_fields);
+  *out = (struct dea_design_schema){.record = design_record, .compute_record = compute_record};
+  memcpy(out->top, design_fields, sizeof design_fields);
+  memcpy(out->compute, compute_fields, sizeof compute_fields);
+  for (size_t i = 0; i < sections->count && i < DEA_DESIGN_SECTIONS_MAX; i++) {
+    out->compute[count++] = section_field(sections->items[i], i);
+  }
+  for (size_t i = 0; i < COUNT(design_fields); i++) {
+    if (out->top[i].record == &compute_record) {
+      out->top[i].record = &out->compute_record;
+    }
+  }
+  out->compute_record.fields = out->compute;
+  out->compute_record.field_count = count;
+  out->record.fields = out->top;
+}

@@ -2,6 +2,7 @@
 #ifndef DEA_DESIGN_SCHEMA_H
 #define DEA_DESIGN_SCHEMA_H
 
+#include "base/schema.h"
 #include "design/design.h"
 
 enum { DEA_FIGURE_SVG, DEA_FIGURE_PDF, DEA_FIGURE_PNG, DEA_FIGURE_COUNT };
@@ -22,13 +23,20 @@ struct dea_design_raw {
 };
 
 /* Parts of the table that have files of their own; base as below. */
-extern const struct dea_record dea_fibres_record, dea_force_record, dea_solid_record,
-    dea_convergence_record, dea_modal_record, dea_frequency_record, dea_fabrication_record,
-    dea_drive_record, dea_transient_record;
+extern const struct dea_record dea_fibres_record, dea_solid_record, dea_fabrication_record,
+    dea_drive_record;
 /* base: a struct dea_design_variant. */
 extern const struct dea_record dea_compare_record;
 
-/* Table of a design file; base: a struct dea_design_raw. */
-extern const struct dea_record dea_design_record;
+enum { DEA_DESIGN_TOP_MAX = 20, DEA_DESIGN_COMPUTE_MAX = 32 };
+
+/* Table of a design file with sections of studies; record's base: a struct dea_design_raw. Its
+ * parts point to each other: not to be copied. */
+struct dea_design_schema {
+  struct dea_record record, compute_record;
+  struct dea_field top[DEA_DESIGN_TOP_MAX], compute[DEA_DESIGN_COMPUTE_MAX];
+};
+void dea_design_schema_fill(const struct dea_design_sections *sections,
+                            struct dea_design_schema *out);
 
 #endif

@@ -10,7 +10,7 @@ static const char *const films[] = {"solid", "membrane", NULL};
 static const char *const electrostatics[] = {"thin", "coupled",
                                              NULL}; // enum dea_solid_electrostatics
 static const char *const domains[] = {"sector", "disc", NULL};
-static const char *const sides[] = {"any", "fibres", "back", NULL};
+static const char *const branches[] = {"any", "fibres", "back", NULL};
 
 static const struct dea_field fields[] = {
     {.key = "film",
@@ -66,10 +66,11 @@ static const struct dea_field fields[] = {
      .doc = "electric field: V/h where electrodes face each other, or from the potential as an "
             "unknown, with the fringe at the electrode's edge (solid film only)",
      .example = "coupled"},
-    {.key = "side",
+    {.key = "buckling_branch",
+     .alias = "side",
      .kind = DEA_FIELD_CHOICE,
-     .offset = AT(side),
-     .choices = sides,
+     .offset = AT(buckling_branch),
+     .choices = branches,
      .default_text = "any",
      .doc =
          "side of the centre where a film without tension may buckle to either one; any: the one "

@@ -1,10 +1,18 @@
-/* Designs that a file sets beside its own: `compute.compare`. */
 #include "design/variants.h"
 
 #include "base/file.h"
 
 #include <stdio.h>
 #include <string.h>
+
+/* Another design, which compares itself with none. */
+static dea_status read_other(struct dea_context *ctx, const struct dea_design_source *source,
+                             struct dea_design_variant *variant)
+{
+  DEA_TRY(ctx, dea_design_read_source(ctx, source, variant->set, &variant->design));
+  variant->design->compute.compare_count = 0;
+  return DEA_OK;
+}
 
 static dea_status read_other_file(struct dea_context *ctx, const struct dea_design_source *source,
                                   struct dea_design_variant *variant)
@@ -22,7 +30,7 @@ static dea_status read_other_file(struct dea_context *ctx, const struct dea_desi
   } else if (status == DEA_OK) {
     other.name = path;
     other.bytes = bytes;
-    status = dea_design_read_changed(ctx, &other, variant->set, &variant->design);
+    status = read_other(ctx, &other, variant);
   }
   dea_free(ctx, bytes);
   dea_free(ctx, path);
@@ -56,7 +64,7 @@ dea_status dea_design_read_variants(struct dea_context *ctx, const struct dea_de
     if (variant->file.origin != DEA_ABSENT) {
       status = read_other_file(ctx, source, variant);
     } else if (variant->set != NULL) {
-      status = dea_design_read_changed(ctx, source, variant->set, &variant->design);
+      status = read_other(ctx, source, variant);
     }
     if (status != DEA_OK && status != DEA_E_DESIGN) {
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

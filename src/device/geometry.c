@@ -77,7 +77,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
   device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
   device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;
-  device->solid_side = (enum dea_buckling_branch)design->compute.solid.side.value;
+  device->solid_side = (enum dea_buckling_branch)design->compute.solid.buckling_branch.value;
   device->solid_refinement = design->compute.solid.refinement.si;
   device->solid_order = (int)design->compute.solid.order.si;
   device->solid_order_z = (int)design->compute.solid.order_z.si;
@@ -171,21 +171,6 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
   return check_neighbours(ctx, design, device);
 }
 
-/* A tip that is pressed against the film. */
-static dea_status check_probe(struct dea_context *ctx, const struct dea_design *design,
-                              const struct dea_device *device)
-{
-  const struct dea_quantity *radius = &design->compute.force.radius_m;
-  bool used = design->compute.force.depth_count + design->compute.force.preload_count > 0;
-  if (!used || radius->si <= device->electrode_radius_m * (1 + touching)) {
-    return DEA_OK;
-  }
-  return dea_finding_add(ctx, DEA_ERROR, radius->location,
-                         "the tip, %.4g mm in radius, is larger than the electrode, the part that "
-                         "moves: at most %.4g mm (stretched)",
-                         1e3 * radius->si, 1e3 * device->electrode_radius_m);
-}
-
 dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device)
 {
@@ -196,6 +181,11 @@ dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *
                            "frame of %.4g mm inner radius",
                            1e3 * r_a, 1e3 * frame);
   }
-  DEA_TRY(ctx, check_probe(ctx, design, device));
+  for (size_t i = 0; i < design->compute.settings_count; i++) {
+    const struct dea_settings *settings = &design->compute.settings[i];
+    if (settings->section->fit != NULL) {
+      DEA_TRY(ctx, settings->section->fit(ctx, settings, device));
+    }
+  }
   return design->has_fibres ? check_fibres(ctx, design, device) : DEA_OK;
 }

@@ -1,22 +1,106 @@
 /* Study "convergence": the same device on ever finer meshes, at a few voltages. What the sequence
  * of answers says of each mesh is found in result/convergence.h. */
 #include "result/convergence.h"
+#include "base/schema.h"
 #include "study/study.h"
 #include "study/variant.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const char study_name[] = "convergence";
 
+// Keys -------------------------------------------------------------------------------------------
+
+enum { MESHES_MAX = DEA_CONVERGENCE_MESHES_MAX };
+
+/* Settings of compute.convergence. */
+struct settings {
+  struct dea_quantity refinements[MESHES_MAX];          // rising
+  struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: quarters of the highest
+  size_t refinement_count, voltage_count;
+  struct dea_quantity tolerance; // relative
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+static const struct dea_field fields[] = {
+    {.key = "refinement",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(refinements),
+     .unit = "1",
+     .min = 1,
+     .max = 6,
+     .default_text = "[1, 1.5, 2]",
+     .list_min = 2,
+     .list_max = MESHES_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(refinement_count),
+     .doc = "meshes, as in compute.solid.refinement, rising; an order needs three",
+     .example = "[1, 2, 3]"},
+    {.key = "voltage",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(voltages_V),
+     .unit = "V",
+     .max = 1e6,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_STOPS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(voltage_count),
+     .absent_text = "quarters of the highest",
+     .doc = "voltages at which the meshes are compared, in the order to be computed",
+     .example = "[2 kV, 4 kV, 6 kV]"},
+    {.key = "tolerance",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(tolerance),
+     .unit = "1",
+     .above_min = true,
+     .max = 1,
+     .default_text = "0.02",
+     .doc = "relative error that is small enough for a displacement",
+     .example = "0.02"},
+};
+
+static const struct dea_record record = {
+    "convergence",
+    "study of convergence, made when this section is there ({}) or with --study: the same on ever "
+    "finer meshes (3d)",
+    fields, COUNT(fields)};
+
+/* Meshes become finer. */
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_settings *given)
+{
+  (void)design;
+  const struct settings *settings = given->values;
+  const struct dea_quantity *n = settings->refinements;
+  for (size_t i = 1; i < settings->refinement_count; i++) {
+    if (n[i].si <= n[i - 1].si) {
+      DEA_TRY(ctx,
+              dea_finding_add(ctx, DEA_ERROR, n[i].location,
+                              "refinement: %g after %g, but each mesh has to be finer than the "
+                              "one before",
+                              n[i].si, n[i - 1].si));
+    }
+  }
+  return DEA_OK;
+}
+
+static const struct dea_design_section section = {
+    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+
+// Study ------------------------------------------------------------------------------------------
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: each mesh has its own
   const struct dea_design *design = result->design;
-  size_t total = design->compute.convergence.refinement_count;
+  const struct settings *settings = dea_design_settings(design, &section)->values;
+  size_t total = settings->refinement_count;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   char what[DEA_NAME_SIZE + 16], name[DEA_NAME_SIZE];
   dea_status first = DEA_OK;
@@ -26,18 +110,18 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                             "model %s has no mesh to refine: no study of convergence", type->name));
     return DEA_OK;
   }
-  result->convergence_tolerance = design->compute.convergence.tolerance.si;
+  result->convergence_tolerance = settings->tolerance.si;
   snprintf(what, sizeof what, "%s convergence", type->name);
   struct dea_device device = *result->device; // what it lends stays the original's
   struct dea_variant_run one = {.study = study_name,
                                 .name = name,
                                 .device = &device,
                                 .voltages_V = voltages_V,
-                                .voltage_count = dea_study_stops(
-                                    design, design->compute.convergence.voltages_V,
-                                    design->compute.convergence.voltage_count, false, voltages_V)};
+                                .voltage_count =
+                                    dea_study_stops(design, settings->voltages_V,
+                                                    settings->voltage_count, false, voltages_V)};
   for (size_t i = 0; i < total; i++) {
-    device.solid_refinement = design->compute.convergence.refinements[i].si;
+    device.solid_refinement = settings->refinements[i].si;
     snprintf(name, sizeof name, "refinement %.4g", device.solid_refinement);
     dea_status status = dea_variant_run(ctx, type, &one, result);
     first = first == DEA_OK ? status : first;
@@ -295,14 +379,9 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   return status;
 }
 
-static bool asked(const struct dea_design *design)
-{
-  return design->compute.convergence.asked;
-}
-
 const struct dea_study dea_study_convergence = {
     .name = study_name,
-    .asked = asked,
+    .keys = &section,
     .own_models = true,
     .run = run,
     .tables = tables,

@@ -3,10 +3,136 @@
  * against voltage at fixed depths and force against depth at fixed voltages: the actuator's load
  * lines. */
 #include "study/force.h"
+#include "base/schema.h"
 #include "study/study.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
+
+// Keys -------------------------------------------------------------------------------------------
+
+/* Settings of compute.force; without depths and preloads nothing is computed. */
+struct settings {
+  struct dea_choice indenter; // enum dea_indenter_shape
+  struct dea_choice side;     // 0: it comes from the fibres' side, 1: from the other
+  struct dea_quantity radius_m, edge_radius_m;
+  struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
+  size_t depth_count, preload_count;
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+// In the order of enum dea_indenter_shape.
+static const char *const tips[] = {"sphere", "flat", "cylinder", NULL};
+static const char *const sides[] = {"fibres", "back", NULL};
+
+static const struct dea_field fields[] = {
+    {.key = "indenter",
+     .alias = "tip",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(indenter),
+     .choices = tips,
+     .default_text = "sphere",
+     .doc = "shape of the tip; a cylinder lies on its side along the first fibre",
+     .example = "sphere"},
+    {.key = "radius",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(radius_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 0.1,
+     .default_text = "1.5 mm",
+     .doc = "radius of the tip",
+     .example = "1.5 mm"},
+    {.key = "edge_radius",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(edge_radius_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 0.1,
+     .default_text = "0.2 mm",
+     .doc = "radius of the rounded edge of a flat tip",
+     .example = "0.2 mm"},
+    {.key = "side",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(side),
+     .choices = sides,
+     .default_text = "fibres",
+     .doc = "where the tip comes from: the side of the fibres or the other",
+     .example = "fibres"},
+    {.key = "depth",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(depths_m),
+     .unit = "m",
+     .min = -0.1,
+     .max = 0.1,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_STOPS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(depth_count),
+     .doc = "how far the tip is pressed beyond touching the flat film, at 0 V; negative: a gap",
+     .example = "[0 mm, 1 mm, 2 mm]"},
+    {.key = "preload",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(preloads_N),
+     .unit = "N",
+     .above_min = true,
+     .max = 100,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_STOPS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(preload_count),
+     .doc = "forces that the tip is pressed to at 0 V, instead of depths or besides",
+     .example = "[0.18 N]"},
+};
+
+static const struct dea_record record = {"force",
+                                         "force on a rigid tip against the middle of the film (3d)",
+                                         fields, sizeof fields / sizeof fields[0]};
+
+/* The electrode is the part that moves. */
+static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
+                      const struct dea_device *device)
+{
+  static const double touching = 1e-9; // as in device/geometry.c
+  const struct settings *force = given->values;
+  if (force->depth_count + force->preload_count == 0 ||
+      force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,
+                         "the tip, %.4g mm in radius, is larger than the electrode, the part that "
+                         "moves: at most %.4g mm (stretched)",
+                         1e3 * force->radius_m.si, 1e3 * device->electrode_radius_m);
+}
+
+static const struct dea_design_section section = {
+    .key = "force", .record = &record, .size = sizeof(struct settings), .fit = fit};
+
+static const struct settings *settings_of(const struct dea_design *design)
+{
+  const struct dea_settings *given = dea_design_settings(design, &section);
+  return given != NULL ? given->values : NULL;
+}
+
+size_t dea_force_stops(const struct dea_design *design)
+{
+  const struct settings *force = settings_of(design);
+  return force != NULL ? force->depth_count + force->preload_count : 0;
+}
+
+struct dea_probe dea_force_indenter(const struct dea_design *design)
+{
+  const struct settings *force = settings_of(design);
+  return force == NULL ? (struct dea_probe){0}
+                       : (struct dea_probe){.shape = (enum dea_probe_shape)force->indenter.value,
+                                            .radius_m = force->radius_m.si,
+                                            .edge_radius_m = force->edge_radius_m.si,
+                                            .from_fibre_side = force->side.value == 0};
+}
+
+// Study ------------------------------------------------------------------------------------------
 
 enum { PRELOAD_TRIALS = 12 };
 static const double preload_close = 1e-3; // of the preload
@@ -37,19 +163,19 @@ static dea_status find_preload(struct dea_context *ctx, const struct dea_model_t
 dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_design *design, size_t stop)
 {
-  size_t depths = design->compute.force.depth_count;
-  const struct dea_probe tip = {.shape = (enum dea_probe_shape)design->compute.force.tip.value,
-                                .radius_m = design->compute.force.radius_m.si,
-                                .edge_radius_m = design->compute.force.edge_radius_m.si,
-                                .from_fibre_side = design->compute.force.side.value == 0};
+  const struct settings *force = settings_of(design);
+  if (force == NULL || stop >= force->depth_count + force->preload_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the design has no stop %zu of compute.force", stop + 1);
+  }
+  size_t depths = force->depth_count;
+  const struct dea_probe tip = dea_force_indenter(design);
   struct dea_load_point point;
   if (stop < depths) {
-    DEA_TRY(ctx, dea_model_indent(ctx, type, model, &tip, design->compute.force.depths_m[stop].si,
-                                  &point));
+    DEA_TRY(ctx, dea_model_indent(ctx, type, model, &tip, force->depths_m[stop].si, &point));
     return DEA_OK;
   }
-  DEA_TRY(ctx, find_preload(ctx, type, model, &tip,
-                            design->compute.force.preloads_N[stop - depths].si, tip.radius_m));
+  DEA_TRY(ctx,
+          find_preload(ctx, type, model, &tip, force->preloads_N[stop - depths].si, tip.radius_m));
   return DEA_OK;
 }
 
@@ -73,8 +199,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: each depth starts from rest
-  const struct dea_design *design = result->design;
-  size_t stops = design->compute.force.depth_count + design->compute.force.preload_count;
+  size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
   if (type->indent == NULL) {
@@ -95,11 +220,12 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 
 static bool asked(const struct dea_design *design)
 {
-  return design->compute.force.depth_count + design->compute.force.preload_count > 0;
+  return dea_force_stops(design) > 0;
 }
 
 const struct dea_study dea_study_force = {
     .name = "force",
+    .keys = &section,
     .asked = asked,
     .needs = "compute.force.depth or compute.force.preload",
     .own_models = true,

@@ -1,9 +1,13 @@
-/* The tip of compute.force, for studies that press it in before something else happens. */
+/* The indenter of compute.force, for studies that press it in before something else happens. */
 #ifndef DEA_STUDY_FORCE_H
 #define DEA_STUDY_FORCE_H
 
 #include "model/model.h"
 
+/* The indenter that the design describes. */
+struct dea_probe dea_force_indenter(const struct dea_design *design);
+/* Stops that the design asks for: depths and preloads. */
+size_t dea_force_stops(const struct dea_design *design);
 /* Presses it to the stop of that number, first depths, then preloads, at the model's last voltage.
  * DEA_E_NOT_CONVERGED when no depth gives a preload. */
 dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type *type,

@@ -40,7 +40,11 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
 
 static bool is_asked(const struct dea_study *study, const struct dea_design *design)
 {
-  return study->asked == NULL || study->asked(design);
+  if (study->asked != NULL || study->keys == NULL) {
+    return study->asked == NULL || study->asked(design);
+  }
+  const struct dea_settings *settings = dea_design_settings(design, study->keys);
+  return settings != NULL && settings->written;
 }
 
 static bool is_wanted(const struct dea_study *study, const char *const names[], size_t name_count,

@@ -22,7 +22,8 @@ struct dea_checkpoint_sink {
 
 struct dea_study {
   const char *name;
-  /* Whether the design asks for it; NULL: every design does. */
+  const struct dea_design_section *keys; // compute.NAME: its keys and settings; NULL: none
+  /* Whether the design asks for it; NULL: where its section is written, or without keys always. */
   bool (*asked)(const struct dea_design *design);
   const char *needs; // keys of the design without which it cannot run; NULL: none
   bool own_models;   // makes its own: `run` gets none

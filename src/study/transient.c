@@ -1,13 +1,126 @@
 /* Study "transient": a waveform is played to the model (docs/theory/time.md). Steps as long as the
  * tolerance allows, none across a corner of the waveform; a jump is a step of no length. */
+#include "base/schema.h"
 #include "result/time_series.h"
 #include "study/force.h"
 #include "study/study.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
 static const char study_name[] = "transient";
+
+// Keys -------------------------------------------------------------------------------------------
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define AT(member) offsetof(struct settings, member)
+
+/* Settings of compute.transient. */
+struct settings {
+  struct dea_quantity until_s;        // absent: the waveform's end
+  struct dea_quantity tolerance;      // error of a step over the largest motion so far
+  struct dea_quantity longest_step_s; // absent: a twentieth of a cycle
+  struct dea_quantity interval_s;     // of points that are kept; absent: every step
+  struct dea_choice indent;           // 0: no, 1: the indenter of `force` first
+  struct dea_choice inertia;          // 0: no, 1: yes
+  struct dea_quantity rho_inf;        // spectral radius of generalised alpha
+};
+
+static const char *const no_yes[] = {"no", "yes", NULL};
+
+static const struct dea_field fields[] = {
+    {.key = "until",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(until_s),
+     .unit = "s",
+     .above_min = true,
+     .max = 1e9,
+     .absent_text = "the waveform's end",
+     .doc = "time at which the study ends; after its end a waveform stays where it is",
+     .example = "30 s"},
+    {.key = "tolerance",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(tolerance),
+     .unit = "1",
+     .min = 1e-10,
+     .max = 0.1,
+     .default_text = "0.0001",
+     .doc = "error of one step over the largest motion so far",
+     .example = "0.0001"},
+    {.key = "longest_step",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(longest_step_s),
+     .unit = "s",
+     .above_min = true,
+     .max = 1e9,
+     .absent_text = "a twentieth of a cycle",
+     .doc = "longest step in time",
+     .example = "50 ms"},
+    {.key = "interval",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(interval_s),
+     .unit = "s",
+     .max = 1e9,
+     .absent_text = "as a figure needs them",
+     .doc = "time between points that are kept; those at corners of the waveform always are",
+     .example = "10 ms"},
+    {.key = "indent",
+     .alias = "press",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(indent),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc =
+         "whether the tip of compute.force is pressed in first, to its first depth or preload, and "
+         "held there",
+     .example = "yes"},
+    {.key = "inertia",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(inertia),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc = "whether mass matters; without, each moment is an equilibrium",
+     .example = "yes"},
+    {.key = "rho_inf",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(rho_inf),
+     .unit = "1",
+     .min = 0,
+     .max = 1,
+     .default_text = "0.8",
+     .doc = "spectral radius of generalised alpha at high frequencies: 1 damps nothing, 0 most",
+     .example = "0.5"},
+};
+
+static const struct dea_record record = {
+    "transient", "study of what happens in time, made when there is a waveform (drive)", fields,
+    COUNT(fields)};
+
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_settings *given)
+{
+  const struct settings *settings = given->values;
+  if (design->drive.section == NULL && given->written) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, settings->until_s.location,
+                                 "transient: without drive.waveform nothing happens in time"));
+  }
+  if (settings->indent.value == 1 && dea_force_stops(design) == 0) {
+    return dea_finding_add(ctx, DEA_ERROR, settings->indent.location,
+                           "indent: how far? compute.force.depth or compute.force.preload says it");
+  }
+  return DEA_OK;
+}
+
+static const struct dea_design_section section = {
+    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+
+static const struct settings *settings_of(const struct dea_design *design)
+{
+  return dea_design_settings(design, &section)->values;
+}
+
+// Study ------------------------------------------------------------------------------------------
 
 enum { POINTS_MAX = 40000 }; // of a curve; beyond, every second point goes
 
@@ -219,8 +332,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
 {
   const struct dea_waveform *waveform = design->drive.waveform;
   const struct dea_quantity *slew = &design->drive.slew_limit_V_per_s;
-  const struct dea_quantity *longest = &design->compute.transient.longest_step_s;
-  const struct dea_quantity *until = &design->compute.transient.until_s;
+  const struct dea_quantity *longest = &settings_of(design)->longest_step_s;
+  const struct dea_quantity *until = &settings_of(design)->until_s;
   struct dea_wave_cycle cycle;
   p->waveform = waveform;
   p->until_s = until->origin != DEA_ABSENT ? until->si : waveform->end_s;
@@ -233,8 +346,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
     usual_s = fmin(usual_s, 0.05 * (cycle.end_s - cycle.start_s));
   }
   p->longest_s = longest->origin != DEA_ABSENT ? longest->si : usual_s;
-  p->tolerance = design->compute.transient.tolerance.si;
-  const struct dea_quantity *interval = &design->compute.transient.interval_s;
+  p->tolerance = settings_of(design)->tolerance.si;
+  const struct dea_quantity *interval = &settings_of(design)->interval_s;
   p->interval_s = interval->origin != DEA_ABSENT ? interval->si : 0;
   return DEA_OK;
 }
@@ -242,13 +355,13 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
 /* Presses the tip in, where that is asked for. */
 static dea_status indent(struct dea_context *ctx, const struct dea_design *design, struct player *p)
 {
-  if (design->compute.transient.press.value == 0) {
+  if (settings_of(design)->indent.value == 0) {
     return DEA_OK;
   }
   if (p->type->indent == NULL) {
     return dea_finding_add(
         ctx, DEA_NOTE, (struct dea_location){0},
-        "model %s knows no tips: compute.transient.press is without effect there", p->type->name);
+        "model %s knows no tips: compute.transient.indent is without effect there", p->type->name);
   }
   DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, 0));
   return DEA_OK;
@@ -262,7 +375,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
       .circuit = {.series_resistance_ohm = design->drive.series_resistance_ohm.si,
                   .current_limit_A = limit->origin != DEA_ABSENT ? limit->si : INFINITY},
       .inertia = p->inertia,
-      .rho_inf = design->compute.transient.rho_inf.si,
+      .rho_inf = settings_of(design)->rho_inf.si,
   };
   struct dea_load_point point;
   DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
@@ -275,7 +388,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: this starts from rest
-  struct player p = {.type = type, .inertia = result->design->compute.transient.inertia.value == 1};
+  struct player p = {.type = type, .inertia = settings_of(result->design)->inertia.value == 1};
   struct dea_waveform *limited = NULL;
   if (type->advance == NULL) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
@@ -299,8 +412,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 }
 
 // Tables -----------------------------------------------------------------------------------------
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { ALL = DEA_IN_JSON | DEA_IN_SCREEN };
 
@@ -489,6 +600,7 @@ static bool asked(const struct dea_design *design)
 
 const struct dea_study dea_study_transient = {
     .name = study_name,
+    .keys = &section,
     .asked = asked,
     .needs = "drive.waveform",
     .own_models = true,

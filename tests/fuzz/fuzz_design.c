@@ -1,5 +1,6 @@
 /* Fuzz target: reading a design and building its device. */
 #include "device/device.h"
+#include "study/design_file.h"
 
 #include <stdint.h>
 

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "lab/protocol/schema.h"
+#include "study/design_file.h"
 
 #include <math.h>
 #include <stdio.h>

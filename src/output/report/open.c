@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "output/report/section.h"
+#include "study/design_file.h"
 
 #include <jansson.h>
 #include <math.h>

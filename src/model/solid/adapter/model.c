@@ -253,7 +253,7 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
     double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: at %.4g kV the centre goes over from %.4g to %.4g um "
-                                 "(compute.solid.side)",
+                                 "(compute.solid.buckling_branch)",
                                  1e-3 * model->voltage_V, 1e6 * before_m, 1e6 * after_m));
   }
   return DEA_OK;

@@ -1,0 +1,29 @@
+/* Keys of `compute.compare`. */
+#include "design/schema.h"
+
+#include <stddef.h>
+
+static const struct dea_field compare_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_design_variant, name),
+     .required = true,
+     .doc = "name in figures and tables; an item with nothing else names the design itself",
+     .example = "eight fibres"},
+    {.key = "file",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_design_variant, file),
+     .absent_text = "this file",
+     .doc = "design file to be compared with; its path counts from the folder of this one",
+     .example = "frdea-8.yaml"},
+    {.key = "set",
+     .kind = DEA_FIELD_SECTION,
+     .offset = offsetof(struct dea_design_variant, set),
+     .absent_text = "nothing",
+     .doc = "keys of a design file with other values, as with --set; null takes a key away",
+     .example = "{fibres.count: 8}"},
+};
+
+const struct dea_record dea_compare_record = {"compare", "a design that this one is compared with",
+                                              compare_fields,
+                                              sizeof compare_fields / sizeof compare_fields[0]};
