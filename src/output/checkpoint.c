@@ -67,18 +67,6 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
 
 // Fields -----------------------------------------------------------------------------------------
 
-static bool fields_wanted(const struct dea_design *design, double voltage_V)
-{
-  for (size_t i = 0; i < design->report.fields_at_count; i++) {
-    double at = design->report.fields_at_V[i];
-    if (fabs(at - voltage_V) <= 1e-9 * (1 + fabs(at))) {
-      return true;
-    }
-  }
-  return design->report.fields.value == DEA_FIELDS_ALL ||
-         design->report.fields.value == DEA_FIELDS_LAST;
-}
-
 /* Lines up the files that are there. */
 static dea_status write_pvd(struct dea_context *ctx, const char *directory, const char *model,
                             const struct dea_curve *curve)
@@ -128,27 +116,19 @@ static dea_status write_vtu(struct dea_context *ctx, const char *directory, cons
 /* Fields of the last point of a curve. Those of the point before go when only the last is wanted:
  * at any time there are some. */
 static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *keep,
-                              const struct dea_design *design, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_curve *curve)
+                              const struct dea_design *design, const struct dea_curve *curve,
+                              const struct dea_field_mesh *mesh)
 {
   size_t last = curve->count - 1;
-  double voltage_V = curve->points[last].voltage_V;
   char name[NAME_SIZE];
-  struct dea_field_mesh *mesh;
-  if (!fields_wanted(design, voltage_V)) {
-    return DEA_OK;
-  }
-  field_name(type->name, last, name);
-  DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &mesh));
-  dea_status status = write_vtu(ctx, keep->directory, name, mesh, voltage_V,
-                                design->report.fields_of.value == DEA_FIELDS_WHOLE);
-  dea_field_mesh_destroy(ctx, mesh);
-  DEA_TRY(ctx, status);
+  field_name(curve->model, last, name);
+  DEA_TRY(ctx, write_vtu(ctx, keep->directory, name, mesh, curve->points[last].voltage_V,
+                         design->report.fields_of.value == DEA_FIELDS_WHOLE));
   if (design->report.fields.value == DEA_FIELDS_LAST && last > 0) {
-    field_name(type->name, last - 1, name);
+    field_name(curve->model, last - 1, name);
     forget(ctx, keep->directory, name);
   }
-  DEA_TRY(ctx, write_pvd(ctx, keep->directory, type->name, curve));
+  DEA_TRY(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
   return DEA_OK;
 }
 
@@ -176,46 +156,48 @@ static char *state_path(struct dea_context *ctx, const char *directory, const ch
   return dea_path_join(ctx, directory, name);
 }
 
-static dea_status start(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                        struct dea_model *model, const struct dea_curve *curve)
+static dea_status restore(struct dea_context *ctx, void *user, const char *model,
+                          const struct dea_state *wanted, struct dea_state *out)
 {
-  struct dea_keep *keep = user;
-  if (type->load == NULL || curve->count == 0) {
-    return DEA_OK;
-  }
-  char *path = state_path(ctx, keep->directory, type->name);
+  const struct dea_keep *keep = user;
+  char *path = state_path(ctx, keep->directory, model);
   if (path == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = dea_state_file_read(ctx, type, model, path);
-  keep->refused = status != DEA_OK;
+  dea_status status = dea_state_file_read(ctx, model, wanted, path, out);
   dea_free(ctx, path);
   return status;
 }
 
+static void refuse(void *user)
+{
+  struct dea_keep *keep = user;
+  keep->refused = true;
+}
+
 /* The results before the state: it is the state that says how far a run came. */
-static dea_status keep_point(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_result *result,
-                             const struct dea_curve *curve)
+static dea_status keep_point(struct dea_context *ctx, void *user, const struct dea_result *result,
+                             const struct dea_curve *curve, const struct dea_field_mesh *fields,
+                             const struct dea_state *state)
 {
   const struct dea_keep *keep = user;
-  if (type->fields != NULL && result->design != NULL) {
-    DEA_TRY(ctx, keep_fields(ctx, keep, result->design, type, model, curve));
+  if (fields != NULL) {
+    DEA_TRY(ctx, keep_fields(ctx, keep, result->design, curve, fields));
   }
-  if (type->save == NULL) {
+  if (state == NULL) {
     return DEA_OK;
   }
   char *store = dea_path_join(ctx, keep->directory, "results.h5");
-  char *state = state_path(ctx, keep->directory, type->name);
-  dea_status status = store != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY;
+  char *path = state_path(ctx, keep->directory, curve->model);
+  dea_status status = store != NULL && path != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = dea_results_h5_write(ctx, result, store);
   }
   if (status == DEA_OK) {
-    status = dea_state_file_write(ctx, type, model, curve->count, state);
+    status = dea_state_file_write(ctx, curve->model, state, curve->count, path);
   }
   dea_free(ctx, store);
-  dea_free(ctx, state);
+  dea_free(ctx, path);
   return status;
 }
 
@@ -232,7 +214,8 @@ dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
     *out = NULL;
     return DEA_E_MEMORY;
   }
-  (*out)->keeper = (struct dea_checkpoint_sink){.user = *out, .start = start, .point = keep_point};
+  (*out)->keeper = (struct dea_checkpoint_sink){
+      .user = *out, .restore = restore, .refuse = refuse, .point = keep_point};
   return DEA_OK;
 }
 

@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_CHECKPOINT_H
 #define DEA_OUTPUT_CHECKPOINT_H
 
-#include "study/study.h"
+#include "result/checkpoint.h"
 
 /* The name of the folder of fields within a run folder. */
 #define DEA_FIELD_FOLDER "fields"

@@ -6,30 +6,28 @@
 
 #include <string.h>
 
-dea_status dea_state_file_write(struct dea_context *ctx, const struct dea_model_type *type,
-                                struct dea_model *model, size_t points, const char *path)
+dea_status dea_state_file_write(struct dea_context *ctx, const char *model,
+                                const struct dea_state *state, size_t points, const char *path)
 {
-  struct dea_state state = {0};
   struct h5 h;
-  DEA_TRY(ctx, dea_model_save(ctx, type, model, &state));
   dea_h5_begin(&h, ctx, path);
   hid_t file = dea_h5_file_make(&h);
   dea_h5_put_text(&h, file, "format", "libdea state");
   dea_h5_put_int(&h, file, "schema", DEA_STATE_SCHEMA);
   dea_h5_put_text(&h, file, "version", DEA_VERSION);
-  dea_h5_put_text(&h, file, "model", type->name);
+  dea_h5_put_text(&h, file, "model", model);
   dea_h5_put_int(&h, file, "points", (long long)points);
   hid_t marks = dea_h5_group_make(&h, file, "marks");
-  for (size_t i = 0; i < state.mark_count; i++) {
+  for (size_t i = 0; i < state->mark_count; i++) {
     char hex[65];
-    dea_sha256_hex(state.marks[i].bytes, state.marks[i].size, hex);
-    dea_h5_put_text(&h, marks, state.marks[i].name, hex);
+    dea_sha256_hex(state->marks[i].bytes, state->marks[i].size, hex);
+    dea_h5_put_text(&h, marks, state->marks[i].name, hex);
   }
   dea_h5_close(marks);
   hid_t arrays = dea_h5_group_make(&h, file, "arrays");
-  for (size_t i = 0; i < state.array_count; i++) {
-    dea_h5_put_array(&h, arrays, state.arrays[i].name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                     state.arrays[i].count, state.arrays[i].values, "SI", "of the model alone");
+  for (size_t i = 0; i < state->array_count; i++) {
+    dea_h5_put_array(&h, arrays, state->arrays[i].name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                     state->arrays[i].count, state->arrays[i].values, "SI", "of the model alone");
   }
   dea_h5_close(arrays);
   dea_h5_file_write(&h, file);
@@ -57,8 +55,7 @@ static void check_same(struct h5 *h, const char *what, const char *there, const 
   }
 }
 
-static void check_marks(struct h5 *h, hid_t file, const struct dea_model_type *type,
-                        const struct dea_state *state)
+static void check_marks(struct h5 *h, hid_t file, const char *model, const struct dea_state *state)
 {
   char text[80];
   long long schema = dea_h5_get_int(h, file, "schema");
@@ -70,7 +67,7 @@ static void check_marks(struct h5 *h, hid_t file, const struct dea_model_type *t
   dea_h5_get_text(h, file, "version", text, sizeof text);
   check_same(h, "version of dea", text, DEA_VERSION);
   dea_h5_get_text(h, file, "model", text, sizeof text);
-  check_same(h, "model", text, type->name);
+  check_same(h, "model", text, model);
   hid_t marks = dea_h5_group_open(h, file, "marks");
   for (size_t i = 0; i < state->mark_count; i++) {
     char hex[65];
@@ -81,43 +78,35 @@ static void check_marks(struct h5 *h, hid_t file, const struct dea_model_type *t
   dea_h5_close(marks);
 }
 
-/* Reads the arrays that a model wants. values: [wanted->array_count], each owned by the caller. */
+/* Reads the arrays that a model wants. */
 static void read_arrays(struct h5 *h, hid_t file, const struct dea_state *wanted,
-                        struct dea_state *out, double *values[DEA_STATE_PARTS_MAX])
+                        struct dea_state *out)
 {
   hid_t arrays = dea_h5_group_open(h, file, "arrays");
   for (size_t i = 0; i < wanted->array_count && h->status == DEA_OK; i++) {
     const struct dea_state_array *array = &wanted->arrays[i];
-    values[i] = dea_alloc(h->ctx, array->count, sizeof *values[i]);
-    if (values[i] == NULL) {
+    double *values = dea_alloc(h->ctx, array->count, sizeof *values);
+    if (values == NULL) {
       h->status = DEA_E_MEMORY;
     }
-    dea_h5_get_array(h, arrays, array->name, H5T_NATIVE_DOUBLE, array->count, values[i]);
-    out->arrays[i] = (struct dea_state_array){array->name, array->count, values[i]};
+    dea_h5_get_array(h, arrays, array->name, H5T_NATIVE_DOUBLE, array->count, values);
+    out->arrays[i] = (struct dea_state_array){array->name, array->count, values};
     out->array_count = i + 1;
   }
   dea_h5_close(arrays);
 }
 
-dea_status dea_state_file_read(struct dea_context *ctx, const struct dea_model_type *type,
-                               struct dea_model *model, const char *path)
+dea_status dea_state_file_read(struct dea_context *ctx, const char *model,
+                               const struct dea_state *wanted, const char *path,
+                               struct dea_state *out)
 {
-  struct dea_state wanted = {0}, state = {0};
-  double *values[DEA_STATE_PARTS_MAX] = {NULL};
   struct h5 h;
-  DEA_TRY(ctx, dea_model_save(ctx, type, model, &wanted));
   dea_h5_begin(&h, ctx, path);
   hid_t file = open_file(&h);
-  check_marks(&h, file, type, &wanted);
-  read_arrays(&h, file, &wanted, &state, values);
+  check_marks(&h, file, model, wanted);
+  read_arrays(&h, file, wanted, out);
   dea_h5_close(file);
   dea_h5_end(&h);
-  if (h.status == DEA_OK) {
-    h.status = dea_model_load(ctx, type, model, &state);
-  }
-  for (size_t i = 0; i < DEA_STATE_PARTS_MAX; i++) {
-    dea_free(ctx, values[i]);
-  }
   return h.status;
 }
 

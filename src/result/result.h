@@ -64,7 +64,7 @@ struct dea_provenance {
   char *command;         // command line; owned, may be NULL
 };
 
-struct dea_checkpoint_sink; // of study/study.h
+struct dea_checkpoint_sink; // result/checkpoint.h
 
 struct dea_result {
   const struct dea_design *design; // lent

@@ -48,3 +48,11 @@ const double *dea_state_find(const struct dea_state *state, const char *name, si
   }
   return NULL;
 }
+
+void dea_state_free_values(struct dea_context *ctx, struct dea_state *state)
+{
+  for (size_t i = 0; i < state->array_count; i++) {
+    dea_free(ctx, (double *)state->arrays[i].values);
+  }
+  state->array_count = 0;
+}

@@ -39,4 +39,7 @@ dea_status dea_state_add_mark(struct dea_context *ctx, struct dea_state *state, 
 /* The array of that name and length, NULL when there is none; lent. */
 const double *dea_state_find(const struct dea_state *state, const char *name, size_t count);
 
+/* Frees the values of a state that owns them. */
+void dea_state_free_values(struct dea_context *ctx, struct dea_state *state);
+
 #endif

@@ -7,19 +7,6 @@
 #include "model/model.h"
 #include "result/result.h"
 
-/* Told of a sweep as it goes, so that what is there can be kept before it ends
- * (output/checkpoint.h). A failure ends the sweep. */
-struct dea_checkpoint_sink {
-  void *user;
-  /* Before the first solve; the curve may have points already, from which the model is to go on. */
-  dea_status (*start)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_curve *curve);
-  /* After a point was added to the curve of the result. */
-  dea_status (*point)(struct dea_context *ctx, void *user, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_result *result,
-                      const struct dea_curve *curve);
-};
-
 struct dea_study {
   const char *name;
   const struct dea_design_section *keys; // compute.NAME: its keys and settings; NULL: none

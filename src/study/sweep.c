@@ -1,6 +1,7 @@
 /* Study "sweep": stable equilibria at the asked voltages, in their order, each from the one before;
  * a curve that has points already goes on after them.
  */
+#include "result/checkpoint.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -47,6 +48,65 @@ static dea_status add_surface(struct dea_context *ctx, const struct dea_model_ty
   return DEA_OK;
 }
 
+// Checkpoints ------------------------------------------------------------------------------------
+
+static bool fields_wanted(const struct dea_design *design, double voltage_V)
+{
+  for (size_t i = 0; i < design->report.fields_at_count; i++) {
+    double at = design->report.fields_at_V[i];
+    if (fabs(at - voltage_V) <= 1e-9 * (1 + fabs(at))) {
+      return true;
+    }
+  }
+  return design->report.fields.value == DEA_FIELDS_ALL ||
+         design->report.fields.value == DEA_FIELDS_LAST;
+}
+
+/* Gives fields and state of the last point to who keeps them. */
+static dea_status keep_point(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_result *result,
+                             const struct dea_curve *curve)
+{
+  const struct dea_checkpoint_sink *sink = result->keeper;
+  struct dea_field_mesh *fields = NULL;
+  struct dea_state state = {0};
+  dea_status status = DEA_OK;
+  if (type->fields != NULL && result->design != NULL &&
+      fields_wanted(result->design, curve->points[curve->count - 1].voltage_V)) {
+    DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &fields));
+  }
+  if (type->save != NULL) {
+    status = dea_model_save(ctx, type, model, &state);
+  }
+  if (status == DEA_OK) {
+    status =
+        sink->point(ctx, sink->user, result, curve, fields, type->save != NULL ? &state : NULL);
+  }
+  dea_field_mesh_destroy(ctx, fields);
+  return status;
+}
+
+/* Brings a model to the state that was kept at the last point of a curve. */
+static dea_status restore(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_checkpoint_sink *sink)
+{
+  struct dea_state wanted = {0}, state = {0};
+  dea_status status = dea_model_save(ctx, type, model, &wanted);
+  if (status == DEA_OK) {
+    status = sink->restore(ctx, sink->user, type->name, &wanted, &state);
+  }
+  if (status == DEA_OK) {
+    status = dea_model_load(ctx, type, model, &state);
+  }
+  dea_state_free_values(ctx, &state);
+  if (status != DEA_OK) {
+    sink->refuse(sink->user);
+  }
+  return status;
+}
+
+// Sweep ------------------------------------------------------------------------------------------
+
 /* Solves one voltage and adds its point, profile and surface. */
 static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, double voltage_V, struct dea_result *result,
@@ -63,10 +123,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
   DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
-  if (result->keeper != NULL) {
-    DEA_TRY(ctx, result->keeper->point(ctx, result->keeper->user, type, model, result, curve));
-  }
-  return DEA_OK;
+  return result->keeper != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
 }
 
 /* What a curve says of itself until its sweep has come to an end: it is kept on the way. */
@@ -88,8 +145,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   snprintf(what, sizeof what, "%s sweep", type->name);
   open_curve(curve);
   dea_status status = DEA_OK;
-  if (result->keeper != NULL) {
-    status = result->keeper->start(ctx, result->keeper->user, type, model, curve);
+  if (result->keeper != NULL && type->load != NULL && curve->count > 0) {
+    status = restore(ctx, type, model, result->keeper);
   }
   for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
     status = sweep_point(ctx, type, model, design->compute.voltages_V[i], result, curve);
