@@ -15,8 +15,11 @@ static struct dea_element_result result;
 static void evaluate(void *user)
 {
   enum dea_eval_order level = *(enum dea_eval_order *)user;
+  const struct dea_element element = {.basis = &shape};
+  const struct dea_element_input in = {
+      .constituent = &layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
   for (int i = 0; i < REPEATS; i++) {
-    if (dea_hex_evaluate(&shape, &layer, X, u, pressures, 4e3, level, &result) != DEA_OK) {
+    if (dea_hex_evaluate(&element, &in, level, &result) != DEA_OK) {
       abort();
     }
   }

@@ -1,7 +1,9 @@
 /* Hexahedra with a potential: derivatives, invariance, the plate capacitor, the thin-film energy.
  */
-#include "model/solid/element/hex_coupled.h"
+#include "solid_element.h"
 #include "testing.h"
+
+#include <string.h>
 
 static struct dea_hex_shape shape;
 static struct dea_element_result at, up, down;
@@ -56,7 +58,21 @@ static struct sample distorted(void)
 static dea_status evaluate(const struct dea_constituent *layer, const struct sample *s,
                            enum dea_eval_order level, struct dea_element_result *out)
 {
-  return dea_hex_coupled_evaluate(&shape, layer, s->X, s->u, s->psi, pressures, scale, level, out);
+  const struct dea_element element = potential_hexahedron(&shape);
+  const struct dea_element_input in = {.constituent = layer,
+                                       .X = s->X,
+                                       .u = s->u,
+                                       .multiplier = pressures,
+                                       .potential = s->psi,
+                                       .potential_V_per_m = scale};
+  return element.type->evaluate(&element, &in, level, out);
+}
+
+static dea_status capacity(const struct dea_constituent *layer, const struct sample *s, double *L)
+{
+  const struct dea_element element = potential_hexahedron(&shape);
+  const struct dea_element_input in = {.constituent = layer, .X = s->X, .u = s->u};
+  return element.type->capacity(&element, &in, L);
 }
 
 /* Unknown j of a sample. */
@@ -115,16 +131,15 @@ static void test_capacity_is_the_electric_energy(void **state)
 {
   (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  static const double none[DEA_HEX_NODES_MAX] = {0};
   const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
   int n = shape.nodes;
   assert_int_equal(evaluate(&soft, &s, DEA_TANGENT, &at), DEA_OK);
-  assert_int_equal(
-      dea_hex_coupled_evaluate(&shape, &soft, s.X, s.u, none, pressures, scale, DEA_ENERGY, &up),
-      DEA_OK);
-  assert_int_equal(dea_hex_capacity(&shape, &soft, s.X, s.u, L), DEA_OK);
+  struct sample grounded = s;
+  memset(grounded.psi, 0, sizeof grounded.psi);
+  assert_int_equal(evaluate(&soft, &grounded, DEA_ENERGY, &up), DEA_OK);
+  assert_int_equal(capacity(&soft, &s, L), DEA_OK);
   double energy = 0, most = largest(L, n * n);
   for (int a = 0; a < n; a++) {
     for (int b = 0; b < n; b++) {
@@ -185,8 +200,7 @@ static void test_linear_potential_is_the_thin_film(void **state)
     s.psi[a] = V / scale * s.X[3 * a + 2] / soft.thickness_m;
   }
   assert_int_equal(evaluate(&soft, &s, DEA_TANGENT, &at), DEA_OK);
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, s.X, s.u, pressures, V, DEA_TANGENT, &up),
-                   DEA_OK);
+  assert_int_equal(evaluate_hex(&shape, &soft, s.X, s.u, pressures, V, DEA_TANGENT, &up), DEA_OK);
   double most_g = largest(up.g, 3 * n), most_K = largest(up.K, 9 * n * n);
   assert_close(at.energy_J, up.energy_J, 1e-12, 0);
   for (int i = 0; i < 3 * n; i++) {
@@ -243,7 +257,7 @@ static void test_spread_in_place(void **state)
     g3[i % SMALL] = g[i % SMALL] = 1 + i % SMALL;
     K3[i] = K[i] = 100 + i;
   }
-  dea_hex_spread(NODES, g, K, g, K);
+  dea_element_spread(NODES, g, K, g, K);
   for (int i = 0; i < WIDE; i++) {
     int row = 3 * (i / 4) + i % 4;
     assert_close(g[i], i % 4 < 3 ? g3[row] : 0, 0, 0);
@@ -263,7 +277,7 @@ static void test_inverted_element(void **state)
   struct sample s = distorted();
   s.u[3 * 13 + 2] = 1e-4; // the middle node out through the top
   assert_int_equal(evaluate(&soft, &s, DEA_ENERGY, &at), DEA_E_DOMAIN);
-  assert_int_equal(dea_hex_capacity(&shape, &soft, s.X, s.u, L), DEA_E_DOMAIN);
+  assert_int_equal(capacity(&soft, &s, L), DEA_E_DOMAIN);
 }
 
 int main(void)

@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "model/solid/mesh/grid.h"
 #include "quarter_grid.h"
+#include "solid_element.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -58,7 +59,7 @@ static void check_derivatives(const struct dea_constituent *layer)
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], d = 1e-10, largest_g = 0, largest_K = 0;
   int dofs = 3 * shape.nodes;
   sample(1, X, u);
-  assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(evaluate_hex(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
   for (int i = 0; i < dofs; i++) {
     largest_g = fmax(largest_g, fabs(at.g[i]));
     for (int j = 0; j < dofs; j++) {
@@ -68,11 +69,9 @@ static void check_derivatives(const struct dea_constituent *layer)
   for (int j = 0; j < dofs; j++) {
     double keep = u[j];
     u[j] = keep + d;
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &up),
-                     DEA_OK);
+    assert_int_equal(evaluate_hex(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &up), DEA_OK);
     u[j] = keep - d;
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &down),
-                     DEA_OK);
+    assert_int_equal(evaluate_hex(&shape, layer, X, u, pressures, 4e3, DEA_TANGENT, &down), DEA_OK);
     u[j] = keep;
     assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * largest_g);
     for (int i = 0; i < dofs; i++) {
@@ -110,12 +109,12 @@ static void test_levels_agree(void **state)
   for (int k = 0; k < 2; k++) {
     assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
     sample(1, X, u);
-    assert_int_equal(dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3, DEA_TANGENT, &at),
+    assert_int_equal(evaluate_hex(&shape, &layers[k], X, u, pressures, 4e3, DEA_TANGENT, &at),
                      DEA_OK);
     for (int level = DEA_ENERGY; level <= DEA_FORCE; level++) {
-      assert_int_equal(dea_hex_evaluate(&shape, &layers[k], X, u, pressures, 4e3,
-                                        (enum dea_eval_order)level, &up),
-                       DEA_OK);
+      assert_int_equal(
+          evaluate_hex(&shape, &layers[k], X, u, pressures, 4e3, (enum dea_eval_order)level, &up),
+          DEA_OK);
       assert_true(up.energy_J == at.energy_J && up.volume_m3 == at.volume_m3);
       for (int i = 0; i < 3 * shape.nodes && level >= DEA_FORCE; i++) {
         assert_close(up.g[i], at.g[i], 1e-13, 1e-13 * fabs(at.g[0]));
@@ -142,8 +141,8 @@ static void test_rigid_motion(void **state)
       turned[3 * n + i] = x - X[3 * n + i];
     }
   }
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, turned, pressures, 4e3, DEA_TANGENT, &up),
+  assert_int_equal(evaluate_hex(&shape, &soft, X, u, pressures, 4e3, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(evaluate_hex(&shape, &soft, X, turned, pressures, 4e3, DEA_TANGENT, &up),
                    DEA_OK);
   assert_close(up.energy_J, at.energy_J, 1e-10, 0);
   double scale = 0;
@@ -178,7 +177,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   }
   for (int k = 0; k < 2; k++) {
     double pull[3] = {0, 0, 0}, field = voltages[k] / soft.thickness_m;
-    assert_int_equal(dea_hex_evaluate(&shape, &soft, X, rest, none, voltages[k], DEA_TANGENT, &at),
+    assert_int_equal(evaluate_hex(&shape, &soft, X, rest, none, voltages[k], DEA_TANGENT, &at),
                      DEA_OK);
     for (int n = 0; n < shape.nodes; n++) {
       for (int i = 0; i < 3; i++) {
@@ -199,13 +198,11 @@ static void test_inverted_element_and_bad_order(void **state)
   const struct dea_constituent soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_OK);
+  assert_int_equal(evaluate_hex(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_OK);
   u[3 * 13 + 2] = 1e-4; // the middle node out through the top
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at),
-                   DEA_E_DOMAIN);
+  assert_int_equal(evaluate_hex(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
   u[3 * 13 + 2] = NAN;
-  assert_int_equal(dea_hex_evaluate(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at),
-                   DEA_E_DOMAIN);
+  assert_int_equal(evaluate_hex(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
   assert_int_equal(dea_hex_shape_create(0, 1, &shape), DEA_E_ARGUMENT);
   assert_int_equal(dea_hex_shape_create(2, DEA_HEX_ORDER_MAX + 1, &shape), DEA_E_ARGUMENT);
 }
@@ -230,7 +227,7 @@ static void forces(const struct dea_grid *grid, const struct dea_constituent *la
         u[3 * n + i / 3] += D[i] * X[3 * n + i % 3];
       }
     }
-    assert_int_equal(dea_hex_evaluate(&shape, layer, X, u, none, 2e3, DEA_TANGENT, &at), DEA_OK);
+    assert_int_equal(evaluate_hex(&shape, layer, X, u, none, 2e3, DEA_TANGENT, &at), DEA_OK);
     *volume += at.volume_m3;
     for (int i = 0; i < 3 * shape.nodes; i++) {
       g[3 * nodes[i / 3] + i % 3] += at.g[i];
@@ -302,7 +299,7 @@ static void check_joined(int fibres, double width)
         X[3 * n + i] = grid->X[3 * node + i];
       }
     }
-    assert_int_equal(dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &at), DEA_OK);
+    assert_int_equal(evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &at), DEA_OK);
     volume += grid->sheet[e] == DEA_SHEET_FIBRE ? at.volume_m3 : 0;
   }
   for (size_t n = 0; n < grid->node_count; n++) {

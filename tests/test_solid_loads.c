@@ -1,4 +1,5 @@
 /* Loads on surfaces: derivatives against differences, resultants, distances to tips. */
+#include "model/solid/element/hex.h"
 #include "model/solid/load/loads.h"
 #include "testing.h"
 
@@ -55,7 +56,7 @@ static bool all(const void *self, int region, int sheet, const double middle[3])
 static struct dea_surface *side_create(enum dea_face side)
 {
   struct dea_surface *surface;
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, side, all, NULL, &surface), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, side, all, NULL, &surface), DEA_OK);
   return surface;
 }
 
@@ -238,7 +239,8 @@ static void test_weight_and_traction(void **state)
   static const double cuts[] = {0, 0.4, 1}, free_fall[3] = {1, -2, -9};
   const struct dea_block block = {straight, NULL, cuts, cuts, 2, 2, 7};
   const struct dea_ply sheet = {size[2], 2, 2};
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
+  struct dea_element_set elements;
+  assert_int_equal(dea_element_set_create(ctx, 2, 2, &elements), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
   double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], middle[3], total[3];
@@ -250,11 +252,11 @@ static void test_weight_and_traction(void **state)
       total[i] = 1200 * size[0] * size[1] * size[2] * free_fall[i];
     }
     if (kind == 0) {
-      dea_load_gravity(grid, &shape, density, NULL, free_fall, force);
+      assert_int_equal(dea_load_gravity(grid, &elements, density, NULL, free_fall, force), DEA_OK);
+      dea_element_set_release(ctx, &elements);
     } else {
       struct dea_surface *top;
-      assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, upmost, NULL, &top),
-                       DEA_OK);
+      assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, upmost, NULL, &top), DEA_OK);
       assert_close(dea_surface_area(top), size[0] * size[1], 1e-12, 0);
       dea_load_traction(top, free_fall, force);
       middle[2] = size[2];

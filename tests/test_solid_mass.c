@@ -1,7 +1,7 @@
 /* Mass of elements: total, centre and moments of bodies whose integrals are known. */
 #include "devices.h"
 #include "model/solid/actuator/actuator.h"
-#include "model/solid/element/mass.h"
+#include "solid_element.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -36,14 +36,13 @@ static void grid_moments(const struct dea_grid *grid, const struct dea_constitue
   for (size_t e = 0; e < grid->element_count; e++) {
     double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
     const struct dea_constituent *layer = &layers[layer_of(self, grid->region[e], grid->sheet[e])];
-    int nodes = dea_grid_nodes_of(grid, e, shape.nodes);
+    int nodes = dea_grid_nodes_of(grid, e);
     for (int n = 0; n < nodes; n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
              3 * sizeof *X);
     }
-    assert_int_equal(grid->flat[e] ? dea_membrane_mass(&flat, layer, X, mass)
-                                   : dea_hex_mass(&shape, layer, X, mass),
-                     DEA_OK);
+    const struct dea_element element = grid->levels[e] == 1 ? membrane(&flat) : hexahedron(&shape);
+    assert_int_equal(element.type->mass(&element, layer, X, mass), DEA_OK);
     add_moments(nodes, X, mass, sum);
   }
 }
@@ -112,8 +111,9 @@ static void test_an_inverted_element_has_no_mass(void **state)
       X[3 * n + i] = (i == 0 ? -1 : 1) * shape.node_at[n][i];
     }
   }
-  assert_int_equal(dea_hex_mass(&shape, &layer, X, mass), DEA_E_DOMAIN);
-  assert_int_equal(dea_membrane_mass(&flat, &layer, X, mass), DEA_E_DOMAIN);
+  const struct dea_element solid = hexahedron(&shape), surface = membrane(&flat);
+  assert_int_equal(solid.type->mass(&solid, &layer, X, mass), DEA_E_DOMAIN);
+  assert_int_equal(surface.type->mass(&surface, &layer, X, mass), DEA_E_DOMAIN);
 }
 
 static const double rho_film = 970, rho_pet = 1375, rho_electrode = 1900;

@@ -4,6 +4,7 @@
 #include "membrane_samples.h"
 #include "model/solid/load/loads.h"
 #include "quarter_grid.h"
+#include "solid_element.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
@@ -205,14 +206,14 @@ static void check_element(const struct dea_constituent *layer)
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], d = 1e-10;
   int dofs = 3 * shape.nodes;
   sample(1, X, u);
-  assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_TANGENT, &at), DEA_OK);
+  assert_int_equal(evaluate_membrane(&shape, layer, X, u, 4e3, DEA_TANGENT, &at), DEA_OK);
   double largest_g = largest(at.g, (size_t)dofs), largest_K = largest(at.K, (size_t)(dofs * dofs));
   for (int j = 0; j < dofs; j++) {
     double keep = u[j];
     u[j] = keep + d;
-    assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_FORCE, &up), DEA_OK);
+    assert_int_equal(evaluate_membrane(&shape, layer, X, u, 4e3, DEA_FORCE, &up), DEA_OK);
     u[j] = keep - d;
-    assert_int_equal(dea_membrane_evaluate(&shape, layer, X, u, 4e3, DEA_FORCE, &down), DEA_OK);
+    assert_int_equal(evaluate_membrane(&shape, layer, X, u, 4e3, DEA_FORCE, &down), DEA_OK);
     u[j] = keep;
     assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * largest_g);
     for (int i = 0; i < dofs; i++) {
@@ -250,8 +251,8 @@ static void test_rigid_motion(void **state)
       turned[3 * n + i] = x - X[3 * n + i];
     }
   }
-  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 4e3, DEA_FORCE, &at), DEA_OK);
-  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, turned, 4e3, DEA_FORCE, &up), DEA_OK);
+  assert_int_equal(evaluate_membrane(&shape, &soft, X, u, 4e3, DEA_FORCE, &at), DEA_OK);
+  assert_int_equal(evaluate_membrane(&shape, &soft, X, turned, 4e3, DEA_FORCE, &up), DEA_OK);
   assert_close(up.energy_J, at.energy_J, 1e-10, 0);
   double scale = largest(at.g, 3 * (size_t)shape.nodes);
   for (int n = 0; n < shape.nodes; n++) {
@@ -275,11 +276,11 @@ static void test_bad_elements(void **state)
   assert_int_equal(dea_flat_shape_create(1, &shape), DEA_OK);
   sample(0, X, u);
   u[0] = NAN;
-  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
+  assert_int_equal(evaluate_membrane(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
   X[0] = 5e-4; // through the opposite corner
   X[1] = 5e-4;
   u[0] = 0;
-  assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
+  assert_int_equal(evaluate_membrane(&shape, &soft, X, u, 0, DEA_ENERGY, &at), DEA_E_DOMAIN);
 }
 
 /* ---- meshes ---- */
@@ -304,13 +305,13 @@ static void test_patch_and_area(void **state)
     for (size_t e = 0; e < grid->element_count; e++) {
       const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
       double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
-      assert_true(grid->flat[e]);
+      assert_int_equal(grid->levels[e], 1);
       for (int i = 0; i < 3 * shape.nodes; i++) {
         const double *x = grid->X + 3 * nodes[i / 3];
         X[i] = x[i % 3];
         u[i] = D[2 * (i % 3)] * x[0] + D[2 * (i % 3) + 1] * x[1] - x[i % 3];
       }
-      assert_int_equal(dea_membrane_evaluate(&shape, &soft, X, u, 2e3, DEA_FORCE, &at), DEA_OK);
+      assert_int_equal(evaluate_membrane(&shape, &soft, X, u, 2e3, DEA_FORCE, &at), DEA_OK);
       volume += at.volume_m3;
       for (int i = 0; i < 3 * shape.nodes; i++) {
         g[3 * nodes[i / 3] + i % 3] += at.g[i];
@@ -349,12 +350,12 @@ static void test_membrane_with_fibres(void **state)
     int sheet = grid->sheet[e];
     sheets[sheet]++;
     under += sheet == DEA_SHEET_SURFACE && grid->region[e] == DEA_REGION_FIBRE;
-    assert_int_equal(grid->flat[e], sheet == DEA_SHEET_SURFACE);
-    assert_int_equal(dea_grid_nodes_of(grid, e, 27), grid->flat[e] ? 9 : 27);
+    assert_int_equal(grid->levels[e] == 1, sheet == DEA_SHEET_SURFACE);
+    assert_int_equal(dea_grid_nodes_of(grid, e), grid->levels[e] == 1 ? 9 : 27);
     assert_true(sheet == DEA_SHEET_SURFACE || grid->region[e] == DEA_REGION_FIBRE);
     double bottom = sheet == DEA_SHEET_FIBRE_ON_BOND ? 0.5 * h : 0;
     assert_close(grid->X[3 * nodes[0] + 2], bottom, 0, 1e-12);
-    if (!grid->flat[e]) {
+    if (grid->levels[e] > 1) {
       double top = sheet == DEA_SHEET_BOND ? 0.5 * h : 0.5 * h + t;
       assert_close(grid->X[3 * nodes[26] + 2], top, 0, 1e-12);
     }
@@ -385,14 +386,14 @@ static void test_faces_and_weight(void **state)
   (void)state;
   const double b = 15e-3, area = 0.25 * acos(-1) * b * b, free_fall[3] = {0, 0, -9.81};
   const struct dea_quarter quarter = {2, 1, 3.75e-3, b, 1e-4, .fine = 3, .membrane = true};
-  struct dea_hex_shape solid;
+  struct dea_element_set elements;
   struct dea_grid *grid;
   struct dea_surface *surface;
-  assert_int_equal(dea_hex_shape_create(2, 1, &solid), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, 2, 1, &elements), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   for (int side = DEA_FACE_BOTTOM; side <= DEA_FACE_TOP; side++) {
-    assert_int_equal(
-        dea_surface_create(ctx, grid, &solid, (enum dea_face)side, NULL, NULL, &surface), DEA_OK);
+    assert_int_equal(dea_surface_create(ctx, grid, (enum dea_face)side, NULL, NULL, &surface),
+                     DEA_OK);
     double *force = calloc(3 * grid->node_count, sizeof *force), sum = 0;
     struct dea_face_shape face;
     double X[3 * DEA_FACE_NODES_MAX], normal[3];
@@ -402,7 +403,8 @@ static void test_faces_and_weight(void **state)
     dea_face_gather(surface, 0, grid->X, X);
     dea_face_normal(&face, 0, X, normal);
     assert_true(side == DEA_FACE_TOP ? normal[2] > 0 : normal[2] < 0);
-    dea_load_gravity(grid, &solid, areal_density, NULL, free_fall, force);
+    assert_int_equal(dea_load_gravity(grid, &elements, areal_density, NULL, free_fall, force),
+                     DEA_OK);
     for (size_t n = 0; n < grid->node_count; n++) {
       sum += force[3 * n + 2];
     }
@@ -410,8 +412,9 @@ static void test_faces_and_weight(void **state)
     free(force);
     dea_surface_destroy(ctx, surface);
   }
-  assert_int_equal(dea_surface_create(ctx, grid, &solid, DEA_FACE_FIRST_LOW, NULL, NULL, &surface),
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_FIRST_LOW, NULL, NULL, &surface),
                    DEA_E_ARGUMENT);
+  dea_element_set_release(ctx, &elements);
   dea_grid_destroy(ctx, grid);
 }
 

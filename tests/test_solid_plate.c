@@ -1,8 +1,8 @@
 /* Meshes of actuators: no folded element, no hanging node, exact areas, the right nodes held. */
 #include "failing_allocator.h"
-#include "model/solid/element/membrane.h"
 #include "model/solid/mesh/cuts.h"
 #include "model/solid/mesh/fibre_disc.h"
+#include "solid_element.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -76,7 +76,7 @@ static void check_conforming(const struct dea_fibre_disc *p, const struct dea_gr
       int *corner = faces[count++].corner;
       for (int i = 0; i < 2; i++) {
         corner[i] = nodes[sides[k][i]];
-        corner[2 + i] = nodes[(grid->flat[e] ? 0 : 18) + sides[k][i]];
+        corner[2 + i] = nodes[(grid->levels[e] == 1 ? 0 : 18) + sides[k][i]];
       }
       sort4(corner);
     }
@@ -121,13 +121,13 @@ static double volume(const struct dea_grid *grid, int sheet, int bits)
       .law = dea_law_find("neo-hookean"), .param = mu, .pre_stretch = {1, 1, 1}, .thickness_m = h};
   double X[DEA_HEX_DOFS_MAX], sum = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < dea_grid_nodes_of(grid, e, shape.nodes); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
              3 * sizeof(double));
     }
-    assert_int_equal(grid->flat[e]
-                         ? dea_membrane_evaluate(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
-                         : dea_hex_evaluate(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
+    assert_int_equal(grid->levels[e] == 1
+                         ? evaluate_membrane(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
+                         : evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
                      DEA_OK);
     sum += grid->sheet[e] == sheet && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
   }
@@ -266,7 +266,7 @@ static void heights(const struct dea_grid *grid, int sheet, int bits, double *lo
   *high = -INFINITY;
   for (size_t e = 0; e < grid->element_count; e++) {
     int nodes = grid->sheet[e] == sheet && grid->region[e] == bits ? 27 : 0;
-    for (int n = 0; n < (nodes > 0 ? dea_grid_nodes_of(grid, e, nodes) : 0); n++) {
+    for (int n = 0; n < (nodes > 0 ? dea_grid_nodes_of(grid, e) : 0); n++) {
       double z = grid->X[3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n] + 2];
       *low = fmin(*low, z);
       *high = fmax(*high, z);

@@ -1,7 +1,7 @@
 /* Stresses at the end of a linear step, the metric of the shift, and the barrier before inversion.
  */
 #include "devices.h"
-#include "model/solid/element/hex.h"
+#include "solid_element.h"
 #include "testing.h"
 
 static struct dea_hex_shape shape;
@@ -54,15 +54,18 @@ static double distance(int dofs)
 static double apart_at(const struct dea_constituent *layer, double share)
 {
   double end[DEA_HEX_DOFS_MAX];
-  assert_int_equal(
-      dea_hex_predict(&shape, layer, X, u, pressures, 4e3, way, share, true, predicted), DEA_OK);
+  const struct dea_element element = hexahedron(&shape);
+  struct dea_element_input in = {
+      .constituent = layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
+  assert_int_equal(element.type->predict(&element, &in, way, share, true, predicted), DEA_OK);
   for (int i = 0; i < 3 * shape.nodes; i++) {
     end[i] = u[i] + share * way[i];
   }
-  assert_int_equal(dea_hex_evaluate(&shape, layer, X, end, pressures, 4e3, DEA_TANGENT, &plain),
+  assert_int_equal(evaluate_hex(&shape, layer, X, end, pressures, 4e3, DEA_TANGENT, &plain),
                    DEA_OK);
-  assert_int_equal(
-      dea_hex_evaluate_predicted(&shape, layer, X, end, pressures, 4e3, predicted, &other), DEA_OK);
+  in.u = end;
+  in.predicted = predicted;
+  assert_int_equal(element.type->evaluate(&element, &in, DEA_TANGENT, &other), DEA_OK);
   for (int i = 0; i < 3 * shape.nodes; i++) {
     assert_true(plain.g[i] == other.g[i]);
     for (int j = 0; j < i; j++) {
@@ -97,9 +100,9 @@ static void test_metric(void **state)
   double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
   const struct dea_constituent layer = film();
   sample();
-  assert_int_equal(dea_hex_metric(&shape, X, L, volume), DEA_OK);
-  assert_int_equal(dea_hex_evaluate(&shape, &layer, X, u, pressures, 0, DEA_ENERGY, &plain),
-                   DEA_OK);
+  const struct dea_element element = hexahedron(&shape);
+  assert_int_equal(element.type->metric(&element, &layer, X, L, volume), DEA_OK);
+  assert_int_equal(evaluate_hex(&shape, &layer, X, u, pressures, 0, DEA_ENERGY, &plain), DEA_OK);
   for (int a = 0; a < shape.nodes; a++) {
     double row = 0;
     whole += volume[a];

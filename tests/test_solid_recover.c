@@ -44,8 +44,8 @@ enum kind { SOLID, COUPLED, FLAT };
 struct strip {
   enum kind kind;
   struct dea_grid *grid;
-  struct dea_hex_shape shape;
-  struct dea_flat_shape flat;
+  struct dea_element_set elements;
+  enum dea_element_kind *kinds; // [elements]
   struct dea_constituent layers[2];
   int *layer;
   bool *active;
@@ -68,8 +68,7 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   assert_int_equal(dea_grid_create(ctx, order, blocks, 2, sheets, 2, fibre_on_second,
                                    kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid),
                    DEA_OK);
-  assert_int_equal(dea_hex_shape_create(order, order_z, &s->shape), DEA_OK);
-  assert_int_equal(dea_flat_shape_create(order, &s->flat), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
   s->layers[0] = (struct dea_constituent){.law = film.law,
                                           .param = film.param,
                                           .pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
@@ -81,16 +80,19 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   size_t count = s->grid->element_count;
   s->layer = calloc(count, sizeof *s->layer);
   s->active = calloc(count, sizeof *s->active);
+  s->kinds = calloc(count, sizeof *s->kinds);
   s->u = calloc(3 * s->grid->node_count, sizeof *s->u);
-  s->multiplier = calloc(count * (size_t)s->shape.pressures, sizeof *s->multiplier);
+  s->multiplier = calloc(count * (size_t)s->elements.pressures, sizeof *s->multiplier);
   s->potential_V = calloc(s->grid->node_count, sizeof *s->potential_V);
   for (size_t e = 0; e < count; e++) {
     s->layer[e] = s->grid->sheet[e];
+    s->kinds[e] =
+        kind == COUPLED && s->layer[e] == 0 ? DEA_ELEMENT_POTENTIAL_HEXAHEDRON : s->grid->kind[e];
     s->active[e] = s->grid->sheet[e] == 0 && (s->grid->region[e] == 0 || kind == COUPLED);
   }
   s->in = (struct dea_recover_input){.grid = s->grid,
-                                     .shape = &s->shape,
-                                     .flat = &s->flat,
+                                     .elements = &s->elements,
+                                     .kind = s->kinds,
                                      .layers = s->layers,
                                      .layer = s->layer,
                                      .active = s->active,
@@ -105,6 +107,8 @@ static void strip_destroy(struct strip *s)
   dea_grid_destroy(ctx, s->grid);
   free(s->layer);
   free(s->active);
+  free(s->kinds);
+  dea_element_set_release(ctx, &s->elements);
   free(s->u);
   free(s->multiplier);
   free(s->potential_V);
@@ -146,7 +150,7 @@ static void relax(struct strip *s, const double F[9])
         push += point.P[3 * i + 2] * cof[3 * i + 2];
         size += cof[3 * i + 2] * cof[3 * i + 2];
       }
-      s->multiplier[e * (size_t)s->shape.pressures] = -push / size;
+      s->multiplier[e * (size_t)s->elements.pressures] = -push / size;
     }
   }
 }
@@ -351,7 +355,7 @@ static void test_bending(void **state)
     assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
     const double *plane = values(mesh, "plane_stretch"), *sheet = values(mesh, "sheet");
     const double *error = values(mesh, "volume_error");
-    size_t per = (size_t)s->shape.nodes;
+    size_t per = (size_t)s->elements.of[DEA_ELEMENT_HEXAHEDRON].nodes;
     for (size_t i = 0; i < mesh->cell_count * per; i++) {
       size_t p = (size_t)mesh->blocks[0].nodes[i];
       double stretch = 1 + k * mesh->X[3 * p + 2], pre = sheet[i / per] == 0 ? l_pre : 1;

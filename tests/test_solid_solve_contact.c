@@ -101,12 +101,10 @@ static void test_hertz(void **state)
                                        .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
   struct dea_grid *grid = hertz_grid();
   struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
-  struct dea_hex_shape shape;
   struct dea_surface *top;
   struct dea_contact *contact;
   struct dea_solid_report report;
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, upmost, NULL, &top), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, upmost, NULL, &top), DEA_OK);
   const struct dea_contact_options options = {
       .tip = {.shape = DEA_INDENTER_SPHERE, .radius_m = radius},
       .place_m = {0, 0, side + radius},
@@ -158,12 +156,10 @@ static void test_flat_punch_on_film(void **state)
   struct dea_grid *grid;
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   struct dea_solid *solid = block_solid(ctx, grid, 2, &film, disc_held);
-  struct dea_hex_shape shape;
   struct dea_surface *top;
   struct dea_contact *contact;
   struct dea_solid_report report;
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
   const double edge = 1e-4, tension = 797.745e3 * film_h;
   const struct dea_contact_options options = {.tip = {.shape = DEA_INDENTER_FLAT,
                                                       .radius_m = punch_m + edge,

@@ -8,7 +8,7 @@
 
 static const struct block slab = {{1, 1, 2}, {1, 1, 4}, 2, 2};
 static const double mu = 1e5;
-static struct dea_hex_shape shape;
+static struct dea_element_set elements;
 static struct dea_grid *grid;
 static struct dea_solid *solid;
 static struct dea_solid_report report;
@@ -38,11 +38,12 @@ static void slab_create(const struct dea_constituent *layer,
 {
   grid = block_grid(ctx, &slab);
   solid = block_solid(ctx, grid, slab.order_z, layer, held);
-  assert_int_equal(dea_hex_shape_create(slab.order, slab.order_z, &shape), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, slab.order, slab.order_z, &elements), DEA_OK);
 }
 
 static void slab_destroy(void)
 {
+  dea_element_set_release(ctx, &elements);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }
@@ -63,7 +64,7 @@ static bool outside(const void *self, int region, int sheet, const double middle
 static struct dea_surface *side_create(enum dea_face side)
 {
   struct dea_surface *surface;
-  assert_int_equal(dea_surface_create(ctx, grid, &shape, side, outside, NULL, &surface), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, side, outside, NULL, &surface), DEA_OK);
   return surface;
 }
 
@@ -124,7 +125,8 @@ static void test_hanging_block(void **state)
   static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
   double way = 0;
   slab_create(&soft, hangs);
-  dea_load_gravity(grid, &shape, density, NULL, g, dea_solid_force(solid));
+  assert_int_equal(dea_load_gravity(grid, &elements, density, NULL, g, dea_solid_force(solid)),
+                   DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
   for (int i = 0; i < 1000; i++) { // midpoint rule
     way -= 2.0 / 1000 * (stretch(1000 * 60 * 2.0 * (i + 0.5) / 1000) - 1);

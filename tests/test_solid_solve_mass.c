@@ -32,18 +32,19 @@ static void test_inertia_of_rigid_motions(void **state)
   const struct dea_constituent layer = {.lame_mu_Pa = 1, .density_kg_per_m3 = rho};
   struct dea_grid *grid = block_grid(ctx, &slab);
   struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
-  struct dea_hex_shape shape;
+  struct dea_element_set elements;
   double *v = calloc(3 * grid->node_count, sizeof *v);
   double *inertia = calloc(3 * grid->node_count, sizeof *inertia);
   double *weight = calloc(3 * grid->node_count, sizeof *weight);
   assert_true(v != NULL && inertia != NULL && weight != NULL);
-  assert_int_equal(dea_hex_shape_create(slab.order, slab.order_z, &shape), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, slab.order, slab.order_z, &elements), DEA_OK);
   // free fall: the inertia is the weight, node by node
   const double fall[3] = {0.3, -2, 9.81};
   for (size_t i = 0; i < 3 * grid->node_count; i++) {
     v[i] = fall[i % 3];
   }
-  dea_load_gravity(grid, &shape, density, NULL, fall, weight);
+  assert_int_equal(dea_load_gravity(grid, &elements, density, NULL, fall, weight), DEA_OK);
+  dea_element_set_release(ctx, &elements);
   assert_int_equal(dea_solid_mass_apply(ctx, solid, v, inertia), DEA_OK);
   double mass = rho * 3 * 2 * 0.5;
   for (size_t i = 0; i < 3 * grid->node_count; i++) {

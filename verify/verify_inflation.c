@@ -19,8 +19,7 @@ struct shell {
 };
 
 /* Solid, surface and load for the grid of the shell. */
-static void shell_fill(struct shell *shell, int order,
-                       int (*held)(const void *self, const double X[3]))
+static void shell_fill(struct shell *shell, int (*held)(const void *self, const double X[3]))
 {
   static const double mu[DEA_LAW_PARAM_MAX] = {1}, origin[3] = {0, 0, 0};
   struct dea_constituent rubber = {.law = dea_law_find("neo-hookean"),
@@ -28,14 +27,11 @@ static void shell_fill(struct shell *shell, int order,
                                    .pre_stretch = {1, 1, 1},
                                    .kappa_Pa = 100,
                                    .thickness_m = shell->H};
-  struct dea_hex_shape shape;
   verify_ok(ctx, dea_constituent_relax(&rubber));
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
-  verify_ok(ctx, dea_hex_shape_create(order, 2, &shape));
-  verify_ok(ctx, dea_surface_create(ctx, shell->grid, &shape, DEA_FACE_BOTTOM, NULL, NULL,
-                                    &shell->inside));
+  verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->inside));
   verify_ok(ctx, dea_pressure_create(ctx, shell->inside, origin, &shell->pressure));
   const struct dea_solid_load load = dea_pressure_load(shell->pressure);
   verify_ok(ctx, dea_solid_add_load(ctx, shell->solid, &load));
@@ -124,7 +120,7 @@ static void disc_rows(double H, int order, size_t fine, size_t stretches)
   double p_last = 0;
   const struct dea_quarter quarter = {order, 2, 0.5, 1, H, .fine = fine};
   verify_ok(ctx, dea_grid_quarter(ctx, &quarter, &disc.grid));
-  shell_fill(&disc, order, rim_held);
+  shell_fill(&disc, rim_held);
   for (size_t i = 0; i < stretches; i++) {
     double w = 0, p[2];
     int modes;
@@ -194,7 +190,7 @@ static struct shell balloon_create(double H, size_t count)
       X[i] = r * (b[i] < 1e-12 ? 0 : b[i]) / length;
     }
   }
-  shell_fill(&balloon, 2, octant_held);
+  shell_fill(&balloon, octant_held);
   return balloon;
 }
 

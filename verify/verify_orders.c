@@ -3,6 +3,7 @@
 
 #include "model/model.h"
 #include "model/solid/adapter/state.h"
+#include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 static struct dea_context *ctx;

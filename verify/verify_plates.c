@@ -1,6 +1,7 @@
 /* Thin plates in large bending (benchmark 8): a cantilever and an annulus that is slit open. */
 #include "verify.h"
 
+#include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
@@ -87,7 +88,6 @@ static struct plate plate_create(const struct problem *problem, int order, const
   const double traction[3] = {0, 0, problem->traction};
   struct plate plate = {.grid = unit_square(order, count, problem->thickness)};
   struct dea_surface *end;
-  struct dea_hex_shape shape;
   size_t nodes = plate.grid->node_count;
   bool *clamped = dea_alloc(ctx, nodes, sizeof *clamped);
   plate.force = dea_alloc(ctx, nodes, 3 * sizeof *plate.force);
@@ -95,9 +95,8 @@ static struct plate plate_create(const struct problem *problem, int order, const
     exit(1);
   }
   memset(plate.force, 0, nodes * 3 * sizeof *plate.force);
-  verify_ok(ctx, dea_hex_shape_create(order, 2, &shape));
-  verify_ok(ctx, dea_surface_create(ctx, plate.grid, &shape, DEA_FACE_SECOND_HIGH, at_loaded_end,
-                                    NULL, &end));
+  verify_ok(ctx,
+            dea_surface_create(ctx, plate.grid, DEA_FACE_SECOND_HIGH, at_loaded_end, NULL, &end));
   for (size_t n = 0; n < nodes; n++) {
     double *X = plate.grid->X + 3 * n, x[2];
     clamped[n] = X[1] < 1e-9;

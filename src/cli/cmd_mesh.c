@@ -28,7 +28,7 @@ static size_t count_flat(const struct dea_grid *grid)
 {
   size_t count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    count += grid->flat[e];
+    count += grid->levels[e] == 1;
   }
   return count;
 }

@@ -1,7 +1,7 @@
 #include "model/solid/actuator/actuator.h"
 
 #include "model/film.h"
-#include "model/solid/element/membrane.h"
+#include "model/solid/point/membrane_point.h"
 
 #include <math.h>
 

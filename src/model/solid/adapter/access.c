@@ -15,7 +15,6 @@ enum { FACES = 6 };
 
 struct dea_solid_object {
   struct dea_grid *grid;
-  struct dea_hex_shape shape;
   struct dea_part_spec *parts; // [part_count] what the layers' parameters lie in
   struct dea_constituent *layers;
   size_t part_count;
@@ -70,6 +69,7 @@ static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec
                       spec->part_count);
     }
     grid->region[e] = part;
+    grid->levels[e] = spec->order_z + 1;
     for (size_t n = 0; n < nodes; n++) {
       int node = spec->cells[e * nodes + n];
       if (node < 0 || (size_t)node >= spec->point_count) {
@@ -97,15 +97,17 @@ static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec
     return DEA_E_MEMORY;
   }
   grid->order = spec->order;
+  grid->order_z = spec->order_z;
   grid->node_count = spec->point_count;
   grid->element_count = spec->cell_count;
   grid->X = dea_alloc(ctx, 3 * spec->point_count, sizeof *grid->X);
   grid->nodes = dea_alloc(ctx, spec->cell_count * DEA_HEX_NODES_MAX, sizeof *grid->nodes);
   grid->region = dea_alloc(ctx, spec->cell_count, sizeof *grid->region);
   grid->sheet = dea_alloc(ctx, spec->cell_count, sizeof *grid->sheet);
-  grid->flat = dea_alloc(ctx, spec->cell_count, sizeof *grid->flat);
+  grid->levels = dea_alloc(ctx, spec->cell_count, sizeof *grid->levels);
+  grid->kind = dea_alloc(ctx, spec->cell_count, sizeof *grid->kind); // hexahedra
   if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->sheet == NULL ||
-      grid->flat == NULL) {
+      grid->levels == NULL || grid->kind == NULL) {
     return DEA_E_MEMORY;
   }
   return fill_grid(ctx, spec, grid);
@@ -198,7 +200,6 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   for (size_t i = 0; i < spec->part_count; i++) {
     DEA_TRY(ctx, make_layer(ctx, &object->parts[i], &object->layers[i]));
   }
-  DEA_TRY(ctx, dea_hex_shape_create(spec->order, spec->order_z, &object->shape));
   const struct dea_solid_options options = {.order_z = spec->order_z,
                                             .layer_count = object->part_count,
                                             .layers = object->layers,
@@ -285,8 +286,8 @@ static dea_status pull(struct dea_context *ctx, struct dea_solid_object *object,
   end_path(ctx, object);
   for (int side = 0; side < FACES; side++) {
     struct dea_surface *surface;
-    dea_status status = dea_surface_create(ctx, object->grid, &object->shape, (enum dea_face)side,
-                                           is_selected, &selection, &surface);
+    dea_status status = dea_surface_create(ctx, object->grid, (enum dea_face)side, is_selected,
+                                           &selection, &surface);
     if (status == DEA_E_ARGUMENT) {
       continue; // none of this side
     }

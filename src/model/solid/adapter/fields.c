@@ -28,8 +28,8 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
   *out = NULL;
   DEA_TRY(ctx, find_potentials(ctx, s, &potential_V));
   const struct dea_recover_input input = {.grid = s->grid,
-                                          .shape = &s->shape,
-                                          .flat = &s->flat,
+                                          .elements = &s->elements,
+                                          .kind = s->kind,
                                           .layers = s->layers,
                                           .layer = s->layer,
                                           .active = s->active,

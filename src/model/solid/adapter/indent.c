@@ -48,7 +48,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
               .half_length_m = INFINITY},
       .stiffness_Pa_per_m = stiffness_Pa_per_m,
   };
-  struct dea_hex_shape shape;
   if (probe->shape == DEA_PROBE_CYLINDER) {
     options.tip.axis[0] = 1;
     options.tip.axis[2] = 0;
@@ -58,10 +57,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
   indent->depth_m = -1e-3 * probe->radius_m;
   indent->copies = dea_actuator_copies(actuator);
   options.place_m[2] = indent->touch_z_m - sign * indent->depth_m;
-  DEA_TRY(ctx, dea_hex_shape_create(p->order, p->order_z, &shape));
-  DEA_TRY(ctx, dea_surface_create(ctx, grid, &shape,
-                                  probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                                  select_face, &choice, &indent->surface));
+  DEA_TRY(ctx,
+          dea_surface_create(ctx, grid, probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
+                             select_face, &choice, &indent->surface));
   DEA_TRY(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
   const struct dea_solid_load load = dea_contact_load(indent->contact);
   DEA_TRY(ctx, dea_solid_add_load(ctx, solid, &load));

@@ -1,81 +1,25 @@
 #include "model/solid/assembly/assemble.h"
 
-#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/element/hex_coupled.h"
 
 #include <math.h>
 #include <string.h>
 
 /* ---- elements ---- */
 
-/* What an element needs from the whole. */
-struct element_place {
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const double *multiplier;
-};
-
-static void gather(const struct dea_solid *s, size_t e, const double *u, struct element_place *out)
-{
-  dea_solid_gather(s, e, s->grid->X, out->X);
-  dea_solid_gather(s, e, u, out->u);
-  out->multiplier = s->multiplier + e * (size_t)s->shape.pressures;
-}
-
-/* An element with potential. psi: of the whole. */
-static dea_status evaluate_coupled(struct dea_solid *s, size_t e, const double *X, const double *u,
-                                   const double *multiplier, const double *psi,
-                                   enum dea_eval_order level)
-{
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  double potential[DEA_HEX_NODES_MAX];
-  for (int n = 0; n < s->shape.nodes; n++) {
-    potential[n] = psi[nodes[n]];
-  }
-  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
-  return dea_hex_coupled_evaluate(&s->shape, &layer, X, u, potential, multiplier,
-                                  dea_solid_field_scale(s), level, s->element);
-}
-
+/* Into s->element. predicted: stresses that the tangent takes; NULL for those that there are. */
 static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *u, double voltage_V,
-                                   enum dea_eval_order level)
+                                   enum dea_eval_order level, const double *predicted)
 {
-  const struct dea_constituent at_step = dea_solid_constituent_at(s, e), *layer = &at_step;
-  struct element_place at;
-  gather(s, e, u, &at);
-  if (s->grid->flat[e]) {
-    return dea_membrane_evaluate(&s->flat, layer, at.X, at.u, s->active[e] ? voltage_V : 0, level,
-                                 s->element);
-  }
-  if (s->field != NULL && layer->permittivity_F_per_m > 0) {
-    return evaluate_coupled(s, e, at.X, at.u, at.multiplier, u + 3 * s->grid->node_count, level);
-  }
-  dea_status status =
-      dea_hex_evaluate(&s->shape, layer, at.X, at.u, at.multiplier,
-                       s->field == NULL && s->active[e] ? voltage_V : 0, level, s->element);
-  if (status == DEA_OK && s->field != NULL && level >= DEA_FORCE) {
-    dea_hex_spread(s->shape.nodes, s->element->g, level >= DEA_TANGENT ? s->element->K : NULL,
-                   s->element->g, s->element->K);
-  }
-  return status;
-}
-
-/* The k-th of this rank's elements at s->u; with stresses that were predicted for it, if any. */
-static dea_status evaluate_own(struct dea_solid *s, size_t k, double voltage_V,
-                               enum dea_eval_order level)
-{
-  size_t e = s->own[k];
-  if (level < DEA_TANGENT || !s->predicted_fits || s->grid->flat[e]) {
-    return evaluate_element(s, e, s->u, voltage_V, level);
-  }
-  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
-  struct element_place at;
-  gather(s, e, s->u, &at);
-  return dea_hex_evaluate_predicted(
-      &s->shape, &layer, at.X, at.u, at.multiplier, s->active[e] ? voltage_V : 0,
-      s->predicted + k * dea_hex_predicted_count(&s->shape), s->element);
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  dea_solid_element_input(s, e, u, voltage_V, &place, &in);
+  in.predicted = predicted;
+  return element->type->evaluate(element, &in, level, s->element);
 }
 
 /* ---- inertia ---- */
@@ -132,38 +76,18 @@ static dea_status add_inertia(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-/* ---- springs of flat elements: modes without stiffness (docs/theory/membrane.md) ---- */
+/* ---- springs for modes without stiffness (docs/theory/membrane.md) ---- */
 
 static const double neutral = 1e-10; // tau: stiffness that counts as none, in units of M
-
-static dea_status add_spring(struct dea_context *ctx, struct dea_solid *s, size_t e)
-{
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  const struct dea_constituent *layer = &s->layers[s->layer[e]];
-  double X[DEA_FLAT_DOFS_MAX], stiffness[DEA_FLAT_NODES_MAX];
-  dea_status status = dea_membrane_check(layer);
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "a membrane takes isotropic hyperelastic laws only");
-  }
-  dea_solid_gather(s, e, s->grid->X, X);
-  status = dea_membrane_stiffness(&s->flat, layer, X, stiffness);
-  if (status != DEA_OK) {
-    return DEA_OK; // inverted: dea_solid_check says where
-  }
-  for (int i = 0; i < 3 * s->flat.nodes; i++) {
-    s->spring[3 * nodes[i / 3] + i % 3] += stiffness[i / 3];
-  }
-  return DEA_OK;
-}
 
 dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s)
 {
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    if (!s->grid->flat[e]) {
+    const struct dea_element *element = dea_solid_element(s, e);
+    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    double X[DEA_HEX_DOFS_MAX], stiffness[DEA_HEX_NODES_MAX];
+    if (element->type->neutral_stiffness == NULL) {
       continue;
-    }
-    if (s->per_node != 3) {
-      return dea_fail(ctx, DEA_E_UNSUPPORTED, "a membrane takes the field V/h, not a coupled one");
     }
     if (s->spring == NULL) {
       s->spring = dea_alloc(ctx, s->dofs, sizeof *s->spring);
@@ -171,12 +95,17 @@ dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s
         return DEA_E_MEMORY;
       }
     }
-    DEA_TRY(ctx, add_spring(ctx, s, e));
+    dea_solid_gather(s, e, s->grid->X, X);
+    dea_status status =
+        element->type->neutral_stiffness(element, &s->layers[s->layer[e]], X, stiffness);
+    for (int i = 0; i < 3 * element->nodes && status == DEA_OK; i++) { // dea_solid_check says where
+      s->spring[3 * nodes[i / 3] + i % 3] += stiffness[i / 3];
+    }
   }
   return DEA_OK;
 }
 
-/* What K gets for modes without stiffness; nothing without flat elements. */
+/* What K gets for modes without stiffness; nothing without s->spring. */
 static dea_status add_springs(struct dea_context *ctx, struct dea_solid *s)
 {
   if (s->spring == NULL) {
@@ -198,7 +127,7 @@ static dea_status add_springs(struct dea_context *ctx, struct dea_solid *s)
 static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
   for (size_t k = 0; k < s->own_count; k++) {
-    dea_status status = evaluate_element(s, s->own[k], u, voltage_V, DEA_ENERGY);
+    dea_status status = evaluate_element(s, s->own[k], u, voltage_V, DEA_ENERGY, NULL);
     if (status != DEA_OK) {
       return status;
     }
@@ -260,11 +189,19 @@ static void add_drive(struct dea_solid *s, const int *nodes, int dofs, const dou
   }
 }
 
-/* Adds g and, with DEA_TANGENT, K of a few nodes to those of the whole. K is changed. */
+/* Adds g and, with DEA_TANGENT, K of a few nodes to those of the whole. own: unknowns of a node in
+ * them. K is changed. */
 static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node_count,
-                          const int *nodes, const double *g, double *K, enum dea_eval_order level)
+                          const int *nodes, int own, double *g, double *K,
+                          enum dea_eval_order level)
 {
   int per = s->per_node, dofs = per * node_count;
+  if (own < per) {
+    dea_element_spread(node_count, g, level >= DEA_TANGENT ? K : NULL, s->element->g,
+                       s->element->K);
+    g = s->element->g;
+    K = s->element->K;
+  }
   for (int i = 0; i < dofs; i++) {
     size_t at = dea_solid_at(s, nodes[i / per], i % per);
     s->squares += g[i] * g[i]; // held or not: the reaction is a force too
@@ -292,16 +229,19 @@ static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, dou
   for (size_t k = 0; k < s->own_count; k++) {
     size_t e = s->own[k];
     struct dea_element_result *element = s->element;
-    dea_status status = evaluate_own(s, k, voltage_V, level);
+    dea_status status =
+        evaluate_element(s, e, s->u, voltage_V, level,
+                         s->predicted_fits ? s->predicted + k * s->elements.predicted_count : NULL);
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "element %zu is inverted or beyond its law's domain", e);
     }
     *energy += element->energy_J;
     s->energy_scale += fabs(element->energy_J);
-    memcpy(s->theta + e * (size_t)s->shape.pressures, element->theta,
-           (size_t)s->shape.pressures * sizeof(double));
-    DEA_TRY(ctx, scatter(ctx, s, dea_grid_nodes_of(s->grid, e, s->shape.nodes),
-                         s->grid->nodes + e * DEA_HEX_NODES_MAX, element->g, element->K, level));
+    memcpy(s->theta + e * (size_t)s->elements.pressures, element->theta,
+           (size_t)s->elements.pressures * sizeof(double));
+    const struct dea_element *kind = dea_solid_element(s, e);
+    DEA_TRY(ctx, scatter(ctx, s, kind->nodes, s->grid->nodes + e * DEA_HEX_NODES_MAX,
+                         kind->type->per_node, element->g, element->K, level));
   }
   return DEA_OK;
 }
@@ -321,13 +261,8 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
       if (piece->node_count > 0) {
         *energy += piece->energy_J;
         s->energy_scale += fabs(piece->energy_J);
-        double *g = piece->g, *K = piece->K;
-        if (s->per_node == 4) {
-          g = s->element->g;
-          K = s->element->K;
-          dea_hex_spread(piece->node_count, piece->g, level >= DEA_TANGENT ? piece->K : NULL, g, K);
-        }
-        DEA_TRY(ctx, scatter(ctx, s, piece->node_count, piece->nodes, g, K, level));
+        DEA_TRY(ctx,
+                scatter(ctx, s, piece->node_count, piece->nodes, 3, piece->g, piece->K, level));
       }
     }
   }

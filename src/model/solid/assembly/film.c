@@ -2,7 +2,7 @@
 
 #include "material/plane.h"
 #include "model/solid/assembly/assemble.h"
-#include "model/solid/assembly/internal_variables.h"
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/potential.h"
 
 #include <math.h>
@@ -13,21 +13,16 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
                               const struct dea_material *material, double pre_stretch,
                               struct dea_solid_extremes *out)
 {
-  const struct dea_constituent at_step = dea_solid_constituent_at(s, e), *layer = &at_step;
-  double voltage_V = s->active[e] ? s->voltage_V : 0;
-  const double *multiplier = s->multiplier + e * (size_t)s->shape.pressures;
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  struct dea_hex_membrane membrane;
-  dea_solid_gather(s, e, s->grid->X, X);
-  dea_solid_gather(s, e, s->u, u);
-  dea_status status =
-      s->grid->flat[e]
-          ? dea_membrane_state(&s->flat, layer, X, u, voltage_V, &membrane)
-          : dea_hex_membrane_eval(&s->shape, layer, X, u, multiplier, voltage_V, &membrane);
-  for (int p = 0; status == DEA_OK && p < membrane.count; p++) {
-    double field = fabs(voltage_V) / layer->thickness_m * membrane.area[p];
-    double stretch = pre_stretch * sqrt(membrane.area[p]);
-    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, membrane.tension[p]);
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  struct dea_membrane_state film;
+  dea_solid_element_input(s, e, s->u, s->voltage_V, &place, &in);
+  dea_status status = element->type->membrane_state(element, &in, &film);
+  for (int p = 0; status == DEA_OK && p < film.count; p++) {
+    double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
+    double stretch = pre_stretch * sqrt(film.area[p]);
+    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
     if (s->active[e]) {
       out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
       out->breakdown_margin =
@@ -45,7 +40,7 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
   double thickness = 0, energy[2] = {0, 0};
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_constituent *layer = &s->layers[s->layer[e]];
-    bool counts = s->field != NULL ? layer->permittivity_F_per_m > 0 : s->active[e];
+    bool counts = s->active[e] || dea_solid_element(s, e)->type->per_node > 3;
     thickness = fmax(thickness, counts ? layer->thickness_m : 0);
   }
   double step = 1e12 * thickness * thickness, square = s->voltage_V * s->voltage_V;

@@ -1,7 +1,6 @@
 #include "model/solid/assembly/internal_variables.h"
 
 #include "model/solid/assembly/problem.h"
-#include "model/solid/element/hex_points.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -10,46 +9,17 @@ enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
 
 #define ELASTIC SIZE_MAX // in place of an element's first point
 
-/* C, C^-1 and reference volume at the points of an element. */
-struct strains {
-  int count;
-  double C[DEA_HEX_GAUSS_MAX][6], inverse[DEA_HEX_GAUSS_MAX][6], volume[DEA_HEX_GAUSS_MAX];
-};
-
-static dea_status find_strains(const struct dea_solid *s, size_t e, struct strains *out)
+static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_element_strains *out)
 {
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], F[6];
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  const struct dea_element *element = dea_solid_element(s, e);
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = u};
   dea_solid_gather(s, e, s->grid->X, X);
   dea_solid_gather(s, e, s->u, u);
-  if (s->grid->flat[e]) {
-    double thickness = s->layers[s->layer[e]].thickness_m;
-    out->count = s->flat.gauss;
-    for (int q = 0; q < out->count; q++) {
-      out->volume[q] = thickness * dea_flat_columns(&s->flat, q, X, u, F);
-      if (!(out->volume[q] > 0)) {
-        return DEA_E_DOMAIN;
-      }
-      dea_viscous_strain_flat(F, out->C[q], out->inverse[q]);
-    }
-    return DEA_OK;
-  }
-  dea_status status = dea_hex_find_points(&s->shape, X, u, points);
-  out->count = s->shape.gauss;
-  for (int q = 0; q < out->count && status == DEA_OK; q++) {
-    const struct dea_hex_point *at = &points[q];
-    dea_viscous_strain(at->F, at->cof, at->J, out->C[q], out->inverse[q]);
-    out->volume[q] = at->weight;
-  }
-  return status;
+  return element->type->strains(element, &in, out);
 }
 
 /* ---- memory ---- */
-
-static size_t points_of(const struct dea_solid *s, size_t e)
-{
-  return (size_t)(s->grid->flat[e] ? s->flat.gauss : s->shape.gauss);
-}
 
 /* Gives the elements of layers with branches their points; returns how many. */
 static size_t place_points(const struct dea_solid *s, struct dea_internal_variables *h)
@@ -58,7 +28,7 @@ static size_t place_points(const struct dea_solid *s, struct dea_internal_variab
   for (size_t e = 0; e < s->grid->element_count; e++) {
     bool viscous = h->branches[s->layer[e]].count > 0;
     h->first[e] = viscous ? count : ELASTIC;
-    count += viscous ? points_of(s, e) : 0;
+    count += viscous ? (size_t)dea_solid_element(s, e)->points : 0;
   }
   return count;
 }
@@ -67,12 +37,12 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_v
 {
   dea_status status = DEA_OK;
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
-    struct strains strains;
+    struct dea_element_strains strains;
     if (h->first[e] == ELASTIC) {
       continue;
     }
     status = find_strains(s, e, &strains);
-    for (int q = 0; q < strains.count && status == DEA_OK; q++) {
+    for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse[at], strains.inverse[q], TENSOR_BYTES);
       for (size_t i = 0; i < h->branches[s->layer[e]].count; i++) {
@@ -179,7 +149,7 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
     }
     for (size_t e = 0; e < s->grid->element_count; e++) {
       if ((size_t)s->layer[e] == l && branches->count > 0) {
-        begin_element(h, h->first[e], points_of(s, e), branches, steps);
+        begin_element(h, h->first[e], (size_t)dea_solid_element(s, e)->points, branches, steps);
       }
     }
   }
@@ -208,15 +178,15 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
   *out = (struct dea_solid_branch_energies){0};
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
-    struct strains strains;
+    struct dea_element_strains strains;
     if (h->first[e] == ELASTIC) {
       continue;
     }
     status = find_strains(s, e, &strains);
-    for (int q = 0; q < strains.count && status == DEA_OK; q++) {
+    for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
-      add_energies(h, at, branches, h->steps[s->layer[e]], strains.C[q], strains.volume[q], out);
+      add_energies(h, at, branches, h->steps[s->layer[e]], strains.C[q], strains.volume_m3[q], out);
     }
   }
   return status == DEA_OK ? DEA_OK
@@ -228,7 +198,8 @@ void dea_internal_variables_accept(struct dea_internal_variables *h, const struc
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const struct dea_branches *branches = &h->branches[s->layer[e]];
     const struct dea_branch_step *steps = h->steps[s->layer[e]];
-    size_t from = h->first[e], to = from != ELASTIC ? from + points_of(s, e) : from;
+    size_t from = h->first[e],
+           to = from != ELASTIC ? from + (size_t)dea_solid_element(s, e)->points : from;
     for (size_t at = from; at < to; at++) {
       for (size_t i = 0; i < branches->count; i++) {
         dea_branch_update(&steps[i].end, h->A[at][i], h->inverse[at], h->inverse_next[at],

@@ -1,7 +1,6 @@
 #include "model/solid/assembly/mass.h"
 
 #include "model/solid/assembly/matrix.h"
-#include "model/solid/element/mass.h"
 
 #include <string.h>
 
@@ -9,11 +8,10 @@
 
 static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
 {
-  const struct dea_constituent *layer = &s->layers[s->layer[e]];
+  const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX];
   dea_solid_gather(s, e, s->grid->X, X);
-  return s->grid->flat[e] ? dea_membrane_mass(&s->flat, layer, X, mass)
-                          : dea_hex_mass(&s->shape, layer, X, mass);
+  return element->type->mass(element, &s->layers[s->layer[e]], X, mass);
 }
 
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor)
@@ -42,7 +40,7 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
     double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
     size_t e = s->own[k];
     const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+    int count = dea_grid_nodes_of(s->grid, e);
     status = mass_of(s, e, mass);
     for (int a = 0; a < count && status == DEA_OK; a++) {
       for (int b = 0; b < count; b++) {
@@ -67,10 +65,9 @@ static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace
                             double *volume)
 {
   double X[DEA_HEX_DOFS_MAX] = {0};
+  const struct dea_element *element = dea_solid_element(s, e);
   int count = dea_solid_gather(s, e, s->grid->X, X);
-  dea_status status =
-      s->grid->flat[e] ? dea_membrane_metric(&s->flat, &s->layers[s->layer[e]], X, laplace, lumped)
-                       : dea_hex_metric(&s->shape, X, laplace, lumped);
+  dea_status status = element->type->metric(element, &s->layers[s->layer[e]], X, laplace, lumped);
   *volume = 0;
   for (int n = 0; n < count && status == DEA_OK; n++) {
     *volume += lumped[n];
@@ -98,7 +95,7 @@ void dea_solid_lump_volume(const struct dea_solid *s, double *volume)
     double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
     const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
     metric_of(s, e, laplace, lumped, &whole);
-    for (int n = 0; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(s->grid, e); n++) {
       for (int i = 0; i < 3; i++) {
         volume[3 * nodes[n] + i] += lumped[n];
       }

@@ -97,8 +97,7 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
   s->own_count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     size_t node =
-        (size_t)grid
-            ->nodes[e * DEA_HEX_NODES_MAX + (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes) / 2];
+        (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)dea_grid_nodes_of(grid, e) / 2];
     if (node >= s->first_node && node < s->end_node) {
       s->own[s->own_count++] = e;
     }
@@ -112,7 +111,7 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
 {
   const struct dea_grid *grid = s->grid;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes); n++) {
+    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e); n++) {
       first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 2]++;
     }
   }
@@ -120,7 +119,7 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
     first[i] += first[i - 1];
   }
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e, s->shape.nodes); n++) {
+    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e); n++) {
       elements[first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 1]++] = (int)e;
     }
   }
@@ -132,9 +131,12 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
                                PetscInt *others)
 {
   const struct dea_grid *grid = s->grid;
-  size_t per = (size_t)s->shape.nodes;
+  size_t places = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    places += (size_t)dea_grid_nodes_of(grid, e);
+  }
   size_t *first = dea_alloc(ctx, grid->node_count + 2, sizeof *first);
-  int *elements = dea_alloc(ctx, grid->element_count * per, sizeof *elements);
+  int *elements = dea_alloc(ctx, places, sizeof *elements);
   int *seen = dea_alloc(ctx, grid->node_count, sizeof *seen);
   bool done = first != NULL && elements != NULL && seen != NULL;
   if (done) {
@@ -144,7 +146,7 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
       own[row] = others[row] = 0;
       for (size_t k = first[i]; k < first[i + 1]; k++) {
         const int *nodes = grid->nodes + (size_t)elements[k] * DEA_HEX_NODES_MAX;
-        int count = dea_grid_nodes_of(grid, (size_t)elements[k], s->shape.nodes);
+        int count = dea_grid_nodes_of(grid, (size_t)elements[k]);
         for (int n = 0; n < count; n++) {
           size_t column = (size_t)nodes[n];
           if (column >= i && seen[column] != (int)i + 1) {
@@ -166,8 +168,7 @@ static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
 {
   size_t rows = s->end_node - s->first_node;
   DEA_TRY(ctx, split_elements(ctx, s));
-  s->predicted =
-      dea_alloc(ctx, s->own_count * dea_hex_predicted_count(&s->shape), sizeof *s->predicted);
+  s->predicted = dea_alloc(ctx, s->own_count * s->elements.predicted_count, sizeof *s->predicted);
   lengths->own = dea_alloc(ctx, rows, sizeof *lengths->own);
   lengths->others = dea_alloc(ctx, rows, sizeof *lengths->others);
   return s->predicted != NULL && lengths->own != NULL && lengths->others != NULL
@@ -238,7 +239,7 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
     PetscInt block[DEA_HEX_NODES_MAX];
     size_t e = s->own[k];
     const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+    int count = dea_grid_nodes_of(s->grid, e);
     status = of(s, e, scalar);
     if (status == DEA_OK) {
       block_of(s, count, nodes, amount, scalar, s->element->K);

@@ -1,7 +1,5 @@
 #include "model/solid/assembly/potential.h"
 
-#include "model/solid/element/hex_coupled.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -16,12 +14,12 @@ struct dea_solid_field {
 
 double dea_solid_field_scale(const struct dea_solid *s)
 {
-  return s->field->scale_V_per_m;
+  return s->field != NULL ? s->field->scale_V_per_m : 0;
 }
 
-static bool dielectric(const struct dea_solid *s, size_t e)
+static bool has_potential(const struct dea_solid *s, size_t e)
 {
-  return s->layers[s->layer[e]].permittivity_F_per_m > 0;
+  return dea_solid_element(s, e)->type->capacity != NULL;
 }
 
 /* c and permittivity of the first dielectric layer. */
@@ -44,7 +42,7 @@ static dea_status hold_potentials(struct dea_context *ctx, struct dea_solid *s,
   unsigned char *held = s->held + 3 * nodes;
   memset(held, 1, nodes);
   for (size_t e = 0; e < s->grid->element_count; e++) {
-    for (int n = 0; n < s->shape.nodes && dielectric(s, e); n++) {
+    for (int n = 0; n < dea_solid_element(s, e)->nodes && has_potential(s, e); n++) {
       held[s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 0;
     }
   }
@@ -126,13 +124,15 @@ static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, siz
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
   const unsigned char *held = s->held + 3 * s->grid->node_count;
   PetscInt rows[DEA_HEX_NODES_MAX];
-  int count = s->shape.nodes;
+  const struct dea_element *element = dea_solid_element(s, e);
+  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = at};
+  int count = element->nodes;
   dea_solid_gather(s, e, s->grid->X, X);
   dea_solid_gather(s, e, u, at);
   for (int n = 0; n < count; n++) {
     rows[n] = nodes[n];
   }
-  dea_status status = dea_hex_capacity(&s->shape, &s->layers[s->layer[e]], X, at, L);
+  dea_status status = element->type->capacity(element, &in, L);
   if (status != DEA_OK) {
     return status;
   }
@@ -156,7 +156,7 @@ static dea_status add_pins(struct dea_context *ctx, struct dea_solid *s, size_t 
   const unsigned char *held = s->held + 3 * s->grid->node_count;
   const double *a = s->grid->X + 3 * nodes[0], *b = s->grid->X + 3 * nodes[1];
   double size = fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
-  for (int n = 0; n < s->shape.nodes; n++) {
+  for (int n = 0; n < dea_solid_element(s, e)->nodes; n++) {
     if (held[nodes[n]]) {
       DEA_PETSC(ctx, MatSetValue(s->field->L, nodes[n], nodes[n], s->field->permittivity * size,
                                  ADD_VALUES));
@@ -175,7 +175,7 @@ static dea_status assemble_capacity(struct dea_context *ctx, struct dea_solid *s
   DEA_PETSC(ctx, MatZeroEntries(L));
   for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
     size_t e = s->own[k];
-    status = dielectric(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
+    status = has_potential(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
   status = dea_solid_agree(NULL, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, L));

@@ -4,7 +4,8 @@
 
 #include "model/solid/assembly/ranks.h"
 #include "model/solid/assembly/solid.h"
-#include "model/solid/element/membrane.h"
+#include "model/solid/element/element.h"
+#include "model/solid/mesh/grid.h"
 
 #include <petscmat.h>
 
@@ -31,9 +32,9 @@ struct dea_solid {
   size_t first_node, end_node; // rows of K here
   size_t *own, own_count;      // [own_count] elements here
   const struct dea_grid *grid;
-  struct dea_hex_shape shape;
-  struct dea_flat_shape flat;
-  double *spring; // [dofs] M of docs/theory/membrane.md, 0 off the flat elements; NULL without any
+  struct dea_element_set elements; // at the orders of the grid
+  enum dea_element_kind *kind;     // [elements]
+  double *spring; // [dofs] M of docs/theory/membrane.md; NULL without modes that need it
   struct dea_constituent *layers; // [layer_count]
   size_t layer_count;
   int per_node;                  // 3, or 4 with a potential
@@ -46,7 +47,7 @@ struct dea_solid {
   int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
   double (*frames)[9]; // rows are local axes
   double *u, *trial, *g, *step, *force; // [dofs]
-  double *multiplier, *theta;           // [elements][shape.pressures]
+  double *multiplier, *theta;           // [elements][elements.pressures]
   double *force_goal; // [dofs] dead loads that were asked for; force: as they stand
   double *place;      // [dofs] displacements that were asked for of prescribed (local) components
   double *reaction;   // [dofs] forces of the supports at the last assembly
@@ -65,7 +66,7 @@ struct dea_solid {
   Mat K, factor;
   Vec right, solution;
   bool checked;
-  double *predicted;   // [own_count][dea_hex_predicted_count] stresses at the end of the last step
+  double *predicted;   // [own_count][elements.predicted_count] stresses at the end of the last step
   bool predicted_fits; // they belong to s->u
   bool stay;           // at unstable equilibria
   bool factor_fits;    // factor is of K at the last equilibrium, positive definite
@@ -79,7 +80,7 @@ struct dea_solid {
 /* All multipliers of a solid. */
 static inline size_t dea_solid_pressure_count(const struct dea_solid *s)
 {
-  return s->grid->element_count * (size_t)s->shape.pressures;
+  return s->grid->element_count * (size_t)s->elements.pressures;
 }
 
 /* Place of an unknown of a node. */
@@ -88,11 +89,17 @@ static inline size_t dea_solid_at(const struct dea_solid *s, int node, int i)
   return i < 3 ? 3 * (size_t)node + (size_t)i : 3 * s->grid->node_count + (size_t)node;
 }
 
+/* The kind of an element at its orders. */
+static inline const struct dea_element *dea_solid_element(const struct dea_solid *s, size_t e)
+{
+  return &s->elements.of[s->kind[e]];
+}
+
 /* Nodes of an element; *nodes: [count] them. */
 static inline int dea_solid_nodes(const struct dea_solid *s, size_t e, const int **nodes)
 {
   *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  return dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+  return dea_grid_nodes_of(s->grid, e);
 }
 
 /* Values [node_count][3] at the nodes of an element; returns their number. */

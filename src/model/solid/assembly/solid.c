@@ -3,6 +3,7 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/potential.h"
 
@@ -40,10 +41,11 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
                              const struct dea_solid_options *options)
 {
   const struct dea_grid *grid = s->grid;
-  size_t elements = grid->element_count, pressures = (size_t)s->shape.pressures;
+  size_t elements = grid->element_count, pressures = (size_t)s->elements.pressures;
   s->layers = dea_alloc(ctx, options->layer_count, sizeof *s->layers);
   s->layer = dea_alloc(ctx, elements, sizeof *s->layer);
   s->active = dea_alloc(ctx, elements, sizeof *s->active);
+  s->kind = dea_alloc(ctx, elements, sizeof *s->kind);
   s->held = dea_alloc(ctx, s->dofs, 1);
   s->u = dea_alloc(ctx, s->dofs, sizeof(double));
   s->trial = dea_alloc(ctx, s->dofs, sizeof(double));
@@ -58,10 +60,11 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   s->drive = dea_alloc(ctx, s->dofs, sizeof(double));
   s->element = dea_alloc(ctx, 1, sizeof *s->element);
   s->piece = dea_alloc(ctx, 1, sizeof *s->piece);
-  if (s->layers == NULL || s->layer == NULL || s->active == NULL || s->held == NULL ||
-      s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL || s->force == NULL ||
-      s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL || s->place == NULL ||
-      s->reaction == NULL || s->drive == NULL || s->element == NULL || s->piece == NULL) {
+  if (s->layers == NULL || s->layer == NULL || s->kind == NULL || s->active == NULL ||
+      s->held == NULL || s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL ||
+      s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL ||
+      s->place == NULL || s->reaction == NULL || s->drive == NULL || s->element == NULL ||
+      s->piece == NULL) {
     return DEA_E_MEMORY;
   }
   s->layer_count = options->layer_count;
@@ -78,6 +81,7 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
+  DEA_TRY(ctx, dea_solid_set_kinds(ctx, s));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
   find_sizes(s);
@@ -96,10 +100,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   s->grid = grid;
   s->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   s->dofs = (size_t)s->per_node * grid->node_count;
-  dea_status status = dea_hex_shape_create(grid->order, options->order_z, &s->shape);
-  if (status == DEA_OK) {
-    status = dea_flat_shape_create(grid->order, &s->flat);
-  }
+  dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &s->elements);
   if (status == DEA_OK) {
     status = fill_solid(ctx, s, options);
   }
@@ -130,7 +131,8 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
                           s->trial,   s->g,          s->step,   s->multiplier, s->theta,
                           s->force,   s->force_goal, s->place,  s->reaction,   s->drive,
                           s->element, s->piece,      s->loads,  s->own,        s->frame,
-                          s->frames,  s->predicted,  s->spring};
+                          s->frames,  s->predicted,  s->spring, s->kind};
+  dea_element_set_release(ctx, &s->elements);
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }

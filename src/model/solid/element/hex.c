@@ -1,8 +1,123 @@
-#include "model/solid/element/hex_points.h"
+/* The layered hexahedron: one kinematics for film, glue and fibre. See hex.h. */
+#include "model/solid/element/hex.h"
+
 #include "model/solid/element/hex_tensor.h"
 #include "model/solid/point/viscous.h"
 
+#include <math.h>
 #include <string.h>
+
+/* ---- state at the Gauss points ---- */
+
+/* From the slopes of X and u by the local axes, slope[a] = {dX/dxi_a, du/dxi_a}. */
+static dea_status find_point(double weight, const double *slope[3], struct dea_hex_point *at)
+{
+  double map[9], cof[9];
+  for (int a = 0; a < 3; a++) {
+    for (int i = 0; i < 3; i++) {
+      map[3 * i + a] = slope[a][i];
+    }
+  }
+  double volume = dea_cofactors(map, cof);
+  if (!(volume > 0)) {
+    return DEA_E_DOMAIN;
+  }
+  for (int a = 0; a < 3; a++) {
+    for (int J = 0; J < 3; J++) {
+      at->local[3 * a + J] = cof[3 * J + a] / volume;
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    for (int J = 0; J < 3; J++) {
+      at->F[3 * i + J] = (i == J ? 1 : 0) + slope[0][3 + i] * at->local[J] +
+                         slope[1][3 + i] * at->local[3 + J] + slope[2][3 + i] * at->local[6 + J];
+    }
+  }
+  at->J = dea_cofactors(at->F, at->cof);
+  at->weight = weight * volume;
+  return at->J > 0 ? DEA_OK : DEA_E_DOMAIN;
+}
+
+dea_status dea_hex_find_points(const struct dea_hex_shape *s, const double *X, const double *u,
+                               struct dea_hex_point *points)
+{
+  double values[DEA_HEX_NODES_MAX][6], slopes[3 * DEA_HEX_GAUSS_MAX * 6];
+  for (int n = 0; n < s->nodes; n++) {
+    memcpy(values[n], X + 3 * n, 3 * sizeof *X);
+    memcpy(values[n] + 3, u + 3 * n, 3 * sizeof *u);
+  }
+  dea_hex_slopes(s, 6, values[0], slopes);
+  for (int q = 0; q < s->gauss; q++) {
+    const double *slope[3] = {slopes + 6 * q, slopes + 6 * (s->gauss + q),
+                              slopes + 6 * (2 * s->gauss + q)};
+    dea_status status = find_point(s->weight[q], slope, &points[q]);
+    if (status != DEA_OK) {
+      return status;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, const double *u,
+                              double (*gradient)[3][DEA_HEX_NODES_MAX],
+                              struct dea_hex_point *points)
+{
+  dea_status status = dea_hex_find_points(s, X, u, points);
+  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+    for (int J = 0; J < 3; J++) {
+      const double *l = points[q].local + J;
+      for (int n = 0; n < s->nodes; n++) {
+        gradient[q][J][n] =
+            l[0] * s->slope[q][0][n] + l[3] * s->slope[q][1][n] + l[6] * s->slope[q][2][n];
+      }
+    }
+  }
+  return status;
+}
+
+dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_point *points,
+                           double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
+                           double *moment, double *theta)
+{
+  int m = s->pressures;
+  memset(moment, 0, (size_t)m * sizeof *moment);
+  for (int a = 0; a < m; a++) {
+    memset(factor[a], 0, sizeof factor[a]);
+  }
+  for (int q = 0; q < s->gauss; q++) {
+    for (int a = 0; a < m; a++) {
+      double f = points[q].weight * s->pressure[q][a];
+      moment[a] += f * (points[q].J - 1);
+      for (int b = 0; b <= a; b++) {
+        factor[a][b] += f * s->pressure[q][b];
+      }
+    }
+  }
+  for (int a = 0; a < m; a++) { // Cholesky of a matrix of at most ten rows, and L theta' = moment
+    theta[a] = moment[a];
+    for (int b = 0; b <= a; b++) {
+      double sum = factor[a][b];
+      for (int c = 0; c < b; c++) {
+        sum -= factor[a][c] * factor[b][c];
+      }
+      if (a == b && !(sum > 0)) {
+        return DEA_E_DOMAIN;
+      }
+      factor[a][b] = a == b ? sqrt(sum) : sum / factor[b][b];
+      theta[a] -= b < a ? factor[a][b] * theta[b] : 0;
+    }
+    theta[a] /= factor[a][a];
+  }
+  for (int a = m - 1; a >= 0; a--) { // L^T theta = theta'
+    for (int b = a + 1; b < m; b++) {
+      theta[a] -= factor[b][a] * theta[b];
+    }
+    theta[a] /= factor[a][a];
+  }
+  return DEA_OK;
+}
+
+/* ---- energy, force, tangent ---- */
 
 /* Work space of one evaluation. flux: [3][gauss][columns] of the weighted stress by the local axes
  * (columns 0 to 2), and with a tangent of phi_m dJ/dF (three columns for each pressure). */
@@ -57,44 +172,45 @@ static void set_tangent(int q, const double A[81], struct hex_work *work)
 }
 
 /* Pressure of the projected part at a Gauss point. */
-static double pressure_at(const struct dea_hex_shape *s, const struct dea_constituent *layer, int q,
-                          const double *multiplier, const double *theta)
+static double pressure_at(const struct dea_hex_shape *s, const struct dea_constituent *constituent,
+                          int q, const double *multiplier, const double *theta)
 {
   double pressure = 0;
   for (int m = 0; m < s->pressures; m++) {
-    pressure += s->pressure[q][m] * (multiplier[m] + layer->kappa_Pa * theta[m]);
+    pressure += s->pressure[q][m] * (multiplier[m] + constituent->kappa_Pa * theta[m]);
   }
   return pressure;
 }
 
 /* One Gauss point: its energy, and what the sums over the points take. predicted: NULL without. */
-static dea_status evaluate_point(const struct dea_hex_shape *s, const struct dea_constituent *layer,
-                                 int q, double pressure, double field, enum dea_eval_order level,
-                                 const double *predicted, struct hex_work *work, double *energy)
+static dea_status evaluate_point(const struct dea_hex_shape *s,
+                                 const struct dea_constituent *constituent, int q, double pressure,
+                                 double field, enum dea_eval_order order, const double *predicted,
+                                 struct hex_work *work, double *energy)
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
   dea_status status =
-      level >= DEA_TANGENT
-          ? dea_constituent_point(layer, at->F, at->cof, at->J, pressure, field, &point)
-          : dea_constituent_stress(layer, at->F, at->cof, at->J, pressure, field, &point);
+      order >= DEA_TANGENT
+          ? dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, &point)
+          : dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, field, &point);
   if (status != DEA_OK) {
     return status;
   }
-  dea_viscous_add(layer, q, at->F, at->cof, at->J, level >= DEA_TANGENT, &point);
+  dea_viscous_add(constituent, q, at->F, at->cof, at->J, order >= DEA_TANGENT, &point);
   *energy += at->weight * point.W;
-  if (level >= DEA_FORCE) {
+  if (order >= DEA_FORCE) {
     set_flux(s, q, at->weight, point.P, 0, work);
   }
-  if (level >= DEA_TANGENT && predicted != NULL) {
+  if (order >= DEA_TANGENT && predicted != NULL) {
     double other = 0;
-    for (int m = 0; m < s->pressures && layer->law != NULL; m++) {
+    for (int m = 0; m < s->pressures && constituent->law != NULL; m++) {
       other += s->pressure[q][m] * predicted[m];
     }
-    dea_constituent_restress(at->F, at->cof, at->J, layer->law != NULL ? other - pressure : 0,
+    dea_constituent_restress(at->F, at->cof, at->J, constituent->law != NULL ? other - pressure : 0,
                              predicted + s->pressures + 6 * q, &point);
   }
-  if (level >= DEA_TANGENT) {
+  if (order >= DEA_TANGENT) {
     set_tangent(q, point.A, work);
     for (int m = 0; 3 * m + 3 < work->columns; m++) {
       set_flux(s, q, at->weight * s->pressure[q][m], at->cof, 3 * m + 3, work);
@@ -131,55 +247,348 @@ static void set_projected(const struct dea_hex_shape *s, double kappa, struct he
                   work->b, K);
 }
 
-static dea_status evaluate(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                           const double *X, const double *u, const double *multiplier,
-                           double voltage_V, enum dea_eval_order level, const double *predicted,
-                           struct dea_element_result *out)
+dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_element_input *in,
+                            enum dea_eval_order order, struct dea_element_result *out)
 {
   struct hex_work work;
-  bool projected = layer->law != NULL;
-  double field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
-  dea_status status = dea_hex_find_points(shape, X, u, work.points);
+  const struct dea_hex_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  bool projected = constituent->law != NULL;
+  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  const double *predicted = order >= DEA_TANGENT ? in->predicted : NULL;
+  dea_status status = dea_hex_find_points(shape, in->X, in->u, work.points);
   if (status == DEA_OK && projected) {
     status = dea_hex_project(shape, work.points, work.factor, work.moment, out->theta);
   }
   out->energy_J = out->volume_m3 = 0;
   for (int m = 0; status == DEA_OK && m < shape->pressures && projected; m++) {
-    out->energy_J += (multiplier[m] + 0.5 * layer->kappa_Pa * out->theta[m]) * work.moment[m];
+    out->energy_J +=
+        (in->multiplier[m] + 0.5 * constituent->kappa_Pa * out->theta[m]) * work.moment[m];
   }
-  work.columns = level >= DEA_TANGENT && projected ? 3 + 3 * shape->pressures : 3;
+  work.columns = order >= DEA_TANGENT && projected ? 3 + 3 * shape->pressures : 3;
   for (int q = 0; status == DEA_OK && q < shape->gauss; q++) {
-    double pressure = projected ? pressure_at(shape, layer, q, multiplier, out->theta) : 0;
+    double pressure =
+        projected ? pressure_at(shape, constituent, q, in->multiplier, out->theta) : 0;
     out->volume_m3 += work.points[q].weight;
-    status =
-        evaluate_point(shape, layer, q, pressure, field, level, predicted, &work, &out->energy_J);
+    status = evaluate_point(shape, constituent, q, pressure, field, order, predicted, &work,
+                            &out->energy_J);
   }
-  if (status != DEA_OK || level < DEA_FORCE) {
+  if (status != DEA_OK || order < DEA_FORCE) {
     return status;
   }
   dea_hex_sum_flux(shape, work.columns, work.flux, work.sums);
   for (int i = 0; i < 3 * shape->nodes; i++) {
     out->g[i] = work.sums[i / 3 * work.columns + i % 3];
   }
-  if (level >= DEA_TANGENT) {
-    set_projected(shape, layer->kappa_Pa, &work, out->K);
+  if (order >= DEA_TANGENT) {
+    set_projected(shape, constituent->kappa_Pa, &work, out->K);
     dea_hex_add_tangent(shape, work.A, out->K);
   }
   return DEA_OK;
 }
 
-dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                            const double *X, const double *u, const double *multiplier,
-                            double voltage_V, enum dea_eval_order level,
-                            struct dea_element_result *out)
+/* ---- stresses at the end of a linear step ---- */
+
+/* H_iJ = sum_n step_ni dN_n/dX_J at a Gauss point. */
+static void step_gradient(const struct dea_hex_shape *s, double gradient[3][DEA_HEX_NODES_MAX],
+                          const double *step, double H[9])
 {
-  return evaluate(shape, layer, X, u, multiplier, voltage_V, level, NULL, out);
+  memset(H, 0, 9 * sizeof *H);
+  for (int J = 0; J < 3; J++) {
+    for (int n = 0; n < s->nodes; n++) {
+      for (int i = 0; i < 3; i++) {
+        H[3 * i + J] += step[3 * n + i] * gradient[J][n];
+      }
+    }
+  }
 }
 
-dea_status dea_hex_evaluate_predicted(const struct dea_hex_shape *shape,
-                                      const struct dea_constituent *layer, const double *X,
-                                      const double *u, const double *multiplier, double voltage_V,
-                                      const double *predicted, struct dea_element_result *out)
+static double product(const double a[9], const double b[9])
 {
-  return evaluate(shape, layer, X, u, multiplier, voltage_V, DEA_TANGENT, predicted, out);
+  double sum = 0;
+  for (int k = 0; k < 9; k++) {
+    sum += a[k] * b[k];
+  }
+  return sum;
 }
+
+/* M^-1 moment with M = L L^T. */
+static void solve_moments(const struct dea_hex_shape *s,
+                          double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
+                          double *moment)
+{
+  for (int a = 0; a < s->pressures; a++) {
+    for (int b = 0; b < a; b++) {
+      moment[a] -= factor[a][b] * moment[b];
+    }
+    moment[a] /= factor[a][a];
+  }
+  for (int a = s->pressures - 1; a >= 0; a--) {
+    for (int b = a + 1; b < s->pressures; b++) {
+      moment[a] -= factor[b][a] * moment[b];
+    }
+    moment[a] /= factor[a][a];
+  }
+}
+
+/* S + share F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
+static dea_status predict_point(const struct dea_constituent *constituent, int q,
+                                const struct dea_hex_point *at, double pressure,
+                                double pressure_change, double field, const double H[9],
+                                double share, double out[6])
+{
+  struct dea_point point;
+  double S[9], dP[9], dS[9];
+  dea_status status =
+      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, &point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  dea_viscous_add(constituent, q, at->F, at->cof, at->J, true, &point);
+  dea_constituent_second_stress(at->cof, at->J, point.P, S);
+  for (int i = 0; i < 3; i++) {
+    for (int B = 0; B < 3; B++) {
+      int a = 3 * i + B;
+      dP[a] = product(point.A + 9 * a, H) + pressure_change * at->cof[a];
+      for (int A = 0; A < 3; A++) {
+        dP[a] -= H[3 * i + A] * S[3 * A + B];
+      }
+    }
+  }
+  dea_constituent_second_stress(at->cof, at->J, dP, dS);
+  for (int a = 0; a < 9; a++) {
+    S[a] += share * dS[a];
+  }
+  const double ordered[6] = {
+      S[0], S[4], S[8], 0.5 * (S[5] + S[7]), 0.5 * (S[2] + S[6]), 0.5 * (S[1] + S[3])};
+  memcpy(out, ordered, sizeof ordered);
+  return DEA_OK;
+}
+
+dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
+                           const double *step, double share, bool stresses, double *predicted)
+{
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], H[DEA_HEX_GAUSS_MAX][9];
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
+  double theta[DEA_HEX_PRESSURES_MAX] = {0}, change[DEA_HEX_PRESSURES_MAX] = {0};
+  const struct dea_hex_shape *s = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  const double *multiplier = in->multiplier;
+  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  bool projected = constituent->law != NULL;
+  dea_status status = dea_hex_kinematics(s, in->X, in->u, gradient, points);
+  if (status == DEA_OK && projected) {
+    status = dea_hex_project(s, points, factor, moment, theta);
+  }
+  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+    step_gradient(s, gradient[q], step, H[q]);
+    double squeeze = points[q].weight * product(points[q].cof, H[q]);
+    for (int m = 0; m < s->pressures && projected; m++) {
+      change[m] += s->pressure[q][m] * squeeze;
+    }
+  }
+  if (status == DEA_OK && projected) {
+    solve_moments(s, factor, change);
+  }
+  double kappa = projected ? constituent->kappa_Pa : 0;
+  for (int m = 0; m < s->pressures; m++) {
+    predicted[m] = projected ? multiplier[m] + kappa * (theta[m] + share * change[m]) : 0;
+  }
+  for (int q = 0; q < s->gauss && status == DEA_OK && stresses; q++) {
+    double pressure = 0, pressure_change = 0;
+    for (int m = 0; m < s->pressures && projected; m++) {
+      pressure += s->pressure[q][m] * (multiplier[m] + kappa * theta[m]);
+      pressure_change += s->pressure[q][m] * kappa * change[m];
+    }
+    status = predict_point(constituent, q, &points[q], pressure, pressure_change, field, H[q],
+                           share, predicted + s->pressures + 6 * q);
+  }
+  return status;
+}
+
+/* ---- mass and metric ---- */
+
+dea_status dea_hex_mass(const struct dea_element *element,
+                        const struct dea_constituent *constituent, const double *X, double *mass)
+{
+  static const double rest[DEA_HEX_DOFS_MAX] = {0};
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  const struct dea_hex_shape *s = element->basis;
+  dea_status status = dea_hex_find_points(s, X, rest, points);
+  memset(mass, 0, (size_t)(s->nodes * s->nodes) * sizeof *mass);
+  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+    double kilograms = constituent->density_kg_per_m3 * points[q].weight;
+    for (int ab = 0; ab < s->nodes * s->nodes; ab++) {
+      mass[ab] += kilograms * s->value[q][ab / s->nodes] * s->value[q][ab % s->nodes];
+    }
+  }
+  return status;
+}
+
+dea_status dea_hex_metric(const struct dea_element *element,
+                          const struct dea_constituent *constituent, const double *X,
+                          double *laplace, double *volume)
+{
+  static const double rest[DEA_HEX_DOFS_MAX] = {0};
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], whole = 0, sum = 0;
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  const struct dea_hex_shape *s = element->basis;
+  (void)constituent;
+  dea_status status = dea_hex_kinematics(s, X, rest, gradient, points);
+  if (status != DEA_OK) {
+    return status;
+  }
+  size_t nodes = (size_t)s->nodes;
+  memset(laplace, 0, nodes * nodes * sizeof *laplace);
+  memset(volume, 0, nodes * sizeof *volume);
+  for (int q = 0; q < s->gauss; q++) {
+    double w = points[q].weight;
+    whole += w;
+    for (size_t a = 0; a < nodes; a++) {
+      const double *x = gradient[q][0], *y = gradient[q][1], *z = gradient[q][2];
+      for (size_t b = 0; b < nodes; b++) {
+        laplace[a * nodes + b] += w * (x[a] * x[b] + y[a] * y[b] + z[a] * z[b]);
+      }
+      volume[a] += w * s->value[q][a] * s->value[q][a]; // the diagonal of the mass matrix
+    }
+  }
+  for (size_t a = 0; a < nodes; a++) {
+    sum += volume[a];
+  }
+  for (size_t a = 0; a < nodes; a++) {
+    volume[a] *= whole / sum;
+  }
+  return DEA_OK;
+}
+
+/* ---- after a solve ---- */
+
+/* Smaller principal value of the membrane force N_iJ (per reference length) in the current tangent
+ * plane: T = N F^T / |F_1 x F_2| on an orthonormal basis of that plane. */
+static double smaller_tension(const double N[6], const double F[9], double area)
+{
+  double e[2][3], length = sqrt(F[0] * F[0] + F[3] * F[3] + F[6] * F[6]), along = 0, rest = 0;
+  for (int i = 0; i < 3; i++) {
+    e[0][i] = F[3 * i] / length;
+    along += e[0][i] * F[3 * i + 1];
+  }
+  for (int i = 0; i < 3; i++) {
+    e[1][i] = F[3 * i + 1] - along * e[0][i];
+    rest += e[1][i] * e[1][i];
+  }
+  double T[2][2] = {{0, 0}, {0, 0}};
+  for (int i = 0; i < 3; i++) {
+    e[1][i] /= sqrt(rest);
+  }
+  for (int a = 0; a < 2; a++) {
+    for (int b = 0; b < 2; b++) {
+      for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+          double NF = N[2 * i] * F[3 * j] + N[2 * i + 1] * F[3 * j + 1];
+          T[a][b] += e[a][i] * NF * e[b][j] / area;
+        }
+      }
+    }
+  }
+  double shear = 0.5 * (T[0][1] + T[1][0]), half = 0.5 * (T[0][0] - T[1][1]);
+  return 0.5 * (T[0][0] + T[1][1]) - sqrt(half * half + shear * shear);
+}
+
+dea_status dea_hex_membrane_state(const struct dea_element *element,
+                                  const struct dea_element_input *in,
+                                  struct dea_membrane_state *out)
+{
+  const struct dea_hex_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  struct dea_hex_point state[DEA_HEX_GAUSS_MAX];
+  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
+  double theta[DEA_HEX_PRESSURES_MAX];
+  dea_status status = dea_hex_find_points(shape, in->X, in->u, state);
+  if (status == DEA_OK) {
+    status = dea_hex_project(shape, state, factor, moment, theta);
+  }
+  out->count = (shape->order + 1) * (shape->order + 1);
+  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+    double N[6] = {0}, F[9] = {0}, weights = 0;
+    for (int q = p; q < shape->gauss && status == DEA_OK; q += out->count) {
+      struct dea_point point;
+      const struct dea_hex_point *at = &state[q];
+      double pressure = 0, w = shape->weight[q];
+      for (int m = 0; m < shape->pressures; m++) {
+        pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
+      }
+      status = dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure,
+                                      in->voltage_V / constituent->thickness_m, &point);
+      if (status == DEA_OK) {
+        dea_viscous_add(constituent, q, at->F, at->cof, at->J, false, &point);
+      }
+      for (int i = 0; i < 3; i++) {
+        N[2 * i] += w * constituent->thickness_m * point.P[3 * i];
+        N[2 * i + 1] += w * constituent->thickness_m * point.P[3 * i + 1];
+      }
+      for (int a = 0; a < 9; a++) {
+        F[a] += w * at->F[a];
+      }
+      weights += w;
+    }
+    for (int a = 0; a < 9; a++) {
+      F[a] /= weights;
+    }
+    for (int a = 0; a < 6; a++) {
+      N[a] /= weights;
+    }
+    double normal[3] = {F[3] * F[7] - F[6] * F[4], F[6] * F[1] - F[0] * F[7],
+                        F[0] * F[4] - F[3] * F[1]};
+    out->area[p] = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    out->tension[p] = smaller_tension(N, F, out->area[p]);
+  }
+  return status;
+}
+
+dea_status dea_hex_strains(const struct dea_element *element, const struct dea_element_input *in,
+                           struct dea_element_strains *out)
+{
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  dea_status status = dea_hex_find_points(element->basis, in->X, in->u, points);
+  for (int q = 0; q < element->points && status == DEA_OK; q++) {
+    const struct dea_hex_point *at = &points[q];
+    dea_viscous_strain(at->F, at->cof, at->J, out->C[q], out->inverse[q]);
+    out->volume_m3[q] = at->weight;
+  }
+  return status;
+}
+
+/* ---- the kind ---- */
+
+dea_status dea_hex_create(int order, int order_z, struct dea_element *out)
+{
+  struct dea_hex_shape *shape = out->basis;
+  dea_status status = dea_hex_shape_create(order, order_z, shape);
+  out->nodes = shape->nodes;
+  out->points = shape->gauss;
+  out->pressures = shape->pressures;
+  return status;
+}
+
+dea_status dea_hex_check(const struct dea_constituent *constituent)
+{
+  (void)constituent;
+  return DEA_OK;
+}
+
+const struct dea_element_type dea_element_hexahedron = {
+    .name = "hexahedron",
+    .per_node = 3,
+    .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON,
+    .basis_size = sizeof(struct dea_hex_shape),
+    .create = dea_hex_create,
+    .check = dea_hex_check,
+    .evaluate = dea_hex_evaluate,
+    .predict = dea_hex_predict,
+    .mass = dea_hex_mass,
+    .metric = dea_hex_metric,
+    .strains = dea_hex_strains,
+    .membrane_state = dea_hex_membrane_state,
+    .recover = dea_hex_recover,
+};

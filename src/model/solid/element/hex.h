@@ -3,7 +3,7 @@
  * Symbol   meaning                                                        unit
  * X, u     place in the stretched flat film, displacement                 m
  * F        dx/dX, x = X + u                                               1
- * G        pre-stretch of a layer, diagonal, det G = 1: W sees F G        1
+ * G        pre-stretch of a constituent, diagonal, det G = 1: W sees F G        1
  * J        det F                                                          1
  * theta    projection of J - 1 on the element's pressure polynomials      1
  * kappa    bulk modulus of the projected part                             Pa
@@ -14,24 +14,12 @@
  *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) + p_k theta + kappa/2 theta^2
  *     - (eps/2)(V/h)^2 |F_1 x F_2|^2
  *
- * p0 frees the flat layer of thickness stress; p_k is a multiplier per element that an outer loop
+ * p0 frees the flat film of thickness stress; p_k is a multiplier per element that an outer loop
  * moves until theta vanishes. */
 #ifndef DEA_MODEL_SOLID_ELEMENT_HEX_H
 #define DEA_MODEL_SOLID_ELEMENT_HEX_H
 
-#include "model/solid/point/constituent.h"
-
-#include <stddef.h>
-
-enum {
-  DEA_HEX_ORDER_MAX = 3,
-  DEA_HEX_LINE_MAX = 4,       // nodes on a line: order + 1
-  DEA_HEX_NODES_MAX = 64,     // of an element
-  DEA_HEX_GAUSS_MAX = 64,     // the same rule in each direction
-  DEA_HEX_PRESSURES_MAX = 10, // polynomials of total degree order - 1
-  DEA_HEX_DOFS_MAX = 3 * DEA_HEX_NODES_MAX,
-  DEA_ELEMENT_DOFS_MAX = 4 * DEA_HEX_NODES_MAX, // with a potential
-};
+#include "model/solid/element/element.h"
 
 /* Basis along one axis: [0] values, [1] slopes. pairs: products of node n and node m at a Gauss
  * point, [n nodes + m][kind nodes + Gauss point]; kinds: value by slope, value by value, slope by
@@ -59,56 +47,46 @@ struct dea_hex_shape {
 /* order, order_z: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
 dea_status dea_hex_shape_create(int order, int order_z, struct dea_hex_shape *out);
 
-/* Result of one element of any kind. g: [dofs], K: [dofs][dofs] row by row, dofs node by node;
- * theta: see above, of a hexahedron with a law. */
-struct dea_element_result {
-  double energy_J;
-  double g[DEA_ELEMENT_DOFS_MAX];
-  double K[DEA_ELEMENT_DOFS_MAX * DEA_ELEMENT_DOFS_MAX];
-  double theta[DEA_HEX_PRESSURES_MAX];
-  double volume_m3;
+/* State at a Gauss point. */
+struct dea_hex_point {
+  double F[9], cof[9], J, weight; // weight: reference volume of the point [m^3]
+  double local[9];                // dxi_a/dX_J as [3 a + J]
 };
 
-/* X, u: [nodes][3]; multiplier: [pressures] p_k. voltage_V: 0 where there is no electrode. Of *out,
- * what the level asks for is set, and theta and volume always. DEA_E_DOMAIN for an inverted element
- * or beyond the law's domain. */
-dea_status dea_hex_evaluate(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                            const double *X, const double *u, const double *multiplier,
-                            double voltage_V, enum dea_eval_order level,
-                            struct dea_element_result *out);
+/* State at every Gauss point. DEA_E_DOMAIN for an inverted element. */
+dea_status dea_hex_find_points(const struct dea_hex_shape *shape, const double *X, const double *u,
+                               struct dea_hex_point *points);
 
-/* Stresses that a linear step leads to, which a tangent at the end of the step may hold in place of
- * those that are there (docs/theory/branches.md): [pressures] pressures, then [gauss][6] second
- * Piola-Kirchhoff stresses. */
-size_t dea_hex_predicted_count(const struct dea_hex_shape *shape);
-/* Those at u + share step, from the tangent at u. stresses: false for the pressures only. Arguments
- * and errors as in dea_hex_evaluate. */
-dea_status dea_hex_predict(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                           const double *X, const double *u, const double *multiplier,
-                           double voltage_V, const double *step, double share, bool stresses,
-                           double *predicted);
-/* dea_hex_evaluate to DEA_TANGENT with predicted stresses in K; energy and force are what they are.
- */
-dea_status dea_hex_evaluate_predicted(const struct dea_hex_shape *shape,
-                                      const struct dea_constituent *layer, const double *X,
-                                      const double *u, const double *multiplier, double voltage_V,
-                                      const double *predicted, struct dea_element_result *out);
+/* The same, and gradients by X at every Gauss point, as rows [q][J][node]. */
+dea_status dea_hex_kinematics(const struct dea_hex_shape *shape, const double *X, const double *u,
+                              double (*gradient)[3][DEA_HEX_NODES_MAX],
+                              struct dea_hex_point *points);
 
-/* What a shift of K and a norm of displacements are made of. laplace: [nodes][nodes], int grad N_a
- * . grad N_b [m]; volume: [nodes], the element's volume lumped to its nodes [m^3], all positive. */
-dea_status dea_hex_metric(const struct dea_hex_shape *shape, const double *X, double *laplace,
-                          double *volume);
+/* Projection of J - 1 on the pressure polynomials phi: theta = M^-1 moment with moment = int phi
+ * (J - 1) and M = int phi phi = L L^T, L kept in `factor`. */
+dea_status dea_hex_project(const struct dea_hex_shape *shape, const struct dea_hex_point *points,
+                           double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
+                           double *moment, double *theta);
 
-/* Membrane state of a film element at its in-plane Gauss points, averaged through the thickness. */
-struct dea_hex_membrane {
-  int count;
-  double area[DEA_HEX_GAUSS_MAX];    // |F_1 x F_2|, current over reference area
-  double tension[DEA_HEX_GAUSS_MAX]; // smaller principal force per current length [N/m]
-};
-/* Arguments as in dea_hex_evaluate; one element through the thickness of the layer, thickness_m. */
-dea_status dea_hex_membrane_eval(const struct dea_hex_shape *shape,
-                                 const struct dea_constituent *layer, const double *X,
-                                 const double *u, const double *multiplier, double voltage_V,
-                                 struct dea_hex_membrane *out);
+/* What the hexahedron can do (element.h), for the kinds that go on from it. */
+dea_status dea_hex_create(int order, int order_z, struct dea_element *out);
+dea_status dea_hex_check(const struct dea_constituent *constituent);
+dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_element_input *in,
+                            enum dea_eval_order order, struct dea_element_result *out);
+dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
+                           const double *step, double share, bool stresses, double *predicted);
+dea_status dea_hex_mass(const struct dea_element *element,
+                        const struct dea_constituent *constituent, const double *X, double *mass);
+dea_status dea_hex_metric(const struct dea_element *element,
+                          const struct dea_constituent *constituent, const double *X,
+                          double *laplace, double *volume);
+dea_status dea_hex_strains(const struct dea_element *element, const struct dea_element_input *in,
+                           struct dea_element_strains *out);
+/* One element through the thickness of the constituent, thickness_m. */
+dea_status dea_hex_membrane_state(const struct dea_element *element,
+                                  const struct dea_element_input *in,
+                                  struct dea_membrane_state *out);
+dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
+                           struct dea_recovered *out);
 
 #endif

@@ -1,6 +1,9 @@
+/* The film as a surface. Energy of an element: thickness_m times the integral of that of its points
+ * (membrane_point.h) over its area. */
 #include "model/solid/element/membrane.h"
 
 #include "base/quadrature.h"
+#include "model/solid/element/fit.h"
 #include "model/solid/point/viscous.h"
 
 #include <math.h>
@@ -37,202 +40,9 @@ dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out)
   return DEA_OK;
 }
 
-dea_status dea_membrane_check(const struct dea_constituent *layer)
-{
-  return layer->law != NULL && !layer->law->anisotropic ? DEA_OK : DEA_E_UNSUPPORTED;
-}
-
-/* A load that comes in over the depth of the film in equal parts makes a shear stress that grows
- * linearly to the bonded face: the mean displacement is that of h/3 under all of it, so h/2 is
- * given 3/2 of the film's shear modulus. */
-dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond)
-{
-  static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  static const double poisson_ratio = 0.49;
-  enum { XZ = 2, YZ = 5 }; // components of F
-  struct dea_point point;
-  dea_status status = dea_membrane_check(film);
-  if (status == DEA_OK) {
-    status = dea_constituent_point(film, one, one, 1, 0, 0, &point);
-  }
-  if (status == DEA_OK) {
-    double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
-    *bond = (struct dea_constituent){
-        .lame_mu_Pa = mu, .lame_lambda_Pa = 2 * mu * poisson_ratio / (1 - 2 * poisson_ratio)};
-  }
-  return status;
-}
-
-/* ---- material point ---- */
-
-/* Principal stresses S_a = f_a/l_a, their derivatives D_ab = 2 dS_a/dx_b, and shear modulus m;
- * stretches of the film itself. */
-struct principal {
-  double W, S[2], D[2][2], m, natural[2];
-};
-
-static void referential(const struct dea_plane *f, double l1, double l2, struct principal *out)
-{
-  out->W = f->W;
-  out->S[0] = f->s1 / l1;
-  out->S[1] = f->s2 / l2;
-  out->D[0][0] = (f->k11 - out->S[0]) / (l1 * l1);
-  out->D[1][1] = (f->k22 - out->S[1]) / (l2 * l2);
-  out->D[0][1] = out->D[1][0] = f->k12 / (l1 * l2);
-}
-
-/* m = (S_2 - S_1)/(x_2 - x_1) of the taut film. Where the difference would lose digits it is the
- * mean of (D_11 - 2 D_12 + D_22)/4 between the two, by three Gauss points on [-d, d]; two of them
- * are the same state. */
-static dea_status taut_shear(const struct dea_tension *film, double mean, double d,
-                             struct principal *out)
-{
-  static const double near = 0.01, node[2] = {0, 0.7745966692414834}, weight[2] = {4. / 9, 5. / 9};
-  if (d > near * mean) {
-    out->m = 0.5 * (out->S[0] - out->S[1]) / d;
-    return DEA_OK;
-  }
-  out->m = 0;
-  for (int i = 0; i < 2; i++) {
-    struct dea_plane f;
-    struct principal at;
-    double l1 = sqrt(mean + node[i] * d), l2 = sqrt(mean - node[i] * d);
-    dea_status status = dea_tension_taut(film, l1, l2, &f);
-    if (status != DEA_OK) {
-      return status;
-    }
-    referential(&f, l1, l2, &at);
-    out->m += weight[i] * 0.25 * (at.D[0][0] - 2 * at.D[0][1] + at.D[1][1]);
-  }
-  return DEA_OK;
-}
-
-/* Response to stretches whose squares are mean + d and mean - d. */
-static dea_status respond(const struct dea_tension *film, bool relaxed, double mean, double d,
-                          struct principal *out, enum dea_tension_state *state)
-{
-  struct dea_plane f;
-  double l1 = sqrt(mean + d), l2 = mean - d > 0 ? sqrt(mean - d) : 0;
-  *out = (struct principal){.natural = {l1, l2}};
-  *state = DEA_TAUT;
-  dea_status status = relaxed ? dea_tension_relaxed(film, l1, l2, &f, out->natural, state)
-                              : dea_tension_taut(film, l1, l2, &f);
-  if (status != DEA_OK) {
-    return status;
-  }
-  if (*state == DEA_TAUT) {
-    referential(&f, l1, l2, out);
-    return taut_shear(film, mean, d, out);
-  }
-  out->W = f.W;
-  out->S[0] = f.s1 / l1;
-  out->D[0][0] = (f.k11 - out->S[0]) / (l1 * l1);
-  out->m = d > 0 ? 0.5 * out->S[0] / d : 0;
-  return DEA_OK;
-}
-
-/* Tensors of the plane in the order 11 22 12. */
-struct plane_tensors {
-  double C[3], S[3], D[3][3];
-};
-
-/* S and D from principal values: N_1 N_1 = (1 + T)/2 and N_2 N_2 = (1 - T)/2 with T_11 = -T_22 =
- * cos and T_12 = sin of twice the angle of N_1. */
-static void assemble_tensors(const struct principal *p, double cosine, double sine,
-                             struct plane_tensors *t)
-{
-  const double N[2][3] = {{0.5 * (1 + cosine), 0.5 * (1 - cosine), 0.5 * sine},
-                          {0.5 * (1 - cosine), 0.5 * (1 + cosine), -0.5 * sine}};
-  const double G[3] = {-0.5 * sine, 0.5 * sine, 0.5 * cosine};
-  for (int a = 0; a < 3; a++) {
-    t->S[a] = p->S[0] * N[0][a] + p->S[1] * N[1][a];
-    for (int b = 0; b < 3; b++) {
-      t->D[a][b] = 4 * p->m * G[a] * G[b] + p->D[0][0] * N[0][a] * N[0][b] +
-                   p->D[1][1] * N[1][a] * N[1][b] +
-                   p->D[0][1] * (N[0][a] * N[1][b] + N[1][a] * N[0][b]);
-    }
-  }
-}
-
-/* eps = permittivity + slope (sqrt(a) - 1) of the layer by s = sqrt(a G1 G2), as a material has it.
- */
-static void set_permittivity(const struct dea_constituent *layer, double G1_G2,
-                             struct dea_permittivity *out)
-{
-  double slope = layer->permittivity_slope_F_per_m / sqrt(G1_G2);
-  out->slope = slope / DEA_EPSILON_0;
-  out->at_rest =
-      (layer->permittivity_F_per_m - layer->permittivity_slope_F_per_m + slope) / DEA_EPSILON_0;
-}
-
-/* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
-static dea_status evaluate_point(const struct dea_constituent *layer, const double F[6],
-                                 double field, struct plane_tensors *t,
-                                 struct dea_membrane_point *out)
-{
-  const double *G = layer->pre_stretch, scale[3] = {G[0] * G[0], G[1] * G[1], G[0] * G[1]};
-  double c[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
-                 F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
-  struct dea_material material = {.law = layer->law};
-  memcpy(material.param, layer->param, layer->law->param_count * sizeof(double));
-  const struct dea_tension film = {&material, field / scale[2]};
-  set_permittivity(layer, scale[2], &material.permittivity);
-  for (int a = 0; a < 3; a++) {
-    t->C[a] = scale[a] * c[a];
-  }
-  double mean = 0.5 * (t->C[0] + t->C[1]), half = 0.5 * (t->C[0] - t->C[1]);
-  double d = hypot(half, t->C[2]);
-  struct principal p;
-  dea_status status = respond(&film, layer->relaxed, mean, d, &p, &out->state);
-  if (status != DEA_OK) {
-    return status;
-  }
-  assemble_tensors(&p, d > 0 ? half / d : 1, d > 0 ? t->C[2] / d : 0, t);
-  for (int a = 0; a < 3; a++) {
-    t->S[a] *= scale[a];
-    for (int b = 0; b < 3; b++) {
-      t->D[a][b] *= scale[a] * scale[b];
-    }
-  }
-  out->W = p.W;
-  out->area = p.natural[0] * p.natural[1] / scale[2];
-  double first = p.S[0] * (mean + d) / out->area, second = p.S[1] * (mean - d) / out->area;
-  out->tension_Pa[0] = fmax(first, second);
-  out->tension_Pa[1] = fmin(first, second);
-  return DEA_OK;
-}
-
-static const int pair_of[2][2] = {{0, 2}, {2, 1}};
-
-dea_status dea_membrane_point(const struct dea_constituent *layer, const double F[6],
-                              double field_V_per_m, struct dea_membrane_point *out)
-{
-  struct plane_tensors t;
-  dea_status status = evaluate_point(layer, F, field_V_per_m, &t, out);
-  if (status != DEA_OK) {
-    return status;
-  }
-  for (int a = 0; a < 6; a++) { // A_iJkL = delta_ik S_JL + F_iM F_kN D_MJNL
-    int i = a / 2, J = a % 2;
-    out->P[a] = F[2 * i] * t.S[pair_of[0][J]] + F[2 * i + 1] * t.S[pair_of[1][J]];
-    for (int b = 0; b < 6; b++) {
-      int k = b / 2, L = b % 2;
-      double sum = i == k ? t.S[pair_of[J][L]] : 0;
-      for (int M = 0; M < 2; M++) {
-        for (int N = 0; N < 2; N++) {
-          sum += F[2 * i + M] * F[2 * k + N] * t.D[pair_of[M][J]][pair_of[N][L]];
-        }
-      }
-      out->A[6 * a + b] = sum;
-    }
-  }
-  return DEA_OK;
-}
-
-/* ---- element ---- */
-
-double dea_flat_gradients(const struct dea_flat_shape *s, int q, const double *X,
-                          double gradient[2][DEA_FLAT_NODES_MAX])
+/* Gradients [2][node] by X at a Gauss point and its reference area; 0 for an inverted element. */
+static double gradients_at(const struct dea_flat_shape *s, int q, const double *X,
+                           double gradient[2][DEA_FLAT_NODES_MAX])
 {
   double map[4] = {0}; // dX_J/dxi_a as map[2 J + a]
   for (int n = 0; n < s->nodes; n++) {
@@ -264,10 +74,12 @@ static void in_plane_columns(int nodes, const double *u, double gradient[2][DEA_
   }
 }
 
-double dea_flat_columns(const struct dea_flat_shape *shape, int q, const double *X, const double *u,
-                        double F[6])
+/* In-plane columns of F at a Gauss point; returns its reference area, 0 for an inverted element, of
+ * which F is not set. */
+static double columns_at(const struct dea_flat_shape *shape, int q, const double *X,
+                         const double *u, double F[6])
 {
-  double gradient[2][DEA_FLAT_NODES_MAX], area = dea_flat_gradients(shape, q, X, gradient);
+  double gradient[2][DEA_FLAT_NODES_MAX], area = gradients_at(shape, q, X, gradient);
   if (area > 0) {
     in_plane_columns(shape->nodes, u, gradient, F);
   }
@@ -308,40 +120,40 @@ static void add_tangent(int nodes, double weight, const double A[36],
   }
 }
 
-dea_status dea_membrane_evaluate(const struct dea_flat_shape *shape,
-                                 const struct dea_constituent *layer, const double *X,
-                                 const double *u, double voltage_V, enum dea_eval_order level,
-                                 struct dea_element_result *out)
+static dea_status evaluate(const struct dea_element *element, const struct dea_element_input *in,
+                           enum dea_eval_order order, struct dea_element_result *out)
 {
+  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
   double gradient[2][DEA_FLAT_NODES_MAX], F[6];
-  double field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
+  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
   size_t dofs = 3 * (size_t)shape->nodes;
   struct dea_membrane_point point;
   memset(out->g, 0, dofs * sizeof *out->g);
   memset(out->theta, 0, sizeof out->theta);
-  memset(out->K, 0, level >= DEA_TANGENT ? dofs * dofs * sizeof *out->K : 0);
+  memset(out->K, 0, order >= DEA_TANGENT ? dofs * dofs * sizeof *out->K : 0);
   out->energy_J = out->volume_m3 = 0;
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = layer->thickness_m * dea_flat_gradients(shape, q, X, gradient);
+    double weight = constituent->thickness_m * gradients_at(shape, q, in->X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
-    in_plane_columns(shape->nodes, u, gradient, F);
-    dea_status status = dea_membrane_point(layer, F, field, &point);
+    in_plane_columns(shape->nodes, in->u, gradient, F);
+    dea_status status = dea_membrane_point(constituent, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
-    dea_viscous_add_flat(layer, q, F, &point);
+    dea_viscous_add_flat(constituent, q, F, &point);
     out->energy_J += weight * point.W;
     out->volume_m3 += weight;
-    if (level >= DEA_FORCE) {
+    if (order >= DEA_FORCE) {
       add_force(shape->nodes, weight, point.P, gradient, out->g);
     }
-    if (level >= DEA_TANGENT) {
+    if (order >= DEA_TANGENT) {
       add_tangent(shape->nodes, weight, point.A, gradient, out->K);
     }
   }
-  for (size_t i = 0; i < dofs && level >= DEA_TANGENT; i++) {
+  for (size_t i = 0; i < dofs && order >= DEA_TANGENT; i++) {
     for (size_t j = 0; j < i; j++) {
       out->K[i * dofs + j] = out->K[j * dofs + i];
     }
@@ -349,36 +161,40 @@ dea_status dea_membrane_evaluate(const struct dea_flat_shape *shape,
   return DEA_OK;
 }
 
-dea_status dea_membrane_state(const struct dea_flat_shape *shape,
-                              const struct dea_constituent *layer, const double *X, const double *u,
-                              double voltage_V, struct dea_hex_membrane *out)
+static dea_status membrane_state(const struct dea_element *element,
+                                 const struct dea_element_input *in, struct dea_membrane_state *out)
 {
-  double F[6], field = voltage_V != 0 ? voltage_V / layer->thickness_m : 0;
+  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  double F[6], field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
   out->count = shape->gauss;
   for (int q = 0; q < shape->gauss; q++) {
     struct dea_membrane_point point;
-    if (!(dea_flat_columns(shape, q, X, u, F) > 0)) {
+    if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = dea_membrane_point(layer, F, field, &point);
+    dea_status status = dea_membrane_point(constituent, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
-    dea_viscous_add_flat(layer, q, F, &point);
+    dea_viscous_add_flat(constituent, q, F, &point);
     out->area[q] = point.area;
-    out->tension[q] = layer->thickness_m * point.tension_Pa[1];
+    out->tension[q] = constituent->thickness_m * point.tension_Pa[1];
   }
   return DEA_OK;
 }
 
-dea_status dea_membrane_stiffness(const struct dea_flat_shape *shape,
-                                  const struct dea_constituent *layer, const double *X, double *out)
+static dea_status neutral_stiffness(const struct dea_element *element,
+                                    const struct dea_constituent *constituent, const double *X,
+                                    double *out)
 {
+  const struct dea_flat_shape *shape = element->basis;
   double gradient[2][DEA_FLAT_NODES_MAX];
-  double modulus = 4 * layer->law->shear_modulus(layer->param) * layer->thickness_m;
+  double modulus =
+      4 * constituent->law->shear_modulus(constituent->param) * constituent->thickness_m;
   memset(out, 0, (size_t)shape->nodes * sizeof *out);
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = modulus * dea_flat_gradients(shape, q, X, gradient);
+    double weight = modulus * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -389,15 +205,16 @@ dea_status dea_membrane_stiffness(const struct dea_flat_shape *shape,
   return DEA_OK;
 }
 
-dea_status dea_membrane_metric(const struct dea_flat_shape *shape,
-                               const struct dea_constituent *layer, const double *X,
-                               double *laplace, double *volume)
+static dea_status metric(const struct dea_element *element,
+                         const struct dea_constituent *constituent, const double *X,
+                         double *laplace, double *volume)
 {
+  const struct dea_flat_shape *shape = element->basis;
   double gradient[2][DEA_FLAT_NODES_MAX], whole = 0;
   size_t nodes = (size_t)shape->nodes;
   memset(laplace, 0, nodes * nodes * sizeof *laplace);
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = layer->thickness_m * dea_flat_gradients(shape, q, X, gradient);
+    double weight = constituent->thickness_m * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -414,3 +231,137 @@ dea_status dea_membrane_metric(const struct dea_flat_shape *shape,
   }
   return DEA_OK;
 }
+
+static dea_status mass(const struct dea_element *element, const struct dea_constituent *constituent,
+                       const double *X, double *out)
+{
+  const struct dea_flat_shape *s = element->basis;
+  double gradient[2][DEA_FLAT_NODES_MAX];
+  memset(out, 0, (size_t)(s->nodes * s->nodes) * sizeof *out);
+  for (int q = 0; q < s->gauss; q++) {
+    double area = gradients_at(s, q, X, gradient);
+    double kilograms = constituent->density_kg_per_m3 * constituent->thickness_m * area;
+    if (!(area > 0)) {
+      return DEA_E_DOMAIN;
+    }
+    for (int ab = 0; ab < s->nodes * s->nodes; ab++) {
+      out[ab] += kilograms * s->value[q][ab / s->nodes] * s->value[q][ab % s->nodes];
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
+                          struct dea_element_strains *out)
+{
+  for (int q = 0; q < element->points; q++) {
+    double F[6], area = columns_at(element->basis, q, in->X, in->u, F);
+    if (!(area > 0)) {
+      return DEA_E_DOMAIN;
+    }
+    out->volume_m3[q] = in->constituent->thickness_m * area;
+    dea_viscous_strain_flat(F, out->C[q], out->inverse[q]);
+  }
+  return DEA_OK;
+}
+
+/* ---- recovery ---- */
+
+/* F whole: its third column along the normal, such that J = 1; returns |F_1 x F_2|. */
+static double complete(const double F[6], double out[9])
+{
+  const double normal[3] = {F[2] * F[5] - F[4] * F[3], F[4] * F[1] - F[0] * F[5],
+                            F[0] * F[3] - F[2] * F[1]};
+  double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  for (int i = 0; i < 3; i++) {
+    out[3 * i] = F[2 * i];
+    out[3 * i + 1] = F[2 * i + 1];
+    out[3 * i + 2] = normal[i] / square;
+  }
+  return sqrt(square);
+}
+
+static dea_status recover_point(const struct dea_constituent *constituent, const double F[6],
+                                double field_V_per_m, double values[DEA_FIT_VALUES], double P[6])
+{
+  static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+  struct dea_membrane_point point;
+  dea_status status = dea_membrane_point(constituent, F, field_V_per_m, &point);
+  if (status != DEA_OK || !(complete(F, values) > 0)) {
+    return status != DEA_OK ? status : DEA_E_DOMAIN;
+  }
+  memcpy(P, point.P, sizeof point.P);
+  for (int m = 0; m < 6; m++) { // P F^T, J = 1
+    const double *p = point.P + 2 * row[m], *f = F + 2 * column[m];
+    values[9 + m] = p[0] * f[0] + p[1] * f[1];
+  }
+  values[16] = fabs(field_V_per_m) * point.area;
+  double eps = constituent->permittivity_F_per_m +
+               constituent->permittivity_slope_F_per_m * (sqrt(point.area) - 1);
+  values[15] = point.W + 0.5 * eps * values[16] * values[16];
+  return DEA_OK;
+}
+
+/* J = 1 by construction. Where the film wrinkles stress and force are means over the wrinkles; the
+ * field is that of the film itself. */
+static dea_status recover(const struct dea_element *element, const struct dea_element_input *in,
+                          struct dea_recovered *out)
+{
+  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  double values[DEA_FLAT_NODES_MAX][DEA_FIT_VALUES], P[DEA_FLAT_NODES_MAX][6], F[6];
+  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  struct dea_fit fit;
+  out->volume_m3 = out->volume_error = 0;
+  for (int q = 0; q < shape->gauss; q++) {
+    double area = columns_at(shape, q, in->X, in->u, F);
+    dea_status status =
+        area > 0 ? recover_point(constituent, F, field, values[q], P[q]) : DEA_E_DOMAIN;
+    if (status != DEA_OK) {
+      return status;
+    }
+    out->volume_m3 += constituent->thickness_m * area;
+  }
+  dea_fit_create(shape->order, 0, &fit);
+  dea_recovered_set(&fit, values, out);
+  memset(out->force, 0, sizeof out->force);
+  for (int node = 0; node < out->plane_nodes; node++) {
+    for (int q = 0; q < shape->gauss; q++) {
+      double share = fit.plane[node % fit.n][q % fit.n] * fit.plane[node / fit.n][q / fit.n];
+      for (int m = 0; m < 6; m++) {
+        out->force[node][m] += share * constituent->thickness_m * P[q][m];
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+/* ---- the kind ---- */
+
+static dea_status create(int order, int order_z, struct dea_element *out)
+{
+  struct dea_flat_shape *shape = out->basis;
+  (void)order_z;
+  out->pressures = 0;
+  dea_status status = dea_flat_shape_create(order, shape);
+  out->nodes = shape->nodes;
+  out->points = shape->gauss;
+  return status;
+}
+
+const struct dea_element_type dea_element_membrane = {
+    .name = "membrane",
+    .per_node = 3,
+    .with_potential = DEA_ELEMENT_MEMBRANE,
+    .basis_size = sizeof(struct dea_flat_shape),
+    .create = create,
+    .check = dea_membrane_check,
+    .takes = "isotropic hyperelastic laws only",
+    .evaluate = evaluate,
+    .mass = mass,
+    .metric = metric,
+    .neutral_stiffness = neutral_stiffness,
+    .strains = strains,
+    .membrane_state = membrane_state,
+    .recover = recover,
+};

@@ -2,7 +2,6 @@
 #include "model/solid/equilibrium/check.h"
 
 #include "model/solid/assembly/problem.h"
-#include "model/solid/element/hex_points.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -14,7 +13,7 @@ enum { RIGID = 6 }; // motions of a rigid body
 static void middle(const struct dea_solid *s, size_t e, double x[3])
 {
   const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  int count = dea_grid_nodes_of(s->grid, e, s->shape.nodes);
+  int count = dea_grid_nodes_of(s->grid, e);
   x[0] = x[1] = x[2] = 0;
   for (int n = 0; n < count; n++) {
     for (int i = 0; i < 3; i++) {
@@ -24,15 +23,14 @@ static void middle(const struct dea_solid *s, size_t e, double x[3])
 }
 
 static dea_status check_element(struct dea_context *ctx, const struct dea_solid *s, size_t e,
-                                double (*gradient)[3][DEA_HEX_NODES_MAX])
+                                struct dea_element_strains *strains)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double X[DEA_HEX_DOFS_MAX], x[3], stiffness[DEA_FLAT_NODES_MAX];
+  const struct dea_element *element = dea_solid_element(s, e);
+  double X[DEA_HEX_DOFS_MAX], x[3];
+  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = rest};
   dea_solid_gather(s, e, s->grid->X, X);
-  if (DEA_OK == (s->grid->flat[e]
-                     ? dea_membrane_stiffness(&s->flat, &s->layers[s->layer[e]], X, stiffness)
-                     : dea_hex_kinematics(&s->shape, X, rest, gradient, points))) {
+  if (element->type->strains(element, &in, strains) == DEA_OK) {
     return DEA_OK;
   }
   middle(s, e, x);
@@ -138,7 +136,7 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
   }
   for (size_t e = 0; e < s->grid->element_count; e++) {
     const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    for (int n = 1; n < dea_grid_nodes_of(s->grid, e, s->shape.nodes); n++) {
+    for (int n = 1; n < dea_grid_nodes_of(s->grid, e); n++) {
       parent[root_of(parent, nodes[n])] = root_of(parent, nodes[0]);
     }
   }
@@ -164,15 +162,15 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
   if (s->checked) {
     return DEA_OK;
   }
-  double(*gradient)[3][DEA_HEX_NODES_MAX] = dea_alloc(ctx, DEA_HEX_GAUSS_MAX, sizeof *gradient);
-  if (gradient == NULL) {
+  struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
+  if (strains == NULL) {
     return DEA_E_MEMORY;
   }
   dea_status status = DEA_OK;
   for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
-    status = check_element(ctx, s, e, gradient);
+    status = check_element(ctx, s, e, strains);
   }
-  dea_free(ctx, gradient);
+  dea_free(ctx, strains);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, check_layers(ctx, s));
   if (s->load_count == 0) { // springs and tips may hold what nothing else does

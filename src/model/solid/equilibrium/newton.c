@@ -1,8 +1,8 @@
 #include "model/solid/equilibrium/newton.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/incompressible.h"
-#include "model/solid/assembly/internal_variables.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
@@ -140,16 +140,15 @@ static void adapt_shift(struct dea_solid *s, struct newton *d, double share, dou
 static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_V,
                                   const double *step, double share, bool stresses)
 {
-  size_t e = s->own[k], pressures = (size_t)s->shape.pressures;
-  double X[DEA_HEX_DOFS_MAX] = {0}, u[DEA_HEX_DOFS_MAX] = {0}, way[DEA_HEX_DOFS_MAX] = {0};
-  double *out = s->predicted + k * dea_hex_predicted_count(&s->shape);
-  dea_solid_gather(s, e, s->grid->X, X);
-  dea_solid_gather(s, e, s->u, u);
+  size_t e = s->own[k], pressures = (size_t)s->elements.pressures;
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  double way[DEA_HEX_DOFS_MAX], *out = s->predicted + k * s->elements.predicted_count;
+  dea_solid_element_input(s, e, s->u, voltage_V, &place, &in);
   dea_solid_gather(s, e, step, way);
-  const struct dea_constituent layer = dea_solid_constituent_at(s, e);
-  dea_status status = dea_hex_predict(&s->shape, &layer, X, u, s->multiplier + e * pressures,
-                                      s->active[e] ? voltage_V : 0, way, share, stresses, out);
-  memcpy(s->theta + e * pressures, out, pressures * sizeof *out);
+  dea_status status = element->type->predict(element, &in, way, share, stresses, out);
+  memcpy(s->theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }
 
@@ -161,10 +160,9 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
   stresses = stresses && s->field == NULL;
   memset(s->theta, 0, count * sizeof *s->theta);
   for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    if (s->grid->flat[s->own[k]]) {
-      continue; // no pressure, and the tangent that it has
+    if (dea_solid_element(s, s->own[k])->type->predict != NULL) {
+      status = predict_element(s, k, voltage_V, step, share, stresses);
     }
-    status = predict_element(s, k, voltage_V, step, share, stresses);
   }
   s->predicted_fits = false;
   status = dea_solid_agree(ctx, status);

@@ -2,64 +2,33 @@
 #include "model/solid/load/loads.h"
 
 #include <math.h>
+#include <string.h>
 
-/* Adds f int N dV of an element. */
-static void add_body_force(const struct dea_hex_shape *s, const double *X, const double f[3],
-                           const int *nodes, double *force)
+dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_element_set *elements,
+                            double (*density_kg_per_m3)(const void *self, int region, int sheet),
+                            const void *self, const double acceleration_m_per_s2[3], double *force)
 {
-  for (int q = 0; q < s->gauss; q++) {
-    double map[9] = {0}, cof[9];
-    for (int a = 0; a < 3; a++) {
-      for (int n = 0; n < s->nodes; n++) {
-        for (int i = 0; i < 3; i++) {
-          map[3 * i + a] += X[3 * nodes[n] + i] * s->slope[q][a][n];
-        }
-      }
-    }
-    double volume = s->weight[q] * dea_cofactors(map, cof);
-    for (int n = 0; n < s->nodes; n++) {
-      for (int i = 0; i < 3; i++) {
-        force[3 * nodes[n] + i] += f[i] * volume * s->value[q][n];
-      }
-    }
-  }
-}
-
-/* The same of a flat element, f per area. The basis in the plane is that of the hexahedron summed
- * through its levels; its rule has the weight 2 through the thickness. */
-static void add_sheet_force(const struct dea_hex_shape *s, const double *X, const double f[3],
-                            const int *nodes, double *force)
-{
-  int per = (s->order + 1) * (s->order + 1);
-  for (int q = 0; q < s->gauss; q++) {
-    double map[4] = {0}, value[DEA_FACE_NODES_MAX] = {0};
-    for (int n = 0; n < s->nodes; n++) {
-      value[n % per] += s->value[q][n];
-      for (int a = 0; a < 4; a++) {
-        map[a] += X[3 * nodes[n % per] + a / 2] * s->slope[q][a % 2][n];
-      }
-    }
-    double area = 0.5 * s->weight[q] * (map[0] * map[3] - map[1] * map[2]);
-    for (int n = 0; n < per; n++) {
-      for (int i = 0; i < 3; i++) {
-        force[3 * nodes[n] + i] += f[i] * area * value[n];
-      }
-    }
-  }
-}
-
-void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *shape,
-                      double (*density_kg_per_m3)(const void *self, int region, int sheet),
-                      const void *self, const double acceleration_m_per_s2[3], double *force)
-{
+  // rows of the mass of what has one kilogram per volume, or per area of a surface: int N_a
+  static const struct dea_constituent unit = {.density_kg_per_m3 = 1, .thickness_m = 1};
+  double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   for (size_t e = 0; e < grid->element_count; e++) {
-    double density = density_kg_per_m3(self, grid->region[e], grid->sheet[e]), f[3];
-    for (int i = 0; i < 3; i++) {
-      f[i] = density * acceleration_m_per_s2[i];
+    double density = density_kg_per_m3(self, grid->region[e], grid->sheet[e]);
+    const struct dea_element *element = &elements->of[grid->kind[e]];
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    for (int n = 0; n < element->nodes; n++) {
+      memcpy(X + 3 * n, grid->X + 3 * nodes[n], 3 * sizeof *X);
     }
-    (grid->flat[e] ? add_sheet_force : add_body_force)(shape, grid->X, f,
-                                                       grid->nodes + e * DEA_HEX_NODES_MAX, force);
+    dea_status status = element->type->mass(element, &unit, X, mass);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (int ab = 0; ab < element->nodes * element->nodes; ab++) {
+      for (int i = 0; i < 3; i++) {
+        force[3 * nodes[ab / element->nodes] + i] += density * acceleration_m_per_s2[i] * mass[ab];
+      }
+    }
   }
+  return DEA_OK;
 }
 
 void dea_load_traction(const struct dea_surface *surface, const double traction_Pa[3],

@@ -10,11 +10,12 @@
 
 /* ---- dead loads; force: [node_count][3] [N], added to ---- */
 
-/* Weight. shape: of the grid's elements; density of each region and sheet, in the stretched flat
- * film, of a flat sheet its mass per area [kg/m^2]; acceleration: of free fall. */
-void dea_load_gravity(const struct dea_grid *grid, const struct dea_hex_shape *shape,
-                      double (*density_kg_per_m3)(const void *self, int region, int sheet),
-                      const void *self, const double acceleration_m_per_s2[3], double *force);
+/* Weight. elements: of the grid's orders; density of each region and ply, in the stretched flat
+ * film, of a surface its mass per area [kg/m^2]; acceleration: of free fall. DEA_E_DOMAIN for an
+ * inverted element. */
+dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_element_set *elements,
+                            double (*density_kg_per_m3)(const void *self, int region, int sheet),
+                            const void *self, const double acceleration_m_per_s2[3], double *force);
 /* Force per reference area in a fixed direction. A total force over a patch: that over
  * dea_surface_area. */
 void dea_load_traction(const struct dea_surface *surface, const double traction_Pa[3],

@@ -145,7 +145,7 @@ static void place_level(const struct plane_mesh *m, size_t levels, size_t level,
   }
 }
 
-/* Elements of one layer of a sheet, flat ones with order_z 0; level[]: of their nodes, from bottom
+/* Elements of one layer of a ply, of a surface with order_z 0; level[]: of their nodes, from bottom
  * to top; levels: of all. */
 static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_t *level,
                           int order_z, int sheet, bool (*present)(int region, int sheet),
@@ -163,7 +163,8 @@ static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_
         *to++ = (int)((size_t)quad[n] * levels + level[l]);
       }
     }
-    grid->flat[grid->element_count] = order_z == 0;
+    grid->levels[grid->element_count] = order_z + 1;
+    grid->kind[grid->element_count] = order_z == 0 ? DEA_ELEMENT_MEMBRANE : DEA_ELEMENT_HEXAHEDRON;
     grid->region[grid->element_count] = m->region[e];
     grid->sheet[grid->element_count++] = sheet;
   }
@@ -179,11 +180,11 @@ static void extrude(const struct plane_mesh *m, const struct dea_ply *sheets, si
   double at[DEA_HEX_ORDER_MAX + 1];
   grid->element_count = 0;
   for (size_t s = 0; s < sheet_count; s++) {
-    bool flat = sheet_levels(&sheets[s]) == 0;
-    int order_z = flat ? 0 : sheets[s].order_z;
+    bool surface = sheet_levels(&sheets[s]) == 0;
+    int order_z = surface ? 0 : sheets[s].order_z;
     struct sheet_place place = sheet_place(sheets, skips, s, bottom_m);
     at[0] = -1;
-    if (!flat) {
+    if (!surface) {
       dea_lobatto_nodes((size_t)order_z, at);
     }
     for (size_t k = 0; k < sheets[s].count; k++) {
@@ -200,14 +201,14 @@ static void extrude(const struct plane_mesh *m, const struct dea_ply *sheets, si
 }
 
 /* Takes out the nodes that no element has. */
-static dea_status compact(struct dea_context *ctx, int solid, struct dea_grid *grid)
+static dea_status compact(struct dea_context *ctx, struct dea_grid *grid)
 {
   int *number = dea_alloc(ctx, grid->node_count, sizeof *number);
   if (number == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < dea_grid_nodes_of(grid, e, solid); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
       number[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 1;
     }
   }
@@ -220,7 +221,7 @@ static dea_status compact(struct dea_context *ctx, int solid, struct dea_grid *g
   }
   grid->node_count = count;
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < dea_grid_nodes_of(grid, e, solid); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
       int *node = &grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
       *node = number[*node];
     }
@@ -229,9 +230,9 @@ static dea_status compact(struct dea_context *ctx, int solid, struct dea_grid *g
   return DEA_OK;
 }
 
-int dea_grid_nodes_of(const struct dea_grid *grid, size_t element, int solid)
+int dea_grid_nodes_of(const struct dea_grid *grid, size_t element)
 {
-  return grid->flat[element] ? (grid->order + 1) * (grid->order + 1) : solid;
+  return (grid->order + 1) * (grid->order + 1) * grid->levels[element];
 }
 
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
@@ -260,22 +261,24 @@ dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
   struct dea_grid *grid = status == DEA_OK ? dea_alloc(ctx, 1, sizeof *grid) : NULL;
   if (grid != NULL) {
     grid->order = order;
+    grid->order_z = sheets[0].order_z;
     grid->node_count = m.node_count * levels;
     grid->element_count = m.quad_count * through;
     grid->X = dea_alloc(ctx, grid->node_count, 3 * sizeof(double));
     grid->nodes = dea_alloc(ctx, grid->element_count, DEA_HEX_NODES_MAX * sizeof(int));
     grid->region = dea_alloc(ctx, grid->element_count, sizeof(int));
     grid->sheet = dea_alloc(ctx, grid->element_count, sizeof(int));
-    grid->flat = dea_alloc(ctx, grid->element_count, sizeof(bool));
+    grid->levels = dea_alloc(ctx, grid->element_count, sizeof *grid->levels);
+    grid->kind = dea_alloc(ctx, grid->element_count, sizeof *grid->kind);
   }
   if (grid == NULL || grid->X == NULL || grid->nodes == NULL || grid->region == NULL ||
-      grid->sheet == NULL || grid->flat == NULL) {
+      grid->sheet == NULL || grid->levels == NULL || grid->kind == NULL) {
     dea_grid_destroy(ctx, grid);
     plane_release(&m);
     return DEA_E_MEMORY;
   }
   extrude(&m, sheets, sheet_count, skips, present, bottom_m, grid);
-  status = compact(ctx, (order + 1) * (order + 1) * (sheets[0].order_z + 1), grid);
+  status = compact(ctx, grid);
   plane_release(&m);
   if (status != DEA_OK) {
     dea_grid_destroy(ctx, grid);
@@ -292,7 +295,8 @@ void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
     dea_free(ctx, grid->nodes);
     dea_free(ctx, grid->region);
     dea_free(ctx, grid->sheet);
-    dea_free(ctx, grid->flat);
+    dea_free(ctx, grid->levels);
+    dea_free(ctx, grid->kind);
     dea_free(ctx, grid);
   }
 }

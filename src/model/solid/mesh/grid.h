@@ -2,9 +2,7 @@
 #ifndef DEA_MODEL_SOLID_MESH_GRID_H
 #define DEA_MODEL_SOLID_MESH_GRID_H
 
-#include "model/solid/element/hex.h"
-
-#include "base/context.h"
+#include "model/solid/element/element.h"
 
 /* A block of a plate: [0, 1]^2 mapped into the plane. */
 struct dea_block {
@@ -15,8 +13,8 @@ struct dea_block {
   int region;                    // of its elements
 };
 
-/* One layer of a stack, from bottom to top. A sheet of thickness 0 is a surface: flat elements of
- * (order + 1)^2 nodes at its level, whose nodes are those of the solid elements there. */
+/* One ply of a stack, from bottom to top. Of thickness 0 it is a surface of membranes: (order +
+ * 1)^2 nodes at its level, which are those of the solid elements there. */
 struct dea_ply {
   double thickness_m;
   size_t count; // elements through it, 1 of a surface; 0: the sheet is not there
@@ -24,16 +22,17 @@ struct dea_ply {
 };
 
 struct dea_grid {
-  int order;
+  int order, order_z; // in the plane, through a ply with a thickness
   size_t node_count, element_count;
   double *X;           // [node_count][3]
-  int *nodes;          // [element_count][DEA_HEX_NODES_MAX], the first shape.nodes of each used
+  int *nodes;          // [element_count][DEA_HEX_NODES_MAX], the first dea_grid_nodes_of used
   int *region, *sheet; // [element_count]
-  bool *flat;          // [element_count] of (order + 1)^2 nodes
+  int *levels;         // [element_count] of (order + 1)^2 nodes each; 1 of a surface
+  enum dea_element_kind *kind; // [element_count] hexahedra and membranes, unless changed
 };
 
-/* Nodes of an element; solid: those of a hexahedron. */
-int dea_grid_nodes_of(const struct dea_grid *grid, size_t element, int solid);
+/* Nodes of an element. */
+int dea_grid_nodes_of(const struct dea_grid *grid, size_t element);
 
 /* Plate of blocks (joined where their edge nodes coincide) through sheets that start at z =
  * bottom_m. All sheets have the same order_z. present: whether a region has a sheet; NULL: all have

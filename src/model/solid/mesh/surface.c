@@ -8,11 +8,10 @@
 /* Local nodes of a side of an element, [face nodes]. The axes after that of the side, in cyclic
  * order, turn right around it: that is outwards at its high end, and the other way round at its low
  * one. */
-static void side_nodes(const struct dea_hex_shape *shape, enum dea_face side, int order[2],
-                       int *nodes)
+static void side_nodes(const struct dea_grid *grid, enum dea_face side, int order[2], int *nodes)
 {
-  const int orders[3] = {shape->order, shape->order, shape->order_z};
-  const int stride[3] = {1, shape->order + 1, (shape->order + 1) * (shape->order + 1)};
+  const int orders[3] = {grid->order, grid->order, grid->order_z};
+  const int stride[3] = {1, grid->order + 1, (grid->order + 1) * (grid->order + 1)};
   int axis = (int)side / 2, high = (int)side % 2;
   int first = (axis + (high ? 1 : 2)) % 3, second = (axis + (high ? 2 : 1)) % 3;
   order[0] = orders[first];
@@ -36,11 +35,10 @@ static void middle_of(const struct dea_surface *surface, size_t face, double mid
   }
 }
 
-dea_status dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid,
-                              const struct dea_hex_shape *shape, enum dea_face side,
-                              bool (*select)(const void *self, int region, int sheet,
-                                             const double middle[3]),
-                              const void *self, struct dea_surface **out)
+dea_status
+dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum dea_face side,
+                   bool (*select)(const void *self, int region, int sheet, const double middle[3]),
+                   const void *self, struct dea_surface **out)
 {
   int local[DEA_FACE_NODES_MAX];
   *out = NULL;
@@ -55,15 +53,16 @@ dea_status dea_surface_create(struct dea_context *ctx, const struct dea_grid *gr
     dea_surface_destroy(ctx, s);
     return DEA_E_MEMORY;
   }
-  side_nodes(shape, side, s->order, local);
+  side_nodes(grid, side, s->order, local);
   s->face_nodes = (s->order[0] + 1) * (s->order[1] + 1);
   for (size_t e = 0; e < grid->element_count; e++) {
     double middle[3];
-    if (grid->flat[e] && side != DEA_FACE_BOTTOM && side != DEA_FACE_TOP) {
+    bool surface = grid->levels[e] == 1; // its own bottom and top, without other faces
+    if (surface && side != DEA_FACE_BOTTOM && side != DEA_FACE_TOP) {
       continue;
     }
     for (int n = 0; n < s->face_nodes; n++) {
-      int node = grid->flat[e] ? local[n] % s->face_nodes : local[n];
+      int node = surface ? local[n] % s->face_nodes : local[n];
       s->nodes[s->face_count * DEA_FACE_NODES_MAX + (size_t)n] =
           grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)node];
     }

@@ -15,7 +15,7 @@
 #define DEA_MODEL_SOLID_POINT_VISCOUS_H
 
 #include "material/branch.h"
-#include "model/solid/element/membrane.h"
+#include "model/solid/point/membrane_point.h"
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
  * Nothing to do for a layer without one. */

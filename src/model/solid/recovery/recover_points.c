@@ -82,30 +82,27 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 
 /* ---- elements ---- */
 
-int dea_recover_levels(const struct dea_recover_input *in, size_t element)
-{
-  return in->grid->flat[element] ? 1 : in->shape->order_z + 1;
-}
-
-dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
+dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
                                struct dea_recovered *out)
 {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential_V[DEA_HEX_NODES_MAX];
-  const struct dea_grid *grid = in->grid;
-  const struct dea_constituent *layer = &in->layers[in->layer[element]];
-  const int *nodes = grid->nodes + element * DEA_HEX_NODES_MAX;
-  for (int n = 0; n < dea_grid_nodes_of(grid, element, in->shape->nodes); n++) {
-    memcpy(X + 3 * n, grid->X + 3 * nodes[n], 3 * sizeof *X);
+  const struct dea_element *element = &in->elements->of[in->kind[e]];
+  const int *nodes = in->grid->nodes + e * DEA_HEX_NODES_MAX;
+  for (int n = 0; n < element->nodes; n++) {
+    memcpy(X + 3 * n, in->grid->X + 3 * nodes[n], 3 * sizeof *X);
     memcpy(u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *u);
     potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
-  double voltage_V = in->active[element] ? in->voltage_V : 0;
-  if (grid->flat[element]) {
-    return dea_flat_recover(in->flat, layer, X, u, voltage_V, out);
-  }
-  return dea_hex_recover(in->shape, layer, X, u,
-                         in->multiplier + element * (size_t)in->shape->pressures, voltage_V,
-                         in->potential_V != NULL ? potential_V : NULL, out);
+  const struct dea_element_input at = {
+      .constituent = &in->layers[in->layer[e]],
+      .X = X,
+      .u = u,
+      .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
+      .potential = potential_V,
+      .potential_V_per_m = 1,
+      .voltage_V = in->active[e] ? in->voltage_V : 0,
+  };
+  return element->type->recover(element, &at, out);
 }
 
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level)

@@ -20,8 +20,7 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out);
-/* Levels of nodes through the thickness of an element, and the height of one. */
-int dea_recover_levels(const struct dea_recover_input *in, size_t element);
+/* Height of a level of nodes of an element. */
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level);
 
 /* In the plane of the film at a point: F, membrane force as in struct dea_recovered. */

@@ -78,7 +78,7 @@ static void add_level(struct work *w, size_t element, double z, const int *point
 {
   const struct dea_recover_input *in = w->in;
   const struct dea_recovered *at = w->at;
-  int levels = dea_recover_levels(in, element);
+  int levels = in->grid->levels[element];
   double bottom = dea_recover_height(in, element, 0);
   double top = dea_recover_height(in, element, levels - 1);
   double places[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
@@ -108,10 +108,10 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
   const struct dea_recover_input *in = w->in;
   size_t last = w->stack[end - 1].element;
   double bottom = dea_recover_height(in, w->stack[from].element, 0);
-  double middle = 0.5 * (bottom + dea_recover_height(in, last, dea_recover_levels(in, last) - 1));
+  double middle = 0.5 * (bottom + dea_recover_height(in, last, in->grid->levels[last] - 1));
   int group = (in->active[w->stack[from].element] ? 1 : 0) + (covered ? 2 : 0);
   int *points = number_column(w, w->stack[from].element, group);
-  double force[DEA_RECOVER_PLANE_MAX][6] = {{0}}, weight = 0;
+  double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}}, weight = 0;
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
     dea_status status = dea_recover_element(in, e, w->at);
@@ -124,7 +124,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
       }
     }
     double z = dea_recover_height(in, e, 0);
-    double top = dea_recover_height(in, e, dea_recover_levels(in, e) - 1);
+    double top = dea_recover_height(in, e, in->grid->levels[e] - 1);
     if (weight == 0 && (k + 1 == end || top > middle - 1e-9 * (top - z))) {
       weight = w->at->volume_m3;
       add_level(w, e, middle, points);

@@ -53,7 +53,7 @@ static dea_status number_points(struct work *w)
     w->sheet_count = w->sheet_count > grid->sheet[e] ? w->sheet_count : grid->sheet[e] + 1;
     w->region_count = w->region_count > grid->region[e] ? w->region_count : grid->region[e] + 1;
   }
-  size_t groups = (size_t)(w->sheet_count * w->region_count), per = (size_t)w->in->shape->nodes;
+  size_t groups = (size_t)(w->sheet_count * w->region_count), per = DEA_HEX_NODES_MAX;
   w->point = dea_alloc(w->ctx, groups * grid->node_count, sizeof *w->point);
   w->node = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->node);
   w->element = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->element);
@@ -62,7 +62,7 @@ static dea_status number_points(struct work *w)
   }
   for (size_t e = 0; e < grid->element_count; e++) {
     int *points = points_of(w, e);
-    for (int n = 0; n < dea_grid_nodes_of(grid, e, w->in->shape->nodes); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
       int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
       if (points[node] == 0) {
         w->node[w->point_count] = node;
@@ -77,7 +77,7 @@ static dea_status number_points(struct work *w)
 /* Takes the elements of one sheet in one column; their membrane forces add up. */
 static dea_status add_column(struct work *w, size_t from, size_t end)
 {
-  double force[DEA_RECOVER_PLANE_MAX][6] = {{0}};
+  double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}};
   struct dea_recovered *at = dea_alloc(w->ctx, 1, sizeof *at);
   if (at == NULL) {
     return DEA_E_MEMORY;
@@ -255,23 +255,21 @@ static void fill_point(const struct work *w, size_t p, const struct fields *to)
   to->field[p] = sum[16];
 }
 
-/* A block of the solid elements or of the flat ones, if there are any. */
-static dea_status add_block(struct work *w, struct dea_field_mesh *mesh, bool flat)
+/* A block of the elements of so many levels of nodes, if there are any. */
+static dea_status add_block(struct work *w, struct dea_field_mesh *mesh, int levels)
 {
   const struct dea_grid *grid = w->in->grid;
-  const struct dea_hex_shape *shape = w->in->shape;
   size_t count = 0;
   int *nodes;
   for (size_t e = 0; e < grid->element_count; e++) {
-    count += grid->flat[e] == flat;
+    count += grid->levels[e] == levels;
   }
   if (count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, shape->order, flat ? 0 : shape->order_z,
-                                           count, &nodes));
+  DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, grid->order, levels - 1, count, &nodes));
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (int n = 0; n < dea_grid_nodes_of(grid, e, shape->nodes) && grid->flat[e] == flat; n++) {
+    for (int n = 0; n < dea_grid_nodes_of(grid, e) && grid->levels[e] == levels; n++) {
       *nodes++ = point_of(w, e, n);
     }
   }
@@ -282,12 +280,13 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
 {
   const struct dea_grid *grid = w->in->grid;
   struct fields to;
-  DEA_TRY(w->ctx, add_block(w, mesh, false));
-  DEA_TRY(w->ctx, add_block(w, mesh, true));
+  for (int levels = grid->order_z + 1; levels > 0; levels--) {
+    DEA_TRY(w->ctx, add_block(w, mesh, levels));
+  }
   DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
-  for (int flat = 0; flat <= 1; flat++) { // block by block
+  for (int levels = grid->order_z + 1; levels > 0; levels--) { // block by block
     for (size_t e = 0; e < grid->element_count; e++) {
-      if (grid->flat[e] == (flat == 1)) {
+      if (grid->levels[e] == levels) {
         *to.error++ = w->error[e];
         *to.sheet++ = grid->sheet[e];
         *to.region++ = grid->region[e];

@@ -1,6 +1,15 @@
-#include "model/solid/element/hex_coupled.h"
-
-#include "model/solid/element/hex_points.h"
+/* The hexahedron with a potential: the energy of hex.h with a field that is free to spread
+ * (docs/theory/coupled.md).
+ *
+ * Symbol   meaning                                                        unit
+ * psi      potential over c                                               m
+ * c        scale of the potential, about sqrt(shear modulus/permittivity) V/m
+ * E        -c Grad psi, field in the stretched flat film                  V/m
+ * w        cof(F) E                                                       V/m
+ *
+ * Energy of an element, per volume of the stretched flat film: that of hex.h without voltage, and
+ * -(eps/2) |w|^2. It is to be minimal in u and maximal in psi. */
+#include "model/solid/element/hex.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -142,67 +151,53 @@ static void tangent_collect(const struct dea_hex_shape *s, double eps,
   }
 }
 
-void dea_hex_spread(int nodes, const double *g3, const double *K3, double *g4, double *K4)
+static dea_status evaluate(const struct dea_element *element, const struct dea_element_input *in,
+                           enum dea_eval_order order, struct dea_element_result *out)
 {
-  for (int n = nodes - 1; n >= 0; n--) { // from the end: nothing is written before it is read
-    for (int i = 3; i >= 0; i--) {
-      g4[4 * n + i] = i < 3 ? g3[3 * n + i] : 0;
-    }
-  }
-  for (int row = 4 * nodes - 1; row >= 0 && K3 != NULL; row--) {
-    const double *from = K3 + 3 * nodes * (3 * (row / 4) + row % 4);
-    double *to = K4 + 4 * nodes * row;
-    for (int column = 4 * nodes - 1; column >= 0; column--) {
-      to[column] = row % 4 < 3 && column % 4 < 3 ? from[3 * (column / 4) + column % 4] : 0;
-    }
-  }
-}
-
-dea_status dea_hex_coupled_evaluate(const struct dea_hex_shape *shape,
-                                    const struct dea_constituent *layer, const double *X,
-                                    const double *u, const double *psi, const double *multiplier,
-                                    double scale_V_per_m, enum dea_eval_order level,
-                                    struct dea_element_result *out)
-{
+  const struct dea_hex_shape *shape = element->basis;
+  const double c = in->potential_V_per_m;
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   struct field_work work;
-  double eps = layer->permittivity_F_per_m;
-  dea_status status = dea_hex_evaluate(shape, layer, X, u, multiplier, 0, level, out);
+  double eps = in->constituent->permittivity_F_per_m;
+  struct dea_element_input elastic = *in;
+  elastic.voltage_V = 0;
+  dea_status status = dea_hex_evaluate(element, &elastic, order, out);
   if (status == DEA_OK) {
-    status = dea_hex_kinematics(shape, X, u, gradient, points);
+    status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
   }
   if (status != DEA_OK) {
     return status;
   }
-  if (level >= DEA_FORCE) {
-    dea_hex_spread(shape->nodes, out->g, level >= DEA_TANGENT ? out->K : NULL, out->g, out->K);
+  if (order >= DEA_FORCE) {
+    dea_element_spread(shape->nodes, out->g, order >= DEA_TANGENT ? out->K : NULL, out->g, out->K);
   }
   for (int q = 0; q < shape->gauss; q++) {
     struct field_point field;
-    field_at(shape, &points[q], gradient[q], psi, scale_V_per_m, &field);
+    field_at(shape, &points[q], gradient[q], in->potential, c, &field);
     const double *w = field.w;
     out->energy_J -= 0.5 * eps * points[q].weight * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    if (level >= DEA_FORCE) {
-      add_force(shape, eps, scale_V_per_m, &points[q], gradient[q], &field, out->g);
+    if (order >= DEA_FORCE) {
+      add_force(shape, eps, c, &points[q], gradient[q], &field, out->g);
     }
-    if (level >= DEA_TANGENT) {
-      tangent_point(shape, q, eps, scale_V_per_m, &points[q], gradient[q], &field, &work);
+    if (order >= DEA_TANGENT) {
+      tangent_point(shape, q, eps, c, &points[q], gradient[q], &field, &work);
     }
   }
-  if (level >= DEA_TANGENT) {
+  if (order >= DEA_TANGENT) {
     tangent_collect(shape, eps, gradient, &work, out->K);
   }
   return DEA_OK;
 }
 
-dea_status dea_hex_capacity(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                            const double *X, const double *u, double *L)
+static dea_status capacity(const struct dea_element *element, const struct dea_element_input *in,
+                           double *L)
 {
+  const struct dea_hex_shape *shape = element->basis;
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   double B[ROWS_MAX][DEA_HEX_NODES_MAX]; // sqrt(weight) cof Grad N
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  dea_status status = dea_hex_kinematics(shape, X, u, gradient, points);
+  dea_status status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
   if (status != DEA_OK) {
     return status;
   }
@@ -217,7 +212,24 @@ dea_status dea_hex_capacity(const struct dea_hex_shape *shape, const struct dea_
     }
   }
   cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, shape->nodes, shape->nodes, 3 * shape->gauss,
-              layer->permittivity_F_per_m, B[0], DEA_HEX_NODES_MAX, B[0], DEA_HEX_NODES_MAX, 0, L,
-              shape->nodes);
+              in->constituent->permittivity_F_per_m, B[0], DEA_HEX_NODES_MAX, B[0],
+              DEA_HEX_NODES_MAX, 0, L, shape->nodes);
   return DEA_OK;
 }
+
+const struct dea_element_type dea_element_potential_hexahedron = {
+    .name = "hexahedron with a potential",
+    .per_node = 4,
+    .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON,
+    .basis_size = sizeof(struct dea_hex_shape),
+    .create = dea_hex_create,
+    .check = dea_hex_check,
+    .evaluate = evaluate,
+    .predict = dea_hex_predict,
+    .mass = dea_hex_mass,
+    .metric = dea_hex_metric,
+    .strains = dea_hex_strains,
+    .membrane_state = dea_hex_membrane_state,
+    .recover = dea_hex_recover,
+    .capacity = capacity,
+};

@@ -1,4 +1,4 @@
-#include "model/solid/recovery/recover_fit.h"
+#include "model/solid/element/fit.h"
 
 #include "base/quadrature.h"
 
@@ -51,5 +51,20 @@ void dea_fit_node(const struct dea_fit *fit, int node, double (*at)[DEA_FIT_VALU
         }
       }
     }
+  }
+}
+
+void dea_recovered_set(const struct dea_fit *fit, double (*at)[DEA_FIT_VALUES],
+                       struct dea_recovered *out)
+{
+  out->plane_nodes = fit->n * fit->n;
+  out->nodes = out->plane_nodes * fit->nz;
+  for (int node = 0; node < out->nodes; node++) {
+    double value[DEA_FIT_VALUES];
+    dea_fit_node(fit, node, at, value);
+    memcpy(out->F[node], value, sizeof out->F[node]);
+    memcpy(out->stress[node], value + 9, sizeof out->stress[node]);
+    out->energy[node] = value[15];
+    out->field[node] = value[16];
   }
 }

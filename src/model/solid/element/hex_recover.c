@@ -1,27 +1,11 @@
 /* Values of one hexahedron at its nodes. */
-#include "model/solid/recovery/recover.h"
+#include "model/solid/element/hex.h"
 
 #include "base/quadrature.h"
-#include "model/solid/element/hex_points.h"
-#include "model/solid/recovery/recover_fit.h"
+#include "model/solid/element/fit.h"
 
 #include <math.h>
 #include <string.h>
-
-void dea_recovered_set(const struct dea_fit *fit, double (*at)[DEA_FIT_VALUES],
-                       struct dea_recovered *out)
-{
-  out->plane_nodes = fit->n * fit->n;
-  out->nodes = out->plane_nodes * fit->nz;
-  for (int node = 0; node < out->nodes; node++) {
-    double value[DEA_FIT_VALUES];
-    dea_fit_node(fit, node, at, value);
-    memcpy(out->F[node], value, sizeof out->F[node]);
-    memcpy(out->stress[node], value + 9, sizeof out->stress[node]);
-    out->energy[node] = value[15];
-    out->field[node] = value[16];
-  }
-}
 
 /* sigma = P F^T / J as xx yy zz xy yz zx. */
 static void true_stress(const double P[9], const double F[9], double J, double out[6])
@@ -62,35 +46,37 @@ static double add_electric(double eps, const struct dea_hex_point *at, const dou
   return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
 }
 
-/* Field E in the stretched flat film from potentials. */
+/* Field E in the stretched flat film from potentials c psi. */
 static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_HEX_NODES_MAX],
-                          const double *potential_V, double E[3])
+                          const double *psi, double c, double E[3])
 {
   for (int J = 0; J < 3; J++) {
     E[J] = 0;
     for (int n = 0; n < s->nodes; n++) {
-      E[J] -= potential_V[n] * gradient[J][n];
+      E[J] -= c * psi[n] * gradient[J][n];
     }
   }
 }
 
 /* Values of one Gauss point, and P for the membrane force. E: of a coupled field, NULL for a thin
  * film with thin_V_per_m. */
-static dea_status evaluate_point(const struct dea_constituent *layer,
+static dea_status evaluate_point(const struct dea_constituent *constituent,
                                  const struct dea_hex_point *at, double pressure,
                                  double thin_V_per_m, const double *E,
                                  double values[DEA_FIT_VALUES], double P[9])
 {
   struct dea_point point;
-  dea_status status = dea_constituent_stress(layer, at->F, at->cof, at->J, pressure, 0, &point);
+  dea_status status =
+      dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, 0, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
-  if (layer->law != NULL) {
+  if (constituent->law != NULL) {
     double slope, curvature;
-    values[15] -=
-        layer->p0_Pa * (at->J - 1) + dea_constituent_pointwise(layer, at->J, &slope, &curvature);
+    values[15] -= constituent->p0_Pa * (at->J - 1) +
+                  dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
   }
   if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
-    status = dea_constituent_stress(layer, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);
+    status =
+        dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);
   }
   if (status != DEA_OK) {
     return status;
@@ -99,7 +85,7 @@ static dea_status evaluate_point(const struct dea_constituent *layer,
   memcpy(P, point.P, 9 * sizeof *P);
   values[16] = fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]); // |F_1 x F_2|
   if (E != NULL) {
-    values[16] = add_electric(layer->permittivity_F_per_m, at, E, P);
+    values[16] = add_electric(constituent->permittivity_F_per_m, at, E, P);
   }
   memcpy(values, at->F, sizeof at->F);
   true_stress(P, at->F, at->J, values + 9);
@@ -126,33 +112,35 @@ static void membrane_force(const struct dea_hex_shape *s, const struct dea_fit *
   }
 }
 
-dea_status dea_hex_recover(const struct dea_hex_shape *shape, const struct dea_constituent *layer,
-                           const double *X, const double *u, const double *multiplier,
-                           double voltage_V, const double *potential_V, struct dea_recovered *out)
+dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
+                           struct dea_recovered *out)
 {
+  const struct dea_hex_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  bool coupled = element->type->per_node > 3;
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX], values[DEA_HEX_GAUSS_MAX][DEA_FIT_VALUES];
   double P[DEA_HEX_GAUSS_MAX][9];
   struct dea_fit fit;
-  double thin_V_per_m = layer->thickness_m > 0 ? voltage_V / layer->thickness_m : 0;
+  double thin_V_per_m =
+      !coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
   out->volume_m3 = out->volume_error = 0;
-  dea_status status = dea_hex_kinematics(shape, X, u, gradient, points);
+  dea_status status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
   if (status == DEA_OK) {
     status = dea_hex_project(shape, points, factor, moment, theta);
   }
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    bool coupled = potential_V != NULL && layer->permittivity_F_per_m > 0;
     double pressure = 0, E[3];
-    for (int m = 0; m < shape->pressures && layer->law != NULL; m++) {
-      pressure += shape->pressure[q][m] * (multiplier[m] + layer->kappa_Pa * theta[m]);
+    for (int m = 0; m < shape->pressures && constituent->law != NULL; m++) {
+      pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
     }
     if (coupled) {
-      coupled_field(shape, gradient[q], potential_V, E);
+      coupled_field(shape, gradient[q], in->potential, in->potential_V_per_m, E);
     }
-    status = evaluate_point(layer, &points[q], pressure, potential_V == NULL ? thin_V_per_m : 0,
-                            coupled ? E : NULL, values[q], P[q]);
+    status = evaluate_point(constituent, &points[q], pressure, thin_V_per_m, coupled ? E : NULL,
+                            values[q], P[q]);
     out->volume_m3 += points[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points[q].J - 1));
   }
@@ -161,6 +149,6 @@ dea_status dea_hex_recover(const struct dea_hex_shape *shape, const struct dea_c
   }
   dea_fit_create(shape->order, shape->order_z, &fit);
   dea_recovered_set(&fit, values, out);
-  membrane_force(shape, &fit, X[3 * (shape->nodes - 1) + 2] - X[2], P, out);
+  membrane_force(shape, &fit, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P, out);
   return DEA_OK;
 }

@@ -1,8 +1,8 @@
-/* From values at Gauss points to values at nodes, for the files that recover elements. */
-#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_FIT_H
-#define DEA_MODEL_SOLID_RECOVERY_RECOVER_FIT_H
+/* From values at Gauss points to values at nodes, for the elements that recover. */
+#ifndef DEA_MODEL_SOLID_ELEMENT_FIT_H
+#define DEA_MODEL_SOLID_ELEMENT_FIT_H
 
-#include "model/solid/recovery/recover.h"
+#include "model/solid/element/element.h"
 
 enum {
   DEA_FIT_LINE_MAX = DEA_HEX_ORDER_MAX + 1,

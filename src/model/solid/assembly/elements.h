@@ -1,0 +1,21 @@
+/* What a solid gives its elements: a kind, and what they are asked with. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_ELEMENTS_H
+#define DEA_MODEL_SOLID_ASSEMBLY_ELEMENTS_H
+
+#include "model/solid/assembly/problem.h"
+
+/* Makes s->kind. DEA_E_UNSUPPORTED for an element that cannot be of its constituent, or has no
+ * potential in a coupled field. */
+dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s);
+
+/* Memory that an input lends from. */
+struct dea_solid_element_place {
+  struct dea_constituent constituent;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX];
+};
+
+/* An element at unknowns u [dofs] and a voltage. */
+void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
+                             struct dea_solid_element_place *place, struct dea_element_input *out);
+
+#endif

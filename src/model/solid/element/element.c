@@ -1,0 +1,63 @@
+#include "model/solid/element/element.h"
+
+#define DECLARE_ELEMENT(KIND, name) extern const struct dea_element_type dea_element_##name;
+DEA_ELEMENT_LIST(DECLARE_ELEMENT)
+#undef DECLARE_ELEMENT
+
+const struct dea_element_type *const dea_element_types[DEA_ELEMENT_COUNT] = {
+#define ELEMENT_ADDRESS(KIND, name) &dea_element_##name,
+    DEA_ELEMENT_LIST(ELEMENT_ADDRESS)
+#undef ELEMENT_ADDRESS
+};
+
+size_t dea_element_predicted_count(const struct dea_element *e)
+{
+  return (size_t)(e->pressures + 6 * e->points);
+}
+
+dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_z,
+                                  struct dea_element_set *out)
+{
+  *out = (struct dea_element_set){0};
+  for (size_t kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
+    struct dea_element *e = &out->of[kind];
+    e->type = dea_element_types[kind];
+    e->basis = dea_alloc(ctx, 1, e->type->basis_size);
+    if (e->basis == NULL) {
+      return DEA_E_MEMORY;
+    }
+    dea_status status = e->type->create(order, order_z, e);
+    if (status != DEA_OK) {
+      return dea_fail(ctx, status, "elements have the orders 1 to %d, not %d and %d",
+                      (int)DEA_HEX_ORDER_MAX, order, order_z);
+    }
+    size_t predicted = e->type->predict != NULL ? dea_element_predicted_count(e) : 0;
+    out->pressures = e->pressures > out->pressures ? e->pressures : out->pressures;
+    out->predicted_count = predicted > out->predicted_count ? predicted : out->predicted_count;
+  }
+  return DEA_OK;
+}
+
+void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *set)
+{
+  for (size_t kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
+    dea_free(ctx, set->of[kind].basis);
+    set->of[kind].basis = NULL;
+  }
+}
+
+void dea_element_spread(int nodes, const double *g3, const double *K3, double *g4, double *K4)
+{
+  for (int n = nodes - 1; n >= 0; n--) { // from the end: nothing is written before it is read
+    for (int i = 3; i >= 0; i--) {
+      g4[4 * n + i] = i < 3 ? g3[3 * n + i] : 0;
+    }
+  }
+  for (int row = 4 * nodes - 1; row >= 0 && K3 != NULL; row--) {
+    const double *from = K3 + 3 * nodes * (3 * (row / 4) + row % 4);
+    double *to = K4 + 4 * nodes * row;
+    for (int column = 4 * nodes - 1; column >= 0; column--) {
+      to[column] = row % 4 < 3 && column % 4 < 3 ? from[3 * (column / 4) + column % 4] : 0;
+    }
+  }
+}

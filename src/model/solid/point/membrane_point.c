@@ -1,0 +1,196 @@
+#include "model/solid/point/membrane_point.h"
+
+#include <math.h>
+#include <string.h>
+
+dea_status dea_membrane_check(const struct dea_constituent *constituent)
+{
+  return constituent->law != NULL && !constituent->law->anisotropic ? DEA_OK : DEA_E_UNSUPPORTED;
+}
+
+/* A load that comes in over the depth of the film in equal parts makes a shear stress that grows
+ * linearly to the bonded face: the mean displacement is that of h/3 under all of it, so h/2 is
+ * given 3/2 of the film's shear modulus. */
+dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond)
+{
+  static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static const double poisson_ratio = 0.49;
+  enum { XZ = 2, YZ = 5 }; // components of F
+  struct dea_point point;
+  dea_status status = dea_membrane_check(film);
+  if (status == DEA_OK) {
+    status = dea_constituent_point(film, one, one, 1, 0, 0, &point);
+  }
+  if (status == DEA_OK) {
+    double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
+    *bond = (struct dea_constituent){
+        .lame_mu_Pa = mu, .lame_lambda_Pa = 2 * mu * poisson_ratio / (1 - 2 * poisson_ratio)};
+  }
+  return status;
+}
+
+/* Principal stresses S_a = f_a/l_a, their derivatives D_ab = 2 dS_a/dx_b, and shear modulus m;
+ * stretches of the film itself. */
+struct principal {
+  double W, S[2], D[2][2], m, natural[2];
+};
+
+static void referential(const struct dea_plane *f, double l1, double l2, struct principal *out)
+{
+  out->W = f->W;
+  out->S[0] = f->s1 / l1;
+  out->S[1] = f->s2 / l2;
+  out->D[0][0] = (f->k11 - out->S[0]) / (l1 * l1);
+  out->D[1][1] = (f->k22 - out->S[1]) / (l2 * l2);
+  out->D[0][1] = out->D[1][0] = f->k12 / (l1 * l2);
+}
+
+/* m = (S_2 - S_1)/(x_2 - x_1) of the taut film. Where the difference would lose digits it is the
+ * mean of (D_11 - 2 D_12 + D_22)/4 between the two, by three Gauss points on [-d, d]; two of them
+ * are the same state. */
+static dea_status taut_shear(const struct dea_tension *film, double mean, double d,
+                             struct principal *out)
+{
+  static const double near = 0.01, node[2] = {0, 0.7745966692414834}, weight[2] = {4. / 9, 5. / 9};
+  if (d > near * mean) {
+    out->m = 0.5 * (out->S[0] - out->S[1]) / d;
+    return DEA_OK;
+  }
+  out->m = 0;
+  for (int i = 0; i < 2; i++) {
+    struct dea_plane f;
+    struct principal at;
+    double l1 = sqrt(mean + node[i] * d), l2 = sqrt(mean - node[i] * d);
+    dea_status status = dea_tension_taut(film, l1, l2, &f);
+    if (status != DEA_OK) {
+      return status;
+    }
+    referential(&f, l1, l2, &at);
+    out->m += weight[i] * 0.25 * (at.D[0][0] - 2 * at.D[0][1] + at.D[1][1]);
+  }
+  return DEA_OK;
+}
+
+/* Response to stretches whose squares are mean + d and mean - d. */
+static dea_status respond(const struct dea_tension *film, bool relaxed, double mean, double d,
+                          struct principal *out, enum dea_tension_state *state)
+{
+  struct dea_plane f;
+  double l1 = sqrt(mean + d), l2 = mean - d > 0 ? sqrt(mean - d) : 0;
+  *out = (struct principal){.natural = {l1, l2}};
+  *state = DEA_TAUT;
+  dea_status status = relaxed ? dea_tension_relaxed(film, l1, l2, &f, out->natural, state)
+                              : dea_tension_taut(film, l1, l2, &f);
+  if (status != DEA_OK) {
+    return status;
+  }
+  if (*state == DEA_TAUT) {
+    referential(&f, l1, l2, out);
+    return taut_shear(film, mean, d, out);
+  }
+  out->W = f.W;
+  out->S[0] = f.s1 / l1;
+  out->D[0][0] = (f.k11 - out->S[0]) / (l1 * l1);
+  out->m = d > 0 ? 0.5 * out->S[0] / d : 0;
+  return DEA_OK;
+}
+
+/* Tensors of the plane in the order 11 22 12. */
+struct plane_tensors {
+  double C[3], S[3], D[3][3];
+};
+
+/* S and D from principal values: N_1 N_1 = (1 + T)/2 and N_2 N_2 = (1 - T)/2 with T_11 = -T_22 =
+ * cos and T_12 = sin of twice the angle of N_1. */
+static void assemble_tensors(const struct principal *p, double cosine, double sine,
+                             struct plane_tensors *t)
+{
+  const double N[2][3] = {{0.5 * (1 + cosine), 0.5 * (1 - cosine), 0.5 * sine},
+                          {0.5 * (1 - cosine), 0.5 * (1 + cosine), -0.5 * sine}};
+  const double G[3] = {-0.5 * sine, 0.5 * sine, 0.5 * cosine};
+  for (int a = 0; a < 3; a++) {
+    t->S[a] = p->S[0] * N[0][a] + p->S[1] * N[1][a];
+    for (int b = 0; b < 3; b++) {
+      t->D[a][b] = 4 * p->m * G[a] * G[b] + p->D[0][0] * N[0][a] * N[0][b] +
+                   p->D[1][1] * N[1][a] * N[1][b] +
+                   p->D[0][1] * (N[0][a] * N[1][b] + N[1][a] * N[0][b]);
+    }
+  }
+}
+
+/* eps = permittivity + slope (sqrt(a) - 1) of the constituent by s = sqrt(a G1 G2), as a material
+ * has it.
+ */
+static void set_permittivity(const struct dea_constituent *constituent, double G1_G2,
+                             struct dea_permittivity *out)
+{
+  double slope = constituent->permittivity_slope_F_per_m / sqrt(G1_G2);
+  out->slope = slope / DEA_EPSILON_0;
+  out->at_rest =
+      (constituent->permittivity_F_per_m - constituent->permittivity_slope_F_per_m + slope) /
+      DEA_EPSILON_0;
+}
+
+/* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
+static dea_status evaluate_point(const struct dea_constituent *constituent, const double F[6],
+                                 double field, struct plane_tensors *t,
+                                 struct dea_membrane_point *out)
+{
+  const double *G = constituent->pre_stretch, scale[3] = {G[0] * G[0], G[1] * G[1], G[0] * G[1]};
+  double c[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
+                 F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
+  struct dea_material material = {.law = constituent->law};
+  memcpy(material.param, constituent->param, constituent->law->param_count * sizeof(double));
+  const struct dea_tension film = {&material, field / scale[2]};
+  set_permittivity(constituent, scale[2], &material.permittivity);
+  for (int a = 0; a < 3; a++) {
+    t->C[a] = scale[a] * c[a];
+  }
+  double mean = 0.5 * (t->C[0] + t->C[1]), half = 0.5 * (t->C[0] - t->C[1]);
+  double d = hypot(half, t->C[2]);
+  struct principal p;
+  dea_status status = respond(&film, constituent->relaxed, mean, d, &p, &out->state);
+  if (status != DEA_OK) {
+    return status;
+  }
+  assemble_tensors(&p, d > 0 ? half / d : 1, d > 0 ? t->C[2] / d : 0, t);
+  for (int a = 0; a < 3; a++) {
+    t->S[a] *= scale[a];
+    for (int b = 0; b < 3; b++) {
+      t->D[a][b] *= scale[a] * scale[b];
+    }
+  }
+  out->W = p.W;
+  out->area = p.natural[0] * p.natural[1] / scale[2];
+  double first = p.S[0] * (mean + d) / out->area, second = p.S[1] * (mean - d) / out->area;
+  out->tension_Pa[0] = fmax(first, second);
+  out->tension_Pa[1] = fmin(first, second);
+  return DEA_OK;
+}
+
+static const int pair_of[2][2] = {{0, 2}, {2, 1}};
+
+dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
+                              double field_V_per_m, struct dea_membrane_point *out)
+{
+  struct plane_tensors t;
+  dea_status status = evaluate_point(constituent, F, field_V_per_m, &t, out);
+  if (status != DEA_OK) {
+    return status;
+  }
+  for (int a = 0; a < 6; a++) { // A_iJkL = delta_ik S_JL + F_iM F_kN D_MJNL
+    int i = a / 2, J = a % 2;
+    out->P[a] = F[2 * i] * t.S[pair_of[0][J]] + F[2 * i + 1] * t.S[pair_of[1][J]];
+    for (int b = 0; b < 6; b++) {
+      int k = b / 2, L = b % 2;
+      double sum = i == k ? t.S[pair_of[J][L]] : 0;
+      for (int M = 0; M < 2; M++) {
+        for (int N = 0; N < 2; N++) {
+          sum += F[2 * i + M] * F[2 * k + N] * t.D[pair_of[M][J]][pair_of[N][L]];
+        }
+      }
+      out->A[6 * a + b] = sum;
+    }
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,36 @@
+/* A point of the film as a surface, incompressible by construction (docs/theory/membrane.md).
+ *
+ * Symbol   meaning                                                                     unit
+ * F        dx/dX, its in-plane columns F_1, F_2; F[2 i + J] here                       1
+ * G        pre-stretch, diagonal; C_JL = G_J F_J . F_L G_L                             1
+ * x1, x2   eigenvalues of C, x1 >= x2: squares of the stretches l1, l2                 1
+ * f        energy per volume of film, with field; S = 2 df/dC                          Pa */
+#ifndef DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
+#define DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
+
+#include "model/solid/point/constituent.h"
+#include "model/solid/point/tension.h"
+
+/* Whether a membrane can be of it: DEA_E_UNSUPPORTED without an isotropic law. */
+dea_status dea_membrane_check(const struct dea_constituent *constituent);
+
+/* What lies between the mid-surface of a film and what is bonded on it, h/2 thick: free of stress
+ * at rest, with the shear compliance of the film from there to its bonded face (theory). film:
+ * relaxed (dea_constituent_relax). Statuses of dea_membrane_check. */
+dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond);
+
+/* Energy per volume, first Piola-Kirchhoff stress P[2 i + J] and tangent A[6 (2 i + J) + 2 k + L]
+ * by F, and the larger and smaller principal tension: Cauchy stress times current over reference
+ * thickness. */
+struct dea_membrane_point {
+  double W, P[6], A[36];
+  double area;          // current over reference area of the film itself: |F_1 x F_2| if taut
+  double tension_Pa[2]; // per current length of the film itself
+  enum dea_tension_state state; // DEA_TAUT when the constituent is not relaxed
+};
+
+/* field_V_per_m: V/h, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
+dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
+                              double field_V_per_m, struct dea_membrane_point *out);
+
+#endif

@@ -1,0 +1,56 @@
+/* The functions of an element (element.h) with what a test has at hand. */
+#ifndef DEA_TESTS_SOLID_ELEMENT_H
+#define DEA_TESTS_SOLID_ELEMENT_H
+
+#include "model/solid/element/hex.h"
+#include "model/solid/element/membrane.h"
+
+#include <stdint.h>
+
+static inline struct dea_element element_of(enum dea_element_kind kind, const void *basis,
+                                            int nodes, int points, int pressures)
+{
+  return (struct dea_element){dea_element_types[kind], nodes, points, pressures,
+                              (void *)(uintptr_t)basis};
+}
+
+static inline struct dea_element hexahedron(const struct dea_hex_shape *shape)
+{
+  return element_of(DEA_ELEMENT_HEXAHEDRON, shape, shape->nodes, shape->gauss, shape->pressures);
+}
+
+static inline struct dea_element potential_hexahedron(const struct dea_hex_shape *shape)
+{
+  return element_of(DEA_ELEMENT_POTENTIAL_HEXAHEDRON, shape, shape->nodes, shape->gauss,
+                    shape->pressures);
+}
+
+static inline struct dea_element membrane(const struct dea_flat_shape *shape)
+{
+  return element_of(DEA_ELEMENT_MEMBRANE, shape, shape->nodes, shape->gauss, 0);
+}
+
+static inline dea_status evaluate_hex(const struct dea_hex_shape *shape,
+                                      const struct dea_constituent *constituent, const double *X,
+                                      const double *u, const double *multiplier, double voltage_V,
+                                      enum dea_eval_order order, struct dea_element_result *out)
+{
+  const struct dea_element element = hexahedron(shape);
+  const struct dea_element_input in = {
+      .constituent = constituent, .X = X, .u = u, .multiplier = multiplier, .voltage_V = voltage_V};
+  return element.type->evaluate(&element, &in, order, out);
+}
+
+static inline dea_status evaluate_membrane(const struct dea_flat_shape *shape,
+                                           const struct dea_constituent *constituent,
+                                           const double *X, const double *u, double voltage_V,
+                                           enum dea_eval_order order,
+                                           struct dea_element_result *out)
+{
+  const struct dea_element element = membrane(shape);
+  const struct dea_element_input in = {
+      .constituent = constituent, .X = X, .u = u, .voltage_V = voltage_V};
+  return element.type->evaluate(&element, &in, order, out);
+}
+
+#endif

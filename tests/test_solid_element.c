@@ -1,0 +1,306 @@
+/* What every kind of element must do, by registration (element_list.h): derivatives, rigid motions,
+ * patch test, integrals, and the refusal of an inverted one. */
+#include "base/quadrature.h"
+#include "model/solid/element/element.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <string.h>
+
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
+                                                        2e3, 1e3,  -4e2, 7e2, 1e2};
+static const double scale_V_per_m = 2e8, h = 44e-6, rho = 970;
+
+struct sample {
+  const struct dea_element *element;
+  struct dea_constituent film;
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], psi[DEA_HEX_NODES_MAX];
+  struct dea_element_input in;
+};
+
+static struct dea_element_result at, up, down;
+
+static int unknowns(const struct sample *s)
+{
+  return s->element->type->per_node * s->element->nodes;
+}
+
+static double *unknown(struct sample *s, int i)
+{
+  int per = s->element->type->per_node;
+  return i % per < 3 ? &s->u[3 * (i / per) + i % per] : &s->psi[i / per];
+}
+
+/* A parallelogram in the plane, upright: the places are linear in the local axes. levels: those of
+ * its nodes. A surface lies at z = 0. */
+static void fill(int order, const struct dea_element *element, struct sample *s)
+{
+  double line[DEA_HEX_LINE_MAX], line_z[DEA_HEX_LINE_MAX] = {0};
+  int n = order + 1, levels = element->nodes / (n * n);
+  *s = (struct sample){.element = element,
+                       .film = {.law = dea_law_find("yeoh"),
+                                .param = yeoh,
+                                .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                .kappa_Pa = 4e7,
+                                .permittivity_F_per_m = 2.5e-11,
+                                .thickness_m = h,
+                                .density_kg_per_m3 = rho}};
+  assert_int_equal(dea_constituent_relax(&s->film), DEA_OK);
+  dea_lobatto_nodes((size_t)order, line);
+  if (levels > 1) {
+    dea_lobatto_nodes((size_t)levels - 1, line_z);
+  }
+  for (int a = 0; a < element->nodes; a++) {
+    double x = line[a % n], y = line[a / n % n], z = line_z[a / (n * n)];
+    s->X[3 * a] = 100e-6 * x + 20e-6 * y;
+    s->X[3 * a + 1] = 90e-6 * y - 10e-6 * x;
+    s->X[3 * a + 2] = 0.5 * h * z;
+  }
+  s->in = (struct dea_element_input){.constituent = &s->film,
+                                     .X = s->X,
+                                     .u = s->u,
+                                     .multiplier = pressures,
+                                     .potential = s->psi,
+                                     .potential_V_per_m = scale_V_per_m,
+                                     .voltage_V = element->type->per_node == 3 ? 4e3 : 0};
+}
+
+static void deform(struct sample *s, const double F[9])
+{
+  for (int a = 0; a < s->element->nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      s->u[3 * a + i] = -s->X[3 * a + i];
+      for (int J = 0; J < 3; J++) {
+        s->u[3 * a + i] += F[3 * i + J] * s->X[3 * a + J];
+      }
+    }
+  }
+}
+
+static void shake(struct sample *s)
+{
+  for (int a = 0; a < s->element->nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      s->u[3 * a + i] = (i == 2 ? 1e-6 : 6e-6) * sin(1.3 * a + i);
+    }
+    s->psi[a] = 1e3 / scale_V_per_m * sin(1.7 * a);
+  }
+}
+
+static void evaluate(const struct sample *s, struct dea_element_result *out)
+{
+  assert_int_equal(s->element->type->evaluate(s->element, &s->in, DEA_TANGENT, out), DEA_OK);
+}
+
+static double largest(const double *v, int count)
+{
+  double most = 0;
+  for (int i = 0; i < count; i++) {
+    most = fmax(most, fabs(v[i]));
+  }
+  return most;
+}
+
+/* g and K by central differences of energy and g; K is symmetric. */
+static void check_derivatives(struct sample *s)
+{
+  int dofs = unknowns(s);
+  shake(s);
+  evaluate(s, &at);
+  double most = largest(at.g, dofs), stiffest = largest(at.K, dofs * dofs);
+  for (int j = 0; j<dofs; j += dofs> 60 ? 7 : 1) {
+    double *x = unknown(s, j), before = *x, step = 1e-9;
+    *x = before + step;
+    evaluate(s, &up);
+    *x = before - step;
+    evaluate(s, &down);
+    *x = before;
+    assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * step), 1e-5, 1e-5 * most);
+    for (int i = 0; i < dofs; i++) {
+      assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * step), 1e-5, 1e-6 * stiffest);
+      assert_close(at.K[i * dofs + j], at.K[j * dofs + i], 0, 1e-12 * stiffest);
+    }
+  }
+}
+
+/* Turned by Q and moved: the energy stays, the forces turn. */
+static void check_rigid_motion(struct sample *s)
+{
+  static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
+  struct sample turned = *s;
+  int per = s->element->type->per_node;
+  shake(s);
+  evaluate(s, &at);
+  turned.in.u = turned.u;
+  turned.in.X = turned.X;
+  turned.in.potential = turned.psi;
+  turned.in.constituent = &turned.film;
+  for (int a = 0; a < s->element->nodes; a++) {
+    turned.psi[a] = s->psi[a];
+    for (int i = 0; i < 3; i++) {
+      double x = 3e-4 * (i + 1);
+      for (int J = 0; J < 3; J++) {
+        x += Q[3 * i + J] * (s->X[3 * a + J] + s->u[3 * a + J]);
+      }
+      turned.u[3 * a + i] = x - s->X[3 * a + i];
+    }
+  }
+  evaluate(&turned, &up);
+  assert_close(up.energy_J, at.energy_J, 1e-9, 0);
+  for (int a = 0; a < s->element->nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      double g = 0;
+      for (int J = 0; J < 3; J++) {
+        g += Q[3 * i + J] * at.g[per * a + J];
+      }
+      assert_close(up.g[per * a + i], g, 0, 1e-9 * largest(at.g, unknowns(s)));
+    }
+  }
+}
+
+/* A uniform F is what strains, membrane state and recovery say, at every point and node; forces
+ * are in balance. */
+static void check_patch(struct sample *s)
+{
+  static struct dea_element_strains strains;
+  static struct dea_membrane_state state;
+  static struct dea_recovered recovered;
+  const double F[9] = {1.1, 0.05, 0, -0.02, 0.95, 0, 0, 0, 1 / (1.1 * 0.95 + 0.001)};
+  const struct dea_element_type *type = s->element->type;
+  int per = type->per_node;
+  double balance[3] = {0}, volume = 0;
+  deform(s, F);
+  evaluate(s, &at);
+  assert_int_equal(type->strains(s->element, &s->in, &strains), DEA_OK);
+  assert_int_equal(type->membrane_state(s->element, &s->in, &state), DEA_OK);
+  assert_int_equal(type->recover(s->element, &s->in, &recovered), DEA_OK);
+  for (int q = 0; q < s->element->points; q++) {
+    volume += strains.volume_m3[q];
+    assert_close(strains.C[q][0], F[0] * F[0] + F[3] * F[3], 1e-9, 0);
+    assert_close(strains.C[q][5], F[0] * F[1] + F[3] * F[4], 1e-9, 0);
+  }
+  assert_close(volume, at.volume_m3, 1e-12, 0);
+  for (int p = 0; p < state.count; p++) {
+    assert_close(state.area[p], 1 / F[8], 1e-9, 0);
+  }
+  assert_int_equal(recovered.nodes, s->element->nodes);
+  for (int a = 0; a < recovered.nodes; a++) {
+    for (int i = 0; i < 9; i++) {
+      assert_close(recovered.F[a][i], F[i], 0, 1e-9);
+    }
+    for (int i = 0; i < 3; i++) {
+      balance[i] += at.g[per * a + i];
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    assert_close(balance[i], 0, 0, 1e-9 * largest(at.g, unknowns(s)));
+  }
+}
+
+/* Mass, metric and volume of the parallelogram of 4 (100 x 90 + 20 x 10) um^2. */
+static void check_integrals(struct sample *s)
+{
+  static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+  static double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
+  const struct dea_element_type *type = s->element->type;
+  int n = s->element->nodes;
+  double exact = 4 * (100e-6 * 90e-6 + 20e-6 * 10e-6) * h, total = 0, whole = 0, slope = 0;
+  evaluate(s, &at);
+  assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_OK);
+  assert_int_equal(type->metric(s->element, &s->film, s->X, laplace, share), DEA_OK);
+  for (int a = 0; a < n; a++) {
+    double constant = 0;
+    whole += share[a];
+    assert_true(share[a] > 0);
+    for (int b = 0; b < n; b++) {
+      total += mass[a * n + b];
+      constant += laplace[a * n + b];
+      slope += s->X[3 * a] * laplace[a * n + b] * s->X[3 * b];
+    }
+    assert_close(constant, 0, 0, 1e-12 * laplace[0]);
+  }
+  assert_close(at.volume_m3, exact, 1e-12, 0);
+  assert_close(total, rho * exact, 1e-12, 0);
+  assert_close(whole, exact, 1e-12, 0);
+  assert_close(slope, exact, 1e-10, 0); // of x: |grad x| = 1
+}
+
+/* A step of no length predicts the stresses that are there. */
+static void check_prediction(struct sample *s)
+{
+  static double predicted[DEA_HEX_PRESSURES_MAX + 6 * DEA_HEX_GAUSS_MAX];
+  const struct dea_element_type *type = s->element->type;
+  if (type->predict == NULL || type->per_node > 3) { // a potential follows the displacements
+    return;
+  }
+  int dofs = unknowns(s);
+  shake(s);
+  evaluate(s, &at);
+  assert_int_equal(type->predict(s->element, &s->in, s->u, 0, true, predicted), DEA_OK);
+  s->in.predicted = predicted;
+  evaluate(s, &up);
+  s->in.predicted = NULL;
+  for (int i = 0; i < dofs * dofs; i++) {
+    assert_close(up.K[i], at.K[i], 0, 1e-10 * largest(at.K, dofs * dofs));
+  }
+}
+
+static void check_inverted(struct sample *s)
+{
+  static struct dea_element_strains strains;
+  static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
+  const struct dea_element_type *type = s->element->type;
+  for (int a = 0; a < s->element->nodes; a++) {
+    s->X[3 * a] *= -1;
+    s->X[3 * a + 1] *= 1;
+  }
+  memset(s->u, 0, sizeof s->u);
+  assert_int_equal(type->evaluate(s->element, &s->in, DEA_TANGENT, &at), DEA_E_DOMAIN);
+  assert_int_equal(type->strains(s->element, &s->in, &strains), DEA_E_DOMAIN);
+  assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_E_DOMAIN);
+  assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
+}
+
+static void test_every_kind(void **state)
+{
+  (void)state;
+  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    struct dea_element_set set;
+    assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
+    for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
+      static void (*const checks[])(struct sample * s) = {check_derivatives, check_rigid_motion,
+                                                          check_patch,       check_integrals,
+                                                          check_prediction,  check_inverted};
+      for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+        static struct sample s;
+        fill(order, &set.of[kind], &s);
+        assert_int_equal(s.element->type->check(&s.film), DEA_OK);
+        checks[i](&s);
+      }
+    }
+    dea_element_set_release(ctx, &set);
+  }
+}
+
+static void test_orders_out_of_range(void **state)
+{
+  (void)state;
+  static const int orders[][2] = {
+      {0, 1}, {1, 0}, {DEA_HEX_ORDER_MAX + 1, 1}, {1, DEA_HEX_ORDER_MAX + 1}};
+  for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
+    struct dea_element_set set;
+    assert_int_equal(dea_element_set_create(ctx, orders[i][0], orders[i][1], &set), DEA_E_ARGUMENT);
+    dea_element_set_release(ctx, &set);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_kind),
+      cmocka_unit_test(test_orders_out_of_range),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
