@@ -19,7 +19,7 @@ __attribute__((export_name(\"f\"))) int f(void) { return pow(x, 2) > 1; }\n")
 endif()
 if(DEA_WASM_WORKS)
   set(core_sources ${PROJECT_SOURCE_DIR}/web/explorer.c ${PROJECT_SOURCE_DIR}/web/dense.c)
-  foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane model/film model/make
+  foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane device/check model/film model/make
       result/load_point model/path model/alpha model/circuit material/branch model/lumped/balance model/lumped/history
       model/lumped/lift model/lumped/model)
     list(APPEND core_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)

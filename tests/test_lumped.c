@@ -54,6 +54,30 @@ static void test_without_fibres_there_is_no_lift(void **state)
   dea_model_find("lumped")->destroy(ctx, model);
 }
 
+/* What no device has is refused by every model that has it, in place of a division by it. */
+static void test_devices_that_cannot_be(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"lumped", "axisymmetric"};
+  const struct dea_device good = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 4);
+  struct dea_device bad[] = {good, good, good, good, good, good, good};
+  assert_int_equal(dea_device_check(ctx, &good), DEA_OK);
+  bad[0].coverage = 0;
+  bad[1].coverage = 1;
+  bad[2].coverage = (double)NAN;
+  bad[3].electrode_radius_m = bad[3].frame_radius_m;
+  bad[4].pre_stretch = 0;
+  bad[5].film_thickness_unstretched_m = -1e-4;
+  bad[6].fibre_length_m = 0;
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    for (size_t k = 0; k < 2; k++) {
+      struct dea_model *model = NULL;
+      assert_int_equal(dea_model_find(names[k])->create(ctx, &bad[i], &model), DEA_E_DESIGN);
+      assert_null(model);
+    }
+  }
+}
+
 /* At rest the film is taut with the pre-stretch's own tension, and nothing has moved. */
 static void test_rest_state(void **state)
 {
@@ -243,6 +267,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_benchmark_3),
+      cmocka_unit_test(test_devices_that_cannot_be),
       cmocka_unit_test(test_without_fibres_there_is_no_lift),
       cmocka_unit_test(test_rest_state),
       cmocka_unit_test(test_balance_derivatives),

@@ -129,14 +129,6 @@ static void fill_device(void)
   memcpy(device.electrode.param, inputs + IN_ELECTRODE_PARAM, sizeof device.electrode.param);
 }
 
-static bool sound(void)
-{
-  return device.film_thickness_unstretched_m > 0 && device.pre_stretch > 0 &&
-         device.electrode_radius_m > 0 && device.electrode_radius_m < device.frame_radius_m &&
-         device.coverage > 0 && device.coverage < 1 &&
-         (device.fibre_count == 0 || (device.fibre_tip_radius_m > 0 && device.fibre_length_m > 0));
-}
-
 /* Makes the model (0 lumped, 1 axisymmetric) of the inputs in place of the last one; a status. */
 EXPORT(explorer_make) int explorer_make(int axisymmetric)
 {
@@ -150,9 +142,6 @@ EXPORT(explorer_make) int explorer_make(int axisymmetric)
   dea_context_clear(ctx);
   dea_finding_clear(ctx);
   fill_device();
-  if (!sound()) {
-    return (int)dea_fail(ctx, DEA_E_DESIGN, "these lengths do not fit together");
-  }
   type = axisymmetric ? &dea_model_axisymmetric : &dea_model_lumped;
   return (int)type->create(ctx, &device, &model);
 }

@@ -45,6 +45,9 @@ struct dea_device {
  * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
+/* For a device that was filled by hand: DEA_E_DESIGN with the number that none can have, such as a
+ * coverage that is not between 0 and 1. Models ask it. */
+dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);
 
 #endif

@@ -7,6 +7,7 @@ dea_status dea_film_create(struct dea_context *ctx, const struct dea_device *dev
 {
   *out = (struct dea_film){.material = &device->film,
                            .thickness_m = device->film_thickness_unstretched_m};
+  DEA_TRY(ctx, dea_device_check(ctx, device));
   if (device->film.law == NULL || !(device->film.permittivity.at_rest > 0)) {
     return dea_fail(ctx, DEA_E_DESIGN,
                     "film material '%s' has no hyperelastic law or no permittivity",

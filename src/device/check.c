@@ -1,0 +1,32 @@
+#include "device/device.h"
+
+#include <math.h>
+
+/* A range of one of its numbers; NAN is in none. */
+struct range {
+  const char *what;
+  double value, above, below;
+};
+
+dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *d)
+{
+  bool fibres = d->fibre_count > 0;
+  const struct range ranges[] = {
+      {"film thickness [m]", d->film_thickness_unstretched_m, 0, INFINITY},
+      {"stretched film thickness [m]", d->film_thickness_m, 0, INFINITY},
+      {"pre-stretch", d->pre_stretch, 0, INFINITY},
+      {"electrode radius [m]", d->electrode_radius_m, 0, d->frame_radius_m},
+      {"coverage", d->coverage, 0, 1},
+      {"radius of the fibre tips [m]", fibres ? d->fibre_tip_radius_m : 1, 0, INFINITY},
+      {"fibre length [m]", fibres ? d->fibre_length_m : 1, 0, INFINITY},
+  };
+  for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+    const struct range *r = &ranges[i];
+    if (!(r->value > r->above && r->value < r->below)) {
+      return dea_fail(ctx, DEA_E_DESIGN,
+                      "the device's %s is %g, and has to be above %g and below %g", r->what,
+                      r->value, r->above, r->below);
+    }
+  }
+  return DEA_OK;
+}
