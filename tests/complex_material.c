@@ -21,6 +21,17 @@ dea_status complex_invariants(const char *law, const double *param,
   return status;
 }
 
+dea_status complex_compressible(const char *law, const double *param,
+                                const double complex argument[2], double complex out[6])
+{
+  struct dea_law_volume e;
+  const dea_status status =
+      DEA_NAME(dea_law_find)(law)->compressible(param, argument[0], argument[1], &e);
+  const double complex members[6] = {e.W, e.W1, e.WJ, e.W11, e.W1J, e.WJJ};
+  memcpy(out, members, sizeof members);
+  return status;
+}
+
 dea_status complex_principal(const char *law, const double *param, double complex lambda,
                              double complex out[3])
 {

@@ -11,6 +11,9 @@
 /* W, then W1 W2 W4, then W11 W12 W22 W14 W24 W44. */
 dea_status complex_invariants(const char *law, const double *param,
                               const double complex invariant[3], double complex out[10]);
+/* W, then W1 WJ, then W11 W1J WJJ; argument: I1 - 3, J - 1. */
+dea_status complex_compressible(const char *law, const double *param,
+                                const double complex argument[2], double complex out[6]);
 /* w, w', w''. */
 dea_status complex_principal(const char *law, const double *param, double complex lambda,
                              double complex out[3]);

@@ -29,6 +29,9 @@ static const struct material_sample material_samples[] = {
     {"holzapfel-gasser-ogden", {100e3, 400e3, 0.8, 0.0}},
     {"holzapfel-gasser-ogden", {100e3, 400e3, 0.0, 0.0}}, // standard reinforcing model
     {"holzapfel-gasser-ogden", {100e3, 400e3, 1e-9, 0.2}},
+    {"compressible-neo-hookean", {4e9, 0.38}},
+    {"compressible-neo-hookean", {1.2e6, 0.0}},
+    {"compressible-neo-hookean", {3e5, 0.49}},
 };
 
 /* Calls check(law, param) for every sample of every registered law. */

@@ -1,5 +1,6 @@
 /* material/law: the registry, and the derivatives of every law by complex step. */
 #include "complex_material.h"
+#include "material/point.h"
 #include "material_samples.h"
 
 #include <math.h>
@@ -16,7 +17,9 @@ static void test_registry(void **state)
   assert_true(count >= 7);
   for (size_t i = 0; i < count; i++) {
     assert_ptr_equal(dea_law_find(laws[i]->name), laws[i]);
-    assert_true((laws[i]->invariants != NULL) != (laws[i]->principal != NULL));
+    assert_int_equal((laws[i]->invariants != NULL) + (laws[i]->principal != NULL) +
+                         (laws[i]->compressible != NULL),
+                     1);
     assert_true(laws[i]->param_count >= 1 && laws[i]->param_count <= DEA_LAW_PARAM_MAX);
     assert_non_null(laws[i]->long_name);
     assert_non_null(laws[i]->source);
@@ -87,6 +90,61 @@ static void test_invariant_form_by_complex_step(void **state)
 {
   (void)state;
   for_each_law(check_invariant_step);
+}
+
+static void check_compressible_step(const struct dea_law *law, const double *param)
+{
+  if (law->compressible == NULL) {
+    return;
+  }
+  static const double at[][2] = {{0, 0}, {0.2, 0.03}, {0.4, -0.2}, {2, 0.3}, {1e-9, 1e-9}};
+  static const size_t second[2][2] = {{3, 4}, {4, 5}}; // of {W, W1 WJ, W11 W1J WJJ}
+  for (size_t n = 0; n < sizeof at / sizeof at[0]; n++) {
+    struct dea_law_volume e;
+    assert_int_equal(law->compressible(param, at[n][0], at[n][1], &e), DEA_OK);
+    const double real[6] = {e.W, e.W1, e.WJ, e.W11, e.W1J, e.WJJ};
+    const double scale = largest(&real[1], 5);
+    for (size_t k = 0; k < 2; k++) {
+      double complex argument[2] = {at[n][0], at[n][1]}, out[6];
+      argument[k] += step * _Complex_I;
+      assert_int_equal(complex_compressible(law->name, param, argument, out), DEA_OK);
+      assert_close(creal(out[0]), e.W, tolerance, 1e-20 * scale);
+      assert_close(cimag(out[0]) / step, real[1 + k], tolerance, tolerance * scale);
+      for (size_t m = 0; m < 2; m++) {
+        assert_close(cimag(out[1 + m]) / step, real[second[m][k]], tolerance, tolerance * scale);
+      }
+    }
+  }
+}
+
+static void test_compressible_form_by_complex_step(void **state)
+{
+  (void)state;
+  for_each_law(check_compressible_step);
+}
+
+/* The source's energy and stress in a form that the code does not use: at F = diag(a, a, b), W and
+ * sigma = (mu (B - 1) + lambda ln J 1)/J with mu and lambda of E and nu; and the bulk modulus E/(3
+ * (1
+ * - 2 nu)) at small strains. */
+static void test_compressible_neo_hookean(void **state)
+{
+  (void)state;
+  const struct dea_law *law = dea_law_find("compressible-neo-hookean");
+  const double E = 4e9, nu = 0.38, param[DEA_LAW_PARAM_MAX] = {E, nu}, a = 1.1, b = 0.9;
+  const double mu = E / 2.76, lambda = 0.38 * E / (1.38 * 0.24), J = a * a * b;
+  const double F[9] = {a, 0, 0, 0, a, 0, 0, 0, b};
+  struct dea_point point;
+  assert_int_equal(dea_point_elastic(law, param, F, NULL, &point), DEA_OK);
+  assert_close(point.W,
+               0.5 * mu * (2 * a * a + b * b - 3) - mu * log(J) + 0.5 * lambda * log(J) * log(J),
+               1e-13, 0);
+  assert_close(point.P[0] * a / J, (mu * (a * a - 1) + lambda * log(J)) / J, 1e-13, 0);
+  assert_close(point.P[8] * b / J, (mu * (b * b - 1) + lambda * log(J)) / J, 1e-13, 0);
+  const double e = 1e-9, swollen[9] = {1 + e, 0, 0, 0, 1 + e, 0, 0, 0, 1 + e};
+  assert_int_equal(dea_point_elastic(law, param, swollen, NULL, &point), DEA_OK);
+  assert_close(point.P[0], 3 * e * E / (3 * (1 - 2 * nu)), 1e-6, 0); // 1 + e rounds e at 1e-7
+  assert_close(point.W, 4.5 * e * e * E / (3 * (1 - 2 * nu)), 1e-6, 0);
 }
 
 static void check_principal_step(const struct dea_law *law, const double *param)
@@ -182,6 +240,8 @@ int main(void)
       cmocka_unit_test(test_samples_are_admissible),
       cmocka_unit_test(test_invariant_form_by_complex_step),
       cmocka_unit_test(test_principal_form_by_complex_step),
+      cmocka_unit_test(test_compressible_form_by_complex_step),
+      cmocka_unit_test(test_compressible_neo_hookean),
       cmocka_unit_test(test_ogden_term_with_zero_exponent),
       cmocka_unit_test(test_arruda_boyce_ground_state),
       cmocka_unit_test(test_fibre_law),

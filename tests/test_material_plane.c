@@ -40,6 +40,9 @@ static void check_plane_steps(const char *what, const double real[6], double com
 
 static void check_elastic_steps(const struct dea_law *law, const double *param)
 {
+  if (law->compressible != NULL) {
+    return;
+  }
   const struct dea_material material = material_of(law, param, fibre_angle);
   for (size_t n = 0; n < STRETCH_COUNT; n++) {
     if (n == 0 && law->anisotropic) {
@@ -103,6 +106,9 @@ static void test_electric_energy(void **state)
 
 static void check_reference(const struct dea_law *law, const double *param)
 {
+  if (law->compressible != NULL) {
+    return;
+  }
   const struct dea_material material = material_of(law, param, 0.0);
   const double G = law->shear_modulus(param);
   struct dea_plane plane;
@@ -129,6 +135,9 @@ static void test_reference_and_small_strain(void **state)
 /* The same film as a material point in three dimensions, its pressure found from P33 = 0. */
 static void check_against_point(const struct dea_law *law, const double *param)
 {
+  if (law->compressible != NULL) {
+    return;
+  }
   const struct dea_material material = material_of(law, param, fibre_angle);
   const double fibre[3] = {cos(fibre_angle), sin(fibre_angle), 0.0};
   for (size_t n = 1; n < STRETCH_COUNT; n++) {
@@ -154,6 +163,12 @@ static void test_plane_against_point(void **state)
 
 static void check_domain(const struct dea_law *law, const double *param)
 {
+  if (law->compressible != NULL) { // no film of it
+    const struct dea_material solid = material_of(law, param, 0.0);
+    struct dea_plane none;
+    assert_int_equal(dea_plane_elastic(&solid, 1.0, 1.0, &none), DEA_E_ARGUMENT);
+    return;
+  }
   const struct dea_material material = material_of(law, param, fibre_angle);
   static const double bad[] = {0.0,   -0.0,  -1.0, (double)NAN, (double)INFINITY, -(double)INFINITY,
                                1e200, 1e-200};

@@ -75,6 +75,7 @@ static void check_steps_at(const struct dea_law *law, const double *param, const
   assert_true(plain.W == point.W);
   assert_all_close(law->name, plain.P, point.P, 9, 1e-15, largest(point.P, 9));
   const double scale = largest(point.A, 81); // of the tangent, and of the stress times a strain
+  const double stressed = fmax(largest(point.P, 9), law->shear_modulus(param)); // P may be 0
   for (size_t n = 0; n < 9; n++) {
     double complex Z[9], W, P[9], A[81];
     for (size_t m = 0; m < 9; m++) {
@@ -89,7 +90,7 @@ static void check_steps_at(const struct dea_law *law, const double *param, const
       wanted[m] = point.A[9 * m + n];
       real[m] = creal(P[m]);
     }
-    assert_all_close(law->name, &stress, &point.P[n], 1, tolerance, largest(point.P, 9));
+    assert_all_close(law->name, &stress, &point.P[n], 1, tolerance, stressed);
     assert_all_close(law->name, column, wanted, 9, tolerance, scale);
     assert_all_close(law->name, real, point.P, 9, tolerance, scale);
     assert_close(creal(W), point.W, 0.0, tolerance * scale);

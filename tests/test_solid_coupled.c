@@ -32,8 +32,9 @@ static struct dea_constituent film(double pre_stretch)
 
 static struct dea_constituent plastic(void)
 {
-  struct dea_constituent layer = {
-      .lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5, .permittivity_F_per_m = 4e-11};
+  static const double param[] = {5.2e5, 0.3};
+  struct dea_constituent layer = dea_constituent_bonded(param);
+  layer.permittivity_F_per_m = 4e-11;
   return layer;
 }
 

@@ -32,8 +32,8 @@ static struct dea_constituent film(double pre_stretch)
 
 static struct dea_constituent plastic(void)
 {
-  struct dea_constituent layer = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
-  return layer;
+  static const double param[] = {5.2e5, 0.3};
+  return dea_constituent_bonded(param);
 }
 
 /* A distorted element of the shape, about 200 um wide and 44 um thick, with displacements of given

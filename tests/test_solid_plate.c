@@ -116,7 +116,7 @@ static double volume(const struct dea_grid *grid, int sheet, int bits)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   static const double mu[DEA_LAW_PARAM_MAX] = {1e5};
-  const struct dea_constituent hard = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+  const struct dea_constituent hard = dea_constituent_bonded((const double[]){5.2e5, 0.3});
   const struct dea_constituent film = {
       .law = dea_law_find("neo-hookean"), .param = mu, .pre_stretch = {1, 1, 1}, .thickness_m = h};
   double X[DEA_HEX_DOFS_MAX], sum = 0;

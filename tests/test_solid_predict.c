@@ -23,7 +23,11 @@ static struct dea_constituent film(void)
   return layer;
 }
 
-static const struct dea_constituent plastic = {.lame_lambda_Pa = 3e5, .lame_mu_Pa = 2e5};
+static struct dea_constituent plastic(void)
+{
+  static const double param[] = {5.2e5, 0.3};
+  return dea_constituent_bonded(param);
+}
 
 static void sample(void)
 {
@@ -82,7 +86,7 @@ static double apart_at(const struct dea_constituent *layer, double share)
 static void test_stresses_of_a_step(void **state)
 {
   (void)state;
-  const struct dea_constituent layers[] = {film(), plastic};
+  const struct dea_constituent layers[] = {film(), plastic()};
   sample();
   for (int k = 0; k < 2; k++) {
     assert_close(apart_at(&layers[k], 0), 0, 0, 1e-12);

@@ -3,6 +3,7 @@
 #include "devices.h"
 #include "failing_allocator.h"
 #include "material/plane.h"
+#include "model/solid/actuator/actuator.h"
 #include "model/solid/recovery/recover.h"
 #include "testing.h"
 
@@ -57,6 +58,7 @@ static struct dea_material film;
 
 static struct strip *strip_create(enum kind kind, int order, int order_z, size_t film_elements)
 {
+  static const double fibre[] = {8e9 / 3, 1. / 3}; // both Lame constants some GPa
   static const double left = 0, right = 1, cuts[3] = {0, 0.4, 1};
   struct dea_block blocks[2] = {{map_strip, &left, cuts, cuts, 2, 2, 0},
                                 {map_strip, &right, cuts, cuts, 2, 2, 1}};
@@ -75,7 +77,7 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
                                           .kappa_Pa = 4e7,
                                           .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
                                           .thickness_m = h_m};
-  s->layers[1] = (struct dea_constituent){.lame_mu_Pa = 1e9, .lame_lambda_Pa = 2e9};
+  s->layers[1] = dea_constituent_bonded(fibre);
   assert_int_equal(dea_constituent_relax(&s->layers[0]), DEA_OK);
   size_t count = s->grid->element_count;
   s->layer = calloc(count, sizeof *s->layer);
@@ -420,6 +422,68 @@ static void test_each_allocation(void **state)
   strip_destroy(memory_strip);
 }
 
+/* Share of the film's area that maps show under fibres of a device at rest. */
+static double covered(double poisson_ratio)
+{
+  struct dea_device device = test_star(4);
+  struct dea_actuator actuator;
+  struct dea_grid *grid;
+  struct dea_element_set elements;
+  struct dea_field_mesh *mesh;
+  device.fibre.poisson_ratio = poisson_ratio;
+  assert_int_equal(dea_actuator_create(ctx, &device, &actuator), DEA_OK);
+  assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, grid->order, grid->order_z, &elements), DEA_OK);
+  int *layer = calloc(grid->element_count, sizeof *layer);
+  bool *active = calloc(grid->element_count, sizeof *active);
+  double *u = calloc(3 * grid->node_count, sizeof *u);
+  double *multiplier = calloc(grid->element_count * DEA_HEX_PRESSURES_MAX, sizeof *multiplier);
+  assert_true(layer != NULL && active != NULL && u != NULL && multiplier != NULL);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    layer[e] = dea_actuator_layer(&actuator, grid->region[e], grid->sheet[e]);
+  }
+  const struct dea_recover_input in = {.grid = grid,
+                                       .elements = &elements,
+                                       .kind = grid->kind,
+                                       .layers = actuator.layers,
+                                       .layer = layer,
+                                       .active = active,
+                                       .u = u,
+                                       .multiplier = multiplier};
+  assert_int_equal(dea_recover_surface(ctx, &in, DEA_FIBRE_DISC_FILM, &mesh), DEA_OK);
+  const double *under = values(mesh, "under_fibre");
+  double sum = 0, all = 0;
+  int corners = (grid->order + 1) * (grid->order + 1);
+  for (size_t c = 0; c < mesh->cell_count; c++) { // by the corners of the cells
+    const int *nodes = mesh->blocks[0].nodes + c * (size_t)corners;
+    const double *a = mesh->X + 3 * nodes[0], *b = mesh->X + 3 * nodes[grid->order];
+    const double *d = mesh->X + 3 * nodes[corners - 1 - grid->order];
+    const double *e = mesh->X + 3 * nodes[corners - 1];
+    double area =
+        0.5 * fabs((e[0] - a[0]) * (d[1] - b[1]) - (d[0] - b[0]) * (e[1] - a[1])); // diagonals
+    all += area;
+    sum += under[c] * area;
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+  dea_element_set_release(ctx, &elements);
+  dea_grid_destroy(ctx, grid);
+  free(layer);
+  free(active);
+  free(u);
+  free(multiplier);
+  return sum / all;
+}
+
+/* Four strips 2 mm wide from 3.75 mm to the frame at 15 mm, over pi 15^2 mm^2; whatever law their
+ * Poisson's ratio asks for. */
+static void test_film_under_fibres(void **state)
+{
+  (void)state;
+  double exact = 4 * 2 * 11.25 / (acos(-1) * 15 * 15);
+  assert_close(covered(0.38), exact, 1e-2, 0); // arcs at both ends
+  assert_close(covered(0.495), covered(0.38), 0, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -428,6 +492,7 @@ int main(void)
       cmocka_unit_test(test_bending),
       cmocka_unit_test(test_parts_do_not_share_points),
       cmocka_unit_test(test_inverted_element),
+      cmocka_unit_test(test_film_under_fibres),
       cmocka_unit_test(test_each_allocation),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -170,15 +170,15 @@ static void test_four_fibres_as_built(void **state)
 {
   (void)state;
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  const double h = 100e-6 / 2.25, E = 2950e6, nu = 0.38;
-  struct dea_constituent layers[] = {
-      {.law = dea_law_find("yeoh"),
-       .param = yeoh,
-       .pre_stretch = {1.5, 1.5, 1 / 2.25},
-       .kappa_Pa = 4e7,
-       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-       .thickness_m = h},
-      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  static const double plastic[] = {2950e6, 0.38};
+  const double h = 100e-6 / 2.25;
+  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
+                                      .param = yeoh,
+                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                      .kappa_Pa = 4e7,
+                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                      .thickness_m = h},
+                                     dea_constituent_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           4,
                                       2e-3, 100e-6, .fine = 3, .across = 2, .edge = 2e-4};
   const struct dea_solid_options options = {.order_z = 2,
@@ -231,7 +231,7 @@ static void test_cantilever_under_end_shear(void **state)
   static const double part[] = {0.2, 0.5, 1.0}, wanted[] = {2.493, 4.933, 6.698};
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
   const struct dea_ply sheet = {0.1, 1, 2};
-  const struct dea_constituent steel = {.lame_mu_Pa = 0.6e6}; // E 1.2e6, nu 0
+  const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &steel, .held = clamp};
   struct dea_grid *grid;
@@ -270,7 +270,7 @@ static struct dea_grid *small_grid;
 
 static void make_solid(struct dea_context *failing)
 {
-  const struct dea_constituent steel = {.lame_mu_Pa = 0.6e6};
+  const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &steel, .held = disc_held};
   struct dea_solid *solid = NULL;

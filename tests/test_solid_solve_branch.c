@@ -42,7 +42,7 @@ static void create(void)
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
   const struct dea_ply sheet = {thickness, 1, 2};
-  const struct dea_constituent layer = {.lame_mu_Pa = mu};
+  const struct dea_constituent layer = dea_constituent_bonded((const double[]){2 * mu, 0});
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .held = clamped};
   assert_int_equal(
@@ -202,7 +202,7 @@ static void test_modes_of_a_square_plate(void **state)
   (void)state;
   enum { COUNT = 4 };
   const double h = plate.size[2], D = 2 * mu * h * h / 12;
-  const struct dea_constituent layer = {.lame_mu_Pa = mu};
+  const struct dea_constituent layer = dea_constituent_bonded((const double[]){2 * mu, 0});
   double value[COUNT];
   grid = block_grid(ctx, &plate);
   solid = block_solid(ctx, grid, plate.order_z, &layer, clamped_around);

@@ -97,8 +97,7 @@ static void test_hertz(void **state)
 {
   (void)state;
   const double E = 1e6, nu = 0.3, d = 0.01;
-  const struct dea_constituent soft = {.lame_mu_Pa = E / (2 * (1 + nu)),
-                                       .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  const struct dea_constituent soft = dea_constituent_bonded((const double[]){E, nu});
   struct dea_grid *grid = hertz_grid();
   struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
   struct dea_surface *top;

@@ -281,11 +281,10 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
  * the lift of the tip. */
 static double lift(enum dea_solid_field_kind field, bool axes)
 {
-  const double h = 44e-6, E = 2950e6, nu = 0.38;
+  static const double plastic[] = {2950e6, 0.38};
+  const double h = 44e-6;
   struct body body = {.location = {3.75e-3, 15e-3, h}};
-  const struct dea_constituent layers[] = {
-      film(1.5, h),
-      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  const struct dea_constituent layers[] = {film(1.5, h), dea_constituent_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      3.75e-3,   15e-3,       h,           4,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 1e-4};
   const struct dea_solid_options options = {.order_z = 2,

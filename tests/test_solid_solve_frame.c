@@ -69,7 +69,7 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
                                       .thickness_m = h_m},
-                                     {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
+                                     dea_constituent_bonded((const double[]){2.75e9, 0.375})};
   const struct dea_quarter quarter = {2, 2, a_m, b_m, h_m, 4, 2e-3, 100e-6, .fine = 2, .across = 1};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 2,

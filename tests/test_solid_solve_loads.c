@@ -89,7 +89,7 @@ static double stretch(double P)
 static void test_slab_on_a_foundation(void **state)
 {
   (void)state;
-  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
+  const struct dea_constituent soft = dea_constituent_bonded((const double[]){2e5, 0});
   static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
   slab_create(&soft, sideways);
   struct dea_surface *bottom = side_create(DEA_FACE_BOTTOM), *top = side_create(DEA_FACE_TOP);
@@ -121,7 +121,7 @@ static double density(const void *self, int region, int sheet)
 static void test_hanging_block(void **state)
 {
   (void)state;
-  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
+  const struct dea_constituent soft = dea_constituent_bonded((const double[]){2e5, 0});
   static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
   double way = 0;
   slab_create(&soft, hangs);
@@ -140,7 +140,7 @@ static void test_hanging_block(void **state)
 static void test_pressure_all_around(void **state)
 {
   (void)state;
-  static const struct dea_constituent soft = {.lame_mu_Pa = 1e5, .lame_lambda_Pa = 2e5};
+  const struct dea_constituent soft = dea_constituent_bonded((const double[]){8e5 / 3, 1. / 3});
   static const double origin[3] = {0, 0, 0}, p = 1.5e5;
   static const enum dea_face sides[] = {DEA_FACE_FIRST_HIGH, DEA_FACE_SECOND_HIGH, DEA_FACE_TOP};
   struct dea_surface *surface[3];

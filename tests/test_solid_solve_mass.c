@@ -29,7 +29,8 @@ static double density(const void *self, int region, int sheet)
 static void test_inertia_of_rigid_motions(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = {.lame_mu_Pa = 1, .density_kg_per_m3 = rho};
+  struct dea_constituent layer = dea_constituent_bonded((const double[]){2, 0});
+  layer.density_kg_per_m3 = rho;
   struct dea_grid *grid = block_grid(ctx, &slab);
   struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
   struct dea_element_set elements;

@@ -51,23 +51,24 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
                                        bool relaxed)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  const double area = pre_stretch * pre_stretch, E = 2950e6, nu = 0.38;
-  struct dea_constituent layers[3] = {
-      {.law = dea_law_find("yeoh"),
-       .param = yeoh,
-       .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
-       .kappa_Pa = 4e7,
-       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-       .thickness_m = 100e-6 / area,
-       .relaxed = relaxed},
-      {0},
-      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  static const double plastic[] = {2950e6, 0.38};
+  static double bond[2];
+  const double area = pre_stretch * pre_stretch;
+  struct dea_constituent layers[3] = {{.law = dea_law_find("yeoh"),
+                                       .param = yeoh,
+                                       .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
+                                       .kappa_Pa = 4e7,
+                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                       .thickness_m = 100e-6 / area,
+                                       .relaxed = relaxed},
+                                      {0},
+                                      dea_constituent_bonded(plastic)};
   struct actuator it = {0};
   struct dea_quarter quarter = *mesh;
   quarter.film_thickness = layers[FILM].thickness_m;
   quarter.membrane = true;
   assert_int_equal(dea_constituent_relax(&layers[FILM]), DEA_OK);
-  assert_int_equal(dea_membrane_bond(&layers[FILM], &layers[BOND]), DEA_OK);
+  assert_int_equal(dea_membrane_bond(&layers[FILM], bond, &layers[BOND]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &it.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = quarter.order_z,
                                             .layer_count = 3,

@@ -93,15 +93,15 @@ struct test_case {
 static struct answer solve(const struct test_case *k)
 {
   static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-  const double l = k->pre_stretch, h = 100e-6 / (l * l), E = 2950e6, nu = 0.38;
-  struct dea_constituent layers[] = {
-      {.law = dea_law_find("yeoh"),
-       .param = yeoh,
-       .pre_stretch = {l, l, 1 / (l * l)},
-       .kappa_Pa = 4e7,
-       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-       .thickness_m = h},
-      {.lame_mu_Pa = E / (2 * (1 + nu)), .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))}};
+  static const double plastic[] = {2950e6, 0.38};
+  const double l = k->pre_stretch, h = 100e-6 / (l * l);
+  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
+                                      .param = yeoh,
+                                      .pre_stretch = {l, l, 1 / (l * l)},
+                                      .kappa_Pa = 4e7,
+                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                      .thickness_m = h},
+                                     dea_constituent_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           k->fibres,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 8e-4};
   const struct dea_solid_options options = {.order_z = 2,

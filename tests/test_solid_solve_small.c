@@ -72,7 +72,7 @@ static void check_capacity(int order)
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = epsilon,
                                       .thickness_m = h_m},
-                                     {.lame_mu_Pa = 1e9, .lame_lambda_Pa = 3e9}};
+                                     dea_constituent_bonded((const double[]){2.75e9, 0.375})};
   const struct dea_quarter quarter = {.order = order,
                                       .order_z = order,
                                       .a = a_m,

@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double mu = 1e5, length = 2;
+static const double mu = 1e5;
+static const double length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
-static const struct dea_constituent soft = {.lame_mu_Pa = 1e5};
+static struct dea_constituent soft; // of modulus mu, Poisson's ratio 0
 
 /* Slides on the three planes through the origin. */
 static int on_planes(const void *self, const double X[3])
@@ -198,6 +199,8 @@ static void test_arguments(void **state)
 
 int main(void)
 {
+  static const double param[] = {2e5, 0}; // modulus mu
+  soft = dea_constituent_bonded(param);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bar_is_pulled_and_pushed),
       cmocka_unit_test(test_prescribed_in_local_axes),

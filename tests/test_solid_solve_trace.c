@@ -29,15 +29,15 @@ static bool all_active(const void *self, int region, int sheet)
 static dea_status try(struct dea_context *with, const struct block *block, const char *law,
                       int (*held)(const void *self, const double X[3]))
 {
-  struct dea_constituent layer = {.lame_mu_Pa = 1,
-                                  .param = neo_hookean,
-                                  .pre_stretch = {1, 1, 1},
-                                  .kappa_Pa = 100,
-                                  .thickness_m = block->size[2]};
+  static const double mu_1[] = {2, 0};
+  struct dea_constituent layer = dea_constituent_bonded(mu_1);
   if (law != NULL) {
     layer.law = dea_law_find(law);
+    layer.param = neo_hookean;
+    layer.kappa_Pa = 100;
     layer.permittivity_F_per_m = 1;
   }
+  layer.thickness_m = block->size[2];
   assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = block->order_z,
                                             .layer_count = 1,

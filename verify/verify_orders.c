@@ -70,7 +70,9 @@ static number potential_linear(const number X[3])
 /* Layers with a shear modulus of 1 and, with a field, a permittivity of 1. */
 static struct dea_constituent layer_of(bool compressible, bool field)
 {
-  struct dea_constituent layer = {.lame_lambda_Pa = 1.5, .lame_mu_Pa = 1, .thickness_m = 1};
+  static const double mu_1[] = {2.6, 0.3}; // Lame constants 1 and 1.5
+  struct dea_constituent layer = dea_constituent_bonded(mu_1);
+  layer.thickness_m = 1;
   if (!compressible) {
     layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
                                      .param = yeoh,

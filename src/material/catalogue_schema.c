@@ -323,19 +323,28 @@ static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *
     return DEA_OK; // already an error
   }
   set->law = dea_law_find(set->law_name.text);
+  if (set->law != NULL && set->law->compressible != NULL) {
+    set->law = NULL;
+    return dea_schema_error(reader, set->law_name.location,
+                            "'%s' is the law of parts that have young_modulus and poisson_ratio: "
+                            "give those in place of a law",
+                            set->law_name.text);
+  }
   if (set->law != NULL) {
     return DEA_OK;
   }
   size_t count;
   const struct dea_law *const *laws = dea_law_all(&count);
   const char *names[32];
+  size_t named = 0;
   struct dea_text list = {.ctx = reader->ctx};
-  count = count < COUNT(names) ? count : COUNT(names);
-  for (size_t i = 0; i < count; i++) {
-    names[i] = laws[i]->name;
-    dea_text_add(&list, "%s%s", i > 0 ? ", " : "", names[i]);
+  for (size_t i = 0; i < count && named < COUNT(names); i++) {
+    if (laws[i]->compressible == NULL) {
+      dea_text_add(&list, "%s%s", named > 0 ? ", " : "", laws[i]->name);
+      names[named++] = laws[i]->name;
+    }
   }
-  const char *nearest = dea_nearest_name(set->law_name.text, names, count);
+  const char *nearest = dea_nearest_name(set->law_name.text, names, named);
   dea_status status = dea_schema_error(
       reader, set->law_name.location, "'%.60s' is not a law%s%s%s: %s", set->law_name.text,
       nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",

@@ -1,13 +1,15 @@
 /* Hyperelastic laws: an energy density per unstretched volume and its derivatives, nothing else.
  *
  * A law is one file, law_<name>.c, that defines one `const struct dea_law`, and one line in
- * law_list.h. It knows neither elements nor solvers. Two forms:
+ * law_list.h. It knows neither elements nor solvers. Three forms:
  *
- *   invariants: W(I1, I2, I4), with I1 = tr C, I2 = (tr^2 C - tr C^2)/2, I4 = a0 . C a0
- *   principal : W = sum over the three principal stretches of w(lambda)       (Valanis and Landel)
+ *   invariants  : W(I1, I2, I4), with I1 = tr C, I2 = (tr^2 C - tr C^2)/2, I4 = a0 . C a0
+ *   principal   : W = sum over the three principal stretches of w(lambda)     (Valanis and Landel)
+ *   compressible: W(I1, J), J the volume ratio
  *
- * Conventions: W = 0 in the unstretched state; the incompressibility constraint is the caller's, so
- * the stress of a law is free up to a pressure. */
+ * Conventions: W = 0 in the unstretched state. The incompressibility constraint of the first two is
+ * the caller's, so their stress is free up to a pressure; the third resists a change of volume
+ * itself and has no stress in the unstretched state. */
 #ifndef DEA_MATERIAL_LAW_H
 #define DEA_MATERIAL_LAW_H
 
@@ -36,6 +38,13 @@ struct dea_law_energy {
   dea_scalar W11, W12, W22, W14, W24, W44;
 };
 
+/* The same of a compressible law, by I1 and J. */
+struct dea_law_volume {
+  dea_scalar W;
+  dea_scalar W1, WJ;
+  dea_scalar W11, W1J, WJJ;
+};
+
 struct dea_law {
   const char *name;      // in design files: "yeoh"
   const char *long_name; // "Yeoh (1993), third order in I1 - 3"
@@ -50,6 +59,9 @@ struct dea_law {
   /* Principal form, or NULL: w [Pa], dw/dlambda, d2w/dlambda2 at one stretch. */
   dea_status (*principal)(const double *p, dea_scalar lambda, dea_scalar *w, dea_scalar *w1,
                           dea_scalar *w2);
+  /* Compressible form, or NULL. By I1 - 3 and J - 1 > -1, whose digits small strains need. */
+  dea_status (*compressible)(const double *p, dea_scalar I1_less_3, dea_scalar J_less_1,
+                             struct dea_law_volume *e);
   /* Shear modulus of the ground state [Pa] (isotropic part), for the small-strain limit and for
    * scaling. */
   double (*shear_modulus)(const double *p);

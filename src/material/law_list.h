@@ -10,6 +10,7 @@
   X(gent)                                                                                          \
   X(ogden)                                                                                         \
   X(arruda_boyce)                                                                                  \
-  X(hgo)
+  X(hgo)                                                                                           \
+  X(compressible_neo_hookean)
 
 #endif

@@ -77,7 +77,7 @@ static dea_status plane_principal(const struct dea_material *material, dea_scala
 dea_status DEA_NAME(dea_plane_elastic)(const struct dea_material *material, dea_scalar lambda1,
                                        dea_scalar lambda2, struct dea_plane *out)
 {
-  if (material->law == NULL) {
+  if (material->law == NULL || material->law->compressible != NULL) {
     return DEA_E_ARGUMENT;
   }
   if (!(DEA_RE(lambda1) > 0.0 && DEA_RE(lambda2) > 0.0)) { // also when one is not a number

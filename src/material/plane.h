@@ -14,7 +14,8 @@ struct dea_plane {
 };
 
 /* Elastic part. lambda1 is the direction that fibre_angle of an anisotropic law counts from.
- * DEA_E_DOMAIN beyond the law's domain or for a stretch that is not positive. */
+ * DEA_E_DOMAIN beyond the law's domain or for a stretch that is not positive, DEA_E_ARGUMENT
+ * without an incompressible law. */
 dea_status DEA_NAME(dea_plane_elastic)(const struct dea_material *material, dea_scalar lambda1,
                                        dea_scalar lambda2, struct dea_plane *out);
 

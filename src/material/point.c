@@ -256,15 +256,61 @@ static void push_tangent(const dea_scalar F[9], const struct referential *ref, d
   }
 }
 
-static dea_status evaluate(const struct dea_law *law, const double *param, const dea_scalar F[9],
-                           const double fibre[3], bool tangent, struct dea_point *out)
+/* ---- compressible form ---- */
+
+/* cof = dJ/dF; returns J. */
+static dea_scalar cofactors(const dea_scalar F[9], dea_scalar cof[9])
 {
-  if (law->anisotropic && fibre == NULL) {
-    return DEA_E_ARGUMENT;
+  for (int i = 0; i < 3; i++) {
+    const dea_scalar *a = F + 3 * ((i + 1) % 3), *b = F + 3 * ((i + 2) % 3);
+    for (int J = 0; J < 3; J++) {
+      const int K = (J + 1) % 3, L = (J + 2) % 3;
+      cof[3 * i + J] = a[K] * b[L] - a[L] * b[K];
+    }
   }
-  if (!(DEA_RE(determinant(F)) > 0.0)) { // also when it is not a number
-    return DEA_E_DOMAIN;
+  return F[0] * cof[0] + F[1] * cof[1] + F[2] * cof[2];
+}
+
+/* P = 2 W1 F + WJ cof and its derivative, with d2J/dF2 = (cof_iJ cof_kL - cof_iL cof_kJ)/J. From D
+ * = F - 1, so that at small strains no difference of numbers near 3 hides the energy from a line
+ * search: I1 - 3 = 2 tr D + D:D, J - 1 = tr D + (tr^2 D - D:D^T)/2 + det D. */
+static dea_status from_volume(const struct dea_law *law, const double *param, const dea_scalar F[9],
+                              bool tangent, struct dea_point *out)
+{
+  dea_scalar D[9], cof[9], trace = 0.0, square = 0.0, crossed = 0.0;
+  for (int a = 0; a < 9; a++) {
+    D[a] = F[a] - (a % 4 == 0 ? 1.0 : 0.0);
   }
+  for (int a = 0; a < 9; a++) {
+    trace += a % 4 == 0 ? D[a] : 0.0;
+    square += D[a] * D[a];
+    crossed += D[a] * D[3 * (a % 3) + a / 3];
+  }
+  const dea_scalar excess = trace + 0.5 * (trace * trace - crossed) + cofactors(D, cof);
+  const dea_scalar J = cofactors(F, cof);
+  struct dea_law_volume e;
+  const dea_status status = law->compressible(param, 2.0 * trace + square, excess, &e);
+  if (status != DEA_OK) {
+    return status;
+  }
+  out->W = e.W;
+  for (int a = 0; a < 9; a++) {
+    out->P[a] = 2.0 * e.W1 * F[a] + e.WJ * cof[a];
+    const dea_scalar by_I1 = 4.0 * e.W11 * F[a] + 2.0 * e.W1J * cof[a];
+    const dea_scalar by_J = 2.0 * e.W1J * F[a] + (e.WJJ + e.WJ / J) * cof[a];
+    for (int b = 0; b < 9 && tangent; b++) {
+      const int iL = 3 * (a / 3) + b % 3, kJ = 3 * (b / 3) + a % 3;
+      out->A[9 * a + b] =
+          (a == b ? 2.0 * e.W1 : 0.0) + by_I1 * F[b] + by_J * cof[b] - e.WJ / J * cof[iL] * cof[kJ];
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status from_referential(const struct dea_law *law, const double *param,
+                                   const dea_scalar F[9], const double fibre[3], bool tangent,
+                                   struct dea_point *out)
+{
   dea_scalar C[3][3];
   right_cauchy_green(F, C);
   struct referential ref;
@@ -276,16 +322,34 @@ static dea_status evaluate(const struct dea_law *law, const double *param, const
   }
   out->W = ref.W;
   push_stress(F, &ref, out->P);
+  if (tangent) {
+    push_tangent(F, &ref, out->A);
+  }
+  return DEA_OK;
+}
+
+static dea_status evaluate(const struct dea_law *law, const double *param, const dea_scalar F[9],
+                           const double fibre[3], bool tangent, struct dea_point *out)
+{
+  if (law->anisotropic && fibre == NULL) {
+    return DEA_E_ARGUMENT;
+  }
+  if (!(DEA_RE(determinant(F)) > 0.0)) { // also when it is not a number
+    return DEA_E_DOMAIN;
+  }
+  const dea_status status = law->compressible != NULL
+                                ? from_volume(law, param, F, tangent, out)
+                                : from_referential(law, param, F, fibre, tangent, out);
+  if (status != DEA_OK) {
+    return status;
+  }
   // Entries of F that are infinite, or so large that a power of them overflows.
   dea_scalar sum = out->W;
   for (int i = 0; i < 9; i++) {
     sum += out->P[i];
   }
-  if (tangent) {
-    push_tangent(F, &ref, out->A);
-    for (int i = 0; i < 81; i += 10) {
-      sum += out->A[i];
-    }
+  for (int i = 0; i < 81 && tangent; i += 10) {
+    sum += out->A[i];
   }
   return isfinite(DEA_RE(sum)) ? DEA_OK : DEA_E_DOMAIN;
 }

@@ -11,9 +11,11 @@ static const double kappa_share = 100; // kappa over the shear modulus
 static const double incompressible = 0.49;
 
 /* Film or electrode: a law, and the film's pre-stretch. */
-static struct dea_constituent stretched(const struct dea_material *material, double pre_stretch)
+static struct dea_constituent stretched(enum dea_part part, const struct dea_material *material,
+                                        double pre_stretch)
 {
   return (struct dea_constituent){
+      .part = part,
       .law = material->law,
       .param = material->param,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
@@ -21,20 +23,20 @@ static struct dea_constituent stretched(const struct dea_material *material, dou
   };
 }
 
-/* A part that is bonded free of stress. mu_Pa: memory for the parameter of an incompressible one.
- */
-static struct dea_constituent bonded(double young_modulus_Pa, double poisson_ratio, double *mu_Pa)
+/* A part that is bonded free of stress. param: memory for the parameters of its law. */
+static struct dea_constituent bonded(enum dea_part part, double young_modulus_Pa,
+                                     double poisson_ratio, double param[2])
 {
-  double E = young_modulus_Pa, nu = poisson_ratio;
-  if (nu < incompressible) {
-    return (struct dea_constituent){.lame_mu_Pa = E / (2 * (1 + nu)),
-                                    .lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu))};
+  param[0] = young_modulus_Pa;
+  param[1] = poisson_ratio;
+  struct dea_constituent out = dea_constituent_bonded(param);
+  out.part = part;
+  if (poisson_ratio >= incompressible) {
+    param[0] = young_modulus_Pa / 3;
+    out.law = dea_law_find("neo-hookean");
+    out.kappa_Pa = kappa_share * param[0];
   }
-  *mu_Pa = E / 3;
-  return (struct dea_constituent){.law = dea_law_find("neo-hookean"),
-                                  .param = mu_Pa,
-                                  .pre_stretch = {1, 1, 1},
-                                  .kappa_Pa = kappa_share * *mu_Pa};
+  return out;
 }
 
 static bool known(double density)
@@ -80,18 +82,19 @@ dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_act
 
 /* Film and electrodes as surfaces, and what joins them to fibres (docs/theory/membrane.md). */
 static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
-                                struct dea_constituent *layers)
+                                struct dea_actuator *out)
 {
+  struct dea_constituent *layers = out->layers;
   struct dea_constituent *film = &layers[DEA_CONSTITUENT_FILM],
                          *electrode = &layers[DEA_CONSTITUENT_ELECTRODE];
   struct dea_constituent *under = &layers[DEA_CONSTITUENT_BOND_ELECTRODE];
-  dea_status status = dea_membrane_bond(film, &layers[DEA_CONSTITUENT_BOND]);
+  dea_status status =
+      dea_membrane_bond(film, out->param[DEA_CONSTITUENT_BOND], &layers[DEA_CONSTITUENT_BOND]);
   film->relaxed = !stiff_electrodes; // bonded sheets wrinkle together, not each by itself
   if (status == DEA_OK && stiff_electrodes) {
-    status = dea_membrane_bond(electrode, under);
+    status = dea_membrane_bond(electrode, out->param[DEA_CONSTITUENT_BOND_ELECTRODE], under);
     // the load comes in below it, and not over its depth as a film's own does
-    under->lame_mu_Pa /= 1.5;
-    under->lame_lambda_Pa /= 1.5;
+    out->param[DEA_CONSTITUENT_BOND_ELECTRODE][0] /= 1.5;
     electrode->thickness_m *= 2; // both
   }
   return status == DEA_OK ? DEA_OK
@@ -110,23 +113,24 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, &out->plate));
   struct dea_constituent *layers = out->layers;
   double l = d->pre_stretch, slope = d->film.permittivity.slope;
-  layers[DEA_CONSTITUENT_FILM] = stretched(&d->film, l);
+  layers[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
   // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
   layers[DEA_CONSTITUENT_FILM].permittivity_F_per_m =
       DEA_EPSILON_0 * (d->film.permittivity.at_rest + slope * (l - 1));
   layers[DEA_CONSTITUENT_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
   layers[DEA_CONSTITUENT_FILM].thickness_m = d->film_thickness_m;
   layers[DEA_CONSTITUENT_ELECTRODE] =
-      stretched(film.electrode != NULL ? film.electrode : &d->film, l);
+      stretched(DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
   layers[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
-  layers[DEA_CONSTITUENT_GLUE] = bonded(d->bond_modulus_Pa, 0.5, &out->glue_mu_Pa);
-  layers[DEA_CONSTITUENT_FIBRE] =
-      bonded(d->fibre.young_modulus_Pa, d->fibre.poisson_ratio, &out->fibre_mu_Pa);
-  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+  layers[DEA_CONSTITUENT_GLUE] =
+      bonded(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5, out->param[DEA_CONSTITUENT_GLUE]);
+  layers[DEA_CONSTITUENT_FIBRE] = bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa,
+                                         d->fibre.poisson_ratio, out->param[DEA_CONSTITUENT_FIBRE]);
+  for (int i = 0; i < DEA_CONSTITUENT_BOND; i++) { // bonds come below, free of stress
     bool there = i == DEA_CONSTITUENT_FILM ||
                  (i == DEA_CONSTITUENT_ELECTRODE && film.electrode != NULL) ||
-                 (i > DEA_CONSTITUENT_ELECTRODE && d->fibre_count > 0); // bonds come below
+                 (i > DEA_CONSTITUENT_ELECTRODE && d->fibre_count > 0);
     dea_status status = there ? dea_constituent_relax(&layers[i]) : DEA_OK;
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "the law '%s' ends before the pre-stretch %.4g",
@@ -140,7 +144,7 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   }
   set_densities(d, layers);
   if (out->plate.membrane) {
-    DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, layers));
+    DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, out));
   }
   return DEA_OK;
 }

@@ -19,7 +19,7 @@ struct dea_actuator {
   const struct dea_device *device; // lent
   struct dea_fibre_disc plate;
   struct dea_constituent layers[DEA_CONSTITUENT_COUNT];
-  double glue_mu_Pa, fibre_mu_Pa; // of those that are incompressible
+  double param[DEA_CONSTITUENT_COUNT][2]; // of the laws of what is bonded, lent to layers
 };
 
 /* The plate of a device, on the domain and with the refinement that it names. DEA_E_UNSUPPORTED for

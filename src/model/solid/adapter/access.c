@@ -127,24 +127,28 @@ static double size_of(const struct dea_grid *grid)
 
 // Parts ------------------------------------------------------------------------------------------
 
-static dea_status make_layer(struct dea_context *ctx, const struct dea_part_spec *part,
+/* part: what the constituent lends its parameters from; without a law it is given those of the
+ * compressible one. */
+static dea_status make_layer(struct dea_context *ctx, struct dea_part_spec *part,
                              struct dea_constituent *out)
 {
-  double E = part->young_modulus_Pa, nu = part->poisson_ratio, l = part->pre_stretch;
-  *out = (struct dea_constituent){.law = part->law,
-                                  .param = part->param,
-                                  .pre_stretch = {l, l, 1 / (l * l)},
-                                  .kappa_Pa = part->bulk_modulus_Pa,
-                                  .permittivity_F_per_m = part->permittivity_F_per_m,
-                                  .thickness_m = part->electrode_gap_m,
-                                  .density_kg_per_m3 = part->density_kg_per_m3};
+  double l = part->pre_stretch;
   if (part->law == NULL) {
-    out->lame_mu_Pa = E / (2 * (1 + nu));
-    out->lame_lambda_Pa = E * nu / ((1 + nu) * (1 - 2 * nu));
+    part->param[0] = part->young_modulus_Pa;
+    part->param[1] = part->poisson_ratio;
+    *out = dea_constituent_bonded(part->param);
+  } else {
+    *out = (struct dea_constituent){.law = part->law,
+                                    .param = part->param,
+                                    .pre_stretch = {l, l, 1 / (l * l)},
+                                    .kappa_Pa = part->bulk_modulus_Pa};
   }
+  out->permittivity_F_per_m = part->permittivity_F_per_m;
+  out->thickness_m = part->electrode_gap_m;
+  out->density_kg_per_m3 = part->density_kg_per_m3;
   if (dea_constituent_relax(out) != DEA_OK) {
     return dea_fail(ctx, DEA_E_DOMAIN, "the law '%s' has no stress at a pre-stretch of %g",
-                    part->law->name, l);
+                    out->law->name, l);
   }
   return DEA_OK;
 }

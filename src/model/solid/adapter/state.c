@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { LAYER_NUMBERS = 10 }; // beside the parameters of the law
+enum { LAYER_NUMBERS = 8 }; // beside the parameters of the law
 
 static size_t layer_count(const struct dea_solid *s)
 {
@@ -23,19 +23,15 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
   size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
   for (size_t i = 0; i < layer_count(s); i++) {
     const struct dea_constituent *l = &s->layers[i];
-    const double own[LAYER_NUMBERS] = {l->lame_lambda_Pa, l->lame_mu_Pa,
-                                       l->pre_stretch[0], l->pre_stretch[1],
-                                       l->p0_Pa,          l->kappa_s_Pa,
-                                       l->kappa_Pa,       l->permittivity_F_per_m,
-                                       l->thickness_m,    l->permittivity_slope_F_per_m};
-    size_t params = l->law != NULL ? l->law->param_count : 0;
+    const double own[LAYER_NUMBERS] = {
+        l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
+        l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
+    size_t params = l->law->param_count;
     if (count + LAYER_NUMBERS + params > room) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer layers");
     }
     memcpy(to + count, own, sizeof own);
-    if (params > 0) {
-      memcpy(to + count + LAYER_NUMBERS, l->param, params * sizeof *to);
-    }
+    memcpy(to + count + LAYER_NUMBERS, l->param, params * sizeof *to);
     count += LAYER_NUMBERS + params;
   }
   out->number_count += count;

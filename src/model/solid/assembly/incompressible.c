@@ -10,10 +10,8 @@ static const double stiffer = 128; // kappa where unstable modes are counted; a 
 double dea_solid_theta_max(const struct dea_solid *s)
 {
   double most = 0;
-  size_t pressures = (size_t)s->elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    bool projected = s->layers[s->layer[i / pressures]].law != NULL;
-    most = projected ? fmax(most, fabs(s->theta[i])) : most;
+    most = fmax(most, fabs(s->theta[i]));
   }
   return most;
 }
@@ -23,7 +21,7 @@ void dea_solid_update_multipliers(struct dea_solid *s)
   size_t pressures = (size_t)s->elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
     const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] += layer->law != NULL ? layer->kappa_Pa * s->theta[i] : 0;
+    s->multiplier[i] += layer->kappa_Pa * s->theta[i];
   }
 }
 
@@ -40,7 +38,7 @@ static void keep_pressures(struct dea_solid *s, double factor)
   size_t pressures = (size_t)s->elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
     const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] -= layer->law != NULL ? (factor - 1) * layer->kappa_Pa * s->theta[i] : 0;
+    s->multiplier[i] -= (factor - 1) * layer->kappa_Pa * s->theta[i];
   }
 }
 

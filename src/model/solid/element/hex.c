@@ -203,12 +203,12 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
     set_flux(s, q, at->weight, point.P, 0, work);
   }
   if (order >= DEA_TANGENT && predicted != NULL) {
-    double other = 0;
-    for (int m = 0; m < s->pressures && constituent->law != NULL; m++) {
+    double other = -pressure;
+    for (int m = 0; m < s->pressures; m++) { // 0 of what takes none
       other += s->pressure[q][m] * predicted[m];
     }
-    dea_constituent_restress(at->F, at->cof, at->J, constituent->law != NULL ? other - pressure : 0,
-                             predicted + s->pressures + 6 * q, &point);
+    dea_constituent_restress(at->F, at->cof, at->J, other, predicted + s->pressures + 6 * q,
+                             &point);
   }
   if (order >= DEA_TANGENT) {
     set_tangent(q, point.A, work);
@@ -253,7 +253,7 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
   struct hex_work work;
   const struct dea_hex_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
-  bool projected = constituent->law != NULL;
+  bool projected = dea_constituent_takes_pressure(constituent);
   double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
   const double *predicted = order >= DEA_TANGENT ? in->predicted : NULL;
   dea_status status = dea_hex_find_points(shape, in->X, in->u, work.points);
@@ -261,6 +261,9 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
     status = dea_hex_project(shape, work.points, work.factor, work.moment, out->theta);
   }
   out->energy_J = out->volume_m3 = 0;
+  if (!projected) {
+    memset(out->theta, 0, sizeof out->theta);
+  }
   for (int m = 0; status == DEA_OK && m < shape->pressures && projected; m++) {
     out->energy_J +=
         (in->multiplier[m] + 0.5 * constituent->kappa_Pa * out->theta[m]) * work.moment[m];
@@ -376,7 +379,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   const struct dea_constituent *constituent = in->constituent;
   const double *multiplier = in->multiplier;
   double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
-  bool projected = constituent->law != NULL;
+  bool projected = dea_constituent_takes_pressure(constituent);
   dea_status status = dea_hex_kinematics(s, in->X, in->u, gradient, points);
   if (status == DEA_OK && projected) {
     status = dea_hex_project(s, points, factor, moment, theta);

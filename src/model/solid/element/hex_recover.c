@@ -69,11 +69,9 @@ static dea_status evaluate_point(const struct dea_constituent *constituent,
   dea_status status =
       dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, 0, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
-  if (constituent->law != NULL) {
-    double slope, curvature;
-    values[15] -= constituent->p0_Pa * (at->J - 1) +
-                  dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
-  }
+  double slope, curvature;
+  values[15] -= constituent->p0_Pa * (at->J - 1) +
+                dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
   if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
     status =
         dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);
@@ -133,7 +131,7 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   }
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
     double pressure = 0, E[3];
-    for (int m = 0; m < shape->pressures && constituent->law != NULL; m++) {
+    for (int m = 0; m < shape->pressures; m++) {
       pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
     }
     if (coupled) {

@@ -52,7 +52,7 @@ static dea_status check_layers(struct dea_context *ctx, const struct dea_solid *
           ctx, DEA_E_DOMAIN,
           "the law '%s' ends before the pre-stretch %.4g: take a smaller pre-stretch or "
           "parameters that reach further",
-          layer->law != NULL ? layer->law->name : "neo-hookean", layer->pre_stretch[0]);
+          layer->law->name, layer->pre_stretch[0]);
     }
   }
   return DEA_OK;

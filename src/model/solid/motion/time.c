@@ -228,7 +228,7 @@ static void follow_stiffness(struct dea_solid_time *t)
   double most = 0;
   for (size_t l = 0; l < s->layer_count && t->history != NULL; l++) {
     const struct dea_constituent *layer = &s->layers[l];
-    if (layer->law != NULL) {
+    if (layer->kappa_Pa > 0) {
       most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(layer));
     }
   }

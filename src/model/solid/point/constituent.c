@@ -41,36 +41,6 @@ double dea_constituent_pointwise(const struct dea_constituent *layer, double J, 
   return k * (0.5 * excess * (excess + 2) - log1p(excess));
 }
 
-/* W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 ln^2 J. From the displacement gradient D = F - 1, so that
- * at small strains no difference of numbers near 3 hides the energy from a line search: I1 - 3 = 2
- * tr D + D:D, J - 1 = tr D + (tr^2 D - D:D^T)/2 + det D. */
-static void compressible(const struct dea_constituent *layer, const double F[9],
-                         const double cof[9], double J, bool tangent, struct dea_point *out)
-{
-  double mu = layer->lame_mu_Pa, lambda = layer->lame_lambda_Pa, D[9], none[9], inverse[9];
-  double trace = 0, square = 0, crossed = 0;
-  for (int a = 0; a < 9; a++) {
-    D[a] = F[a] - (a % 4 == 0 ? 1 : 0);
-    inverse[a] = cof[a] / J; // F^-T
-  }
-  for (int a = 0; a < 9; a++) {
-    trace += a % 4 == 0 ? D[a] : 0;
-    square += D[a] * D[a];
-    crossed += D[a] * D[3 * (a % 3) + a / 3];
-  }
-  double excess = trace + 0.5 * (trace * trace - crossed) + dea_cofactors(D, none);
-  double l = log1p(excess);
-  out->W = mu * (trace + 0.5 * square - l) + 0.5 * lambda * l * l;
-  for (int a = 0; a < 9; a++) {
-    out->P[a] = mu * (F[a] - inverse[a]) + lambda * l * inverse[a];
-    for (int b = 0; b < 9 && tangent; b++) {
-      int crossed_a = 3 * (a / 3) + b % 3, crossed_b = 3 * (b / 3) + a % 3;
-      out->A[9 * a + b] = (a == b ? mu : 0) + lambda * inverse[a] * inverse[b] +
-                          (mu - lambda * l) * inverse[crossed_a] * inverse[crossed_b];
-    }
-  }
-}
-
 /* -(E^2/2) eps(q) q, q = |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns.
  * With eps = e0 + e1 q^(1/4) its derivative by q is -k/2, k = E^2 (e0 + (5/4) e1 q^(1/4)). */
 static void add_electric(const struct dea_constituent *layer, double E, const double F[9],
@@ -113,13 +83,9 @@ static void add_electric(const struct dea_constituent *layer, double E, const do
 }
 
 /* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
-static dea_status elastic(const struct dea_constituent *layer, const double F[9],
-                          const double cof[9], double J, bool tangent, struct dea_point *out)
+static dea_status elastic(const struct dea_constituent *layer, const double F[9], bool tangent,
+                          struct dea_point *out)
 {
-  if (layer->law == NULL) {
-    compressible(layer, F, cof, J, tangent, out);
-    return DEA_OK;
-  }
   static const double fibre[3] = {1, 0, 0};
   const double *G = layer->pre_stretch;
   double FG[9];
@@ -139,7 +105,15 @@ static dea_status elastic(const struct dea_constituent *layer, const double F[9]
 
 double dea_constituent_modulus(const struct dea_constituent *layer)
 {
-  return layer->law != NULL ? layer->law->shear_modulus(layer->param) : layer->lame_mu_Pa;
+  return layer->law->shear_modulus(layer->param);
+}
+
+struct dea_constituent dea_constituent_bonded(const double param[2])
+{
+  return (struct dea_constituent){.part = DEA_PART_FIBRE,
+                                  .law = dea_law_find("compressible-neo-hookean"),
+                                  .param = param,
+                                  .pre_stretch = {1, 1, 1}};
 }
 
 dea_status dea_constituent_relax(struct dea_constituent *layer)
@@ -147,10 +121,10 @@ dea_status dea_constituent_relax(struct dea_constituent *layer)
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   struct dea_point point;
   layer->p0_Pa = 0;
-  if (layer->law == NULL) {
+  if (!dea_constituent_takes_pressure(layer)) {
     return DEA_OK;
   }
-  dea_status status = elastic(layer, one, one, 1, false, &point);
+  dea_status status = elastic(layer, one, false, &point);
   layer->p0_Pa = -point.P[8];
   layer->kappa_s_Pa =
       0.5 * fabs(layer->p0_Pa); // above the third that it takes, docs/theory/solid.md
@@ -161,11 +135,11 @@ static dea_status evaluate(const struct dea_constituent *layer, const double F[9
                            const double cof[9], double J, double pressure, double field_V_per_m,
                            bool tangent, struct dea_point *point)
 {
-  dea_status status = elastic(layer, F, cof, J, tangent, point);
+  dea_status status = elastic(layer, F, tangent, point);
   if (status != DEA_OK) {
     return status;
   }
-  if (layer->law != NULL) {
+  if (dea_constituent_takes_pressure(layer)) {
     double slope, curvature;
     point->W += layer->p0_Pa * (J - 1) + dea_constituent_pointwise(layer, J, &slope, &curvature);
     double p = layer->p0_Pa + slope + pressure;

@@ -1,11 +1,11 @@
 /* What an element is made of, and its energy, stress and tangent at a point.
  *
- * Energy per volume of the stretched flat film (docs/theory/solid.md), a film or glue with a law:
+ * Energy per volume of the stretched flat film (docs/theory/solid.md), of an incompressible law:
  *
  *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) - (eps/2) E^2 |F_1 x F_2|^2
  *
- * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md),
- * and a compressible neo-Hookean solid (fibre) without one. */
+ * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md). A
+ * constituent of a compressible law (fibre) has W alone of the first line. */
 #ifndef DEA_MODEL_SOLID_POINT_CONSTITUENT_H
 #define DEA_MODEL_SOLID_POINT_CONSTITUENT_H
 
@@ -15,10 +15,13 @@
 /* How much of an energy is wanted; each level has those before it. */
 enum dea_eval_order { DEA_ENERGY, DEA_FORCE, DEA_TANGENT };
 
+/* What a part of an actuator is, for what is told of it. */
+enum dea_part { DEA_PART_FILM, DEA_PART_ELECTRODE, DEA_PART_GLUE, DEA_PART_FIBRE };
+
 struct dea_constituent {
-  const struct dea_law *law; // NULL: compressible neo-Hookean solid of the two Lame constants
-  const double *param;
-  double lame_lambda_Pa, lame_mu_Pa;
+  enum dea_part part;
+  const struct dea_law *law;
+  const double *param;         // of the law, SI, lent
   double pre_stretch[3];       // diagonal of G, det G = 1
   double p0_Pa, kappa_s_Pa;    // dea_constituent_relax sets them
   double kappa_Pa;             // bulk modulus of the projected part, of the element
@@ -33,15 +36,25 @@ struct dea_constituent {
   double viscous_Pa;
 };
 
+/* A part that is bonded free of stress, of the compressible neo-Hookean law. param: Young's modulus
+ * [Pa], Poisson's ratio below 0.5; lent. */
+struct dea_constituent dea_constituent_bonded(const double param[2]);
+
+/* Whether the pressure is not the law's but a multiplier's. */
+static inline bool dea_constituent_takes_pressure(const struct dea_constituent *constituent)
+{
+  return constituent->law->compressible == NULL;
+}
+
 /* Shear modulus of the ground state [Pa]. */
 double dea_constituent_modulus(const struct dea_constituent *layer);
 
 /* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
- * keeps such a layer free of false unstable modes. Nothing to do for a compressible solid. */
+ * keeps such a layer free of false unstable modes. Nothing to do for a compressible law. */
 dea_status dea_constituent_relax(struct dea_constituent *layer);
 
 /* Energy, stress and tangent by F, at cofactors cof and determinant J of F. pressure: added as
- * p dJ/dF (only with a law; its energy is the caller's). field_V_per_m: reference field E between
+ * p dJ/dF (of what takes one; its energy is the caller's). field_V_per_m: reference field E between
  * the electrodes, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
 dea_status dea_constituent_point(const struct dea_constituent *layer, const double F[9],
                                  const double cof[9], double J, double pressure,

@@ -114,11 +114,6 @@ double dea_recover_height(const struct dea_recover_input *in, size_t element, in
 
 /* ---- state in the plane ---- */
 
-double dea_recover_pre_stretch(const struct dea_constituent *layer, int axis)
-{
-  return layer->law == NULL ? 1 : layer->pre_stretch[axis];
-}
-
 static double dot(const double a[3], const double b[3])
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -139,13 +134,13 @@ void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
   const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                             a[0] * b[1] - a[1] * b[0]};
   double e[2][3], T[2][2], squares[2], cof[9];
-  double gx = dea_recover_pre_stretch(layer, 0), gy = dea_recover_pre_stretch(layer, 1);
+  double gx = layer->pre_stretch[0], gy = layer->pre_stretch[1];
   double length = sqrt(dot(a, a));
   out->area = sqrt(dot(normal, normal));
   principal(gx * gx * dot(a, a), gy * gy * dot(b, b), gx * gy * dot(a, b), squares);
   out->stretch[0] = sqrt(squares[0]);
   out->stretch[1] = sqrt(fmax(squares[1], 0));
-  out->stretch[2] = dea_recover_pre_stretch(layer, 2) * dea_cofactors(F, cof) / out->area;
+  out->stretch[2] = layer->pre_stretch[2] * dea_cofactors(F, cof) / out->area;
   for (int i = 0; i < 3; i++) { // an orthonormal basis of the current tangent plane
     e[0][i] = a[i] / length;
   }

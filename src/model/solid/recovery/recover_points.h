@@ -32,9 +32,6 @@ struct dea_plane_state {
 void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
                        const double force[6], struct dea_plane_state *out);
 
-/* Pre-stretch of a layer; 1 for what is bonded free of stress. */
-double dea_recover_pre_stretch(const struct dea_constituent *layer, int axis);
-
 /* Adds a field and writes where its values go; after a failure *status stays and *values is NULL.
  */
 void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,

@@ -140,13 +140,13 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
   return DEA_OK;
 }
 
-/* Whether a part without a law, a fibre, stands in a column. */
+/* Whether a fibre stands in a column. */
 static bool has_fibre(const struct work *w, size_t from, size_t end)
 {
   bool any = false;
   for (size_t k = from; k < end; k++) {
     const struct dea_constituent *layer = &w->in->layers[w->in->layer[w->stack[k].element]];
-    any = any || (layer->law == NULL && w->stack[k].sheet != w->sheet);
+    any = any || layer->part == DEA_PART_FIBRE;
   }
   return any;
 }

@@ -168,7 +168,7 @@ static void principal_stretch(const struct dea_constituent *layer, const double 
     for (int i = 0; i < 3; i++) {
       C[m] += F[3 * i + row[m]] * F[3 * i + column[m]];
     }
-    C[m] *= dea_recover_pre_stretch(layer, row[m]) * dea_recover_pre_stretch(layer, column[m]);
+    C[m] *= layer->pre_stretch[row[m]] * layer->pre_stretch[column[m]];
   }
   principal(C, out, axis);
   for (int k = 0; k < 3; k++) {
