@@ -23,11 +23,11 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = side_m * t;
 }
 
-static bool under_voltage(const void *self, int region, int sheet)
+static bool under_voltage(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet == 0;
+  return ply == 0;
 }
 
 static int edges(const void *self, const double X[3])
@@ -82,7 +82,7 @@ static int run_one(double unknowns)
                                   .permittivity_F_per_m = 2.5e-11,
                                   .thickness_m = thickness_m};
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
-  const struct dea_ply sheets[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
+  const struct dea_ply plies[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .active = under_voltage, .held = edges};
   struct dea_context *ctx = NULL;
@@ -101,7 +101,7 @@ static int run_one(double unknowns)
   bench_need(dea_constituent_relax(&layer), ctx);
   bench_need(dea_solid_start(ctx), ctx);
   double start = bench_now_s();
-  bench_need(dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, 0, side_m, &grid), ctx);
+  bench_need(dea_grid_create(ctx, 2, &block, 1, plies, 2, NULL, 0, side_m, &grid), ctx);
   bench_need(dea_solid_create(ctx, grid, &options, &solid), ctx);
   sample.of[CREATE] = bench_now_s() - start;
   measure(ctx, solid, &sample);

@@ -21,13 +21,13 @@ struct dea_quarter {
   size_t across; // elements across half a fibre
   double edge;   // width of the elements on both sides of the circle a, from where they double
                  // up to about square; 0 for no grading
-  bool membrane; // the film is a surface, see the sheets below
+  bool membrane; // the film is a surface, see the plies below
 };
 enum { DEA_REGION_ELECTRODE, DEA_REGION_FILM, DEA_REGION_FIBRE };
-enum { DEA_SHEET_FILM, DEA_SHEET_FIBRE };
-/* The sheets with a membrane: the film as a surface at z = 0; under fibres only the layer from
+enum { DEA_PLY_FILM, DEA_PLY_FIBRE };
+/* The plies with a membrane: the film as a surface at z = 0; under fibres only the layer from
  * there to h/2 that joins them to it (dea_membrane_bond); fibres. */
-enum { DEA_SHEET_SURFACE, DEA_SHEET_BOND, DEA_SHEET_FIBRE_ON_BOND };
+enum { DEA_PLY_SURFACE, DEA_PLY_BOND, DEA_PLY_FIBRE_ON_BOND };
 
 static const double quarter_eighth = 0.78539816339744831; // pi/4
 
@@ -105,10 +105,10 @@ static inline void quarter_reverse_cuts(double *cuts, size_t count)
   memcpy(cuts, turned, (count + 1) * sizeof *cuts);
 }
 
-/* The first sheet is the film, solid or not; the others are there for the fibres. */
-static inline bool quarter_film_everywhere(int region, int sheet)
+/* The first ply is the film, solid or not; the others are there for the fibres. */
+static inline bool quarter_film_everywhere(int region, int ply)
 {
-  return sheet == 0 || region == DEA_REGION_FIBRE;
+  return ply == 0 || region == DEA_REGION_FIBRE;
 }
 
 /* Elements between two angles of the circle a, as shares of pi/4, and where their lines meet the

@@ -30,9 +30,9 @@ static inline struct dea_grid *block_grid(struct dea_context *ctx, const struct 
   }
   const struct dea_block quad = {block_map,       block,           cuts[0], cuts[1],
                                  block->count[0], block->count[1], 0};
-  const struct dea_ply sheet = {block->size[2], block->count[2], block->order_z};
+  const struct dea_ply ply = {block->size[2], block->count[2], block->order_z};
   struct dea_grid *grid;
-  assert_int_equal(dea_grid_create(ctx, block->order, &quad, 1, &sheet, 1, NULL, 0,
+  assert_int_equal(dea_grid_create(ctx, block->order, &quad, 1, &ply, 1, NULL, 0,
                                    fmax(block->size[0], block->size[1]), &grid),
                    DEA_OK);
   return grid;

@@ -300,7 +300,7 @@ static void check_joined(int fibres, double width)
       }
     }
     assert_int_equal(evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &at), DEA_OK);
-    volume += grid->sheet[e] == DEA_SHEET_FIBRE ? at.volume_m3 : 0;
+    volume += grid->ply[e] == DEA_PLY_FIBRE ? at.volume_m3 : 0;
   }
   for (size_t n = 0; n < grid->node_count; n++) {
     assert_int_equal(used[n], 1);

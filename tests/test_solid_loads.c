@@ -26,9 +26,9 @@ static void block_create(int order, int order_z, double amount)
 {
   static const double cuts[] = {0, 0.4, 1};
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 7};
-  const struct dea_ply sheet = {size[2], 2, order_z};
+  const struct dea_ply ply = {size[2], 2, order_z};
   assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
-  assert_int_equal(dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, 0.3, 3, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, 0.3, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
   assert_non_null(u);
   for (size_t n = 0; n < grid->node_count; n++) {
@@ -45,12 +45,12 @@ static void block_destroy(void)
   dea_grid_destroy(ctx, grid);
 }
 
-static bool all(const void *self, int region, int sheet, const double middle[3])
+static bool all(const void *self, int region, int ply, const double middle[3])
 {
   (void)self;
   (void)middle;
   assert_int_equal(region, 7);
-  return sheet == 0;
+  return ply == 0;
 }
 
 static struct dea_surface *side_create(enum dea_face side)
@@ -211,10 +211,10 @@ static void resultant(const double *force, double scale, double sum[6])
   }
 }
 
-static double density(const void *self, int region, int sheet)
+static double density(const void *self, int region, int ply)
 {
   (void)self;
-  return region == 7 && sheet == 0 ? 1200 : 0;
+  return region == 7 && ply == 0 ? 1200 : 0;
 }
 
 /* Weight of the block in a slanted field, and its moment: the block is straight here. */
@@ -225,11 +225,11 @@ static void straight(const void *self, double s, double t, double x[2])
   x[1] = size[1] * t;
 }
 
-static bool upmost(const void *self, int region, int sheet, const double middle[3])
+static bool upmost(const void *self, int region, int ply, const double middle[3])
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return middle[2] > size[2] - 1e-9;
 }
 
@@ -238,10 +238,10 @@ static void test_weight_and_traction(void **state)
   (void)state;
   static const double cuts[] = {0, 0.4, 1}, free_fall[3] = {1, -2, -9};
   const struct dea_block block = {straight, NULL, cuts, cuts, 2, 2, 7};
-  const struct dea_ply sheet = {size[2], 2, 2};
+  const struct dea_ply ply = {size[2], 2, 2};
   struct dea_element_set elements;
   assert_int_equal(dea_element_set_create(ctx, 2, 2, &elements), DEA_OK);
-  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 3, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
   double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], middle[3], total[3];
   assert_true(u != NULL && force != NULL);

@@ -30,12 +30,12 @@ static void add_moments(int nodes, const double *X, const double *mass, double s
 
 /* Those of all elements of a grid. */
 static void grid_moments(const struct dea_grid *grid, const struct dea_constituent *layers,
-                         int (*layer_of)(const void *self, int region, int sheet), const void *self,
+                         int (*layer_of)(const void *self, int region, int ply), const void *self,
                          double sum[MOMENTS])
 {
   for (size_t e = 0; e < grid->element_count; e++) {
     double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-    const struct dea_constituent *layer = &layers[layer_of(self, grid->region[e], grid->sheet[e])];
+    const struct dea_constituent *layer = &layers[layer_of(self, grid->region[e], grid->ply[e])];
     int nodes = dea_grid_nodes_of(grid, e);
     for (int n = 0; n < nodes; n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
@@ -55,11 +55,11 @@ static void map_block(const void *self, double s, double t, double x[2])
   x[1] = 2 * t - 0.4 * s;
 }
 
-static int first(const void *self, int region, int sheet)
+static int first(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return 0;
 }
 
@@ -78,13 +78,12 @@ static void test_mass_of_a_block(void **state)
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 0};
   for (int order = 1; order <= 3; order++) {
     for (int kind = 0; kind < 4; kind++) { // a surface, then solids of each order
-      const struct dea_ply sheet = {kind == 0 ? 0 : h, kind == 0 ? 1 : 2, kind == 0 ? 1 : kind};
+      const struct dea_ply ply = {kind == 0 ? 0 : h, kind == 0 ? 1 : 2, kind == 0 ? 1 : kind};
       struct dea_grid *grid;
       double sum[MOMENTS] = {0};
-      assert_int_equal(dea_hex_shape_create(order, sheet.order_z, &shape), DEA_OK);
+      assert_int_equal(dea_hex_shape_create(order, ply.order_z, &shape), DEA_OK);
       assert_int_equal(dea_flat_shape_create(order, &flat), DEA_OK);
-      assert_int_equal(dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, z0, 3, &grid),
-                       DEA_OK);
+      assert_int_equal(dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, z0, 3, &grid), DEA_OK);
       grid_moments(grid, &layer, first, NULL, sum);
       double m = rho * h * area, top = kind == 0 ? z0 : z0 + h;
       double zz = kind == 0 ? z0 * z0 : (top * top * top - z0 * z0 * z0) / (3 * h);
@@ -166,7 +165,7 @@ static void test_mass_of_an_actuator(void **state)
     assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
     assert_int_equal(dea_hex_shape_create(grid->order, actuator.plate.order_z, &shape), DEA_OK);
     assert_int_equal(dea_flat_shape_create(grid->order, &flat), DEA_OK);
-    grid_moments(grid, actuator.layers, dea_actuator_layer, &actuator, sum);
+    grid_moments(grid, actuator.constituents, dea_actuator_constituent, &actuator, sum);
     double copies = dea_actuator_copies(&actuator), R = d.frame_radius_m, a = d.electrode_radius_m;
     double t = d.electrode_thickness_m / (d.pre_stretch * d.pre_stretch);
     double film = rho_film * d.film_thickness_m * pi, electrodes = 2 * rho_electrode * t * pi;
@@ -188,7 +187,7 @@ static void test_unknown_densities_are_said(void **state)
   struct dea_device d = star(false, true);
   d.electrode.density_kg_per_m3 = 0;
   assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
-  assert_close(actuator.layers[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3, rho_film, 0, 0);
+  assert_close(actuator.constituents[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3, rho_film, 0, 0);
   size_t before = dea_finding_count(ctx, DEA_NOTE);
   assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), before + 1);

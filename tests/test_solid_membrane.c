@@ -345,23 +345,23 @@ static void test_membrane_with_fibres(void **state)
   const struct dea_quarter quarter = {
       2, 2, 2e-3, 9e-3, h, 4, 2e-3, t, .fine = 3, .across = 2, .membrane = true};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  size_t sheets[3] = {0, 0, 0}, under = 0;
+  size_t plies[3] = {0, 0, 0}, under = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    int sheet = grid->sheet[e];
-    sheets[sheet]++;
-    under += sheet == DEA_SHEET_SURFACE && grid->region[e] == DEA_REGION_FIBRE;
-    assert_int_equal(grid->levels[e] == 1, sheet == DEA_SHEET_SURFACE);
+    int ply = grid->ply[e];
+    plies[ply]++;
+    under += ply == DEA_PLY_SURFACE && grid->region[e] == DEA_REGION_FIBRE;
+    assert_int_equal(grid->levels[e] == 1, ply == DEA_PLY_SURFACE);
     assert_int_equal(dea_grid_nodes_of(grid, e), grid->levels[e] == 1 ? 9 : 27);
-    assert_true(sheet == DEA_SHEET_SURFACE || grid->region[e] == DEA_REGION_FIBRE);
-    double bottom = sheet == DEA_SHEET_FIBRE_ON_BOND ? 0.5 * h : 0;
+    assert_true(ply == DEA_PLY_SURFACE || grid->region[e] == DEA_REGION_FIBRE);
+    double bottom = ply == DEA_PLY_FIBRE_ON_BOND ? 0.5 * h : 0;
     assert_close(grid->X[3 * nodes[0] + 2], bottom, 0, 1e-12);
     if (grid->levels[e] > 1) {
-      double top = sheet == DEA_SHEET_BOND ? 0.5 * h : 0.5 * h + t;
+      double top = ply == DEA_PLY_BOND ? 0.5 * h : 0.5 * h + t;
       assert_close(grid->X[3 * nodes[26] + 2], top, 0, 1e-12);
     }
   }
-  assert_true(under > 0 && sheets[1] == under && sheets[2] == under && sheets[0] > under);
+  assert_true(under > 0 && plies[1] == under && plies[2] == under && plies[0] > under);
   for (size_t i = 0; i < grid->node_count; i++) {
     for (size_t j = 0; j < i; j++) {
       const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
@@ -371,11 +371,11 @@ static void test_membrane_with_fibres(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static double areal_density(const void *self, int region, int sheet)
+static double areal_density(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return 0.05;
 }
 

@@ -72,7 +72,7 @@ static void check_conforming(const struct dea_fibre_disc *p, const struct dea_gr
   assert_non_null(faces);
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    for (int k = 0; k < 4 && grid->sheet[e] == DEA_FIBRE_DISC_FILM; k++) {
+    for (int k = 0; k < 4 && grid->ply[e] == DEA_FIBRE_DISC_FILM; k++) {
       int *corner = faces[count++].corner;
       for (int i = 0; i < 2; i++) {
         corner[i] = nodes[sides[k][i]];
@@ -110,9 +110,9 @@ static struct dea_hex_shape shape;
 static struct dea_flat_shape flat;
 static struct dea_element_result result;
 
-/* Volume of the elements of a sheet whose region has all the bits; flat ones are as thick as the
+/* Volume of the elements of a ply whose region has all the bits; flat ones are as thick as the
  * film. */
-static double volume(const struct dea_grid *grid, int sheet, int bits)
+static double volume(const struct dea_grid *grid, int ply, int bits)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   static const double mu[DEA_LAW_PARAM_MAX] = {1e5};
@@ -129,7 +129,7 @@ static double volume(const struct dea_grid *grid, int sheet, int bits)
                          ? evaluate_membrane(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
                          : evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
                      DEA_OK);
-    sum += grid->sheet[e] == sheet && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
+    sum += grid->ply[e] == ply && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
   }
   return sum;
 }
@@ -155,7 +155,7 @@ static void check_areas(const struct dea_fibre_disc *p, const struct dea_grid *g
     double half =
         half_strip(p->tip_radius, 0.5 * p->tip_width, p->outer_radius, 0.5 * p->outer_width);
     double thickness = p->fibre_thickness * p->sectors;
-    assert_close(volume(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE), thickness * half,
+    assert_close(volume(grid, DEA_FIBRE_DISC_FIBRE_PLY, DEA_FIBRE_DISC_FIBRE), thickness * half,
                  tolerance, 0);
     assert_close(volume(grid, DEA_FIBRE_DISC_GLUE, 0), p->glue_thickness * p->sectors * half,
                  tolerance, 0);
@@ -258,14 +258,14 @@ static void test_all_that_a_design_can_ask_for(void **state)
   check(&p, 1e-6);
 }
 
-/* ---- sheets ---- */
+/* ---- plies ---- */
 
-static void heights(const struct dea_grid *grid, int sheet, int bits, double *low, double *high)
+static void heights(const struct dea_grid *grid, int ply, int bits, double *low, double *high)
 {
   *low = INFINITY;
   *high = -INFINITY;
   for (size_t e = 0; e < grid->element_count; e++) {
-    int nodes = grid->sheet[e] == sheet && grid->region[e] == bits ? 27 : 0;
+    int nodes = grid->ply[e] == ply && grid->region[e] == bits ? 27 : 0;
     for (int n = 0; n < (nodes > 0 ? dea_grid_nodes_of(grid, e) : 0); n++) {
       double z = grid->X[3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n] + 2];
       *low = fmin(*low, z);
@@ -297,7 +297,7 @@ static void test_what_fibres_lie_on(void **state)
     assert_true(on ? low < high : low > high); // the filler
     heights(grid, DEA_FIBRE_DISC_GLUE, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below, 0, 1e-12);
-    heights(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_FIBRE_PLY, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below + 50e-6, 0, 1e-12);
     assert_close(high, below + 150e-6, 0, 1e-12);
     dea_grid_destroy(ctx, grid);
@@ -309,10 +309,10 @@ static void check_bonds(const struct dea_grid *grid)
 {
   size_t bonds = 0, joined = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    bool bond = grid->sheet[e] == DEA_FIBRE_DISC_BOND;
+    bool bond = grid->ply[e] == DEA_FIBRE_DISC_BOND;
     bonds += bond;
     for (size_t f = 0; f < grid->element_count && bond; f++) {
-      joined += grid->sheet[f] == DEA_FIBRE_DISC_FILM &&
+      joined += grid->ply[f] == DEA_FIBRE_DISC_FILM &&
                 memcmp(grid->nodes + e * DEA_HEX_NODES_MAX, grid->nodes + f * DEA_HEX_NODES_MAX,
                        9 * sizeof(int)) == 0;
     }
@@ -348,7 +348,7 @@ static void test_membranes(void **state)
     assert_true(low > high);
     heights(grid, DEA_FIBRE_DISC_TOP, DEA_FIBRE_DISC_ELECTRODE | DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_true(on && t > 0 ? fabs(high - low - t) < 1e-12 : low > high);
-    heights(grid, DEA_FIBRE_DISC_FIBRE_SHEET, DEA_FIBRE_DISC_FIBRE, &low, &high);
+    heights(grid, DEA_FIBRE_DISC_FIBRE_PLY, DEA_FIBRE_DISC_FIBRE, &low, &high);
     assert_close(low, below + glue, 0, 1e-12);
     assert_close(high, below + glue + 100e-6, 0, 1e-12);
     dea_grid_destroy(ctx, grid);

@@ -35,9 +35,9 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = length_m * t;
 }
 
-static bool fibre_on_second(int region, int sheet)
+static bool fibre_on_second(int region, int ply)
 {
-  return sheet == 0 || region == 1;
+  return ply == 0 || region == 1;
 }
 
 enum kind { SOLID, COUPLED, FLAT };
@@ -62,12 +62,12 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   static const double left = 0, right = 1, cuts[3] = {0, 0.4, 1};
   struct dea_block blocks[2] = {{map_strip, &left, cuts, cuts, 2, 2, 0},
                                 {map_strip, &right, cuts, cuts, 2, 2, 1}};
-  struct dea_ply sheets[2] = {{kind == FLAT ? 0 : h_m, film_elements, order_z},
-                              {fibre_m, 1, order_z}};
+  struct dea_ply plies[2] = {{kind == FLAT ? 0 : h_m, film_elements, order_z},
+                             {fibre_m, 1, order_z}};
   struct strip *s = calloc(1, sizeof *s);
   film = test_yeoh();
   s->kind = kind;
-  assert_int_equal(dea_grid_create(ctx, order, blocks, 2, sheets, 2, fibre_on_second,
+  assert_int_equal(dea_grid_create(ctx, order, blocks, 2, plies, 2, fibre_on_second,
                                    kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid),
                    DEA_OK);
   assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
@@ -87,16 +87,16 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   s->multiplier = calloc(count * (size_t)s->elements.pressures, sizeof *s->multiplier);
   s->potential_V = calloc(s->grid->node_count, sizeof *s->potential_V);
   for (size_t e = 0; e < count; e++) {
-    s->layer[e] = s->grid->sheet[e];
+    s->layer[e] = s->grid->ply[e];
     s->kinds[e] =
         kind == COUPLED && s->layer[e] == 0 ? DEA_ELEMENT_POTENTIAL_HEXAHEDRON : s->grid->kind[e];
-    s->active[e] = s->grid->sheet[e] == 0 && (s->grid->region[e] == 0 || kind == COUPLED);
+    s->active[e] = s->grid->ply[e] == 0 && (s->grid->region[e] == 0 || kind == COUPLED);
   }
   s->in = (struct dea_recover_input){.grid = s->grid,
                                      .elements = &s->elements,
                                      .kind = s->kinds,
-                                     .layers = s->layers,
-                                     .layer = s->layer,
+                                     .constituents = s->layers,
+                                     .constituent = s->layer,
                                      .active = s->active,
                                      .u = s->u,
                                      .multiplier = s->multiplier,
@@ -249,13 +249,13 @@ static void check_turned(enum kind kind, int order, int order_z, size_t film_ele
   const double *stretch = values(mesh, "principal_stretch"), *plane = values(mesh, "plane_stretch");
   const double *axes[3] = {values(mesh, "stress_axis_1"), values(mesh, "stress_axis_2"),
                            values(mesh, "stress_axis_3")};
-  const double *sheet = values(mesh, "sheet"), *region = values(mesh, "region");
+  const double *ply = values(mesh, "sheet"), *region = values(mesh, "region");
   // compressible neo-Hookean: sigma_i = mu (l_i^2 - 1) + lambda ln J, with J = 1
   const double fibre[3] = {1e9 * (a * a - 1), 1e9 * (b * b - 1), 1e9 * (1 / (a * a * b * b) - 1)};
   struct corner at = {.mesh = mesh};
   while (next_corner(&at)) {
     size_t p = at.point, cell = at.cell;
-    if (sheet[cell] == 1) {
+    if (ply[cell] == 1) {
       assert_close(stress[3 * p], fibre[0], 1e-9, 0);
       assert_close(stress[3 * p + 1], fibre[2], 1e-9, 0); // the thickness, 0.957, above 0.95
       assert_close(stress[3 * p + 2], fibre[1], 1e-9, 0);
@@ -318,11 +318,10 @@ static void test_flat_energy_with_electrostriction(void **state)
   apply(s, 3e3);
   deform(s, F);
   assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
-  const double *energy = values(mesh, "energy_J_per_m3"), *sheet = values(mesh, "sheet");
+  const double *energy = values(mesh, "energy_J_per_m3"), *ply = values(mesh, "sheet");
   struct corner at = {.mesh = mesh};
   while (next_corner(&at)) {
-    assert_true(sheet[at.cell] == 1 ||
-                fabs(energy[at.point] / flat_film(a, b, 0).energy - 1) < 1e-9);
+    assert_true(ply[at.cell] == 1 || fabs(energy[at.point] / flat_film(a, b, 0).energy - 1) < 1e-9);
   }
   dea_field_mesh_destroy(ctx, mesh);
   strip_destroy(s);
@@ -355,12 +354,12 @@ static void test_bending(void **state)
       s->u[3 * n] = k * s->grid->X[3 * n] * s->grid->X[3 * n + 2];
     }
     assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
-    const double *plane = values(mesh, "plane_stretch"), *sheet = values(mesh, "sheet");
+    const double *plane = values(mesh, "plane_stretch"), *ply = values(mesh, "sheet");
     const double *error = values(mesh, "volume_error");
     size_t per = (size_t)s->elements.of[DEA_ELEMENT_HEXAHEDRON].nodes;
     for (size_t i = 0; i < mesh->cell_count * per; i++) {
       size_t p = (size_t)mesh->blocks[0].nodes[i];
-      double stretch = 1 + k * mesh->X[3 * p + 2], pre = sheet[i / per] == 0 ? l_pre : 1;
+      double stretch = 1 + k * mesh->X[3 * p + 2], pre = ply[i / per] == 0 ? l_pre : 1;
       assert_close(plane[3 * p], pre * fmax(stretch, 1), 1e-9, 0);
       assert_close(plane[3 * p + 1], pre * fmin(stretch, 1), 1e-9, 0);
       assert_true(error[i / per] > 0.5 * k * h_m / 2 && error[i / per] < k * (h_m + fibre_m));
@@ -370,7 +369,7 @@ static void test_bending(void **state)
   }
 }
 
-/* Points of the joint of the two regions and of the two sheets are there once a part. */
+/* Points of the joint of the two regions and of the two plies are there once a part. */
 static void test_parts_do_not_share_points(void **state)
 {
   (void)state;
@@ -440,13 +439,13 @@ static double covered(double poisson_ratio)
   double *multiplier = calloc(grid->element_count * DEA_HEX_PRESSURES_MAX, sizeof *multiplier);
   assert_true(layer != NULL && active != NULL && u != NULL && multiplier != NULL);
   for (size_t e = 0; e < grid->element_count; e++) {
-    layer[e] = dea_actuator_layer(&actuator, grid->region[e], grid->sheet[e]);
+    layer[e] = dea_actuator_constituent(&actuator, grid->region[e], grid->ply[e]);
   }
   const struct dea_recover_input in = {.grid = grid,
                                        .elements = &elements,
                                        .kind = grid->kind,
-                                       .layers = actuator.layers,
-                                       .layer = layer,
+                                       .constituents = actuator.constituents,
+                                       .constituent = layer,
                                        .active = active,
                                        .u = u,
                                        .multiplier = multiplier};

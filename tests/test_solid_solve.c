@@ -11,10 +11,10 @@
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
-static bool inner_region(const void *self, int region, int sheet)
+static bool inner_region(const void *self, int region, int ply)
 {
   (void)self;
-  (void)sheet;
+  (void)ply;
   return region == 0;
 }
 
@@ -149,17 +149,17 @@ static void test_no_false_modes_at_rest(void **state)
 
 /* ---- the paper's actuator with four fibres, as built ---- */
 
-static int sheet_layer(const void *self, int region, int sheet)
+static int sheet_layer(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet;
+  return ply;
 }
 
-static bool film_inside(const void *self, int region, int sheet)
+static bool film_inside(const void *self, int region, int ply)
 {
   (void)self;
-  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
 /* Pre-stretch 1.5, 100 um, PET fibres 2 mm x 100 um clamped at the frame, tip at the electrode
@@ -230,14 +230,14 @@ static void test_cantilever_under_end_shear(void **state)
   static const double cuts[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, one[] = {0, 1};
   static const double part[] = {0.2, 0.5, 1.0}, wanted[] = {2.493, 4.933, 6.698};
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
-  const struct dea_ply sheet = {0.1, 1, 2};
+  const struct dea_ply ply = {0.1, 1, 2};
   const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &steel, .held = clamp};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  assert_int_equal(dea_grid_create(ctx, 3, &block, 1, &sheet, 1, NULL, -0.05, 10, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 3, &block, 1, &ply, 1, NULL, -0.05, 10, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   size_t tip = 0, loaded = 0;
   for (size_t n = 0; n < grid->node_count; n++) {

@@ -41,12 +41,12 @@ static void create(void)
     cuts[i] = (double)i / ALONG;
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
-  const struct dea_ply sheet = {thickness, 1, 2};
+  const struct dea_ply ply = {thickness, 1, 2};
   const struct dea_constituent layer = dea_constituent_bonded((const double[]){2 * mu, 0});
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .held = clamped};
   assert_int_equal(
-      dea_grid_create(ctx, ORDER, &block, 1, &sheet, 1, NULL, -0.5 * thickness, length, &grid),
+      dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid),
       DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
 }

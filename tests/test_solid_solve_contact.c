@@ -29,11 +29,11 @@ static int bonded(const void *self, const double X[3])
   return X[2] < 1e-9 ? 7 : (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0);
 }
 
-static bool upmost(const void *self, int region, int sheet, const double middle[3])
+static bool upmost(const void *self, int region, int ply, const double middle[3])
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return middle[2] > side - 1e-9;
 }
 
@@ -44,16 +44,16 @@ static struct dea_grid *hertz_grid(void)
   static const double thick[] = {12, 5, 2, 0.7, 0.3};
   enum { CUTS = sizeof at / sizeof at[0], SHEETS = sizeof thick / sizeof thick[0] };
   double cuts[CUTS];
-  struct dea_ply sheets[SHEETS];
+  struct dea_ply plies[SHEETS];
   struct dea_grid *grid;
   for (int i = 0; i < CUTS; i++) {
     cuts[i] = at[i] / side;
   }
   for (int i = 0; i < SHEETS; i++) {
-    sheets[i] = (struct dea_ply){thick[i], 1, 2};
+    plies[i] = (struct dea_ply){thick[i], 1, 2};
   }
   const struct dea_block quad = {map_square, NULL, cuts, cuts, CUTS - 1, CUTS - 1, 0};
-  assert_int_equal(dea_grid_create(ctx, 2, &quad, 1, sheets, SHEETS, NULL, 0, side, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 2, &quad, 1, plies, SHEETS, NULL, 0, side, &grid), DEA_OK);
   return grid;
 }
 

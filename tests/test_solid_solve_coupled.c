@@ -32,17 +32,17 @@ struct location {
   double a, b, h; // radius of the electrode, of the frame or length of a strip, thickness
 };
 
-static int sheet_layer(const void *self, int region, int sheet)
+static int sheet_layer(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet;
+  return ply;
 }
 
-static bool electrode_film(const void *self, int region, int sheet)
+static bool electrode_film(const void *self, int region, int ply)
 {
   (void)self;
-  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
 /* Ground below, voltage on top of the film, inside the radius a. */
@@ -154,19 +154,19 @@ static bool strip_faces(const void *self, const double X[3], double *share)
   return X[0] < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
 }
 
-static bool everywhere(const void *self, int region, int sheet)
+static bool everywhere(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 
 /* Strip of a film, length b, electrodes up to x = a; cuts: [count + 1] ascending from 0 to 1;
- * sheets: [sheet_count], together as thick as the film. */
+ * plies: [ply_count], together as thick as the film. */
 static struct body strip(enum dea_solid_field_kind field, const struct location *location,
-                         const double *cuts, size_t count, const struct dea_ply *sheets,
-                         size_t sheet_count)
+                         const double *cuts, size_t count, const struct dea_ply *plies,
+                         size_t ply_count)
 {
   static const double one[] = {0, 1};
   struct body body = {.location = *location};
@@ -180,7 +180,7 @@ static struct body strip(enum dea_solid_field_kind field, const struct location 
                                             .held = strip_held,
                                             .electrode = strip_faces,
                                             .self = &body.location};
-  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, sheets, sheet_count, NULL, -0.5 * location->h,
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, plies, ply_count, NULL, -0.5 * location->h,
                                    location->b, &body.grid),
                    DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
@@ -198,15 +198,15 @@ static void test_fringe_of_a_plate_is_exact(void **state)
   const double h = 1e-4, V = 20;
   const struct location location = {2 * h, 4 * h, h};
   static const double part[SIDE] = {0.5, 0.2, 0.08, 0.025, 0.006, 0}; // of the length
-  static const struct dea_ply sheets[] = {{0.02e-4, 1, 2}, {0.06e-4, 1, 2}, {0.17e-4, 1, 2},
-                                          {0.25e-4, 1, 2}, {0.25e-4, 1, 2}, {0.17e-4, 1, 2},
-                                          {0.06e-4, 1, 2}, {0.02e-4, 1, 2}};
+  static const struct dea_ply plies[] = {{0.02e-4, 1, 2}, {0.06e-4, 1, 2}, {0.17e-4, 1, 2},
+                                         {0.25e-4, 1, 2}, {0.25e-4, 1, 2}, {0.17e-4, 1, 2},
+                                         {0.06e-4, 1, 2}, {0.02e-4, 1, 2}};
   double cuts[COUNT - 1];
   for (int i = 0; i < SIDE; i++) {
     cuts[i] = 0.5 - part[i];
     cuts[COUNT - 2 - i] = 0.5 + part[i];
   }
-  struct body body = strip(DEA_SOLID_FIELD_COUPLED, &location, cuts, COUNT - 2, sheets, 8);
+  struct body body = strip(DEA_SOLID_FIELD_COUPLED, &location, cuts, COUNT - 2, plies, 8);
   solve(&body, 0);
   double rest = body.report.energy_J;
   solve(&body, V);
@@ -226,7 +226,7 @@ static void test_unstable_modes_are_those_of_the_thin_film(void **state)
   static const double voltages[VOLTAGES] = {0, 1000, 1500, 2500, 3100, 3800};
   const double h = 1e-4;
   const struct location location = {30 * h, 30 * h, h};
-  const struct dea_ply sheet = {h, 1, 2};
+  const struct dea_ply ply = {h, 1, 2};
   double cuts[COUNT + 1];
   for (int i = 0; i <= COUNT; i++) {
     cuts[i] = (double)i / COUNT;
@@ -234,7 +234,7 @@ static void test_unstable_modes_are_those_of_the_thin_film(void **state)
   for (int i = 0; i < VOLTAGES; i++) {
     for (int field = 0; field < 2; field++) {
       struct body body = strip(field == 0 ? DEA_SOLID_FIELD_THIN : DEA_SOLID_FIELD_COUPLED,
-                               &location, cuts, COUNT, &sheet, 1);
+                               &location, cuts, COUNT, &ply, 1);
       dea_solid_accept_unstable(body.solid, true);
       solve(&body, voltages[i]);
       assert_int_equal(body.report.unstable_modes, wanted[i]);

@@ -21,11 +21,11 @@ static void map_square(const void *self, double s, double t, double x[2])
   x[1] = 1e-2 * t;
 }
 
-static bool everywhere(const void *self, int region, int sheet)
+static bool everywhere(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 
@@ -43,7 +43,7 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
 {
   static const double cuts[] = {0, 0.5, 1};
   const struct dea_block block = {map_square, NULL, cuts, cuts, 2, 2, 0};
-  const struct dea_ply sheet = {1e-3, 1, 2};
+  const struct dea_ply ply = {1e-3, 1, 2};
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,
                                             .layers = layer,
@@ -52,7 +52,7 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
                                             .self = bits};
   struct dea_solid_report report;
   if (grid == NULL) {
-    assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, 1e-2, &grid), DEA_OK);
+    assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, 1e-2, &grid), DEA_OK);
   }
   DEA_TRY(ctx, dea_solid_create(ctx, grid, &options, &solid));
   return dea_solid_solve(ctx, solid, voltage_V, &report);

@@ -45,17 +45,17 @@ static bool frame(const void *self, const double X[3], double Q[9])
   return x[0] < 1e-12 || x[1] < 1e-12;
 }
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet;
+  return ply;
 }
 
-static bool active(const void *self, int region, int sheet)
+static bool active(const void *self, int region, int ply)
 {
   (void)self;
-  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
 /* Four fibres on a coarse mesh up to 4 kV; u: [node_count][3], turned back. */

@@ -49,11 +49,11 @@ static void slab_destroy(void)
 }
 
 /* Faces on the outside of the slab. */
-static bool outside(const void *self, int region, int sheet, const double middle[3])
+static bool outside(const void *self, int region, int ply, const double middle[3])
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   bool inside = true;
   for (int i = 0; i < 3; i++) {
     inside = inside && middle[i] > 1e-9 && middle[i] < slab.size[i] - 1e-9;
@@ -109,11 +109,11 @@ static void test_slab_on_a_foundation(void **state)
   dea_surface_destroy(ctx, top);
 }
 
-static double density(const void *self, int region, int sheet)
+static double density(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return 1000;
 }
 

@@ -18,11 +18,11 @@ static int end_held(const void *self, const double X[3])
   return X[0] < 1e-9 ? 7 : 0;
 }
 
-static double density(const void *self, int region, int sheet)
+static double density(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return rho;
 }
 

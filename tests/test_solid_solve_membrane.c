@@ -15,19 +15,19 @@ static const double a_m = 3.75e-3, b_m = 15e-3;
 
 enum { FILM, BOND, FIBRE };
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   static const int layers[] = {
-      [DEA_SHEET_SURFACE] = FILM, [DEA_SHEET_BOND] = BOND, [DEA_SHEET_FIBRE_ON_BOND] = FIBRE};
+      [DEA_PLY_SURFACE] = FILM, [DEA_PLY_BOND] = BOND, [DEA_PLY_FIBRE_ON_BOND] = FIBRE};
   (void)self;
   (void)region;
-  return layers[sheet];
+  return layers[ply];
 }
 
-static bool active(const void *self, int region, int sheet)
+static bool active(const void *self, int region, int ply)
 {
   (void)self;
-  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_SURFACE;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_SURFACE;
 }
 
 /* Symmetry planes x = 0 and y = 0; the frame holds the edge. */

@@ -12,17 +12,17 @@
 
 static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 100e-6 / 2.25;
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet == DEA_FIBRE_DISC_FILM ? 0 : 1;
+  return ply == DEA_FIBRE_DISC_FILM ? 0 : 1;
 }
 
-static bool active(const void *self, int region, int sheet)
+static bool active(const void *self, int region, int ply)
 {
   (void)self;
-  return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && sheet == DEA_FIBRE_DISC_FILM;
+  return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && ply == DEA_FIBRE_DISC_FILM;
 }
 
 static int held(const void *self, const double X[3])

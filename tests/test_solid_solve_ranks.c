@@ -20,17 +20,17 @@ static const char *program;
 
 static const double a_m = 3.75e-3, b_m = 15e-3;
 
-static int sheet_layer(const void *self, int region, int sheet)
+static int sheet_layer(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet;
+  return ply;
 }
 
-static bool film_inside(const void *self, int region, int sheet)
+static bool film_inside(const void *self, int region, int ply)
 {
   (void)self;
-  return region == DEA_REGION_ELECTRODE && sheet == DEA_SHEET_FILM;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
 static int quarter_held(const void *self, const double X[3])

@@ -31,17 +31,17 @@ static void map_bar(const void *self, double s, double t, double x[2])
   x[1] = width * t;
 }
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   (void)self;
-  (void)sheet;
+  (void)ply;
   return region;
 }
 
-static bool strip_active(const void *self, int region, int sheet)
+static bool strip_active(const void *self, int region, int ply)
 {
   (void)self;
-  (void)sheet;
+  (void)ply;
   return region == 0;
 }
 
@@ -90,7 +90,7 @@ static void strip_create(const struct dea_material *film, double voltage_V)
   };
   const struct dea_block blocks[] = {{map_strip, NULL, cuts, cuts, 1, 1, 0},
                                      {map_bar, NULL, cuts, cuts, 1, 1, 1}};
-  const struct dea_ply sheet = {0, 1, 1};
+  const struct dea_ply ply = {0, 1, 1};
   const struct dea_solid_options options = {.order_z = 1,
                                             .layer_count = 2,
                                             .layers = layers,
@@ -99,7 +99,7 @@ static void strip_create(const struct dea_material *film, double voltage_V)
                                             .held = along_x};
   struct dea_solid_report report;
   double rest;
-  assert_int_equal(dea_grid_create(ctx, 1, blocks, 2, &sheet, 1, NULL, 0, width, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 1, blocks, 2, &ply, 1, NULL, 0, width, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   film_force(film, 0, 0, &weight, &rest);
   for (size_t n = 0; n < grid->node_count; n++) {
@@ -191,15 +191,15 @@ static void test_branches(void **state)
   strip_destroy();
 }
 
-/* ---- a bender: two sheets, the upper one between electrodes, clamped at one end ---- */
+/* ---- a bender: two plies, the upper one between electrodes, clamped at one end ---- */
 
 static const struct block bender = {{10e-3, 4e-3, 0}, {3, 1, 1}, 2, 2};
 
-static bool upper(const void *self, int region, int sheet)
+static bool upper(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet == 1;
+  return ply == 1;
 }
 
 static int clamped(const void *self, const double X[3])
@@ -294,14 +294,14 @@ static void test_bender_against_static_solves(void **state)
   static const double cuts[] = {0, 0.3, 0.6, 1};
   static const double whole[] = {0, 1};
   const struct dea_block strip = {block_map, &bender, cuts, whole, 3, 1, 0};
-  const struct dea_ply sheets[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_ply plies[] = {{t, 1, 2}, {t, 1, 2}};
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .active = upper, .held = clamped};
   struct dea_solid_report report;
   struct dea_solid_response *response;
   double square[3];
   assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
-  assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, sheets, 2, NULL, 0, 10e-3, &grid), DEA_OK);
+  assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, plies, 2, NULL, 0, 10e-3, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
   assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 3, square, NULL), DEA_OK);

@@ -13,11 +13,11 @@
 static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 44e-6;
 static const double epsilon = 2.8 * DEA_EPSILON_0;
 
-static int sheet_layer(const void *self, int region, int sheet)
+static int sheet_layer(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet;
+  return ply;
 }
 
 /* Local axes on x = 0, where y comes first. */

@@ -33,11 +33,11 @@ static int on_planes(const void *self, const double X[3])
 
 #define SQUARE .block = {{1e-3, 1e-3, 100e-6}, {1, 1, 1}, 2, 2}, .held = on_planes
 
-static bool everywhere(const void *self, int region, int sheet)
+static bool everywhere(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 

@@ -17,11 +17,11 @@ static struct dea_grid *grid;
 static struct dea_solid *solid;
 static struct dea_solid_continuation *trace;
 
-static bool all_active(const void *self, int region, int sheet)
+static bool all_active(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 

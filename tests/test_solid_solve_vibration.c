@@ -163,11 +163,11 @@ static void test_no_trace_of_kappa(void **state)
   }
 }
 
-static bool everywhere(const void *self, int region, int sheet)
+static bool everywhere(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 

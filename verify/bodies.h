@@ -33,11 +33,11 @@ static inline void map_body(const void *self, double s, double t, double x[2])
   x[1] = body->size[1] * t;
 }
 
-static inline bool all_active(const void *self, int region, int sheet)
+static inline bool all_active(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 
@@ -99,9 +99,8 @@ static inline void body_create(struct body *body)
   verify_ok(ctx, dea_constituent_relax(&layer));
   const struct dea_block block = {
       map_body, body, cuts, square ? cuts : one, body->count, square ? body->count : 1, 0};
-  const struct dea_ply sheet = {body->size[2], 1, 2};
-  verify_ok(ctx,
-            dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, body->size[0], &body->grid));
+  const struct dea_ply ply = {body->size[2], 1, 2};
+  verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, body->size[0], &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,
                                             .layers = &layer,

@@ -68,11 +68,11 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = t;
 }
 
-static bool upper(const void *self, int region, int sheet)
+static bool upper(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return sheet == 1;
+  return ply == 1;
 }
 
 /* Plane strain; the end x = 0 clamped. */
@@ -134,8 +134,8 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
     cuts[i] = (double)i / (double)along;
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, along, 1, 0};
-  const struct dea_ply sheets[] = {{1, across, 2}, {1, across, 2}};
-  verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, sheets, 2, NULL, -1, length, &grid));
+  const struct dea_ply plies[] = {{1, across, 2}, {1, across, 2}};
+  verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, plies, 2, NULL, -1, length, &grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = kind,
                                             .layer_count = 1,

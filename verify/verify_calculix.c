@@ -59,7 +59,7 @@ static struct answer ours(int elements, double stretch)
   }
   const struct dea_block block = {map_plate,        NULL, cuts, cuts, (size_t)elements,
                                   (size_t)elements, 0};
-  const struct dea_ply sheet = {half_thickness_m, 2, 2};
+  const struct dea_ply ply = {half_thickness_m, 2, 2};
   struct dea_constituent rubber = {
       .law = dea_law_find("yeoh"), .param = yeoh, .pre_stretch = {1, 1, 1}, .kappa_Pa = 4e7};
   const struct dea_solid_options options = {
@@ -67,7 +67,7 @@ static struct answer ours(int elements, double stretch)
   struct dea_grid *grid;
   struct dea_solid *solid;
   verify_ok(ctx, dea_constituent_relax(&rubber));
-  verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &sheet, 1, NULL, 0, half_length_m, &grid));
+  verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, half_length_m, &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   const double pull = (stretch - 1) * half_length_m, step = 1e-3 * half_length_m;
   for (int i = 1; i < 10; i++) {

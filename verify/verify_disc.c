@@ -17,10 +17,10 @@ struct disc {
   struct dea_solid *solid;
 };
 
-static bool inner_region(const void *self, int region, int sheet)
+static bool inner_region(const void *self, int region, int ply)
 {
   (void)self;
-  (void)sheet;
+  (void)ply;
   return region == DEA_REGION_ELECTRODE;
 }
 

@@ -25,11 +25,11 @@ static void map_body(const void *self, double s, double t, double x[2])
   x[1] = body->size[1] * t;
 }
 
-static bool all_active(const void *self, int region, int sheet)
+static bool all_active(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 
@@ -51,8 +51,8 @@ static void body_create(struct body *body, struct dea_constituent layer,
   cut(body->count, cuts[0]);
   cut(body->across, cuts[1]);
   const struct dea_block block = {map_body, body, cuts[0], cuts[1], body->count, body->across, 0};
-  const struct dea_ply sheet = {body->size[2], 1, 2};
-  verify_ok(ctx, dea_grid_create(ctx, body->order, &block, 1, &sheet, 1, NULL, 0, body->size[0],
+  const struct dea_ply ply = {body->size[2], 1, 2};
+  verify_ok(ctx, dea_grid_create(ctx, body->order, &block, 1, &ply, 1, NULL, 0, body->size[0],
                                  &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .layer_count = 1,

@@ -180,8 +180,8 @@ static struct shell balloon_create(double H, size_t count)
   for (int i = 0; i < 3; i++) {
     blocks[i] = (struct dea_block){map_corner, &corners[i], cuts, cuts, count, count, 0};
   }
-  const struct dea_ply sheet = {H, 1, 2};
-  verify_ok(ctx, dea_grid_create(ctx, 2, blocks, 3, &sheet, 1, NULL, -0.5 * H, 1, &balloon.grid));
+  const struct dea_ply ply = {H, 1, 2};
+  verify_ok(ctx, dea_grid_create(ctx, 2, blocks, 3, &ply, 1, NULL, -0.5 * H, 1, &balloon.grid));
   for (size_t n = 0; n < balloon.grid->node_count; n++) {
     double *X = balloon.grid->X + 3 * n, r = 1 + X[2];
     const double b[3] = {X[0], X[1], fmax(0, 1 - X[0] - X[1])};

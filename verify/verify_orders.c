@@ -117,8 +117,8 @@ static struct dea_grid *cube(int order, size_t count)
     cuts[i] = (double)i / (double)count;
   }
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
-  const struct dea_ply sheet = {1, count, order};
-  verify_ok(ctx, dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, 0, 1, &grid));
+  const struct dea_ply ply = {1, count, order};
+  verify_ok(ctx, dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, 0, 1, &grid));
   return grid;
 }
 
@@ -145,8 +145,8 @@ static struct dea_grid *patch_of(int order)
   for (size_t i = 0; i < 4; i++) {
     blocks[i] = (struct dea_block){map_straight, corners[i][0], cuts, cuts, 1, 1, 0};
   }
-  const struct dea_ply sheets[] = {{0.3, 1, order}, {0.7, 1, order}};
-  verify_ok(ctx, dea_grid_create(ctx, order, blocks, 4, sheets, 2, NULL, 0, 1, &grid));
+  const struct dea_ply plies[] = {{0.3, 1, order}, {0.7, 1, order}};
+  verify_ok(ctx, dea_grid_create(ctx, order, blocks, 4, plies, 2, NULL, 0, 1, &grid));
   return grid;
 }
 

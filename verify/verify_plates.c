@@ -53,11 +53,11 @@ static int not_held(const void *self, const double X[3])
   return 0;
 }
 
-static bool at_loaded_end(const void *self, int region, int sheet, const double middle[3])
+static bool at_loaded_end(const void *self, int region, int ply, const double middle[3])
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return middle[1] > 1 - 1e-9;
 }
 
@@ -71,9 +71,8 @@ static struct dea_grid *unit_square(int order, const size_t count[2], double thi
     }
   }
   const struct dea_block block = {map_square, NULL, cuts[0], cuts[1], count[0], count[1], 0};
-  const struct dea_ply sheet = {thickness, 1, 2};
-  verify_ok(ctx,
-            dea_grid_create(ctx, order, &block, 1, &sheet, 1, NULL, -0.5 * thickness, 1, &grid));
+  const struct dea_ply ply = {thickness, 1, 2};
+  verify_ok(ctx, dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, -0.5 * thickness, 1, &grid));
   return grid;
 }
 

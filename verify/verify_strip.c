@@ -41,31 +41,31 @@ static void map_part(const void *self, double s, double t, double x[2])
   x[1] = t * width_m;
 }
 
-/* The film is all sheets but the last (solid) or the first one (membrane). */
-static bool present_in_solid(int region, int sheet)
+/* The film is all plies but the last (solid) or the first one (membrane). */
+static bool present_in_solid(int region, int ply)
 {
-  return sheet != HALVINGS_MAX + 1 || region == REGION_BEAM;
+  return ply != HALVINGS_MAX + 1 || region == REGION_BEAM;
 }
 
-static bool present_in_membrane(int region, int sheet)
+static bool present_in_membrane(int region, int ply)
 {
-  return sheet == 0 || region == REGION_BEAM;
+  return ply == 0 || region == REGION_BEAM;
 }
 
 /* Solid: from below h/2, h/4, ..., and the last of them twice; what is left over is not there. */
-static size_t fill_sheets(const struct strip *s, struct dea_ply *sheets)
+static size_t fill_sheets(const struct strip *s, struct dea_ply *plies)
 {
   if (s->membrane) {
-    sheets[0] = (struct dea_ply){0, 1, 2};
-    sheets[1] = (struct dea_ply){0.5 * s->h_m, 1, 2};
-    sheets[2] = (struct dea_ply){beam_thickness_m, 1, 2};
+    plies[0] = (struct dea_ply){0, 1, 2};
+    plies[1] = (struct dea_ply){0.5 * s->h_m, 1, 2};
+    plies[2] = (struct dea_ply){beam_thickness_m, 1, 2};
     return 3;
   }
   for (int k = 0; k <= HALVINGS_MAX; k++) {
     double share = exp2(k < s->halvings ? -k - 1 : -s->halvings);
-    sheets[k] = (struct dea_ply){k <= s->halvings ? s->h_m * share : 0, k <= s->halvings, 2};
+    plies[k] = (struct dea_ply){k <= s->halvings ? s->h_m * share : 0, k <= s->halvings, 2};
   }
-  sheets[HALVINGS_MAX + 1] = (struct dea_ply){beam_thickness_m, 1, 2};
+  plies[HALVINGS_MAX + 1] = (struct dea_ply){beam_thickness_m, 1, 2};
   return HALVINGS_MAX + 2;
 }
 
@@ -76,34 +76,34 @@ static void make_grid(struct strip *s)
   const struct part parts[PARTS] = {
       {0, beam_m}, {beam_m, electrode_m}, {beam_m + electrode_m, bare_m}};
   const double ends[PARTS][2] = {{other, tip}, {tip, other}, {other, other}};
-  struct dea_ply sheets[HALVINGS_MAX + 2];
+  struct dea_ply plies[HALVINGS_MAX + 2];
   struct dea_block blocks[PARTS];
   for (int k = 0; k < PARTS; k++) {
     size_t count =
         dea_cuts_graded(parts[k].length, ends[k][0], ends[k][1], largest_m, CUTS_MAX, s->cuts[k]);
     blocks[k] = (struct dea_block){map_part, &parts[k], s->cuts[k], across, count, 1, k};
   }
-  size_t sheet_count = fill_sheets(s, sheets);
-  verify_ok(ctx, dea_grid_create(ctx, 2, blocks, PARTS, sheets, sheet_count,
+  size_t ply_count = fill_sheets(s, plies);
+  verify_ok(ctx, dea_grid_create(ctx, 2, blocks, PARTS, plies, ply_count,
                                  s->membrane ? present_in_membrane : present_in_solid,
                                  s->membrane ? 0 : -0.5 * s->h_m, beam_m, &s->grid));
 }
 
 /* ---- solid ---- */
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   const struct strip *s = self;
   (void)region;
   if (s->membrane) {
-    return sheet == 0 ? LAYER_FILM : sheet == 1 ? LAYER_BOND : LAYER_BEAM;
+    return ply == 0 ? LAYER_FILM : ply == 1 ? LAYER_BOND : LAYER_BEAM;
   }
-  return sheet == HALVINGS_MAX + 1 ? LAYER_BEAM : LAYER_FILM;
+  return ply == HALVINGS_MAX + 1 ? LAYER_BEAM : LAYER_FILM;
 }
 
-static bool active(const void *self, int region, int sheet)
+static bool active(const void *self, int region, int ply)
 {
-  return region == REGION_ELECTRODE && layer_of(self, region, sheet) == LAYER_FILM;
+  return region == REGION_ELECTRODE && layer_of(self, region, ply) == LAYER_FILM;
 }
 
 /* Plane strain; both ends are clamped. */

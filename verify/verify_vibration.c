@@ -36,11 +36,11 @@ static int in_frame(const void *self, const double X[3])
   return 0;
 }
 
-static bool everywhere(const void *self, int region, int sheet)
+static bool everywhere(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return true;
 }
 
@@ -80,7 +80,7 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
     }
   }
   const struct dea_block block = {map_film, film, cuts[0], cuts[1], PIECES, PIECES, 0};
-  const struct dea_ply sheet = {membrane ? 0 : film->thickness_m, 1, membrane ? 1 : 2};
+  const struct dea_ply ply = {membrane ? 0 : film->thickness_m, 1, membrane ? 1 : 2};
   const struct dea_solid_options options = {.order_z = membrane ? 1 : 2,
                                             .layer_count = 1,
                                             .layers = &layer,
@@ -91,7 +91,7 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   struct dea_solid *solid;
   struct dea_solid_report report;
   verify_ok(ctx, dea_constituent_relax(&layer));
-  verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &sheet, 1, NULL, 0, film->size[0], &grid));
+  verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &ply, 1, NULL, 0, film->size[0], &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   verify_ok(ctx, dea_solid_solve(ctx, solid, voltage_V, &report));
   verify_ok(ctx, dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));

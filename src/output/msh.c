@@ -152,7 +152,7 @@ static void add_elements(struct writer *w)
   const struct dea_grid *grid = w->grid;
   w->number = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    enum group part = group_of(w->plate, grid->region[e], grid->sheet[e]);
+    enum group part = group_of(w->plate, grid->region[e], grid->ply[e]);
     (grid->levels[e] == 1 ? add_flat : add_solid)(w, part, grid->nodes + e * DEA_HEX_NODES_MAX);
   }
 }

@@ -44,15 +44,15 @@ static bool known(double density)
   return density > 0;
 }
 
-/* Densities; an electrode or a glue of which none is known is as heavy as the film. The layers that
- * join a membrane to fibres have no mass: all of the film's is in its surface. */
-static void set_densities(const struct dea_device *d, struct dea_constituent *layers)
+/* Densities; an electrode or a glue of which none is known is as heavy as the film. The
+ * constituents that join a membrane to fibres have no mass: all of the film's is in its surface. */
+static void set_densities(const struct dea_device *d, struct dea_constituent *constituents)
 {
   double film = d->film.density_kg_per_m3, electrode = d->electrode.density_kg_per_m3;
-  layers[DEA_CONSTITUENT_FILM].density_kg_per_m3 = film;
-  layers[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3 = known(electrode) ? electrode : film;
-  layers[DEA_CONSTITUENT_GLUE].density_kg_per_m3 = film;
-  layers[DEA_CONSTITUENT_FIBRE].density_kg_per_m3 = d->fibre.density_kg_per_m3;
+  constituents[DEA_CONSTITUENT_FILM].density_kg_per_m3 = film;
+  constituents[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3 = known(electrode) ? electrode : film;
+  constituents[DEA_CONSTITUENT_GLUE].density_kg_per_m3 = film;
+  constituents[DEA_CONSTITUENT_FIBRE].density_kg_per_m3 = d->fibre.density_kg_per_m3;
 }
 
 dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *a)
@@ -84,13 +84,13 @@ dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_act
 static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
                                 struct dea_actuator *out)
 {
-  struct dea_constituent *layers = out->layers;
-  struct dea_constituent *film = &layers[DEA_CONSTITUENT_FILM],
-                         *electrode = &layers[DEA_CONSTITUENT_ELECTRODE];
-  struct dea_constituent *under = &layers[DEA_CONSTITUENT_BOND_ELECTRODE];
-  dea_status status =
-      dea_membrane_bond(film, out->param[DEA_CONSTITUENT_BOND], &layers[DEA_CONSTITUENT_BOND]);
-  film->relaxed = !stiff_electrodes; // bonded sheets wrinkle together, not each by itself
+  struct dea_constituent *constituents = out->constituents;
+  struct dea_constituent *film = &constituents[DEA_CONSTITUENT_FILM],
+                         *electrode = &constituents[DEA_CONSTITUENT_ELECTRODE];
+  struct dea_constituent *under = &constituents[DEA_CONSTITUENT_BOND_ELECTRODE];
+  dea_status status = dea_membrane_bond(film, out->param[DEA_CONSTITUENT_BOND],
+                                        &constituents[DEA_CONSTITUENT_BOND]);
+  film->relaxed = !stiff_electrodes; // bonded plies wrinkle together, not each by itself
   if (status == DEA_OK && stiff_electrodes) {
     status = dea_membrane_bond(electrode, out->param[DEA_CONSTITUENT_BOND_ELECTRODE], under);
     // the load comes in below it, and not over its depth as a film's own does
@@ -111,30 +111,31 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   *out = (struct dea_actuator){.device = device};
   DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
   DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, &out->plate));
-  struct dea_constituent *layers = out->layers;
+  struct dea_constituent *constituents = out->constituents;
   double l = d->pre_stretch, slope = d->film.permittivity.slope;
-  layers[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
+  constituents[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
   // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
-  layers[DEA_CONSTITUENT_FILM].permittivity_F_per_m =
+  constituents[DEA_CONSTITUENT_FILM].permittivity_F_per_m =
       DEA_EPSILON_0 * (d->film.permittivity.at_rest + slope * (l - 1));
-  layers[DEA_CONSTITUENT_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
-  layers[DEA_CONSTITUENT_FILM].thickness_m = d->film_thickness_m;
-  layers[DEA_CONSTITUENT_ELECTRODE] =
+  constituents[DEA_CONSTITUENT_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
+  constituents[DEA_CONSTITUENT_FILM].thickness_m = d->film_thickness_m;
+  constituents[DEA_CONSTITUENT_ELECTRODE] =
       stretched(DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
-  layers[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
+  constituents[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
-  layers[DEA_CONSTITUENT_GLUE] =
+  constituents[DEA_CONSTITUENT_GLUE] =
       bonded(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5, out->param[DEA_CONSTITUENT_GLUE]);
-  layers[DEA_CONSTITUENT_FIBRE] = bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa,
-                                         d->fibre.poisson_ratio, out->param[DEA_CONSTITUENT_FIBRE]);
+  constituents[DEA_CONSTITUENT_FIBRE] =
+      bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa, d->fibre.poisson_ratio,
+             out->param[DEA_CONSTITUENT_FIBRE]);
   for (int i = 0; i < DEA_CONSTITUENT_BOND; i++) { // bonds come below, free of stress
     bool there = i == DEA_CONSTITUENT_FILM ||
                  (i == DEA_CONSTITUENT_ELECTRODE && film.electrode != NULL) ||
                  (i > DEA_CONSTITUENT_ELECTRODE && d->fibre_count > 0);
-    dea_status status = there ? dea_constituent_relax(&layers[i]) : DEA_OK;
+    dea_status status = there ? dea_constituent_relax(&constituents[i]) : DEA_OK;
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "the law '%s' ends before the pre-stretch %.4g",
-                      layers[i].law->name, d->pre_stretch);
+                      constituents[i].law->name, d->pre_stretch);
     }
   }
   if (out->plate.membrane && d->solid_field == DEA_FIELD_COUPLED) {
@@ -142,18 +143,18 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
                     "compute.solid.field: coupled needs a film with a thickness; take "
                     "compute.solid.film: solid");
   }
-  set_densities(d, layers);
+  set_densities(d, constituents);
   if (out->plate.membrane) {
     DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, out));
   }
   return DEA_OK;
 }
 
-int dea_actuator_layer(const void *self, int region, int sheet)
+int dea_actuator_constituent(const void *self, int region, int ply)
 {
   const struct dea_actuator *a = self;
   bool electrode = (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
-  switch (sheet) {
+  switch (ply) {
   case DEA_FIBRE_DISC_FILM:
     return DEA_CONSTITUENT_FILM;
   case DEA_FIBRE_DISC_BOND:
@@ -166,14 +167,14 @@ int dea_actuator_layer(const void *self, int region, int sheet)
   case DEA_FIBRE_DISC_BOTTOM:
     return DEA_CONSTITUENT_ELECTRODE;
   default:
-    return sheet == DEA_FIBRE_DISC_GLUE ? DEA_CONSTITUENT_GLUE : DEA_CONSTITUENT_FIBRE;
+    return ply == DEA_FIBRE_DISC_GLUE ? DEA_CONSTITUENT_GLUE : DEA_CONSTITUENT_FIBRE;
   }
 }
 
-bool dea_actuator_active(const void *self, int region, int sheet)
+bool dea_actuator_active(const void *self, int region, int ply)
 {
   (void)self;
-  return sheet == DEA_FIBRE_DISC_FILM && (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
+  return ply == DEA_FIBRE_DISC_FILM && (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
 }
 
 int dea_actuator_held(const void *self, const double X[3])

@@ -14,12 +14,12 @@ enum {
   DEA_CONSTITUENT_COUNT
 };
 
-/* Stays where it is: layers lend from it. */
+/* Stays where it is: constituents lend from it. */
 struct dea_actuator {
   const struct dea_device *device; // lent
   struct dea_fibre_disc plate;
-  struct dea_constituent layers[DEA_CONSTITUENT_COUNT];
-  double param[DEA_CONSTITUENT_COUNT][2]; // of the laws of what is bonded, lent to layers
+  struct dea_constituent constituents[DEA_CONSTITUENT_COUNT];
+  double param[DEA_CONSTITUENT_COUNT][2]; // of the laws of what is bonded, lent to constituents
 };
 
 /* The plate of a device, on the domain and with the refinement that it names. DEA_E_UNSUPPORTED for
@@ -27,17 +27,17 @@ struct dea_actuator {
 dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *device,
                                     struct dea_fibre_disc *out);
 
-/* Plate and layers. device: lent, outlives the actuator. */
+/* Plate and constituents. device: lent, outlives the actuator. */
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
                                struct dea_actuator *out);
 
-/* Before anything that takes the layers' densities: DEA_E_DESIGN where that of film or fibres is
- * unknown, a note where that of electrodes or glue is and the film's is taken. */
+/* Before anything that takes the constituents' densities: DEA_E_DESIGN where that of film or fibres
+ * is unknown, a note where that of electrodes or glue is and the film's is taken. */
 dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *actuator);
 
 /* Callbacks for a solid (solve/solid.h); self: a struct dea_actuator. */
-int dea_actuator_layer(const void *self, int region, int sheet);
-bool dea_actuator_active(const void *self, int region, int sheet);
+int dea_actuator_constituent(const void *self, int region, int ply);
+bool dea_actuator_active(const void *self, int region, int ply);
 int dea_actuator_held(const void *self, const double X[3]);
 /* Of a coupled field: the two faces of the film, the one with the fibres at the voltage. */
 bool dea_actuator_electrode(const void *self, const double X[3], double *share);

@@ -103,10 +103,10 @@ static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec
   grid->X = dea_alloc(ctx, 3 * spec->point_count, sizeof *grid->X);
   grid->nodes = dea_alloc(ctx, spec->cell_count * DEA_HEX_NODES_MAX, sizeof *grid->nodes);
   grid->region = dea_alloc(ctx, spec->cell_count, sizeof *grid->region);
-  grid->sheet = dea_alloc(ctx, spec->cell_count, sizeof *grid->sheet);
+  grid->ply = dea_alloc(ctx, spec->cell_count, sizeof *grid->ply);
   grid->levels = dea_alloc(ctx, spec->cell_count, sizeof *grid->levels);
   grid->kind = dea_alloc(ctx, spec->cell_count, sizeof *grid->kind); // hexahedra
-  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->sheet == NULL ||
+  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->ply == NULL ||
       grid->levels == NULL || grid->kind == NULL) {
     return DEA_E_MEMORY;
   }
@@ -153,17 +153,17 @@ static dea_status make_layer(struct dea_context *ctx, struct dea_part_spec *part
   return DEA_OK;
 }
 
-static int layer_of(const void *self, int region, int sheet)
+static int layer_of(const void *self, int region, int ply)
 {
   (void)self;
-  (void)sheet;
+  (void)ply;
   return region;
 }
 
-static bool is_active(const void *self, int region, int sheet)
+static bool is_active(const void *self, int region, int ply)
 {
   const struct dea_solid_object *object = self;
-  (void)sheet;
+  (void)ply;
   return object->parts[region].electrode_gap_m > 0;
 }
 
@@ -274,11 +274,11 @@ struct selection {
   struct dea_solid_place place;
 };
 
-static bool is_selected(const void *self, int region, int sheet, const double middle[3])
+static bool is_selected(const void *self, int region, int ply, const double middle[3])
 {
   const struct selection *selection = self;
   (void)region;
-  (void)sheet;
+  (void)ply;
   return is_there(selection->object, selection->place, middle);
 }
 

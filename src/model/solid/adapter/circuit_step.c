@@ -50,7 +50,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d,
   const struct dea_device *device = actuator->device;
   const struct dea_material *material = &device->film;
   double eps =
-      actuator->layers[DEA_CONSTITUENT_FILM].permittivity_F_per_m; // as it is pre-stretched
+      actuator->constituents[DEA_CONSTITUENT_FILM].permittivity_F_per_m; // as it is pre-stretched
   double rho = material->resistivity_ohm_m;
   double voltage_V = dea_solid_voltage(d->solid);
   struct dea_branches branches[DEA_CONSTITUENT_COUNT];

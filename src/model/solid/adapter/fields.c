@@ -20,8 +20,8 @@ static dea_status find_potentials(struct dea_context *ctx, const struct dea_soli
   return DEA_OK;
 }
 
-/* sheet: of the middle surface, negative for all elements. */
-static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, int sheet,
+/* ply: of the middle surface, negative for all elements. */
+static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, int ply,
                           struct dea_field_mesh **out)
 {
   double *potential_V;
@@ -30,15 +30,15 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
   const struct dea_recover_input input = {.grid = s->grid,
                                           .elements = &s->elements,
                                           .kind = s->kind,
-                                          .layers = s->layers,
-                                          .layer = s->layer,
+                                          .constituents = s->layers,
+                                          .constituent = s->layer,
                                           .active = s->active,
                                           .u = s->u,
                                           .multiplier = s->multiplier,
                                           .potential_V = potential_V,
                                           .voltage_V = s->voltage_V};
-  dea_status status = sheet < 0 ? dea_recover_volume(ctx, &input, out)
-                                : dea_recover_surface(ctx, &input, sheet, out);
+  dea_status status =
+      ply < 0 ? dea_recover_volume(ctx, &input, out) : dea_recover_surface(ctx, &input, ply, out);
   dea_free(ctx, potential_V);
   return status;
 }
@@ -50,9 +50,9 @@ dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *sol
   return DEA_OK;
 }
 
-dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int sheet,
+dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int ply,
                              struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, recover(ctx, solid, sheet, out));
+  DEA_TRY(ctx, recover(ctx, solid, ply, out));
   return DEA_OK;
 }

@@ -8,7 +8,7 @@
 /* out: owned by the caller, NULL on failure. The symmetry is left to the caller. */
 dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *solid,
                             struct dea_field_mesh **out);
-dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int sheet,
+dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int ply,
                              struct dea_field_mesh **out);
 
 #endif

@@ -14,7 +14,7 @@ struct choice {
   bool from_above;
 };
 
-static bool select_face(const void *self, int region, int sheet, const double middle[3])
+static bool select_face(const void *self, int region, int ply, const double middle[3])
 {
   const struct choice *choice = self;
   const struct dea_fibre_disc *p = &choice->actuator->plate;
@@ -23,9 +23,9 @@ static bool select_face(const void *self, int region, int sheet, const double mi
   int covered = inside && layers ? DEA_FIBRE_DISC_TOP : DEA_FIBRE_DISC_FILM;
   (void)middle;
   if (choice->from_above) {
-    return sheet == (fibre ? DEA_FIBRE_DISC_FIBRE_SHEET : covered);
+    return ply == (fibre ? DEA_FIBRE_DISC_FIBRE_PLY : covered);
   }
-  return sheet == (covered == DEA_FIBRE_DISC_TOP ? DEA_FIBRE_DISC_BOTTOM : DEA_FIBRE_DISC_FILM);
+  return ply == (covered == DEA_FIBRE_DISC_TOP ? DEA_FIBRE_DISC_BOTTOM : DEA_FIBRE_DISC_FILM);
 }
 
 static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *actuator,

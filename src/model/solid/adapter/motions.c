@@ -56,7 +56,7 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_motions 
 
 /* The film's middle surface, moved by v so little that it is as good as at rest: its displacement
  * is linear in v. */
-static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *m, int ply,
                              const double *v, struct dea_field_mesh **out)
 {
   static const double little = 1e-9; // of the size of the mesh
@@ -71,14 +71,14 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
   for (size_t i = 0; i < dofs; i++) {
     u[i] = scale * v[i];
   }
-  dea_status status = dea_solid_surface(ctx, m->solid, sheet, out);
+  dea_status status = dea_solid_surface(ctx, m->solid, ply, out);
   memcpy(u, keep, dofs * sizeof *u);
   dea_free(ctx, keep);
   return status;
 }
 
 /* Adds a mode to the surface as a field, its largest displacement there 1. */
-static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m, int ply,
                             const struct dea_load_point *point, const double *v,
                             struct dea_field_mesh *mesh)
 {
@@ -88,7 +88,7 @@ static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m
   snprintf(field.name, sizeof field.name, DEA_SHAPE_FIELD, (int)point->mode);
   snprintf(field.meaning, sizeof field.meaning,
            "shape of the mode at %.6g Hz, its largest displacement 1", point->frequency_Hz);
-  DEA_TRY(ctx, surface_of(ctx, m, sheet, v, &moved));
+  DEA_TRY(ctx, surface_of(ctx, m, ply, v, &moved));
   dea_status status = dea_field_mesh_add(ctx, mesh, &field, &values);
   if (status == DEA_OK) {
     const double *u = dea_field_mesh_find(moved, "displacement_m")->values;
@@ -101,7 +101,7 @@ static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m
   return status;
 }
 
-static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *m, int ply,
                              const struct dea_load_point *at, size_t count, double *memory,
                              struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
@@ -109,15 +109,15 @@ static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *
   double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
   DEA_TRY(ctx, dea_solid_modes(ctx, m->solid, DEA_MODES_BY_MASS, count, square, vector));
   DEA_TRY(ctx, fill_points(ctx, m, at, count, square, vector, work, points));
-  DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, sheet, shapes));
+  DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, ply, shapes));
   dea_status status = DEA_OK;
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
-    status = add_shape(ctx, m, sheet, &points[k], vector + k * dofs, *shapes);
+    status = add_shape(ctx, m, ply, &points[k], vector + k * dofs, *shapes);
   }
   return dea_field_mesh_finish(ctx, status, shapes);
 }
 
-dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *m, int sheet,
+dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *m, int ply,
                              const struct dea_load_point *at, size_t count,
                              struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
@@ -128,7 +128,7 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
     dea_free(ctx, memory);
     return DEA_E_MEMORY;
   }
-  dea_status status = take_modes(ctx, m, sheet, at, count, memory, points, shapes);
+  dea_status status = take_modes(ctx, m, ply, at, count, memory, points, shapes);
   dea_free(ctx, memory);
   return status;
 }

@@ -20,8 +20,8 @@ struct dea_motions {
 /* Sets the branches of film and electrodes. */
 void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device);
 
-/* As `modes` and `respond` of struct dea_model_type; sheet: of the film. */
-dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int sheet,
+/* As `modes` and `respond` of struct dea_model_type; ply: of the film. */
+dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int ply,
                              const struct dea_load_point *at, size_t count,
                              struct dea_load_point *points, struct dea_field_mesh **shapes);
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *motions,

@@ -70,9 +70,9 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   s->layer_count = options->layer_count;
   memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
   for (size_t e = 0; e < elements; e++) {
-    int region = grid->region[e], sheet = grid->sheet[e];
-    s->layer[e] = options->layer_of != NULL ? options->layer_of(options->self, region, sheet) : 0;
-    s->active[e] = options->active != NULL && options->active(options->self, region, sheet);
+    int region = grid->region[e], ply = grid->ply[e];
+    s->layer[e] = options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
+    s->active[e] = options->active != NULL && options->active(options->self, region, ply);
   }
   for (size_t n = 0; n < grid->node_count; n++) {
     int bits = options->held(options->self, grid->X + 3 * n);

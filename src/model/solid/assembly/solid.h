@@ -26,8 +26,8 @@ struct dea_solid_options {
   const struct dea_constituent *layers; // copied
   /* Layer of an element (NULL: the first of all), and whether it lies between electrodes (NULL:
    * none does; with a coupled field: for what fields and extremes report by V/h). */
-  int (*layer_of)(const void *self, int region, int sheet);
-  bool (*active)(const void *self, int region, int sheet);
+  int (*layer_of)(const void *self, int region, int ply);
+  bool (*active)(const void *self, int region, int ply);
   /* Components of a node that are held, as bits 1, 2, 4. */
   int (*held)(const void *self, const double X[3]);
   /* Local axes of a node as the rows of the orthonormal Q, which `held` then speaks of: for a

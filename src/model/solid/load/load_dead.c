@@ -5,14 +5,14 @@
 #include <string.h>
 
 dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_element_set *elements,
-                            double (*density_kg_per_m3)(const void *self, int region, int sheet),
+                            double (*density_kg_per_m3)(const void *self, int region, int ply),
                             const void *self, const double acceleration_m_per_s2[3], double *force)
 {
   // rows of the mass of what has one kilogram per volume, or per area of a surface: int N_a
   static const struct dea_constituent unit = {.density_kg_per_m3 = 1, .thickness_m = 1};
   double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   for (size_t e = 0; e < grid->element_count; e++) {
-    double density = density_kg_per_m3(self, grid->region[e], grid->sheet[e]);
+    double density = density_kg_per_m3(self, grid->region[e], grid->ply[e]);
     const struct dea_element *element = &elements->of[grid->kind[e]];
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
     for (int n = 0; n < element->nodes; n++) {

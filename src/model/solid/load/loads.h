@@ -14,7 +14,7 @@
  * film, of a surface its mass per area [kg/m^2]; acceleration: of free fall. DEA_E_DOMAIN for an
  * inverted element. */
 dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_element_set *elements,
-                            double (*density_kg_per_m3)(const void *self, int region, int sheet),
+                            double (*density_kg_per_m3)(const void *self, int region, int ply),
                             const void *self, const double acceleration_m_per_s2[3], double *force);
 /* Force per reference area in a fixed direction. A total force over a patch: that over
  * dea_surface_area. */

@@ -1,4 +1,4 @@
-/* Blocks and sheets of a plate. In a sector the lines l = 0, 1, ... go from the core to the frame:
+/* Blocks and plies of a plate. In a sector the lines l = 0, 1, ... go from the core to the frame:
  *
  *     polar blocks     between two circles, and between two lines or across a fibre
  *     ring blocks      from the outline of the core to the first circle
@@ -246,32 +246,32 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
   return DEA_OK;
 }
 
-/* ---- sheets ---- */
+/* ---- plies ---- */
 
-/* Which regions have which sheets: fibres beside the electrodes or without electrode layers, ... */
-static bool present_beside(int region, int sheet)
+/* Which regions have which plies: fibres beside the electrodes or without electrode layers, ... */
+static bool present_beside(int region, int ply)
 {
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return sheet == DEA_FIBRE_DISC_FILM || (sheet <= DEA_FIBRE_DISC_TOP ? electrode : fibre);
+  return ply == DEA_FIBRE_DISC_FILM || (ply <= DEA_FIBRE_DISC_TOP ? electrode : fibre);
 }
 
 /* ... or on an electrode layer, which a filler then continues. */
-static bool present_on_top(int region, int sheet)
+static bool present_on_top(int region, int ply)
 {
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return sheet == DEA_FIBRE_DISC_FILM || (sheet == DEA_FIBRE_DISC_BOTTOM ? electrode
-                                          : sheet == DEA_FIBRE_DISC_TOP  ? electrode || fibre
-                                                                         : fibre);
+  return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode
+                                        : ply == DEA_FIBRE_DISC_TOP  ? electrode || fibre
+                                                                     : fibre);
 }
 
 /* With a membrane: all but film and electrodes is under fibres. */
-static bool present_membrane(int region, int sheet)
+static bool present_membrane(int region, int ply)
 {
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return sheet == DEA_FIBRE_DISC_FILM || (sheet == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
+  return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
 }
 
-/* Sheets of a thickness have one element through it. */
+/* Plies of a thickness have one element through it. */
 static struct dea_ply sheet_of(const struct dea_fibre_disc *p, double thickness)
 {
   return (struct dea_ply){thickness, thickness > 0 ? 1 : 0, p->order_z};
@@ -282,23 +282,22 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *
 {
   bool fibres = p->fibres > 0;
   bool on_top = fibres && p->tip_radius < p->electrode_radius - same * p->frame_radius;
-  struct dea_ply sheets[DEA_FIBRE_DISC_SHEETS] = {
+  struct dea_ply plies[DEA_FIBRE_DISC_PLIES] = {
       [DEA_FIBRE_DISC_BOTTOM] = sheet_of(p, p->electrode_thickness),
       [DEA_FIBRE_DISC_FILM] = sheet_of(p, p->film_thickness),
       [DEA_FIBRE_DISC_BOND] = sheet_of(p, p->membrane && fibres ? 0.5 * p->film_thickness : 0),
       [DEA_FIBRE_DISC_TOP] = sheet_of(p, p->electrode_thickness),
       [DEA_FIBRE_DISC_GLUE] = sheet_of(p, fibres ? p->glue_thickness : 0),
-      [DEA_FIBRE_DISC_FIBRE_SHEET] = sheet_of(p, fibres ? p->fibre_thickness : 0),
+      [DEA_FIBRE_DISC_FIBRE_PLY] = sheet_of(p, fibres ? p->fibre_thickness : 0),
   };
-  const size_t skips[DEA_FIBRE_DISC_SHEETS] = {[DEA_FIBRE_DISC_GLUE] = on_top ? 0 : 1};
+  const size_t skips[DEA_FIBRE_DISC_PLIES] = {[DEA_FIBRE_DISC_GLUE] = on_top ? 0 : 1};
   double bottom = -0.5 * p->film_thickness - p->electrode_thickness;
   if (p->membrane) {
-    sheets[DEA_FIBRE_DISC_BOTTOM].thickness_m = sheets[DEA_FIBRE_DISC_FILM].thickness_m = bottom =
-        0;
-    sheets[DEA_FIBRE_DISC_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
+    plies[DEA_FIBRE_DISC_BOTTOM].thickness_m = plies[DEA_FIBRE_DISC_FILM].thickness_m = bottom = 0;
+    plies[DEA_FIBRE_DISC_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
   }
-  DEA_TRY(ctx, dea_grid_create_skipping(ctx, p->order, blocks, block_count, sheets,
-                                        DEA_FIBRE_DISC_SHEETS, skips,
+  DEA_TRY(ctx, dea_grid_create_skipping(ctx, p->order, blocks, block_count, plies,
+                                        DEA_FIBRE_DISC_PLIES, skips,
                                         p->membrane ? present_membrane
                                         : on_top    ? present_on_top
                                                     : present_beside,

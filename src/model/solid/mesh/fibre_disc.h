@@ -33,7 +33,7 @@ struct dea_fibre_disc {
 /* Bits of an element's region: inside the electrode circle, under a fibre. */
 enum { DEA_FIBRE_DISC_ELECTRODE = 1, DEA_FIBRE_DISC_FIBRE = 2 };
 
-/* Sheets from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
+/* Plies from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
  * DEA_FIBRE_DISC_TOP then goes on under the rest of the fibre as a filler of glue or fibre, so that
  * the fibre is flat.
  *
@@ -45,8 +45,8 @@ enum {
   DEA_FIBRE_DISC_BOND, // the upper half of a membrane's film
   DEA_FIBRE_DISC_TOP,  // electrode above
   DEA_FIBRE_DISC_GLUE,
-  DEA_FIBRE_DISC_FIBRE_SHEET,
-  DEA_FIBRE_DISC_SHEETS
+  DEA_FIBRE_DISC_FIBRE_PLY,
+  DEA_FIBRE_DISC_PLIES
 };
 
 /* Angle of the domain, from 0 to 2 pi. */

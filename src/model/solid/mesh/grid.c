@@ -102,33 +102,33 @@ static dea_status plane_create(struct dea_context *ctx, int order, const struct 
   return DEA_OK;
 }
 
-/* Levels that a sheet has above its bottom: none without thickness. */
-static size_t sheet_levels(const struct dea_ply *sheet)
+/* Levels that a ply has above its bottom: none without thickness. */
+static size_t ply_levels(const struct dea_ply *ply)
 {
-  return sheet->thickness_m > 0 ? sheet->count * (size_t)sheet->order_z : 0;
+  return ply->thickness_m > 0 ? ply->count * (size_t)ply->order_z : 0;
 }
 
-/* Level of nodes at the bottom of a sheet, the first level of its own (one above), and its z. A
- * level counts through all sheets: 0 is the bottom of the first, then order_z for each element. */
-struct sheet_place {
+/* Level of nodes at the bottom of a ply, the first level of its own (one above), and its z. A
+ * level counts through all plies: 0 is the bottom of the first, then order_z for each element. */
+struct ply_place {
   size_t bottom, own;
   double z;
 };
 
-static struct sheet_place sheet_place(const struct dea_ply *sheets, const size_t *skips, size_t s,
-                                      double bottom_m)
+static struct ply_place ply_place(const struct dea_ply *plies, const size_t *skips, size_t s,
+                                  double bottom_m)
 {
-  struct sheet_place at = {0, 1, bottom_m};
+  struct ply_place at = {0, 1, bottom_m};
   for (size_t k = 0; k < s; k++) {
-    at.own += sheet_levels(&sheets[k]);
+    at.own += ply_levels(&plies[k]);
   }
   size_t passed = skips != NULL ? skips[s] : 0;
   if (s > passed) { // on the top of another one
     size_t under = s - 1 - passed;
-    size_t levels = sheet_levels(&sheets[under]);
-    struct sheet_place below = sheet_place(sheets, skips, under, bottom_m);
+    size_t levels = ply_levels(&plies[under]);
+    struct ply_place below = ply_place(plies, skips, under, bottom_m);
     at.bottom = levels > 0 ? below.own + levels - 1 : below.bottom;
-    at.z = below.z + sheets[under].thickness_m;
+    at.z = below.z + plies[under].thickness_m;
   }
   return at;
 }
@@ -148,12 +148,12 @@ static void place_level(const struct plane_mesh *m, size_t levels, size_t level,
 /* Elements of one layer of a ply, of a surface with order_z 0; level[]: of their nodes, from bottom
  * to top; levels: of all. */
 static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_t *level,
-                          int order_z, int sheet, bool (*present)(int region, int sheet),
+                          int order_z, int ply, bool (*present)(int region, int ply),
                           struct dea_grid *grid)
 {
   int per_quad = (grid->order + 1) * (grid->order + 1);
   for (size_t e = 0; e < m->quad_count; e++) {
-    if (present != NULL && !present(m->region[e], sheet)) {
+    if (present != NULL && !present(m->region[e], ply)) {
       continue;
     }
     int *to = grid->nodes + grid->element_count * DEA_HEX_NODES_MAX;
@@ -166,30 +166,30 @@ static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_
     grid->levels[grid->element_count] = order_z + 1;
     grid->kind[grid->element_count] = order_z == 0 ? DEA_ELEMENT_MEMBRANE : DEA_ELEMENT_HEXAHEDRON;
     grid->region[grid->element_count] = m->region[e];
-    grid->sheet[grid->element_count++] = sheet;
+    grid->ply[grid->element_count++] = ply;
   }
 }
 
-/* Nodes of all levels through the sheets, and elements between them. The nodes of a column follow
+/* Nodes of all levels through the plies, and elements between them. The nodes of a column follow
  * each other, so that a range of numbers is a part of the plate. */
-static void extrude(const struct plane_mesh *m, const struct dea_ply *sheets, size_t sheet_count,
-                    const size_t *skips, bool (*present)(int region, int sheet), double bottom_m,
+static void extrude(const struct plane_mesh *m, const struct dea_ply *plies, size_t ply_count,
+                    const size_t *skips, bool (*present)(int region, int ply), double bottom_m,
                     struct dea_grid *grid)
 {
   size_t levels = grid->node_count / m->node_count;
   double at[DEA_HEX_ORDER_MAX + 1];
   grid->element_count = 0;
-  for (size_t s = 0; s < sheet_count; s++) {
-    bool surface = sheet_levels(&sheets[s]) == 0;
-    int order_z = surface ? 0 : sheets[s].order_z;
-    struct sheet_place place = sheet_place(sheets, skips, s, bottom_m);
+  for (size_t s = 0; s < ply_count; s++) {
+    bool surface = ply_levels(&plies[s]) == 0;
+    int order_z = surface ? 0 : plies[s].order_z;
+    struct ply_place place = ply_place(plies, skips, s, bottom_m);
     at[0] = -1;
     if (!surface) {
       dea_lobatto_nodes((size_t)order_z, at);
     }
-    for (size_t k = 0; k < sheets[s].count; k++) {
+    for (size_t k = 0; k < plies[s].count; k++) {
       size_t level[DEA_HEX_ORDER_MAX + 1];
-      double step = sheets[s].thickness_m / (double)sheets[s].count;
+      double step = plies[s].thickness_m / (double)plies[s].count;
       for (int l = 0; l <= order_z; l++) {
         size_t up = k * (size_t)order_z + (size_t)l;
         level[l] = up == 0 ? place.bottom : place.own + up - 1;
@@ -236,48 +236,48 @@ int dea_grid_nodes_of(const struct dea_grid *grid, size_t element)
 }
 
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
-                           size_t block_count, const struct dea_ply *sheets, size_t sheet_count,
-                           bool (*present)(int region, int sheet), double bottom_m, double length_m,
+                           size_t block_count, const struct dea_ply *plies, size_t ply_count,
+                           bool (*present)(int region, int ply), double bottom_m, double length_m,
                            struct dea_grid **out)
 {
-  return dea_grid_create_skipping(ctx, order, blocks, block_count, sheets, sheet_count, NULL,
-                                  present, bottom_m, length_m, out);
+  return dea_grid_create_skipping(ctx, order, blocks, block_count, plies, ply_count, NULL, present,
+                                  bottom_m, length_m, out);
 }
 
 dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
                                     const struct dea_block *blocks, size_t block_count,
-                                    const struct dea_ply *sheets, size_t sheet_count,
-                                    const size_t *skips, bool (*present)(int region, int sheet),
+                                    const struct dea_ply *plies, size_t ply_count,
+                                    const size_t *skips, bool (*present)(int region, int ply),
                                     double bottom_m, double length_m, struct dea_grid **out)
 {
   struct plane_mesh m = {0};
   size_t through = 0, levels = 1;
   *out = NULL;
-  for (size_t s = 0; s < sheet_count; s++) {
-    through += sheets[s].count;
-    levels += sheet_levels(&sheets[s]);
+  for (size_t s = 0; s < ply_count; s++) {
+    through += plies[s].count;
+    levels += ply_levels(&plies[s]);
   }
   dea_status status = plane_create(ctx, order, blocks, block_count, length_m, &m);
   struct dea_grid *grid = status == DEA_OK ? dea_alloc(ctx, 1, sizeof *grid) : NULL;
   if (grid != NULL) {
     grid->order = order;
-    grid->order_z = sheets[0].order_z;
+    grid->order_z = plies[0].order_z;
     grid->node_count = m.node_count * levels;
     grid->element_count = m.quad_count * through;
     grid->X = dea_alloc(ctx, grid->node_count, 3 * sizeof(double));
     grid->nodes = dea_alloc(ctx, grid->element_count, DEA_HEX_NODES_MAX * sizeof(int));
     grid->region = dea_alloc(ctx, grid->element_count, sizeof(int));
-    grid->sheet = dea_alloc(ctx, grid->element_count, sizeof(int));
+    grid->ply = dea_alloc(ctx, grid->element_count, sizeof(int));
     grid->levels = dea_alloc(ctx, grid->element_count, sizeof *grid->levels);
     grid->kind = dea_alloc(ctx, grid->element_count, sizeof *grid->kind);
   }
   if (grid == NULL || grid->X == NULL || grid->nodes == NULL || grid->region == NULL ||
-      grid->sheet == NULL || grid->levels == NULL || grid->kind == NULL) {
+      grid->ply == NULL || grid->levels == NULL || grid->kind == NULL) {
     dea_grid_destroy(ctx, grid);
     plane_release(&m);
     return DEA_E_MEMORY;
   }
-  extrude(&m, sheets, sheet_count, skips, present, bottom_m, grid);
+  extrude(&m, plies, ply_count, skips, present, bottom_m, grid);
   status = compact(ctx, grid);
   plane_release(&m);
   if (status != DEA_OK) {
@@ -294,7 +294,7 @@ void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
     dea_free(ctx, grid->X);
     dea_free(ctx, grid->nodes);
     dea_free(ctx, grid->region);
-    dea_free(ctx, grid->sheet);
+    dea_free(ctx, grid->ply);
     dea_free(ctx, grid->levels);
     dea_free(ctx, grid->kind);
     dea_free(ctx, grid);

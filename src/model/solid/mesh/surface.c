@@ -37,7 +37,7 @@ static void middle_of(const struct dea_surface *surface, size_t face, double mid
 
 dea_status
 dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum dea_face side,
-                   bool (*select)(const void *self, int region, int sheet, const double middle[3]),
+                   bool (*select)(const void *self, int region, int ply, const double middle[3]),
                    const void *self, struct dea_surface **out)
 {
   int local[DEA_FACE_NODES_MAX];
@@ -67,7 +67,7 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
           grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)node];
     }
     middle_of(s, s->face_count, middle);
-    if (select == NULL || select(self, grid->region[e], grid->sheet[e], middle)) {
+    if (select == NULL || select(self, grid->region[e], grid->ply[e], middle)) {
       s->element[s->face_count++] = (int)e;
     }
   }

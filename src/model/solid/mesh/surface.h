@@ -27,13 +27,13 @@ struct dea_surface {
   int *element;   // [face_count]
 };
 
-/* The side of all elements that `select` wants, by their region and sheet and the middle of the
+/* The side of all elements that `select` wants, by their region and ply and the middle of the
  * face's nodes; NULL: of all. An element of a surface is its own bottom and top and has no other.
  * DEA_E_ARGUMENT when there is none. out: owned by the caller, NULL on failure; the grid outlives
  * it. */
 dea_status
 dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum dea_face side,
-                   bool (*select)(const void *self, int region, int sheet, const double middle[3]),
+                   bool (*select)(const void *self, int region, int ply, const double middle[3]),
                    const void *self, struct dea_surface **out);
 void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface);
 

@@ -32,10 +32,10 @@ static void add_second_of_J(double f, const double F[9], double A[81])
   }
 }
 
-double dea_constituent_pointwise(const struct dea_constituent *layer, double J, double *slope,
+double dea_constituent_pointwise(const struct dea_constituent *constituent, double J, double *slope,
                                  double *curvature)
 {
-  double k = 0.5 * layer->kappa_s_Pa, excess = J - 1;
+  double k = 0.5 * constituent->kappa_s_Pa, excess = J - 1;
   *slope = k * (J - 1 / J);
   *curvature = k * (1 + 1 / (J * J));
   return k * (0.5 * excess * (excess + 2) - log1p(excess));
@@ -43,7 +43,7 @@ double dea_constituent_pointwise(const struct dea_constituent *layer, double J, 
 
 /* -(E^2/2) eps(q) q, q = |F_1 x F_2|^2 = |F_1|^2 |F_2|^2 - (F_1 . F_2)^2 of the in-plane columns.
  * With eps = e0 + e1 q^(1/4) its derivative by q is -k/2, k = E^2 (e0 + (5/4) e1 q^(1/4)). */
-static void add_electric(const struct dea_constituent *layer, double E, const double F[9],
+static void add_electric(const struct dea_constituent *constituent, double E, const double F[9],
                          bool tangent, struct dea_point *out)
 {
   double c[2][3], m[2][2], slope[2][3]; // columns, their products, dq/dc / 2
@@ -57,8 +57,8 @@ static void add_electric(const struct dea_constituent *layer, double E, const do
       m[J][L] = c[J][0] * c[L][0] + c[J][1] * c[L][1] + c[J][2] * c[L][2];
     }
   }
-  double q = m[0][0] * m[1][1] - m[0][1] * m[0][1], e1 = layer->permittivity_slope_F_per_m;
-  double e0 = layer->permittivity_F_per_m - e1, root = e1 != 0 ? sqrt(sqrt(q)) : 0;
+  double q = m[0][0] * m[1][1] - m[0][1] * m[0][1], e1 = constituent->permittivity_slope_F_per_m;
+  double e0 = constituent->permittivity_F_per_m - e1, root = e1 != 0 ? sqrt(sqrt(q)) : 0;
   double k = E * E * (e0 + 1.25 * e1 * root);
   double second = e1 != 0 ? -(5.0 / 32) * E * E * e1 * root / q : 0; // d2W/dq2
   out->W -= 0.5 * E * E * (e0 + e1 * root) * q;
@@ -83,17 +83,18 @@ static void add_electric(const struct dea_constituent *layer, double E, const do
 }
 
 /* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
-static dea_status elastic(const struct dea_constituent *layer, const double F[9], bool tangent,
-                          struct dea_point *out)
+static dea_status elastic(const struct dea_constituent *constituent, const double F[9],
+                          bool tangent, struct dea_point *out)
 {
   static const double fibre[3] = {1, 0, 0};
-  const double *G = layer->pre_stretch;
+  const double *G = constituent->pre_stretch;
   double FG[9];
   for (int a = 0; a < 9; a++) {
     FG[a] = F[a] * G[a % 3];
   }
-  dea_status status = tangent ? dea_point_elastic(layer->law, layer->param, FG, fibre, out)
-                              : dea_point_stress(layer->law, layer->param, FG, fibre, out);
+  dea_status status = tangent
+                          ? dea_point_elastic(constituent->law, constituent->param, FG, fibre, out)
+                          : dea_point_stress(constituent->law, constituent->param, FG, fibre, out);
   for (int a = 0; a < 9 && status == DEA_OK; a++) {
     out->P[a] *= G[a % 3];
     for (int b = 0; b < 9 && tangent; b++) {
@@ -103,9 +104,9 @@ static dea_status elastic(const struct dea_constituent *layer, const double F[9]
   return status;
 }
 
-double dea_constituent_modulus(const struct dea_constituent *layer)
+double dea_constituent_modulus(const struct dea_constituent *constituent)
 {
-  return layer->law->shear_modulus(layer->param);
+  return constituent->law->shear_modulus(constituent->param);
 }
 
 struct dea_constituent dea_constituent_bonded(const double param[2])
@@ -116,33 +117,34 @@ struct dea_constituent dea_constituent_bonded(const double param[2])
                                   .pre_stretch = {1, 1, 1}};
 }
 
-dea_status dea_constituent_relax(struct dea_constituent *layer)
+dea_status dea_constituent_relax(struct dea_constituent *constituent)
 {
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   struct dea_point point;
-  layer->p0_Pa = 0;
-  if (!dea_constituent_takes_pressure(layer)) {
+  constituent->p0_Pa = 0;
+  if (!dea_constituent_takes_pressure(constituent)) {
     return DEA_OK;
   }
-  dea_status status = elastic(layer, one, false, &point);
-  layer->p0_Pa = -point.P[8];
-  layer->kappa_s_Pa =
-      0.5 * fabs(layer->p0_Pa); // above the third that it takes, docs/theory/solid.md
+  dea_status status = elastic(constituent, one, false, &point);
+  constituent->p0_Pa = -point.P[8];
+  constituent->kappa_s_Pa =
+      0.5 * fabs(constituent->p0_Pa); // above the third that it takes, docs/theory/solid.md
   return status;
 }
 
-static dea_status evaluate(const struct dea_constituent *layer, const double F[9],
+static dea_status evaluate(const struct dea_constituent *constituent, const double F[9],
                            const double cof[9], double J, double pressure, double field_V_per_m,
                            bool tangent, struct dea_point *point)
 {
-  dea_status status = elastic(layer, F, tangent, point);
+  dea_status status = elastic(constituent, F, tangent, point);
   if (status != DEA_OK) {
     return status;
   }
-  if (dea_constituent_takes_pressure(layer)) {
+  if (dea_constituent_takes_pressure(constituent)) {
     double slope, curvature;
-    point->W += layer->p0_Pa * (J - 1) + dea_constituent_pointwise(layer, J, &slope, &curvature);
-    double p = layer->p0_Pa + slope + pressure;
+    point->W += constituent->p0_Pa * (J - 1) +
+                dea_constituent_pointwise(constituent, J, &slope, &curvature);
+    double p = constituent->p0_Pa + slope + pressure;
     for (int a = 0; a < 9; a++) {
       point->P[a] += p * cof[a];
       for (int b = 0; b < 9 && tangent; b++) {
@@ -153,24 +155,24 @@ static dea_status evaluate(const struct dea_constituent *layer, const double F[9
       add_second_of_J(p, F, point->A);
     }
   }
-  if (field_V_per_m != 0 && layer->permittivity_F_per_m > 0) {
-    add_electric(layer, field_V_per_m, F, tangent, point);
+  if (field_V_per_m != 0 && constituent->permittivity_F_per_m > 0) {
+    add_electric(constituent, field_V_per_m, F, tangent, point);
   }
   return DEA_OK;
 }
 
-dea_status dea_constituent_point(const struct dea_constituent *layer, const double F[9],
+dea_status dea_constituent_point(const struct dea_constituent *constituent, const double F[9],
                                  const double cof[9], double J, double pressure,
                                  double field_V_per_m, struct dea_point *point)
 {
-  return evaluate(layer, F, cof, J, pressure, field_V_per_m, true, point);
+  return evaluate(constituent, F, cof, J, pressure, field_V_per_m, true, point);
 }
 
-dea_status dea_constituent_stress(const struct dea_constituent *layer, const double F[9],
+dea_status dea_constituent_stress(const struct dea_constituent *constituent, const double F[9],
                                   const double cof[9], double J, double pressure,
                                   double field_V_per_m, struct dea_point *point)
 {
-  return evaluate(layer, F, cof, J, pressure, field_V_per_m, false, point);
+  return evaluate(constituent, F, cof, J, pressure, field_V_per_m, false, point);
 }
 
 void dea_constituent_second_stress(const double cof[9], double J, const double P[9], double S[9])

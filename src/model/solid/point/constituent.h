@@ -25,7 +25,7 @@ struct dea_constituent {
   double pre_stretch[3];       // diagonal of G, det G = 1
   double p0_Pa, kappa_s_Pa;    // dea_constituent_relax sets them
   double kappa_Pa;             // bulk modulus of the projected part, of the element
-  double permittivity_F_per_m; // eps of the flat layer, 0: no electric energy
+  double permittivity_F_per_m; // eps of the flat constituent, 0: no electric energy
   /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
   double permittivity_slope_F_per_m;
   double thickness_m;       // h, over which the voltage stands
@@ -47,27 +47,28 @@ static inline bool dea_constituent_takes_pressure(const struct dea_constituent *
 }
 
 /* Shear modulus of the ground state [Pa]. */
-double dea_constituent_modulus(const struct dea_constituent *layer);
+double dea_constituent_modulus(const struct dea_constituent *constituent);
 
-/* Sets p0 so that the undeformed layer has no stress through the thickness, and the kappa_s that
- * keeps such a layer free of false unstable modes. Nothing to do for a compressible law. */
-dea_status dea_constituent_relax(struct dea_constituent *layer);
+/* Sets p0 so that the undeformed constituent has no stress through the thickness, and the kappa_s
+ * that keeps such a constituent free of false unstable modes. Nothing to do for a compressible law.
+ */
+dea_status dea_constituent_relax(struct dea_constituent *constituent);
 
 /* Energy, stress and tangent by F, at cofactors cof and determinant J of F. pressure: added as
  * p dJ/dF (of what takes one; its energy is the caller's). field_V_per_m: reference field E between
  * the electrodes, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
-dea_status dea_constituent_point(const struct dea_constituent *layer, const double F[9],
+dea_status dea_constituent_point(const struct dea_constituent *constituent, const double F[9],
                                  const double cof[9], double J, double pressure,
                                  double field_V_per_m, struct dea_point *point);
 
 /* The same without the tangent: point->A is not set. */
-dea_status dea_constituent_stress(const struct dea_constituent *layer, const double F[9],
+dea_status dea_constituent_stress(const struct dea_constituent *constituent, const double F[9],
                                   const double cof[9], double J, double pressure,
                                   double field_V_per_m, struct dea_point *point);
 
 /* The pointwise part kappa_s/2 ((J^2 - 1)/2 - ln J) and its derivatives by J: kappa_s/2 (J - 1)^2
  * near 1, and a barrier before J = 0. */
-double dea_constituent_pointwise(const struct dea_constituent *layer, double J, double *slope,
+double dea_constituent_pointwise(const struct dea_constituent *constituent, double J, double *slope,
                                  double *curvature);
 
 /* Second Piola-Kirchhoff stress S = F^-1 P from the first one. */

@@ -7,13 +7,13 @@
 /* Components of a symmetric tensor as a matrix. */
 static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
 
-void dea_viscous_add(const struct dea_constituent *layer, int q, const double F[9],
+void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point)
 {
-  if (layer->viscous == NULL) {
+  if (constituent->viscous == NULL) {
     return;
   }
-  const double *B = layer->viscous + 6 * q, b = layer->viscous_Pa;
+  const double *B = constituent->viscous + 6 * q, b = constituent->viscous_Pa;
   double energy = -b * log1p(J - 1), inverse[9]; // F^-T
   for (int a = 0; a < 9; a++) {
     inverse[a] = cof[a] / J;
@@ -76,13 +76,13 @@ static void find_tensions(const double P[6], const double F[6], double area, dou
   tension[1] = 0.5 * (trace - apart);
 }
 
-void dea_viscous_add_flat(const struct dea_constituent *layer, int q, const double F[6],
+void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, const double F[6],
                           struct dea_membrane_point *point)
 {
-  if (layer->viscous == NULL) {
+  if (constituent->viscous == NULL) {
     return;
   }
-  const double *full = layer->viscous + 6 * q, B[3] = {full[0], full[1], full[5]};
+  const double *full = constituent->viscous + 6 * q, B[3] = {full[0], full[1], full[5]};
   double C[3], inverse[3], S[3], f[6], det = plane_inverse(F, C, inverse), k = full[2] / det;
   point->W += 0.5 * (B[0] * (C[0] - 1) + B[1] * (C[1] - 1) + full[2] * (1 / det - 1)) + B[2] * C[2];
   for (int a = 0; a < 3; a++) {

@@ -1,4 +1,4 @@
-/* Viscosity of a layer: springs in series with dashpots beside its law, in steps of time
+/* Viscosity of a constituent: springs in series with dashpots beside its law, in steps of time
  * (docs/theory/time.md).
  *
  * Symbol   meaning                                                                     unit
@@ -7,8 +7,8 @@
  * G_i      its shear modulus                                                           Pa
  * B, b     sum_i G_i (e_i A_i + w_0i C^-1) at the begin of the step, sum_i G_i (1 - w_1i)   Pa
  *
- * Energy of a step per volume: 1/2 B : (C - 1) - b ln J. A layer's pre-stretch G drops out: with
- * A_i counted like C, G A G of the unstretched material, the equations are the same.
+ * Energy of a step per volume: 1/2 B : (C - 1) - b ln J. A constituent's pre-stretch G drops out:
+ * with A_i counted like C, G A G of the unstretched material, the equations are the same.
  *
  * Symmetric tensors are in the order 11 22 33 23 13 12. */
 #ifndef DEA_MODEL_SOLID_POINT_VISCOUS_H
@@ -18,13 +18,13 @@
 #include "model/solid/point/membrane_point.h"
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
- * Nothing to do for a layer without one. */
-void dea_viscous_add(const struct dea_constituent *layer, int q, const double F[9],
+ * Nothing to do for a constituent without one. */
+void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point);
 
 /* The same of a membrane, of which B 23 and B 13 are not used: with C_33 = 1/det C of the plane,
  * 1/2 B : (C - 1). What branches see of a film that wrinkles is its mid-surface. */
-void dea_viscous_add_flat(const struct dea_constituent *layer, int q, const double F[6],
+void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, const double F[6],
                           struct dea_membrane_point *point);
 
 /* C and C^-1 from the in-plane columns F[2 i + J] of a membrane; J = 1. */

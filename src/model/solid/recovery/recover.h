@@ -2,7 +2,7 @@
  *
  * Inside an element stress and stretch are best at a few inner points; values at its nodes come
  * from a polynomial of one degree less than the displacements, fitted to its Gauss points. Values
- * of a node are means over the elements of the same sheet and region around it, so that film and
+ * of a node are means over the elements of the same ply and region around it, so that film and
  * fibre, electrode and bare film do not mix where they meet. Means are taken of tensors; principal
  * values come last.
  *
@@ -15,28 +15,28 @@
 #include "result/field_mesh.h"
 
 /* A solid at an equilibrium. u: [nodes][3]; multiplier: [elements][elements->pressures]; kind,
- * layer, active: [elements]; potential_V: [nodes], used by kinds with a potential. */
+ * constituent, active: [elements]; potential_V: [nodes], used by kinds with a potential. */
 struct dea_recover_input {
   const struct dea_grid *grid;
   const struct dea_element_set *elements;
   const enum dea_element_kind *kind;
-  const struct dea_constituent *layers;
-  const int *layer;
+  const struct dea_constituent *constituents;
+  const int *constituent;
   const bool *active;
   const double *u, *multiplier, *potential_V;
   double voltage_V;
 };
 
 /* All elements with displacement, stretches, stresses, tension, field and energy at points (one a
- * node, sheet and region), error of volume, sheet and region of cells. The symmetry is left to the
+ * node, ply and region), error of volume, ply and region of cells. The symmetry is left to the
  * caller. out: owned by the caller, NULL on failure; DEA_E_DOMAIN as above. */
 dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_input *in,
                               struct dea_field_mesh **out);
 
-/* The middle surface of a sheet, between electrodes or not, under another sheet or not: these four
+/* The middle surface of a ply, between electrodes or not, under another ply or not: these four
  * parts do not share points. Fields: those of DEA_SURFACE_* below, cells: whether between
  * electrodes and whether under a fibre. */
-dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in,
-                               int sheet, struct dea_field_mesh **out);
+dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in, int ply,
+                               struct dea_field_mesh **out);
 
 #endif

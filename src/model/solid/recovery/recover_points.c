@@ -42,8 +42,8 @@ static int by_place(const void *a, const void *b)
   if (p->y != q->y) {
     return p->y < q->y ? -1 : 1;
   }
-  if (p->sheet != q->sheet) {
-    return p->sheet < q->sheet ? -1 : 1;
+  if (p->ply != q->ply) {
+    return p->ply < q->ply ? -1 : 1;
   }
   return (p->z > q->z) - (p->z < q->z);
 }
@@ -55,7 +55,7 @@ struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_
   struct dea_stacked *stack = dea_alloc(ctx, grid->element_count, sizeof *stack);
   for (size_t e = 0; stack != NULL && e < grid->element_count; e++) {
     stack[e].element = e;
-    stack[e].sheet = grid->sheet[e];
+    stack[e].ply = grid->ply[e];
     for (int n = 0; n < plane_nodes; n++) {
       const double *X = grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
       stack[e].x += X[0];
@@ -70,11 +70,11 @@ struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_
 }
 
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
-                              bool by_sheet)
+                              bool by_ply)
 {
   size_t end = from + 1;
   while (end < count && stack[end].x == stack[from].x && stack[end].y == stack[from].y &&
-         (!by_sheet || stack[end].sheet == stack[from].sheet)) {
+         (!by_ply || stack[end].ply == stack[from].ply)) {
     end++;
   }
   return end;
@@ -94,7 +94,7 @@ dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
     potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
   const struct dea_element_input at = {
-      .constituent = &in->layers[in->layer[e]],
+      .constituent = &in->constituents[in->constituent[e]],
       .X = X,
       .u = u,
       .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
@@ -127,20 +127,20 @@ static void principal(double xx, double yy, double xy, double out[2])
   out[1] = mean - radius;
 }
 
-void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
+void dea_recover_plane(const struct dea_constituent *constituent, const double F[9],
                        const double force[6], struct dea_plane_state *out)
 {
   const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
   const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                             a[0] * b[1] - a[1] * b[0]};
   double e[2][3], T[2][2], squares[2], cof[9];
-  double gx = layer->pre_stretch[0], gy = layer->pre_stretch[1];
+  double gx = constituent->pre_stretch[0], gy = constituent->pre_stretch[1];
   double length = sqrt(dot(a, a));
   out->area = sqrt(dot(normal, normal));
   principal(gx * gx * dot(a, a), gy * gy * dot(b, b), gx * gy * dot(a, b), squares);
   out->stretch[0] = sqrt(squares[0]);
   out->stretch[1] = sqrt(fmax(squares[1], 0));
-  out->stretch[2] = layer->pre_stretch[2] * dea_cofactors(F, cof) / out->area;
+  out->stretch[2] = constituent->pre_stretch[2] * dea_cofactors(F, cof) / out->area;
   for (int i = 0; i < 3; i++) { // an orthonormal basis of the current tangent plane
     e[0][i] = a[i] / length;
   }

@@ -4,18 +4,18 @@
 
 #include "model/solid/recovery/recover.h"
 
-/* Elements by column (those above each other), sheet and height. A column has the same x and y, the
+/* Elements by column (those above each other), ply and height. A column has the same x and y, the
  * sum over the nodes of one level, to the bit. */
 struct dea_stacked {
   double x, y, z;
-  int sheet;
+  int ply;
   size_t element;
 };
 /* [element_count], owned by the caller; NULL for want of memory. */
 struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_recover_input *in);
-/* First element after `from` of another column, or of another sheet with by_sheet. */
+/* First element after `from` of another column, or of another ply with by_ply. */
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
-                              bool by_sheet);
+                              bool by_ply);
 
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
@@ -29,7 +29,7 @@ struct dea_plane_state {
   double tension[2]; // principal, per current length: larger, smaller [N/m]
   double area;       // |F_1 x F_2|
 };
-void dea_recover_plane(const struct dea_constituent *layer, const double F[9],
+void dea_recover_plane(const struct dea_constituent *constituent, const double F[9],
                        const double force[6], struct dea_plane_state *out);
 
 /* Adds a field and writes where its values go; after a failure *status stays and *values is NULL.

@@ -1,4 +1,4 @@
-/* The middle surface of a sheet with its fields. */
+/* The middle surface of a ply with its fields. */
 #include "model/solid/recovery/recover_points.h"
 
 #include "base/quadrature.h"
@@ -11,7 +11,7 @@ enum { SUMS = 20, FIELD = 12, HEIGHT = 13, FORCE = 14, GROUPS = 4 };
 struct work {
   struct dea_context *ctx;
   const struct dea_recover_input *in;
-  int sheet;
+  int ply;
   struct dea_stacked *stack;
   struct dea_recovered *at;
   size_t column_count, point_count;
@@ -101,7 +101,7 @@ static void add_level(struct work *w, size_t element, double z, const int *point
   }
 }
 
-/* The elements of the sheet in one column, from below: the membrane forces of all, the rest from
+/* The elements of the ply in one column, from below: the membrane forces of all, the rest from
  * the one that has the middle. */
 static dea_status add_column(struct work *w, size_t from, size_t end, bool covered)
 {
@@ -145,8 +145,9 @@ static bool has_fibre(const struct work *w, size_t from, size_t end)
 {
   bool any = false;
   for (size_t k = from; k < end; k++) {
-    const struct dea_constituent *layer = &w->in->layers[w->in->layer[w->stack[k].element]];
-    any = any || layer->part == DEA_PART_FIBRE;
+    const struct dea_constituent *constituent =
+        &w->in->constituents[w->in->constituent[w->stack[k].element]];
+    any = any || constituent->part == DEA_PART_FIBRE;
   }
   return any;
 }
@@ -158,7 +159,7 @@ static dea_status add_columns(struct work *w)
     size_t end = dea_recover_column_end(w->stack, count, from, false);
     for (size_t first = from; first < end;) {
       size_t last = dea_recover_column_end(w->stack, count, first, true);
-      if (w->stack[first].sheet == w->sheet) {
+      if (w->stack[first].ply == w->ply) {
         DEA_TRY(w->ctx, add_column(w, first, last, has_fibre(w, from, end)));
       }
       first = last;
@@ -204,7 +205,7 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
 {
   const struct dea_recover_input *in = w->in;
   size_t e = w->element[p];
-  const struct dea_constituent *layer = &in->layers[in->layer[e]];
+  const struct dea_constituent *constituent = &in->constituents[in->constituent[e]];
   struct dea_plane_state plane;
   double mean[SUMS];
   for (int i = 0; i < SUMS; i++) {
@@ -213,7 +214,7 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
   memcpy(X, in->grid->X + 3 * w->node[p], 2 * sizeof *X);
   X[2] = mean[HEIGHT];
   memcpy(to->displacement + 3 * p, mean, 3 * sizeof *mean);
-  dea_recover_plane(layer, mean + 3, mean + FORCE, &plane);
+  dea_recover_plane(constituent, mean + 3, mean + FORCE, &plane);
   memcpy(to->stretch + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
   to->field[p] = mean[FIELD];
@@ -236,10 +237,10 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
   return DEA_OK;
 }
 
-dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in,
-                               int sheet, struct dea_field_mesh **out)
+dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in, int ply,
+                               struct dea_field_mesh **out)
 {
-  struct work work = {.ctx = ctx, .in = in, .sheet = sheet};
+  struct work work = {.ctx = ctx, .in = in, .ply = ply};
   *out = NULL;
   dea_status status = prepare(&work);
   if (status == DEA_OK) {

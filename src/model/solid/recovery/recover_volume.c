@@ -7,12 +7,12 @@
 
 enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 6
 
-/* Points while sums are taken. A group is a sheet in a region. */
+/* Points while sums are taken. A group is a ply in a region. */
 struct work {
   struct dea_context *ctx;
   const struct dea_recover_input *in;
   struct dea_stacked *stack;
-  int sheet_count, region_count;
+  int ply_count, region_count;
   size_t point_count;
   int *point;      // of a group's node, [groups][node_count], counted from 1; 0: none
   int *node;       // of a point
@@ -35,7 +35,7 @@ static void release(struct work *w)
 static int *points_of(const struct work *w, size_t element)
 {
   const struct dea_grid *grid = w->in->grid;
-  size_t group = (size_t)(grid->sheet[element] * w->region_count + grid->region[element]);
+  size_t group = (size_t)(grid->ply[element] * w->region_count + grid->region[element]);
   return w->point + group * grid->node_count;
 }
 
@@ -50,10 +50,10 @@ static dea_status number_points(struct work *w)
 {
   const struct dea_grid *grid = w->in->grid;
   for (size_t e = 0; e < grid->element_count; e++) {
-    w->sheet_count = w->sheet_count > grid->sheet[e] ? w->sheet_count : grid->sheet[e] + 1;
+    w->ply_count = w->ply_count > grid->ply[e] ? w->ply_count : grid->ply[e] + 1;
     w->region_count = w->region_count > grid->region[e] ? w->region_count : grid->region[e] + 1;
   }
-  size_t groups = (size_t)(w->sheet_count * w->region_count), per = DEA_HEX_NODES_MAX;
+  size_t groups = (size_t)(w->ply_count * w->region_count), per = DEA_HEX_NODES_MAX;
   w->point = dea_alloc(w->ctx, groups * grid->node_count, sizeof *w->point);
   w->node = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->node);
   w->element = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->element);
@@ -74,7 +74,7 @@ static dea_status number_points(struct work *w)
   return DEA_OK;
 }
 
-/* Takes the elements of one sheet in one column; their membrane forces add up. */
+/* Takes the elements of one ply in one column; their membrane forces add up. */
 static dea_status add_column(struct work *w, size_t from, size_t end)
 {
   double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}};
@@ -160,7 +160,8 @@ static void principal(const double m[6], double value[3], double axis[3][3])
 }
 
 /* Principal stretches of F G. */
-static void principal_stretch(const struct dea_constituent *layer, const double F[9], double out[3])
+static void principal_stretch(const struct dea_constituent *constituent, const double F[9],
+                              double out[3])
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   double C[6] = {0}, axis[3][3];
@@ -168,7 +169,7 @@ static void principal_stretch(const struct dea_constituent *layer, const double 
     for (int i = 0; i < 3; i++) {
       C[m] += F[3 * i + row[m]] * F[3 * i + column[m]];
     }
-    C[m] *= layer->pre_stretch[row[m]] * layer->pre_stretch[column[m]];
+    C[m] *= constituent->pre_stretch[row[m]] * constituent->pre_stretch[column[m]];
   }
   principal(C, out, axis);
   for (int k = 0; k < 3; k++) {
@@ -179,7 +180,7 @@ static void principal_stretch(const struct dea_constituent *layer, const double 
 /* Where the values of the fields go. */
 struct fields {
   double *displacement, *stretch, *plane, *stress, *axis[3], *tension, *field, *energy;
-  double *error, *sheet, *region;
+  double *error, *ply, *region;
 };
 
 static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh,
@@ -215,7 +216,7 @@ static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mes
                 NULL},
       error = {"volume_error", "1", "largest |J - 1| in the element", DEA_MESH_VALUES, 1,
                true,           NULL},
-      sheet = {"sheet", "1", "number of the layer, from below", DEA_MESH_VALUES, 1, true, NULL},
+      ply = {"sheet", "1", "number of the layer, from below", DEA_MESH_VALUES, 1, true, NULL},
       region = {"region", "1", "number of the region in the plane", DEA_MESH_VALUES, 1, true, NULL};
   dea_status status = DEA_OK;
   dea_recover_add(ctx, mesh, &dea_recover_displacement, &out->displacement, &status);
@@ -229,7 +230,7 @@ static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mes
   dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
   dea_recover_add(ctx, mesh, &energy, &out->energy, &status);
   dea_recover_add(ctx, mesh, &error, &out->error, &status);
-  dea_recover_add(ctx, mesh, &sheet, &out->sheet, &status);
+  dea_recover_add(ctx, mesh, &ply, &out->ply, &status);
   dea_recover_add(ctx, mesh, &region, &out->region, &status);
   return status;
 }
@@ -238,18 +239,18 @@ static void fill_point(const struct work *w, size_t p, const struct fields *to)
 {
   const struct dea_recover_input *in = w->in;
   size_t e = w->element[p];
-  const struct dea_constituent *layer = &in->layers[in->layer[e]];
+  const struct dea_constituent *constituent = &in->constituents[in->constituent[e]];
   const double *sum = w->sum[p];
   struct dea_plane_state plane;
   double axis[3][3];
   memcpy(to->displacement + 3 * p, in->u + 3 * w->node[p], 3 * sizeof(double));
-  principal_stretch(layer, sum, to->stretch + 3 * p);
+  principal_stretch(constituent, sum, to->stretch + 3 * p);
   principal(sum + 9, to->stress + 3 * p, axis);
   for (int k = 0; k < 3; k++) {
     memcpy(to->axis[k] + 3 * p, axis[k], sizeof axis[k]);
   }
   to->energy[p] = sum[15];
-  dea_recover_plane(layer, sum, sum + FORCE, &plane);
+  dea_recover_plane(constituent, sum, sum + FORCE, &plane);
   memcpy(to->plane + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
   to->field[p] = sum[16];
@@ -288,7 +289,7 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
     for (size_t e = 0; e < grid->element_count; e++) {
       if (grid->levels[e] == levels) {
         *to.error++ = w->error[e];
-        *to.sheet++ = grid->sheet[e];
+        *to.ply++ = grid->ply[e];
         *to.region++ = grid->region[e];
       }
     }
