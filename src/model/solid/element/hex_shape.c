@@ -1,4 +1,4 @@
-#include "model/solid/element/hex.h"
+#include "model/solid/element/hex_shape.h"
 
 #include "base/quadrature.h"
 

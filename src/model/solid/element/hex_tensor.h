@@ -8,7 +8,7 @@
 #ifndef DEA_MODEL_SOLID_ELEMENT_HEX_TENSOR_H
 #define DEA_MODEL_SOLID_ELEMENT_HEX_TENSOR_H
 
-#include "model/solid/element/hex.h"
+#include "model/solid/element/hex_shape.h"
 
 enum {
   DEA_HEX_COLUMNS_MAX = 3 + 3 * DEA_HEX_PRESSURES_MAX, // of the values that are summed at once

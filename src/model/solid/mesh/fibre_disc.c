@@ -6,24 +6,29 @@
  *                      edges, G between them: three blocks meet at G, and none has an angle of 0 or
  *                      180 degrees however thin the wedge is
  *
- * A sector of more than 90 degrees (one fibre) has two wedges. */
+ * A sector of more than 90 degrees (one fibre) has two wedges.
+ *
+ * Symbol   meaning                                                              unit
+ * l        place between the first line (0: fibre axis) and the last (count)    1
+ * alpha    angle of a sector, pi/N                                              rad */
 #include "model/solid/mesh/fibre_disc.h"
 
 #include "model/solid/mesh/cuts.h"
-#include "model/solid/mesh/fibre_disc_lines.h"
 
 #include <math.h>
 #include <string.h>
 
 enum {
+  CIRCLES_MAX = 4,
   WEDGES_MAX = 2,
   RINGS_MAX = 2 * WEDGES_MAX,
-  POLARS_MAX = 2 * (DEA_FIBRE_DISC_CIRCLES_MAX - 1)
+  POLARS_MAX = 2 * (CIRCLES_MAX - 1)
 };
 enum { SECTOR_BLOCKS_MAX = WEDGES_MAX + RINGS_MAX + POLARS_MAX };
 
 static const double pi = 3.14159265358979323846;
-static const double same = 1e-9; // of the frame's radius: one place
+static const double same = 1e-9;       // of the frame's radius: one place
+static const double free_share = 0.99; // of a sector that fibres may take where they begin
 
 double dea_fibre_disc_angle(const struct dea_fibre_disc *plate)
 {
@@ -35,11 +40,135 @@ int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate)
   return 2 * (plate->fibres > 0 ? plate->fibres : 4);
 }
 
+/* ---- lines from the core outwards, and the circles that they cross ---- */
+
+struct lines {
+  const struct dea_fibre_disc *plate; // lent
+  double alpha;
+  size_t across;              // elements across half a fibre, 0 without fibres
+  size_t count;               // elements between the first line and the last
+  double circle[CIRCLES_MAX]; // radii, ascending: the last is the frame
+  size_t circle_count;
+};
+
+/* Half the angle that a fibre takes where its long edge, a straight line from its tip to its outer
+ * end, crosses a circle; inside the tip and beyond the outer end the line goes on to the centre. */
+static double fibre_angle(const struct dea_fibre_disc *p, double radius)
+{
+  double y1 = 0.5 * p->tip_width, x1 = sqrt(p->tip_radius * p->tip_radius - y1 * y1);
+  double y2 = 0.5 * p->outer_width, x2 = sqrt(p->outer_radius * p->outer_radius - y2 * y2);
+  if (radius <= p->tip_radius) {
+    return atan2(y1, x1);
+  }
+  if (radius >= p->outer_radius) {
+    return atan2(y2, x2);
+  }
+  // |P1 + t (P2 - P1)| = radius, the larger root: from P1 on outwards
+  double dx = x2 - x1, dy = y2 - y1, a = dx * dx + dy * dy, b = x1 * dx + y1 * dy;
+  double c = x1 * x1 + y1 * y1 - radius * radius;
+  double t = -c / (b + sqrt(b * b - a * c));
+  return atan2(y1 + t * dy, x1 + t * dx);
+}
+
+/* Angle at which the line l crosses the circle of that radius. */
+static double line_angle(const struct lines *lines, double l, double radius)
+{
+  double across = (double)lines->across;
+  double edge = lines->across > 0 ? fibre_angle(lines->plate, radius) : 0;
+  if (l <= across && lines->across > 0) { // equal parts of the width
+    return asin(sin(edge) * l / across);
+  }
+  return edge + (lines->alpha - edge) * (l - across) / ((double)lines->count - across);
+}
+
+/* The place itself. */
+static void line_point(const struct lines *lines, double l, double radius, double x[2])
+{
+  double angle = line_angle(lines, l, radius);
+  x[0] = radius * cos(angle);
+  x[1] = radius * sin(angle);
+}
+
+static void add_circle(struct lines *lines, double radius)
+{
+  size_t at = lines->circle_count;
+  for (size_t i = 0; i < lines->circle_count; i++) {
+    if (fabs(lines->circle[i] - radius) <= same * lines->plate->frame_radius) {
+      return;
+    }
+  }
+  for (; at > 0 && lines->circle[at - 1] > radius; at--) {
+    lines->circle[at] = lines->circle[at - 1];
+  }
+  lines->circle[at] = radius;
+  lines->circle_count++;
+}
+
+static dea_status check_disc(struct dea_context *ctx, const struct dea_fibre_disc *p)
+{
+  double frame = p->frame_radius, N = p->fibres > 0 ? p->fibres : 4;
+  if (!(p->electrode_radius > 0 && p->electrode_radius < frame && p->film_thickness >= 0 &&
+        p->size > 0 && p->edge > 0) ||
+      p->fibres < 0 || p->sectors < 1 || p->sectors > dea_fibre_disc_sectors(p)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh of a plate takes an electrode inside the frame");
+  }
+  if (p->fibres == 0) {
+    return DEA_OK;
+  }
+  double room = fmin(pi / N, 0.5 * pi);
+  bool fit = p->tip_radius > 0 && p->outer_radius > p->tip_radius * (1 + same) &&
+             p->outer_radius <= frame * (1 + same) && p->tip_width > 0 && p->outer_width > 0 &&
+             p->tip_width < 2 * p->tip_radius && p->outer_width < 2 * p->outer_radius &&
+             p->fibre_thickness > 0;
+  if (!fit || !(asin(0.5 * p->tip_width / p->tip_radius) <= free_share * room) ||
+      !(asin(0.5 * p->outer_width / p->outer_radius) <= free_share * room)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT,
+                    "the mesh of a plate takes fibres that lie between centre and frame and leave "
+                    "at least %.0f %% of the film between them",
+                    100 * (1 - free_share));
+  }
+  return DEA_OK;
+}
+
+/* Elements of about `size` in a length, at least one. */
+static size_t share(double length, double size)
+{
+  double count = floor(length / size + 0.5);
+  return count > DEA_FIBRE_DISC_LINE_MAX ? DEA_FIBRE_DISC_LINE_MAX + 1
+         : count > 1                     ? (size_t)count
+                                         : 1;
+}
+
+static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_disc *p,
+                               struct lines *out)
+{
+  DEA_TRY(ctx, check_disc(ctx, p));
+  *out = (struct lines){.plate = p, .alpha = dea_fibre_disc_angle(p) / p->sectors};
+  double a = p->electrode_radius, rest = out->alpha;
+  add_circle(out, a);
+  add_circle(out, p->frame_radius);
+  if (p->fibres > 0) {
+    add_circle(out, p->tip_radius);
+    add_circle(out, p->outer_radius);
+    double width = fmax(p->tip_width, p->outer_width);
+    out->across = share(0.5 * width, 0.5 * p->size); // fibres are stiff and bend: half the size
+    rest -= fibre_angle(p, a);
+  }
+  out->count = out->across + share(rest * a, p->fibres > 0 && p->beside > 0 ? p->beside : p->size);
+  size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
+  out->count = out->count < least ? least : out->count;
+  if (out->count > DEA_FIBRE_DISC_LINE_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes at most %d elements in a row",
+                    DEA_FIBRE_DISC_LINE_MAX);
+  }
+  return DEA_OK;
+}
+
 /* ---- maps of one sector ---- */
 
 /* Between two circles and two lines, straight from circle to circle. */
 struct polar {
-  const struct dea_fibre_disc_lines *lines;
+  const struct lines *lines;
   double inner, outer, from, to; // radii, lines
 };
 
@@ -47,15 +176,15 @@ static void map_polar(const void *self, double s, double t, double x[2])
 {
   const struct polar *b = self;
   double l = b->from + t * (b->to - b->from), in[2], out[2];
-  dea_fibre_disc_line_point(b->lines, l, b->inner, in);
-  dea_fibre_disc_line_point(b->lines, l, b->outer, out);
+  line_point(b->lines, l, b->inner, in);
+  line_point(b->lines, l, b->outer, out);
   x[0] = (1 - s) * in[0] + s * out[0];
   x[1] = (1 - s) * in[1] + s * out[1];
 }
 
 /* From a straight edge of the core to the first circle. */
 struct ring {
-  const struct dea_fibre_disc_lines *lines;
+  const struct lines *lines;
   double from, to; // lines
   double start[2], end[2];
 };
@@ -64,7 +193,7 @@ static void map_ring(const void *self, double s, double t, double x[2])
 {
   const struct ring *b = self;
   double out[2];
-  dea_fibre_disc_line_point(b->lines, b->from + t * (b->to - b->from), b->lines->circle[0], out);
+  line_point(b->lines, b->from + t * (b->to - b->from), b->lines->circle[0], out);
   for (int i = 0; i < 2; i++) {
     x[i] = (1 - s) * ((1 - t) * b->start[i] + t * b->end[i]) + s * out[i];
   }
@@ -120,12 +249,12 @@ static struct dea_block copied(const struct dea_block *block, const struct copy 
 /* ---- building ---- */
 
 struct builder {
-  struct dea_fibre_disc_lines lines;
+  struct lines lines;
   struct polar polars[POLARS_MAX];
   struct ring rings[RINGS_MAX];
   struct core cores[WEDGES_MAX];
   double even[DEA_FIBRE_DISC_LINE_MAX + 1][DEA_FIBRE_DISC_LINE_MAX + 1]; // [count]: its even cuts
-  double radial[DEA_FIBRE_DISC_CIRCLES_MAX][DEA_FIBRE_DISC_LINE_MAX + 1];
+  double radial[CIRCLES_MAX][DEA_FIBRE_DISC_LINE_MAX + 1];
   struct dea_block blocks[SECTOR_BLOCKS_MAX];
   size_t polar_count, ring_count, core_count, block_count;
 };
@@ -167,7 +296,7 @@ static double size_at(const struct dea_fibre_disc *p, double radius)
 /* Between the circles i and i + 1: a block across the fibre and one between fibres. */
 static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t i)
 {
-  const struct dea_fibre_disc_lines *lines = &b->lines;
+  const struct lines *lines = &b->lines;
   const struct dea_fibre_disc *p = lines->plate;
   double inner = lines->circle[i], outer = lines->circle[i + 1], close = same * p->frame_radius;
   bool electrode = outer < p->electrode_radius + close;
@@ -194,12 +323,11 @@ static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t 
 static void add_wedge(struct builder *b, size_t from, size_t to, size_t along, double rho,
                       const double *cuts, size_t count)
 {
-  const struct dea_fibre_disc_lines *lines = &b->lines;
+  const struct lines *lines = &b->lines;
   size_t middle = to - along;
-  double first = lines->circle[0],
-         angle[3] = {dea_fibre_disc_line_angle(lines, (double)from, first),
-                     dea_fibre_disc_line_angle(lines, (double)middle, first),
-                     dea_fibre_disc_line_angle(lines, (double)to, first)};
+  double first = lines->circle[0], angle[3] = {line_angle(lines, (double)from, first),
+                                               line_angle(lines, (double)middle, first),
+                                               line_angle(lines, (double)to, first)};
   // far enough out that the corner at G is as open in a thin wedge as in a wide one
   double far = rho * fmax(1.1, 1.4 * cos(0.5 * (angle[2] - angle[0])));
   struct core *core = &b->cores[b->core_count++];
@@ -221,9 +349,9 @@ static void add_wedge(struct builder *b, size_t from, size_t to, size_t along, d
 /* Everything inside the first circle, which is that of the electrodes or of the tips on them. */
 static dea_status add_inside(struct dea_context *ctx, struct builder *b)
 {
-  const struct dea_fibre_disc_lines *lines = &b->lines;
+  const struct lines *lines = &b->lines;
   const struct dea_fibre_disc *p = lines->plate;
-  double first = lines->circle[0], *cuts = b->radial[DEA_FIBRE_DISC_CIRCLES_MAX - 1];
+  double first = lines->circle[0], *cuts = b->radial[CIRCLES_MAX - 1];
   bool one = lines->alpha <= 0.51 * pi;
   double rho = 0.55 * first * fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
   size_t count = dea_cuts_graded(first - rho, p->size, size_at(p, first), p->size,
@@ -237,7 +365,7 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
   }
   size_t half = 2; // the line nearest to half the angle; two lines at least on both sides
   while (half + 2 < lines->count &&
-         dea_fibre_disc_line_angle(lines, (double)half + 0.5, first) < 0.5 * lines->alpha) {
+         line_angle(lines, (double)half + 0.5, first) < 0.5 * lines->alpha) {
     half++;
   }
   size_t shared = (half < lines->count - half ? half : lines->count - half) / 2;
@@ -331,7 +459,7 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b, struc
 static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *plate,
                         struct builder *b, struct dea_grid **out)
 {
-  DEA_TRY(ctx, dea_fibre_disc_lines_create(ctx, plate, &b->lines));
+  DEA_TRY(ctx, lines_create(ctx, plate, &b->lines));
   DEA_TRY(ctx, add_inside(ctx, b));
   for (size_t i = 0; i + 1 < b->lines.circle_count; i++) {
     DEA_TRY(ctx, add_polars(ctx, b, i));
