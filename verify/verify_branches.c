@@ -2,7 +2,7 @@
  * which one follows from 0 V, and where the other ends. Against what tests/prototypes.h has:
  * centre 1.2 mm from its place at 6 kV on the side away from the fibres, which is the one that
  * connects to 0 V; flat until 0.8 to 0.9 kV. */
-#include "prototypes.h"
+#include "../tests/prototypes.h"
 #include "verify.h"
 
 #include "design/design.h"

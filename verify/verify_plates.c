@@ -81,8 +81,9 @@ static struct dea_grid *unit_square(int order, const size_t count[2], double thi
 static struct plate plate_create(const struct problem *problem, int order, const size_t count[2])
 {
   static const double nowhere[3] = {0, 0, 0};
-  const struct dea_constituent layer =
-      dea_constituent_bonded((const double[]){problem->modulus, 0});
+  static double elastic[2]; // lent to the solid; one plate at a time
+  elastic[0] = problem->modulus;
+  const struct dea_constituent layer = dea_constituent_bonded(elastic);
   const struct dea_solid_options options = {
       .order_z = 2, .layer_count = 1, .layers = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};

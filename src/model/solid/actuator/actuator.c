@@ -112,6 +112,9 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
   DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, &out->plate));
   struct dea_constituent *constituents = out->constituents;
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) { // also what this device has not
+    constituents[i] = dea_constituent_bonded(out->param[i]);
+  }
   double l = d->pre_stretch, slope = d->film.permittivity.slope;
   constituents[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
   // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
