@@ -18,8 +18,7 @@ still='api/run.c:api/result.c cli/main.c:cli/ cli/help.c:cli/kinds.c cli/kinds.c
  output/report/report.c:output/report/section_ study/study.c:study/ lab/import/table.c:lab/import/import_
  lab/instrument/instrument.c:lab/instrument/instrument_ design/variants.c:design/read.c
  output/summary.c:output/summary_ lab/protocol/check.c:lab/protocol/check_
- output/compare_set_figures.c:output/compare_set_
- model/solid/mesh/fibre_disc_lines.c:model/solid/mesh/fibre_disc.c'
+ output/compare_set_figures.c:output/compare_set_'
 xargs nm -A -g <"$list" | awk -v still="$still" '
   { # path:value type name, or path: type name where it is undefined
     colon = index($0, ":"); file = substr($0, 1, colon - 1)

@@ -45,19 +45,3 @@ void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *se
     set->of[kind].basis = NULL;
   }
 }
-
-void dea_element_spread(int nodes, const double *g3, const double *K3, double *g4, double *K4)
-{
-  for (int n = nodes - 1; n >= 0; n--) { // from the end: nothing is written before it is read
-    for (int i = 3; i >= 0; i--) {
-      g4[4 * n + i] = i < 3 ? g3[3 * n + i] : 0;
-    }
-  }
-  for (int row = 4 * nodes - 1; row >= 0 && K3 != NULL; row--) {
-    const double *from = K3 + 3 * nodes * (3 * (row / 4) + row % 4);
-    double *to = K4 + 4 * nodes * row;
-    for (int column = 4 * nodes - 1; column >= 0; column--) {
-      to[column] = row % 4 < 3 && column % 4 < 3 ? from[3 * (column / 4) + column % 4] : 0;
-    }
-  }
-}
