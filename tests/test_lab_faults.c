@@ -2,6 +2,7 @@
  * only said, and a supply only taken for clean, when the imitation was at 0 V and stayed there.
  * Twelve runs by fixed seeds; `test_lab_faults COUNT [SEED]` makes as many as wanted and prints how
  * long it took to 0 V, or to the alarm. */
+// ctest: supply
 #define _GNU_SOURCE
 #include "command.h"
 #include "supply.h"

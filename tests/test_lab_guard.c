@@ -1,5 +1,6 @@
 /* dea drive --arm that is killed, crashes, or is stopped: a second process brings the supply to 0
  * V. */
+// ctest: supply
 #define _GNU_SOURCE
 #include "supply_drive.h"
 
