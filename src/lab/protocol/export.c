@@ -1,9 +1,9 @@
 #include "lab/protocol/export.h"
 
+#include "base/assets.h"
 #include "base/write_file.h"
 #include "lab/import/guess.h"
 #include "lab/import/mat.h"
-#include "output/report/assets.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,10 +1,10 @@
 /* The page around the sections: head with the policy, header, contents, footer. */
 #include "output/report/report.h"
 
+#include "base/assets.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "output/measured.h"
-#include "output/report/assets.h"
 #include "output/report/section.h"
 
 #include <sha256.h>

@@ -1,6 +1,6 @@
 /* The explorer's numbers: the device as it was built, what may be chosen, and the C core as
  * WebAssembly (web/explorer.c). */
-#include "output/report/assets.h"
+#include "base/assets.h"
 #include "output/report/section.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Files that are embedded by CMake (cmake/embed.cmake): those of web/ that go into a page, and what
  * the scripts of `dea drive --export` end with. */
-#ifndef DEA_OUTPUT_REPORT_ASSETS_H
-#define DEA_OUTPUT_REPORT_ASSETS_H
+#ifndef DEA_BASE_ASSETS_H
+#define DEA_BASE_ASSETS_H
 
 #include <stddef.h>
 
