@@ -24,6 +24,9 @@ dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, cons
 /* The text of *text as file directory/name; fails for a text with a failed append. */
 dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
                           const char *directory, const char *name);
+/* The same of a string. */
+dea_status dea_text_file_write(struct dea_context *ctx, const char *directory, const char *name,
+                               const char *text);
 /* Numbers are written with a decimal point whatever the program's locale: between these two calls
  * the thread formats in the C locale. */
 void *dea_c_locale_enter(void);

@@ -3,41 +3,49 @@
 #include "base/write_file.h"
 #include "output/checkpoint.h"
 #include "output/csv.h"
+#include "output/export.h"
 #include "output/figure.h"
 #include "output/results_h5.h"
-#include "output/summary.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-static dea_status exists(struct dea_context *ctx, const char *directory, const char *name,
-                         bool *there)
+static const struct dea_export *const exports[] = {
+#define EXPORT_ROW(name) &dea_export_##name,
+    DEA_EXPORT_LIST(EXPORT_ROW)
+#undef EXPORT_ROW
+};
+enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
+
+/* Fails where something of that name is in the folder. */
+static dea_status refuse(struct dea_context *ctx, const char *directory, const char *name)
 {
   char *path = dea_path_join(ctx, directory, name);
   if (path == NULL) {
     return DEA_E_MEMORY;
   }
-  *there = dea_path_exists(path);
+  bool there = dea_path_exists(path);
   dea_free(ctx, path);
-  return DEA_OK;
+  return !there ? DEA_OK
+                : dea_fail(ctx, DEA_E_IO,
+                           "%s/%s is there already; choose another folder with -o, or replace "
+                           "what is there with --force",
+                           directory, name);
 }
 
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force)
 {
   // Also a user's own file of such a name would be lost.
-  static const char *const names[] = {"results.h5", "summary.json", "design.yaml",
-                                      DEA_FIGURE_FOLDER, DEA_FIELD_FOLDER};
-  for (size_t i = 0; i < sizeof names / sizeof names[0] && !force; i++) {
-    bool there;
-    DEA_TRY(ctx, exists(ctx, directory, names[i], &there));
-    if (there) {
-      return dea_fail(ctx, DEA_E_IO,
-                      "%s/%s is there already; choose another folder with -o, or replace what is "
-                      "there with --force",
-                      directory, names[i]);
+  for (size_t i = EXPORT_COUNT; i-- > 0 && !force;) {
+    if (exports[i]->file != NULL) {
+      DEA_TRY(ctx, refuse(ctx, directory, exports[i]->file));
     }
+  }
+  if (!force) {
+    DEA_TRY(ctx, refuse(ctx, directory, DEA_FIGURE_FOLDER));
+    DEA_TRY(ctx, refuse(ctx, directory, DEA_FIELD_FOLDER));
   }
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   if (access(directory, W_OK) != 0) {
@@ -104,81 +112,11 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
   }
   dea_context_clear(ctx);
   forget_figures(ctx, directory);
-  forget(ctx, directory, "summary.json");
-  forget(ctx, directory, "design.yaml");
-  forget(ctx, directory, "results.h5");
-}
-
-/* Whether a variant is the first of its model and study. */
-static bool first_of_study(const struct dea_result *result, size_t i)
-{
-  const struct dea_curve *curve = &result->variants[i].curve;
-  for (size_t k = 0; k < i; k++) {
-    if (dea_variant_is(&result->variants[k], curve->model, curve->kind)) {
-      return false;
+  for (size_t i = 0; i < EXPORT_COUNT; i++) {
+    if (exports[i]->file != NULL) {
+      forget(ctx, directory, exports[i]->file);
     }
   }
-  return true;
-}
-
-static dea_status write_tables(struct dea_context *ctx, const struct dea_result *result,
-                               const char *directory)
-{
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  for (size_t i = 0; i < result->curve_count; i++) {
-    DEA_TRY(ctx, dea_csv_write_curve(ctx, &result->curves[i], directory));
-    DEA_TRY(ctx, dea_csv_write_events(ctx, &result->curves[i], directory));
-  }
-  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
-  for (size_t m = 0; m < count; m++) {
-    DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], directory));
-  }
-  for (size_t i = 0; i < result->variant_count; i++) {
-    if (first_of_study(result, i)) {
-      const struct dea_curve *curve = &result->variants[i].curve;
-      DEA_TRY(ctx, dea_csv_write_variants(ctx, result, curve->model, curve->kind, directory));
-      DEA_TRY(ctx,
-              dea_csv_write_variant_profiles(ctx, result, curve->model, curve->kind, directory));
-    }
-  }
-  for (size_t i = 0; i < result->table_count; i++) {
-    DEA_TRY(ctx, dea_csv_write_table(ctx, &result->tables[i], directory));
-  }
-  return DEA_OK;
-}
-
-static dea_status write_text(struct dea_context *ctx, const char *directory, const char *name,
-                             const char *text)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = dea_file_write(ctx, path, text, strlen(text));
-  dea_free(ctx, path);
-  return status;
-}
-
-static dea_status write_summary(struct dea_context *ctx, const struct dea_result *result,
-                                const char *directory)
-{
-  char *text;
-  DEA_TRY(ctx, dea_summary_text(ctx, result, &text));
-  dea_status status = write_text(ctx, directory, "summary.json", text);
-  dea_free(ctx, text);
-  return status;
-}
-
-static dea_status write_store(struct dea_context *ctx, const struct dea_result *result,
-                              const char *directory)
-{
-  char *path = dea_path_join(ctx, directory, "results.h5");
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = dea_results_h5_write(ctx, result, path);
-  dea_free(ctx, path);
-  return status;
 }
 
 static dea_status write_figures(struct dea_context *ctx, const struct dea_result *result,
@@ -213,13 +151,10 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
       dea_run_folder_clear(ctx, directory);
     }
   }
-  DEA_TRY(ctx, write_tables(ctx, result, directory));
-  DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
-  if (result->provenance.input != NULL) {
-    DEA_TRY(ctx, write_text(ctx, directory, "design.yaml", result->provenance.input));
+  for (size_t i = 0; i < EXPORT_COUNT; i++) {
+    DEA_TRY(ctx, exports[i]->write(ctx, result, directory));
   }
-  DEA_TRY(ctx, write_summary(ctx, result, directory));
-  DEA_TRY(ctx, write_store(ctx, result, directory));
+  DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
   if (!o->no_figures) {
     DEA_TRY(ctx, write_figures(ctx, result, directory));
   }
