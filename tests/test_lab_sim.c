@@ -238,7 +238,10 @@ static void test_noise_is_what_was_asked(void **state)
   for (size_t i = 0; i < n; i++) {
     time_s[i] = (double)i / 1000;
   }
-  assert_int_equal(dea_sim_truth(ctx, p, time_s, n, truth), DEA_OK);
+  struct dea_instrument *bench;
+  assert_int_equal(dea_instrument_open(ctx, &p->sim, p, &bench), DEA_OK);
+  assert_int_equal(dea_sim_truth(ctx, bench, p, time_s, n, truth), DEA_OK);
+  bench->type->close(ctx, bench);
   assert_true(truth[0].output_V == 0 && truth[1].output_V == 3000 && truth[9].time_s == 0.009);
   for (size_t k = 0; k < 4; k++) {
     double found[2], step = 2 * half_step(p, k), drift = k == 2 ? 10e-6 / sqrt(12) : 0;

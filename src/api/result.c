@@ -15,6 +15,15 @@
 #include <stdio.h>
 #include <string.h>
 
+dea_run_options door_run_options(const dea_run_options *options)
+{
+  dea_run_options all = DEA_RUN_OPTIONS_INIT;
+  if (options != NULL) { // of an older or a newer caller
+    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  }
+  return all;
+}
+
 enum { NAME_SIZE = 4 * DEA_NAME_SIZE };
 
 // The list ---------------------------------------------------------------------------------------

@@ -7,15 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-dea_run_options door_run_options(const dea_run_options *options)
-{
-  dea_run_options all = DEA_RUN_OPTIONS_INIT;
-  if (options != NULL) { // of an older or a newer caller
-    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
-  }
-  return all;
-}
-
 dea_status door_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out)
 {
   *out = dea_model_find(name);

@@ -8,26 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static json_t *point_json(const struct dea_load_point *point)
-{
-  json_t *object = json_object();
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    dea_json_put(object, dea_point_columns[c].key, dea_point_get(point, c));
-  }
-  json_object_set_new(object, "stable", json_boolean(point->stable));
-  json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
-  return object;
-}
-
-json_t *dea_points_json(const struct dea_curve *curve)
-{
-  json_t *list = json_array();
-  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
-    json_array_append_new(list, point_json(&curve->points[i]));
-  }
-  return list;
-}
-
 /* First event of each kind along the path. */
 static json_t *limits_json(const struct dea_curve *path)
 {

@@ -89,21 +89,6 @@ dea_status dea_instrument_open(struct dea_context *ctx,
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument)
-{
-  char message[1024];
-  dea_status status = dea_context_status(ctx);
-  const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
-  snprintf(message, sizeof message, "%s", dea_context_message(ctx));
-  dea_context_set_interrupt(ctx, NULL);
-  struct dea_zero zero = instrument->type->stop(ctx, instrument);
-  dea_context_set_interrupt(ctx, interrupt);
-  if (status != DEA_OK) {
-    dea_fail(ctx, status, "%s", message);
-  }
-  return zero;
-}
-
 dea_status dea_instrument_address(struct dea_context *ctx,
                                   const struct dea_protocol_instrument *section,
                                   const struct dea_protocol *protocol,

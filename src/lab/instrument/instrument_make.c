@@ -39,3 +39,18 @@ void dea_instrument_add_reading(struct dea_instrument *instrument, const struct 
     snprintf(reading->unit, sizeof reading->unit, "%.*s", DEA_CHANNEL_NAME_SIZE - 1, unit->text);
   }
 }
+
+struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  char message[1024];
+  dea_status status = dea_context_status(ctx);
+  const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
+  snprintf(message, sizeof message, "%s", dea_context_message(ctx));
+  dea_context_set_interrupt(ctx, NULL);
+  struct dea_zero zero = instrument->type->stop(ctx, instrument);
+  dea_context_set_interrupt(ctx, interrupt);
+  if (status != DEA_OK) {
+    dea_fail(ctx, status, "%s", message);
+  }
+  return zero;
+}

@@ -407,13 +407,11 @@ static dea_status play_truth(struct dea_sim_bench *bench, const struct dea_proto
   return DEA_OK;
 }
 
-dea_status dea_sim_truth(struct dea_context *ctx, const struct dea_protocol *protocol,
-                         const double *time_s, size_t count, struct dea_sim_state *states)
+dea_status dea_sim_truth(struct dea_context *ctx, struct dea_instrument *instrument,
+                         const struct dea_protocol *protocol, const double *time_s, size_t count,
+                         struct dea_sim_state *states)
 {
-  struct dea_instrument *instrument;
-  DEA_TRY(ctx, dea_instrument_open(ctx, &protocol->sim, protocol, &instrument));
   struct sim *s = (struct sim *)instrument;
-  dea_status status = play_truth(s->bench, protocol, time_s, count, states);
-  close_sim(ctx, instrument);
-  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  DEA_TRY(ctx, play_truth(s->bench, protocol, time_s, count, states));
+  return DEA_OK;
 }
