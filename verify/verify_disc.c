@@ -87,7 +87,8 @@ static double exact(double a_m, double voltage_V)
                               .pre_stretch = 1.5,
                               .film_thickness_m = 100e-6 / 2.25,
                               .frame_radius_m = frame_m,
-                              .electrode_radius_m = a_m};
+                              .electrode_radius_m = a_m,
+                              .coverage = a_m / frame_m};
   struct dea_model *model;
   struct dea_load_point point;
   device.film.law = dea_law_find("yeoh");
