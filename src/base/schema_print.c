@@ -20,8 +20,13 @@ static bool is_number(const struct dea_field *field)
 /* "length, stretched or unstretched, > 0" and the like: what may be written. */
 static void describe_form(const struct dea_field *field, char *text, size_t size)
 {
-  static const char *const forms[] = {"text",   "text",    "number",  "whole number", "length",
-                                      "length", "one of:", "section", "section"};
+  static const char *const forms[] = {
+      [DEA_FIELD_LABEL] = "text",      [DEA_FIELD_TEXT] = "text",
+      [DEA_FIELD_NUMBER] = "number",   [DEA_FIELD_INTEGER] = "whole number",
+      [DEA_FIELD_INPLANE] = "length",  [DEA_FIELD_STRETCHED] = "length",
+      [DEA_FIELD_CHOICE] = "one of:",  [DEA_FIELD_RECORD] = "section",
+      [DEA_FIELD_SECTION] = "section", [DEA_FIELD_SETTINGS] = "section",
+  };
   size_t used = (size_t)snprintf(text, size, "%s%s", field->list_max > 0 ? "list of " : "",
                                  forms[field->kind]);
   if (field->kind == DEA_FIELD_CHOICE) {
