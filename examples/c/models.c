@@ -28,7 +28,7 @@ int main(void)
   for (size_t i = 0; (study = dea_study_at(ctx, i)) != NULL; i++) {
     printf("study %s%s%s\n", study->name, study->needs[0] != '\0' ? ", needs " : "", study->needs);
   }
-  int bad = dea_design_parse(ctx, design_text, "disc", &design);
+  int bad = dea_design_parse(ctx, design_text, "disc", &design) != DEA_OK;
   for (size_t i = 0; !bad && (value = dea_design_value_at(design, i)) != NULL; i++) {
     printf("%s = %s%s\n", value->key, value->text,
            value->origin == DEA_DEFAULT ? " (default)" : "");

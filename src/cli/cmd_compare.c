@@ -433,7 +433,7 @@ static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_context *ctx = cli->ctx;
-  struct side sides[SIDES_MAX] = {{NULL}};
+  struct side sides[SIDES_MAX] = {{0}};
   struct dea_compare_set *set = NULL;
   char reference[DEA_LABEL_SIZE];
   size_t last = request->names.count - 1;
