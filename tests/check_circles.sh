@@ -13,9 +13,7 @@ find src -name '*.c.o' -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' 
   if [ -e "$source/src/$name" ]; then echo "$object"; fi # not those of sources that are gone
 done >"$list"
 [ -s "$list" ] || { echo "no object files under $2/src: the check is broken"; exit 1; }
-# Ties that are still to be cut, as beginnings of A and B: this list gets shorter.
-still='cli/main.c:cli/ cli/help.c:cli/kinds.c cli/kinds.c:cli/cmd_'
-xargs nm -A -g <"$list" | awk -v still="$still" '
+xargs nm -A -g <"$list" | awk '
   { # path:value type name, or path: type name where it is undefined
     colon = index($0, ":"); file = substr($0, 1, colon - 1)
     sub(/.*\.dir\//, "", file); sub(/\.o$/, "", file)
@@ -25,13 +23,6 @@ xargs nm -A -g <"$list" | awk -v still="$still" '
   }
   # the module of the engine and the library may have a name each: the nearer one is meant
   function folder(path, parts) { split(path, parts, "/"); return parts[1] }
-  function is_known(a, b, k, pair) {
-    for (k = 1; k <= known; k++) {
-      split(ties_left[k], pair, ":")
-      if (index(a, pair[1]) == 1 && index(b, pair[2]) == 1) { return 1 }
-    }
-    return 0
-  }
   function visit(a, k, n, to, list) { # Tarjan, strongly connected
     number[a] = low[a] = ++count; stack[++top] = a; on[a] = 1
     n = split(next_of[a], list, " ")
@@ -47,13 +38,11 @@ xargs nm -A -g <"$list" | awk -v still="$still" '
     }
   }
   END {
-    known = split(still, ties_left, " ")
     for (i = 1; i <= uses; i++) {
       a = users[i]
       if (used[i] in home && !((a, used[i]) in own)) {
         b = (folder(a), used[i]) in near ? near[folder(a), used[i]] : home[used[i]]
         edges++
-        if (is_known(a, b)) { continue }
         if (!((a, b) in ties)) { next_of[a] = next_of[a] " " b }
         ties[a, b] = ties[a, b] " " used[i]
       }

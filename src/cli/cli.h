@@ -13,10 +13,11 @@
 /* What all commands share. Results go to stdout, everything else to stderr. */
 struct dea_cli {
   struct dea_context *ctx;
-  bool quiet;    // --quiet: no progress, no notes
-  bool verbose;  // --verbose: with the chain of calls of an error
-  bool help;     // --help: say how it is used, and do nothing
-  bool terminal; // stderr is a terminal
+  const struct dea_command *const *commands; // all of them in the order of the list, ended by NULL
+  bool quiet;                                // --quiet: no progress, no notes
+  bool verbose;                              // --verbose: with the chain of calls of an error
+  bool help;                                 // --help: say how it is used, and do nothing
+  bool terminal;                             // stderr is a terminal
   bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
   bool colour;   // stderr takes colours (terminal, no NO_COLOR)
   const char *command_line; // the whole of it, for provenance
@@ -60,8 +61,6 @@ struct dea_command {
 #define DEA_COMMAND_DECLARE(name) extern const struct dea_command name;
 DEA_COMMAND_LIST(DEA_COMMAND_DECLARE)
 #undef DEA_COMMAND_DECLARE
-/* All of them in the order of the list, ended by NULL. */
-extern const struct dea_command *const cli_commands[];
 
 // Options ----------------------------------------------------------------------------------------
 
@@ -92,7 +91,7 @@ struct cli_kind_info {
   const char *ending; // of the files; NULL: any file
   bool folder;        // folders only
   bool few;           // help lists them too
-  dea_status (*list)(struct dea_context *ctx, struct dea_text *out); // a line each; NULL: nothing
+  dea_status (*list)(struct dea_cli *cli, struct dea_text *out); // a line each; NULL: nothing
 };
 extern const struct cli_kind_info cli_kinds[CLI_KINDS];
 
@@ -128,8 +127,10 @@ struct cli_overrides {
   struct dea_override at[CLI_OVERRIDES_MAX];
 };
 
-/* Options that main.c takes for every command, into a struct dea_cli. */
+/* Options of every command, into a struct dea_cli. */
 extern const struct cli_option cli_common_options[];
+/* Takes them out of argv, wherever they stand; returns the new argc. */
+int cli_take_common(struct dea_cli *cli, int argc, char **argv);
 /* Reads a command line (argv[0] is the command's name) into its request: 0, or the exit code after
  * a usage error. What it keeps lends from argv. */
 int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
@@ -193,12 +194,12 @@ bool cli_read_share(const char *text, double *share);
 // Help -------------------------------------------------------------------------------------------
 
 /* Adds "Usage: dea ..." and the options. */
-void cli_add_usage(const struct dea_command *command, struct dea_text *out);
+void cli_add_usage(struct dea_cli *cli, const struct dea_command *command, struct dea_text *out);
 /* Adds words [length] broken into lines that start at the column `margin`, where the first line is
  * already. Ends the last one. */
 void cli_add_wrapped(struct dea_text *out, int margin, const char *text, size_t length);
 /* Prints the manual page dea(1) in mdoc to stdout. */
-dea_status cli_print_manual(struct dea_context *ctx);
+dea_status cli_print_manual(struct dea_cli *cli);
 
 // For all commands -------------------------------------------------------------------------------
 
@@ -221,6 +222,9 @@ json_t *cli_findings_json(const struct dea_context *ctx);
 void cli_print_json(json_t *json);
 /* Prints a text to stdout if `status` is good and it is whole, and frees it. */
 dea_status cli_print_text(dea_status status, struct dea_text *text);
+/* Has Ctrl-C and SIGTERM interrupt what the library does, a second one end the program, and
+ * progress shown. */
+void cli_watch(struct dea_cli *cli);
 /* From here on no signal ends or stops the program at once, not a second one either, because the
  * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
  * not under nohup). Progress is left out while stderr does not take it. */

@@ -25,7 +25,6 @@ struct derived {
 };
 
 static const char *const origin_names[] = {"absent", "default", "given", "override"};
-static const char *const severity_names[] = {"note", "warning", "error"};
 
 static size_t derive(const struct dea_device *device, struct derived rows[DERIVED_MAX])
 {
@@ -114,22 +113,6 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   print_material("film", &device->film);
   print_material("electrodes", &device->electrode);
   print_material("fibres", &device->fibre);
-}
-
-json_t *cli_findings_json(const struct dea_context *ctx)
-{
-  size_t count;
-  const struct dea_finding *findings = dea_finding_get(ctx, &count);
-  json_t *array = json_array();
-  for (size_t i = 0; i < count; i++) {
-    const struct dea_location *location = &findings[i].location;
-    json_array_append_new(array, json_pack("{s:s, s:s, s:I, s:I, s:s}", "severity",
-                                           severity_names[findings[i].severity], "file",
-                                           location->file != NULL ? location->file : "", "line",
-                                           (json_int_t)location->line, "column",
-                                           (json_int_t)location->column, "text", findings[i].text));
-  }
-  return array;
 }
 
 static json_t *values_json(const struct dea_design *design)

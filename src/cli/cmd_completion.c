@@ -72,7 +72,7 @@ static void print_bash_command(const struct dea_command *command)
   puts("; return; } ;;");
 }
 
-static void print_bash(void)
+static void print_bash(const struct dea_cli *cli)
 {
   puts("# bash completion for dea; to use it now: source <(dea completion bash)\n"
        "_dea_take()\n{\n  mapfile -t COMPREPLY < <(compgen \"$@\" -- "
@@ -83,8 +83,8 @@ static void print_bash(void)
        "    _dea_take -W \"$(dea completion names commands 2>/dev/null) --help --version\"\n"
        "    return\n  fi\n"
        "  case ${COMP_WORDS[1]} in");
-  for (size_t i = 0; cli_commands[i] != NULL; i++) {
-    print_bash_command(cli_commands[i]);
+  for (size_t i = 0; cli->commands[i] != NULL; i++) {
+    print_bash_command(cli->commands[i]);
   }
   puts("  esac\n  _dea_take -W \"$options\"\n}\ncomplete -F _dea dea");
 }
@@ -119,21 +119,21 @@ static void print_zsh_option(const struct cli_option *option)
   }
 }
 
-static void print_zsh(void)
+static void print_zsh(const struct dea_cli *cli)
 {
   puts("#compdef dea\n# zsh completion for dea; to use it now: source <(dea completion zsh)\n"
        "_dea()\n{\n  local -a commands\n  if ((CURRENT == 2)); then\n    commands=(");
-  for (size_t i = 0; cli_commands[i] != NULL; i++) {
-    printf("      '%s:", cli_commands[i]->name);
-    print_quoted(cli_commands[i]->summary, ":\\");
+  for (size_t i = 0; cli->commands[i] != NULL; i++) {
+    printf("      '%s:", cli->commands[i]->name);
+    print_quoted(cli->commands[i]->summary, ":\\");
     puts("'");
   }
   puts("    )\n    _describe command commands\n    return\n  fi\n"
        "  local command=$words[2]\n  shift words\n  ((CURRENT--))\n  case $command in");
-  for (size_t i = 0; cli_commands[i] != NULL; i++) {
-    const struct cli_option *const tables[] = {cli_commands[i]->options, cli_common_options};
-    const struct cli_option *argument = argument_of(cli_commands[i]);
-    printf("    %s)\n      _arguments", cli_commands[i]->name);
+  for (size_t i = 0; cli->commands[i] != NULL; i++) {
+    const struct cli_option *const tables[] = {cli->commands[i]->options, cli_common_options};
+    const struct cli_option *argument = argument_of(cli->commands[i]);
+    printf("    %s)\n      _arguments", cli->commands[i]->name);
     for (size_t k = 0; k < 2; k++) {
       for (const struct cli_option *o = tables[k]; o->help != NULL; o++) {
         if (o->name != NULL) {
@@ -179,18 +179,18 @@ static void print_fish_option(const char *condition, const struct cli_option *op
   putchar('\n');
 }
 
-static void print_fish(void)
+static void print_fish(const struct dea_cli *cli)
 {
   puts("# fish completion for dea; to use it now: dea completion fish | source\n"
        "complete -c dea -f");
-  for (size_t i = 0; cli_commands[i] != NULL; i++) {
+  for (size_t i = 0; cli->commands[i] != NULL; i++) {
     char condition[128];
     snprintf(condition, sizeof condition, " -n '__fish_seen_subcommand_from %s'",
-             cli_commands[i]->name);
-    printf("complete -c dea -n __fish_use_subcommand -a %s -d '", cli_commands[i]->name);
-    print_quoted(cli_commands[i]->summary, "\\");
+             cli->commands[i]->name);
+    printf("complete -c dea -n __fish_use_subcommand -a %s -d '", cli->commands[i]->name);
+    print_quoted(cli->commands[i]->summary, "\\");
     puts("'");
-    for (const struct cli_option *o = cli_commands[i]->options; o->help != NULL; o++) {
+    for (const struct cli_option *o = cli->commands[i]->options; o->help != NULL; o++) {
       print_fish_option(condition, o);
     }
   }
@@ -199,13 +199,13 @@ static void print_fish(void)
   }
 }
 
-static dea_status print_names(struct dea_context *ctx, const char *what)
+static dea_status print_names(struct dea_cli *cli, const char *what)
 {
-  struct dea_text out = {.ctx = ctx};
+  struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   for (size_t i = 0; i < CLI_KINDS; i++) {
     if (cli_kinds[i].list != NULL && strcmp(cli_kinds[i].name, what) == 0) {
-      status = cli_kinds[i].list(ctx, &out);
+      status = cli_kinds[i].list(cli, &out);
     }
   }
   return cli_print_text(status, &out);
@@ -215,19 +215,19 @@ static int run(struct dea_cli *cli, void *request)
 {
   static const struct {
     const char *name;
-    void (*print)(void);
+    void (*print)(const struct dea_cli *cli);
   } outputs[] = {{"bash", print_bash}, {"zsh", print_zsh}, {"fish", print_fish}};
   const struct cli_words *words = &((const struct request *)request)->words;
   const char *shell = words->at[0];
   if (words->count == 2 && strcmp(shell, "names") == 0) { // for the completions themselves
-    return cli_report(cli, print_names(cli->ctx, words->at[1]));
+    return cli_report(cli, print_names(cli, words->at[1]));
   }
   if (words->count == 1 && strcmp(shell, "man") == 0) {
-    return cli_report(cli, cli_print_manual(cli->ctx));
+    return cli_report(cli, cli_print_manual(cli));
   }
   for (size_t i = 0; i < sizeof outputs / sizeof outputs[0] && words->count == 1; i++) {
     if (strcmp(shell, outputs[i].name) == 0) {
-      outputs[i].print();
+      outputs[i].print(cli);
       return 0;
     }
   }

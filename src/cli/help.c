@@ -66,12 +66,13 @@ static void add_synopsis(const struct dea_command *command, struct dea_text *out
 }
 
 /* The explanation of a row, and the values that there are where they are few. */
-static void add_help(struct dea_text *out, int margin, const struct cli_option *option)
+static void add_help(struct dea_cli *cli, struct dea_text *out, int margin,
+                     const struct cli_option *option)
 {
   const struct cli_kind_info *kind = &cli_kinds[option->kind];
   struct dea_text help = {.ctx = out->ctx}, list = {.ctx = out->ctx};
   dea_text_add(&help, "%s", option->help);
-  if (kind->few && kind->list(out->ctx, &list) == DEA_OK) {
+  if (kind->few && kind->list(cli, &list) == DEA_OK) {
     const char *separator = ": ";
     for (const char *word = dea_text_get(&list); *word != '\0'; word += strcspn(word, "\n") + 1) {
       dea_text_add(&help, "%s%.*s", separator, (int)strcspn(word, "\n"), word);
@@ -95,7 +96,7 @@ static int left_of(const struct cli_option *option, char left[LEFT_SIZE])
                         option->name, value ? " " : "", value ? option->value : "");
 }
 
-void cli_add_usage(const struct dea_command *command, struct dea_text *out)
+void cli_add_usage(struct dea_cli *cli, const struct dea_command *command, struct dea_text *out)
 {
   char left[LEFT_SIZE];
   int margin = 0;
@@ -113,7 +114,7 @@ void cli_add_usage(const struct dea_command *command, struct dea_text *out)
   for (const struct cli_option *o = command->options; o->help != NULL; o++) {
     left_of(o, left);
     dea_text_add(out, "%-*s", margin, left);
-    add_help(out, margin, o);
+    add_help(cli, out, margin, o);
   }
 }
 
@@ -164,7 +165,7 @@ static void print_exit_codes(void)
   puts(".El");
 }
 
-dea_status cli_print_manual(struct dea_context *ctx)
+dea_status cli_print_manual(struct dea_cli *cli)
 {
   dea_status status = DEA_OK;
   puts(".Dd $Mdocdate$\n.Dt DEA 1\n.Os libdea " DEA_VERSION "\n.Sh NAME\n.Nm dea\n"
@@ -179,11 +180,11 @@ dea_status cli_print_manual(struct dea_context *ctx)
     printf(".It Fl %c , Fl -%s\n%s\n", o->letter, o->name, o->help);
   }
   puts(".El\n.Sh COMMANDS");
-  for (size_t i = 0; cli_commands[i] != NULL && status == DEA_OK; i++) {
-    struct dea_text usage = {.ctx = ctx};
-    cli_add_usage(cli_commands[i], &usage);
-    printf(".Ss %s\n", cli_commands[i]->name);
-    print_roff(cli_commands[i]->summary);
+  for (size_t i = 0; cli->commands[i] != NULL && status == DEA_OK; i++) {
+    struct dea_text usage = {.ctx = cli->ctx};
+    cli_add_usage(cli, cli->commands[i], &usage);
+    printf(".Ss %s\n", cli->commands[i]->name);
+    print_roff(cli->commands[i]->summary);
     puts("\n.Bd -literal");
     print_roff(dea_text_get(&usage));
     puts(".Ed");

@@ -13,10 +13,10 @@
 
 /* The names of what a registry holds. */
 #define NAMES_OF(function, all)                                                                    \
-  static dea_status function(struct dea_context *ctx, struct dea_text *out)                        \
+  static dea_status function(struct dea_cli *cli, struct dea_text *out)                            \
   {                                                                                                \
     size_t count;                                                                                  \
-    (void)ctx;                                                                                     \
+    (void)cli;                                                                                     \
     for (size_t i = 0; all(&count) != NULL && i < count; i++) {                                    \
       dea_text_add(out, "%s\n", all(&count)[i]->name);                                             \
     }                                                                                              \
@@ -27,73 +27,72 @@ NAMES_OF(list_importers, dea_importer_all)
 NAMES_OF(list_models, dea_model_all)
 NAMES_OF(list_studies, dea_study_all)
 
-static dea_status list_commands(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_commands(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
-  for (size_t i = 0; cli_commands[i] != NULL; i++) {
-    dea_text_add(out, "%s\n", cli_commands[i]->name);
+  for (size_t i = 0; cli->commands[i] != NULL; i++) {
+    dea_text_add(out, "%s\n", cli->commands[i]->name);
   }
   return DEA_OK;
 }
 
-static dea_status list_examples(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_examples(struct dea_cli *cli, struct dea_text *out)
 {
   struct cli_data_list list;
-  dea_status status = cli_examples_find(ctx, ".yaml", &list);
+  dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
     dea_text_add(out, "%.*s\n", (int)cli_data_stem(list.files[i].name), list.files[i].name);
   }
-  cli_data_free(ctx, &list);
+  cli_data_free(cli->ctx, &list);
   return status;
 }
 
-static dea_status list_materials(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_materials(struct dea_cli *cli, struct dea_text *out)
 {
   const char **names;
   size_t count;
-  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
+  DEA_TRY(cli->ctx, dea_catalogue_names(cli->ctx, &names, &count));
   for (size_t i = 0; i < count; i++) {
     dea_text_add(out, "%s\n", names[i]);
   }
-  dea_free(ctx, names);
+  dea_free(cli->ctx, names);
   return DEA_OK;
 }
 
-static dea_status list_quantities(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_quantities(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
+  (void)cli;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     dea_text_add(out, "%s\n", dea_point_columns[c].key);
   }
   return DEA_OK;
 }
 
-static dea_status list_keys(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_keys(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
+  (void)cli;
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
   dea_schema_print_keys(&schema.record, out);
   return DEA_OK;
 }
 
-static dea_status list_protocol_keys(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_protocol_keys(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
+  (void)cli;
   dea_schema_print_keys(&dea_protocol_record, out);
   return DEA_OK;
 }
 
-static dea_status list_formats(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_formats(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
+  (void)cli;
   dea_text_add(out, "svg\npdf\npng\n");
   return DEA_OK;
 }
 
-static dea_status list_shells(struct dea_context *ctx, struct dea_text *out)
+static dea_status list_shells(struct dea_cli *cli, struct dea_text *out)
 {
-  (void)ctx;
+  (void)cli;
   dea_text_add(out, "bash\nzsh\nfish\n");
   return DEA_OK;
 }

@@ -10,6 +10,14 @@
 #include <math.h>
 #include <string.h>
 
+const struct cli_option cli_common_options[] = {
+#define AT(member) .target = offsetof(struct dea_cli, member)
+    {"quiet", 'q', CLI_FLAG, NULL, "no progress, no notes", AT(quiet)},
+    {"verbose", 'v', CLI_FLAG, NULL, "say more about an error", AT(verbose)},
+    {"help", 'h', CLI_FLAG, NULL, "say how the command is used", AT(help)},
+#undef AT
+    {0}};
+
 enum { FIRST_LONG = 256 }; // above all letters: what getopt_long answers for the first row
 
 static const struct cli_option *find_letter(const struct dea_command *command, int letter)
@@ -91,6 +99,27 @@ static int check_exclusions(struct dea_cli *cli, const struct dea_command *comma
     }
   }
   return 0;
+}
+
+int cli_take_common(struct dea_cli *cli, int argc, char **argv)
+{
+  int kept = 0;
+  for (int i = 0; i < argc; i++) {
+    const struct cli_option *o = cli_common_options;
+    for (; o->help != NULL; o++) {
+      const char letter[] = {'-', o->letter, '\0'};
+      bool is_long = strncmp(argv[i], "--", 2) == 0 && strcmp(argv[i] + 2, o->name) == 0;
+      if (is_long || strcmp(argv[i], letter) == 0) {
+        *(bool *)((char *)cli + o->target) = true;
+        break;
+      }
+    }
+    if (o->help == NULL) {
+      argv[kept++] = argv[i];
+    }
+  }
+  argv[kept] = NULL;
+  return kept;
 }
 
 int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,

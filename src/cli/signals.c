@@ -1,0 +1,73 @@
+/* What may end a command before it is done, and the progress that it shows meanwhile. */
+#define _XOPEN_SOURCE 700 // sigaction, SIGVTALRM
+#include "cli/cli.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t interrupt_flag, voltage_flag;
+
+static void on_signal(int number)
+{
+  if (interrupt_flag != 0 && voltage_flag == 0) {
+    _exit(128 + number); // a second one: the user means it
+  }
+  interrupt_flag = 1;
+}
+
+/* Whether a line can be written to stderr without waiting: a terminal that is held (Ctrl-S, a
+ * connection that is gone) would keep the loop from playing, and the output at its voltage. */
+static bool has_room(void)
+{
+  struct pollfd entry = {.fd = STDERR_FILENO, .events = POLLOUT};
+  return poll(&entry, 1, 0) > 0 && (entry.revents & POLLOUT) != 0;
+}
+
+/* One line that is rewritten on a terminal, a plain line otherwise. */
+static void show_progress(void *user, const char *what, size_t done, size_t total)
+{
+  const struct dea_cli *cli = user;
+  if (cli->quiet || (voltage_flag != 0 && !has_room())) {
+    return;
+  }
+  if (cli->terminal) {
+    fprintf(stderr, "\r\033[K%s %zu/%zu%s", what, done, total, done == total ? "\n" : "");
+    fflush(stderr);
+  } else if (done == total) {
+    fprintf(stderr, "%s: %zu points\n", what, done);
+  }
+}
+
+void cli_watch(struct dea_cli *cli)
+{
+  dea_context_set_progress(cli->ctx, show_progress, cli);
+  dea_context_set_interrupt(cli->ctx, &interrupt_flag);
+  struct sigaction action = {.sa_handler = on_signal};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+void cli_voltage_is_on(void)
+{
+  // The terminal is closed, limits of time, what batch systems and timers send: all would end the
+  // program at once.
+  static const int ending[] = {SIGHUP,  SIGQUIT, SIGALRM,   SIGUSR1,
+                               SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
+  // A stopped program leaves the voltage where it is; a file that is too long is an error to write.
+  static const int ignored[] = {SIGTSTP, SIGTTOU, SIGTTIN, SIGXFSZ};
+  struct sigaction action = {.sa_handler = on_signal}, before;
+  sigemptyset(&action.sa_mask);
+  voltage_flag = 1;
+  for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++) {
+    // what was ignored before stays so: `nohup` asks for it
+    if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+      sigaction(ending[i], &action, NULL);
+    }
+  }
+  for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++) {
+    signal(ignored[i], SIG_IGN);
+  }
+}
