@@ -30,7 +30,7 @@ static struct sweep run(struct dea_context *ctx, const char *refinement, const c
   bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 2, &design), ctx);
   bench_need(dea_device_build(ctx, design, &device), ctx);
   double start = bench_now_s();
-  bench_need(type->create(ctx, device, &model), ctx);
+  bench_need(dea_model_create(ctx, type, design, device, &model), ctx);
   for (int i = 0; i < POINTS; i++) {
     bench_need(type->solve(ctx, model, 500.0 * i, &point), ctx);
     sweep.tip_m[i] = point.fibre_tip_z_m;

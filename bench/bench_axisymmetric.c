@@ -18,7 +18,7 @@ static dea_status ignore(void *user, const struct dea_load_point *point)
 static struct dea_model *make(const struct dea_device *device)
 {
   struct dea_model *model;
-  if (dea_model_find("axisymmetric")->create(ctx, device, &model) != DEA_OK) {
+  if (dea_model_find("axisymmetric")->create(ctx, device, NULL, &model) != DEA_OK) {
     abort();
   }
   return model;

@@ -13,12 +13,13 @@ enum { TO_6_KV, TO_8_KV, SPANS, REPEATS = 3 };
 extern const struct dea_model_type dea_solid_module;
 
 /* Times of one sweep, kept where they are shorter. */
-static void sweep(struct dea_context *ctx, const struct dea_device *device, double times[SPANS])
+static void sweep(struct dea_context *ctx, const struct dea_device *device,
+                  const struct dea_model_settings *settings, double times[SPANS])
 {
   struct dea_model *model;
   struct dea_load_point point;
   double start = bench_processor_s();
-  bench_need(dea_solid_module.create(ctx, device, &model), ctx);
+  bench_need(dea_solid_module.create(ctx, device, settings, &model), ctx);
   for (int kV = 1; kV <= 8; kV++) {
     bench_need(dea_solid_module.solve(ctx, model, 1e3 * kV, &point), ctx);
     if (kV == 6 || kV == 8) {
@@ -41,8 +42,9 @@ int main(void)
   bench_need(dea_device_build(ctx, design, &device), ctx);
   double times[2][SPANS] = {{INFINITY, INFINITY}, {INFINITY, INFINITY}};
   for (int i = 0; i < 2 * REPEATS; i++) { // in turns, so that other work disturbs both
-    device->solid_film = i % 2 == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
-    sweep(ctx, device, times[i % 2]);
+    struct dea_model_settings settings = dea_model_settings_of(design);
+    settings.film = i % 2 == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
+    sweep(ctx, device, &settings, times[i % 2]);
   }
   for (int span = 0; span < SPANS; span++) {
     static const char *const films[] = {"solid", "membrane"};

@@ -19,7 +19,7 @@ static double sweep(struct dea_context *ctx, struct dea_device *device, int kind
   struct dea_model *model;
   struct dea_load_point point;
   device->film.branch_count = kind == BRANCHES ? branches : 0;
-  bench_need(type->create(ctx, device, &model), ctx);
+  bench_need(type->create(ctx, device, NULL, &model), ctx);
   double start = bench_processor_s(), error;
   if (kind != EQUILIBRIUM) {
     bench_need(type->begin(ctx, model, &options, &point), ctx);

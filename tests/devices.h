@@ -54,7 +54,6 @@ static inline struct dea_device test_star(int fibres)
   d.fibre.poisson_ratio = 0.38;
   d.fibre_width_m = d.fibre_tip_width_m = 2e-3;
   d.fibre_thickness_m = 100e-6;
-  d.solid_refinement = 1;
   return d;
 }
 

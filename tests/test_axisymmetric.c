@@ -11,7 +11,7 @@ static struct dea_load_point solve_at(const struct dea_device *device, double vo
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_model *model;
   struct dea_load_point p;
-  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, voltage_V, &p), DEA_OK);
   type->destroy(ctx, model);
   return p;
@@ -54,7 +54,7 @@ static void test_loss_of_tension(void **state)
   const struct dea_path_options options = {3, INFINITY, 1000};
   struct dea_model *model;
   struct dea_event slack = {0};
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
   assert_int_equal(type->path(ctx, model, &options, ignore_point, keep_slack, &slack), DEA_OK);
   assert_close(slack.point.voltage_V, 11689, 0, 0.5);
   assert_close(slack.point.min_tension_N_per_m, 0, 0, 1e-9);
@@ -201,7 +201,7 @@ static void test_cost_of_eq_17_at_small_strain(void **state)
     struct dea_device device = test_disc(film, 1.5, 1e-3 * radius_mm[i / 3], R, 0);
     struct dea_load_point exact = solve_at(&device, 100), lumped;
     struct dea_model *model;
-    assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+    assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
     assert_int_equal(type->solve(ctx, model, 100, &lumped), DEA_OK);
     type->destroy(ctx, model);
     double wanted = 2 * (1 - R) / (1 - ratio * ratio) * k.k11 / (k.k11 + k.k12);
@@ -234,7 +234,7 @@ static void test_films_with_a_direction(void **state)
   }
   for (size_t i = 0; i < 3; i++) {
     struct dea_model *model;
-    assert_int_equal(dea_model_find("axisymmetric")->create(ctx, &directed[i], &model),
+    assert_int_equal(dea_model_find("axisymmetric")->create(ctx, &directed[i], NULL, &model),
                      DEA_E_DESIGN);
     assert_null(model);
     assert_non_null(strstr(dea_context_message(ctx), "direction"));
@@ -290,7 +290,7 @@ static void test_profile(void **state)
   struct dea_model *model;
   struct dea_load_point p;
   struct dea_profile f;
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, 6e3, &p), DEA_OK);
   assert_int_equal(type->profile(ctx, model, &f), DEA_OK);
   size_t edge = 0;
@@ -316,7 +316,7 @@ static void test_charge_from_energy(void **state)
     struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 1.0 / 3, 0);
     struct dea_model *model;
     struct dea_load_point p, up, down;
-    assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+    assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
     assert_int_equal(type->solve(ctx, model, 4990, &down), DEA_OK);
     assert_int_equal(type->solve(ctx, model, 5000, &p), DEA_OK);
     assert_int_equal(type->solve(ctx, model, 5010, &up), DEA_OK);
@@ -335,7 +335,7 @@ static void test_held_film_goes_slack_at_the_maxwell_voltage(void **state)
   const struct dea_path_options options = {1.6, 12e3, 1000};
   struct dea_model *model;
   struct dea_event slack = {0};
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
   assert_int_equal(type->path(ctx, model, &options, ignore_point, keep_slack, &slack), DEA_OK);
   assert_close(slack.point.voltage_V, 7972, 1e-3, 0);
   type->destroy(ctx, model);

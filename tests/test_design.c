@@ -1,5 +1,6 @@
 /* design and device: what a good file gives, with defaults, overrides and the list of values. */
 #include "design_text.h"
+#include "model/model.h"
 #include "study/design_file.h"
 
 static struct dea_context *ctx;
@@ -271,12 +272,13 @@ static void test_taper_and_free_end(void **state)
   assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
   assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
-  assert_int_equal(device->solid_domain, DEA_DOMAIN_DISC);
-  assert_int_equal(device->solid_film, DEA_FILM_SOLID);
-  assert_int_equal(device->solid_side, DEA_BRANCH_FIBRES);
-  assert_close(device->solid_refinement, 2.5, 0, 0);
-  assert_int_equal(device->solid_order, 3);
-  assert_int_equal(device->solid_order_z, 1);
+  const struct dea_model_settings settings = dea_model_settings_of(design);
+  assert_int_equal(settings.domain, DEA_DOMAIN_DISC);
+  assert_int_equal(settings.film, DEA_FILM_SOLID);
+  assert_int_equal(settings.buckling_branch, DEA_BRANCH_FIBRES);
+  assert_close(settings.refinement, 2.5, 0, 0);
+  assert_int_equal(settings.order, 3);
+  assert_int_equal(settings.order_z, 1);
 }
 
 /* An older word of a key is read as the key; the list of values knows the key only. */

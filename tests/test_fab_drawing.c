@@ -241,7 +241,7 @@ static double displacement(const char *model, bool tip, const char *key, const c
   struct dea_model *m;
   struct dea_load_point point;
   make(&set, 1);
-  assert_int_equal(type->create(ctx, device, &m), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &m), DEA_OK);
   assert_int_equal(type->solve(ctx, m, voltage_V, &point), DEA_OK);
   type->destroy(ctx, m);
   return tip ? point.fibre_tip_z_m : point.electrode_edge_u_m;

@@ -10,7 +10,7 @@
 static struct dea_model *make(const struct dea_device *device)
 {
   struct dea_model *model;
-  assert_int_equal(dea_model_find("lumped")->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(dea_model_find("lumped")->create(ctx, device, NULL, &model), DEA_OK);
   return model;
 }
 
@@ -72,7 +72,7 @@ static void test_devices_that_cannot_be(void **state)
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     for (size_t k = 0; k < 2; k++) {
       struct dea_model *model = NULL;
-      assert_int_equal(dea_model_find(names[k])->create(ctx, &bad[i], &model), DEA_E_DESIGN);
+      assert_int_equal(dea_model_find(names[k])->create(ctx, &bad[i], NULL, &model), DEA_E_DESIGN);
       assert_null(model);
     }
   }

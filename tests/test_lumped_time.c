@@ -23,7 +23,7 @@ static struct dea_model *begin(const struct dea_device *device,
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_model *model;
   struct dea_load_point point;
-  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   assert_int_equal(type->begin(ctx, model, options, &point), DEA_OK);
   assert_true(point.time_s == 0 && point.stored_energy_J == 0 && point.charge_C == 0);
   return model;
@@ -309,7 +309,7 @@ static void test_leakage_of_an_open_film(void **state)
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_model *model;
   struct dea_load_point p;
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, 5000, &p), DEA_OK);
   assert_int_equal(type->begin(ctx, model, &options, &p), DEA_OK);
   double first_C = p.charge_C, first_J = p.stored_energy_J, tau = 2e10 * 2.8 * DEA_EPSILON_0;

@@ -15,7 +15,7 @@ static void test_force_without_indenter(void **state)
   struct dea_device *device;
   struct dea_model *model;
   assert_int_equal(read_and_build(ctx, GOOD_DESIGN, &depth, 1, &design, &device), DEA_OK);
-  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   assert_int_equal(dea_force_indent(ctx, type, model, design, 0), DEA_E_UNSUPPORTED);
   assert_string_equal(dea_context_message(ctx), "the model 'axisymmetric' knows no indenter");
   type->destroy(ctx, model);

@@ -23,8 +23,9 @@ static double fake_material = 1;       // what the state belongs to
 static double fake_limit_V = INFINITY; // it fails above
 
 static dea_status fake_create(struct dea_context *c, const struct dea_device *device,
-                              struct dea_model **out)
+                              const struct dea_model_settings *settings, struct dea_model **out)
 {
+  (void)settings;
   (void)device;
   *out = dea_alloc(c, 1, sizeof **out);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;

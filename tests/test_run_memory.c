@@ -22,7 +22,7 @@ static void use_model(struct dea_context *ctx)
   struct dea_load_point point;
   struct dea_profile profile;
   size_t points = 0;
-  dea_status status = type->create(ctx, &device, &model);
+  dea_status status = type->create(ctx, &device, NULL, &model);
   assert_true((status == DEA_OK) == (model != NULL));
   if (status == DEA_OK) {
     status = type->solve(ctx, model, 2e3, &point);
@@ -62,7 +62,7 @@ static void make_impossible_models(struct dea_context *ctx)
   bad[1].film = test_material("gent", 1e5, 0.5, 0);
   for (size_t i = 0; i < 2; i++) {
     struct dea_model *model = NULL;
-    dea_status status = type->create(ctx, &bad[i], &model);
+    dea_status status = type->create(ctx, &bad[i], NULL, &model);
     assert_true(status != DEA_OK);
     assert_null(model);
     assert_true(dea_context_message(ctx)[0] != '\0');

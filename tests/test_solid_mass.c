@@ -117,13 +117,11 @@ static void test_an_inverted_element_has_no_mass(void **state)
 
 static const double rho_film = 970, rho_pet = 1375, rho_electrode = 1900;
 
-static struct dea_device star(bool membrane, bool electrodes)
+static struct dea_device star(bool electrodes)
 {
   struct dea_device d = test_star(4);
   d.film.density_kg_per_m3 = rho_film;
   d.fibre.density_kg_per_m3 = rho_pet;
-  d.solid_refinement = 2; // arcs are parabolas: 2e-5 of the area at 1, a sixteenth of it at 2
-  d.solid_film = membrane ? DEA_FILM_MEMBRANE : DEA_FILM_SOLID;
   if (electrodes) {
     d.electrode = test_yeoh();
     d.electrode.density_kg_per_m3 = rho_electrode;
@@ -156,11 +154,15 @@ static void test_mass_of_an_actuator(void **state)
 {
   (void)state;
   for (int kind = 0; kind < 4; kind++) {
-    struct dea_device d = star(kind % 2, kind / 2);
+    struct dea_device d = star(kind / 2);
+    const struct dea_model_settings settings = {
+        .film = kind % 2 == 1 ? DEA_FILM_MEMBRANE : DEA_FILM_SOLID,
+        .refinement = 2, // arcs are parabolas: 2e-5 of the area at 1, a sixteenth of it at 2
+    };
     struct dea_actuator actuator;
     struct dea_grid *grid;
     double sum[MOMENTS] = {0};
-    assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
+    assert_int_equal(dea_actuator_create(ctx, &d, &settings, &actuator), DEA_OK);
     assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_OK);
     assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
     assert_int_equal(dea_hex_shape_create(grid->order, actuator.plate.order_z, &shape), DEA_OK);
@@ -184,15 +186,16 @@ static void test_unknown_densities_are_said(void **state)
 {
   (void)state;
   struct dea_actuator actuator;
-  struct dea_device d = star(false, true);
+  struct dea_device d = star(true);
+  const struct dea_model_settings settings = {.refinement = 2};
   d.electrode.density_kg_per_m3 = 0;
-  assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
+  assert_int_equal(dea_actuator_create(ctx, &d, &settings, &actuator), DEA_OK);
   assert_close(actuator.constituents[DEA_CONSTITUENT_ELECTRODE].density_kg_per_m3, rho_film, 0, 0);
   size_t before = dea_finding_count(ctx, DEA_NOTE);
   assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), before + 1);
   d.fibre.density_kg_per_m3 = 0;
-  assert_int_equal(dea_actuator_create(ctx, &d, &actuator), DEA_OK);
+  assert_int_equal(dea_actuator_create(ctx, &d, &settings, &actuator), DEA_OK);
   assert_int_equal(dea_actuator_check_mass(ctx, &actuator), DEA_E_DESIGN);
 }
 

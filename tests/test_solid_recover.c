@@ -430,7 +430,8 @@ static double covered(double poisson_ratio)
   struct dea_element_set elements;
   struct dea_field_mesh *mesh;
   device.fibre.poisson_ratio = poisson_ratio;
-  assert_int_equal(dea_actuator_create(ctx, &device, &actuator), DEA_OK);
+  assert_int_equal(dea_actuator_create(ctx, &device, &(struct dea_model_settings){0}, &actuator),
+                   DEA_OK);
   assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
   assert_int_equal(dea_element_set_create(ctx, grid->order, grid->order_z, &elements), DEA_OK);
   int *layer = calloc(grid->element_count, sizeof *layer);

@@ -15,7 +15,6 @@ static struct dea_device viscous_disc(void)
   d.film.density_kg_per_m3 = 1080;
   d.film.branches[0] = (struct dea_branch){180e3, 0.1};
   d.film.branch_count = 1;
-  d.solid_refinement = 0.5;
   return d;
 }
 
@@ -23,7 +22,7 @@ static struct dea_model *model_create(const struct dea_device *device)
 {
   struct dea_model *model;
   type = dea_model_find("3d");
-  assert_int_equal(type->create(ctx, device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   return model;
 }
 

@@ -38,7 +38,7 @@ static void test_rest(void **state)
   struct dea_model *model;
   struct dea_load_point point;
   struct dea_field_mesh *mesh;
-  assert_int_equal(type->create(ctx, &disc, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &disc, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, 0, &point), DEA_OK);
   assert_int_equal(type->fields(ctx, model, DEA_FIELDS_VOLUME, &mesh), DEA_OK);
   assert_int_equal(mesh->fold, 4); // a sector of 45 degrees
@@ -77,10 +77,10 @@ static void test_exact_disc(void **state)
   struct dea_load_point point, wanted;
   struct dea_profile profile;
   struct dea_field_mesh *mesh;
-  assert_int_equal(exact->create(ctx, &disc, &reference), DEA_OK);
+  assert_int_equal(exact->create(ctx, &disc, NULL, &reference), DEA_OK);
   assert_int_equal(exact->solve(ctx, reference, 5e3, &wanted), DEA_OK);
   assert_int_equal(exact->profile(ctx, reference, &profile), DEA_OK);
-  assert_int_equal(type->create(ctx, &disc, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &disc, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, 5e3, &point), DEA_OK);
   assert_int_equal(type->fields(ctx, model, DEA_FIELDS_SURFACE, &mesh), DEA_OK);
   const double *u = values(mesh, "displacement_m"), *tension = values(mesh, "tension_N_per_m");
@@ -148,13 +148,13 @@ static void test_state(void **state)
   struct dea_model *first, *second;
   struct dea_load_point wanted, point;
   struct kept kept;
-  assert_int_equal(type->create(ctx, &disc, &first), DEA_OK);
+  assert_int_equal(type->create(ctx, &disc, NULL, &first), DEA_OK);
   assert_int_equal(type->solve(ctx, first, 2e3, &point), DEA_OK);
   assert_int_equal(type->solve(ctx, first, 3e3, &point), DEA_OK);
   keep(first, &kept);
   assert_int_equal(type->solve(ctx, first, 4e3, &wanted), DEA_OK);
   type->destroy(ctx, first);
-  assert_int_equal(type->create(ctx, &disc, &second), DEA_OK);
+  assert_int_equal(type->create(ctx, &disc, NULL, &second), DEA_OK);
   assert_int_equal(type->load(ctx, second, &kept.state), DEA_OK);
   assert_int_equal(type->solve(ctx, second, 4e3, &point), DEA_OK);
   assert_close(point.electrode_edge_u_m, wanted.electrode_edge_u_m, 1e-12, 0);

@@ -113,7 +113,7 @@ static struct dea_load_point exact(double voltage_V)
   struct dea_device device = test_disc(test_yeoh(), 1.5, a_m, 0.25, 0);
   struct dea_model *model;
   struct dea_load_point point;
-  assert_int_equal(type->create(ctx, &device, &model), DEA_OK);
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, voltage_V, &point), DEA_OK);
   type->destroy(ctx, model);
   return point;

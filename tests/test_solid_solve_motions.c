@@ -15,10 +15,11 @@
 extern const struct dea_model_type dea_solid_module;
 static const double pi = 3.14159265358979323846;
 
-static struct dea_model *create(const struct dea_device *device)
+static struct dea_model *create(const struct dea_device *device,
+                                const struct dea_model_settings *settings)
 {
   struct dea_model *model;
-  if (dea_solid_module.create(ctx, device, &model) != DEA_OK) {
+  if (dea_solid_module.create(ctx, device, settings, &model) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   return model;
@@ -46,11 +47,10 @@ static void test_modes_of_a_disc(void **state)
   struct dea_device d = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
   struct dea_load_point at, points[MODES];
   struct dea_field_mesh *shapes;
-  d.solid_refinement = 1;
-  d.solid_film = DEA_FILM_MEMBRANE;
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
   d.film.density_kg_per_m3 = 970;
   double c = sqrt(797.745e3 / 970), R = d.frame_radius_m; // stress of Table 1 at 1.5
-  struct dea_model *model = create(&d);
+  struct dea_model *model = create(&d, &settings);
   assert_int_equal(dea_solid_module.solve(ctx, model, 0, &at), DEA_OK);
   if (dea_solid_module.modes(ctx, model, &at, MODES, points, &shapes) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
@@ -82,7 +82,7 @@ static void test_answer_to_a_slow_ripple(void **state)
   const double frequency_Hz[] = {0.01, 300};
   d.film.density_kg_per_m3 = 970;
   d.fibre.density_kg_per_m3 = 1375;
-  struct dea_model *model = create(&d);
+  struct dea_model *model = create(&d, NULL);
   assert_int_equal(dea_solid_module.solve(ctx, model, 3980, &less), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4020, &more), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4000, &at), DEA_OK);
@@ -110,7 +110,7 @@ static void test_answer_of_a_viscous_film(void **state)
   d.film.density_kg_per_m3 = 970;
   d.fibre.density_kg_per_m3 = 1375;
   for (int k = 0; k < 2; k++) {
-    struct dea_model *model = create(&d);
+    struct dea_model *model = create(&d, NULL);
     assert_int_equal(dea_solid_module.solve(ctx, model, 3000, &at), DEA_OK);
     if (dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 3,
                                  k == 0 ? elastic : viscous) != DEA_OK) {

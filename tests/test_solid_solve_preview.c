@@ -12,10 +12,13 @@
 extern const struct dea_model_type dea_solid_module;
 static const struct dea_model_type *const solid = &dea_solid_module;
 
-static struct dea_model *create(const struct dea_device *device)
+static const struct dea_model_settings preview = {.film = DEA_FILM_MEMBRANE};
+
+static struct dea_model *create(const struct dea_device *device,
+                                const struct dea_model_settings *settings)
 {
   struct dea_model *model;
-  if (solid->create(ctx, device, &model) != DEA_OK) {
+  if (solid->create(ctx, device, settings, &model) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   return model;
@@ -32,19 +35,13 @@ static struct dea_load_point solve(struct dea_model *model, double voltage_V)
   return point;
 }
 
-static struct dea_load_point solve_once(const struct dea_device *device, double voltage_V)
+static struct dea_load_point solve_once(const struct dea_device *device,
+                                        const struct dea_model_settings *settings, double voltage_V)
 {
-  struct dea_model *model = create(device);
+  struct dea_model *model = create(device, settings);
   struct dea_load_point point = solve(model, voltage_V);
   solid->destroy(ctx, model);
   return point;
-}
-
-static struct dea_device membrane(int fibres)
-{
-  struct dea_device device = test_star(fibres);
-  device.solid_film = DEA_FILM_MEMBRANE;
-  return device;
 }
 
 /* 0 to 11 kV: between the two is the mesh, and the disc inside the electrode is stretched alike
@@ -53,10 +50,10 @@ static void test_plain_disc(void **state)
 {
   (void)state;
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
-  struct dea_device device = membrane(0);
-  struct dea_model *model = create(&device), *reference;
+  struct dea_device device = test_star(0);
+  struct dea_model *model = create(&device, &preview), *reference;
   double rest_F = solve(model, 0).capacitance_F;
-  assert_int_equal(exact->create(ctx, &device, &reference), DEA_OK);
+  assert_int_equal(exact->create(ctx, &device, NULL, &reference), DEA_OK);
   for (int kV = 1; kV <= 11; kV++) {
     struct dea_load_point wanted, point = solve(model, 1e3 * kV);
     double area = point.electrode_stretch * point.electrode_stretch;
@@ -78,8 +75,8 @@ static void test_plain_disc(void **state)
 static void test_four_fibres_as_built(void **state)
 {
   (void)state;
-  struct dea_device device = membrane(4);
-  struct dea_model *model = create(&device);
+  struct dea_device device = test_star(4);
+  struct dea_model *model = create(&device, &preview);
   struct dea_load_point before = solve(model, 0);
   assert_close(before.fibre_tip_z_m, 0, 0, 1e-12);
   assert_close(before.min_tension_N_per_m, 797.745e3 * 100e-6 / 2.25, 1e-5, 0);
@@ -100,8 +97,8 @@ static void test_four_fibres_as_built(void **state)
   assert_between(before.fibre_tip_z_m, prototype_tip_8kV_m, 0.15);
   solid->destroy(ctx, model);
 
-  device.solid_refinement = 2;
-  struct dea_load_point finer = solve_once(&device, 6e3);
+  const struct dea_model_settings fine = {.film = DEA_FILM_MEMBRANE, .refinement = 2};
+  struct dea_load_point finer = solve_once(&device, &fine, 6e3);
   assert_close(finer.fibre_tip_z_m, prototype_membrane_tip_6kV_m, 3e-2, 0);
   assert_close(finer.centre_z_m, prototype_membrane_centre_6kV_m, 3e-2, 0);
 }
@@ -115,11 +112,12 @@ static void test_rest(void **state)
   static const double pre_stretch[] = {1, 1.5, 2};
   for (size_t i = 0; i < 9; i++) {
     double l = pre_stretch[i % 3], h = 100e-6 / (l * l), a = 3.75e-3;
-    struct dea_device device = membrane(fibres[i / 3]);
+    struct dea_device device = test_star(fibres[i / 3]);
     device.pre_stretch = l;
     device.film_thickness_m = h;
-    device.solid_refinement = i % 2 == 0 ? 1 : 2;
-    struct dea_load_point point = solve_once(&device, 0);
+    const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE,
+                                                .refinement = i % 2 == 0 ? 1 : 2};
+    struct dea_load_point point = solve_once(&device, &settings, 0);
     assert_close(point.electrode_edge_u_m, 0, 0, 1e-12);
     assert_close(point.centre_z_m, 0, 0, 1e-12);
     assert_int_equal(dea_finding_count(ctx, DEA_WARNING), l == 1);
@@ -132,10 +130,10 @@ static void test_rest(void **state)
 static void test_domains_agree(void **state)
 {
   (void)state;
-  struct dea_device device = membrane(3);
-  struct dea_load_point sector = solve_once(&device, 3e3);
-  device.solid_domain = DEA_DOMAIN_DISC;
-  struct dea_load_point disc = solve_once(&device, 3e3);
+  struct dea_device device = test_star(3);
+  struct dea_load_point sector = solve_once(&device, &preview, 3e3);
+  const struct dea_model_settings whole = {.film = DEA_FILM_MEMBRANE, .domain = DEA_DOMAIN_DISC};
+  struct dea_load_point disc = solve_once(&device, &whole, 3e3);
   assert_close(disc.fibre_tip_z_m, sector.fibre_tip_z_m, 1e-6, 0);
   assert_close(disc.centre_z_m, sector.centre_z_m, 1e-6, 0);
   assert_close(disc.electrode_edge_u_m, sector.electrode_edge_u_m, 1e-6, 0);
@@ -151,11 +149,11 @@ static void test_domains_agree(void **state)
  * which all is counted from. */
 static void check_beside_solid(const struct dea_device *device, double of_edge)
 {
-  struct dea_device with = *device;
   double tip[2], edge[2], capacitance[2];
   for (int film = 0; film < 2; film++) {
-    with.solid_film = film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
-    struct dea_model *model = create(&with);
+    const struct dea_model_settings settings = {.film =
+                                                    film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE};
+    struct dea_model *model = create(device, &settings);
     struct dea_load_point rest = solve(model, 0), point = solve(model, 2e3);
     tip[film] = point.fibre_tip_z_m - rest.fibre_tip_z_m;
     edge[film] = point.electrode_edge_u_m - rest.electrode_edge_u_m;
@@ -172,18 +170,18 @@ static void test_fibres_of_all_kinds(void **state)
   (void)state;
   static const int fibres[] = {1, 4, 6};
   for (size_t i = 0; i < 3; i++) {
-    struct dea_device device = membrane(fibres[i]);
+    struct dea_device device = test_star(fibres[i]);
     check_beside_solid(&device, fibres[i] == 6 ? 0.1 : 0.05);
   }
-  struct dea_device device = membrane(4);
+  struct dea_device device = test_star(4);
   device.fibre_tip_width_m = 0.5e-3;
   check_beside_solid(&device, 0.05);
 
-  device = membrane(4);
+  device = test_star(4);
   device.fibre_tip_radius_m += 0.75e-3;
   check_beside_solid(&device, 0.05);
 
-  device = membrane(4);
+  device = test_star(4);
   device.outer_end = DEA_END_HINGED;
   check_beside_solid(&device, 0.05);
 
@@ -196,12 +194,12 @@ static void test_fibres_of_all_kinds(void **state)
 static void test_layers(void **state)
 {
   (void)state;
-  struct dea_device device = membrane(4);
+  struct dea_device device = test_star(4);
   device.bond_thickness_m = 50e-6;
   device.bond_modulus_Pa = 1e6;
   check_beside_solid(&device, 0.05);
 
-  device = membrane(4);
+  device = test_star(4);
   device.fibre_tip_radius_m -= 0.75e-3;
   check_beside_solid(&device, 0.05);
 
@@ -222,10 +220,11 @@ static void test_probe(void **state)
     for (int side = 0; side < 2; side++) {
       const struct dea_probe probe = {
           .shape = DEA_PROBE_SPHERE, .radius_m = 1.5e-3, .from_fibre_side = side == 1};
-      struct dea_device device = membrane(0);
+      struct dea_device device = test_star(0);
       struct dea_load_point point;
-      device.solid_film = film == 0 ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE;
-      struct dea_model *model = create(&device);
+      const struct dea_model_settings settings = {.film = film == 0 ? DEA_FILM_SOLID
+                                                                    : DEA_FILM_MEMBRANE};
+      struct dea_model *model = create(&device, &settings);
       assert_int_equal(solid->indent(ctx, model, &probe, 20e-6, &point), DEA_OK);
       force[film][side] = point.force_N;
       solid->destroy(ctx, model);

@@ -31,8 +31,8 @@ static void sweep(enum dea_buckling_branch side, struct dea_load_point points[VO
 {
   struct dea_device buckling = slack();
   struct dea_model *model;
-  buckling.solid_side = side;
-  assert_int_equal(dea_solid_module.create(ctx, &buckling, &model), DEA_OK);
+  const struct dea_model_settings settings = {.buckling_branch = side};
+  assert_int_equal(dea_solid_module.create(ctx, &buckling, &settings, &model), DEA_OK);
   for (int i = 0; i < VOLTAGES; i++) {
     if (dea_solid_module.solve(ctx, model, 1e3 * voltage_kV[i], &points[i]) != DEA_OK) {
       fail_msg("%s", dea_context_message(ctx));
@@ -71,7 +71,7 @@ static void test_onset_without_fibres(void **state)
   struct dea_load_point below, above;
   struct dea_model *model;
   flat.fibre_count = 0;
-  assert_int_equal(dea_solid_module.create(ctx, &flat, &model), DEA_OK);
+  assert_int_equal(dea_solid_module.create(ctx, &flat, NULL, &model), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 400, &below), DEA_OK);
   assert_int_equal(below.unstable_modes, 0);
   assert_close(below.centre_z_m, 0, 0, 1e-9);
@@ -92,7 +92,8 @@ static size_t centre;
 static void create(void)
 {
   device = slack();
-  assert_int_equal(dea_actuator_create(ctx, &device, &actuator), DEA_OK);
+  assert_int_equal(dea_actuator_create(ctx, &device, &(struct dea_model_settings){0}, &actuator),
+                   DEA_OK);
   assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
   assert_int_equal(dea_solid_of_actuator(ctx, &actuator, grid, &solid), DEA_OK);
   centre = dea_grid_nearest(grid, (const double[3]){0});

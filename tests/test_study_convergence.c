@@ -96,13 +96,14 @@ struct dea_model {
 static const double fails_above_V = 7e3; // on the finest mesh
 
 static dea_status create(struct dea_context *context, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
+  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  (*out)->refinement = device->solid_refinement;
+  (*out)->refinement = settings->refinement;
   return DEA_OK;
 }
 

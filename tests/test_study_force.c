@@ -20,8 +20,9 @@ static double force(const struct dea_model *model)
 }
 
 static dea_status create(struct dea_context *context, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
+  (void)settings;
   (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;

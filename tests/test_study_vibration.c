@@ -17,8 +17,9 @@ static const double pi = 3.14159265358979323846, rest_Hz = 100, slack_V = 4e3, p
 static bool with_mass = true;
 
 static dea_status create(struct dea_context *context, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
+  (void)settings;
   (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;

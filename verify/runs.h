@@ -47,7 +47,7 @@ static inline struct opened open_model(const char *name, const struct variant *v
                                  &open.design));
   verify_ok(ctx, dea_device_build(ctx, open.design, &open.device));
   open.type = dea_model_find(name);
-  verify_ok(ctx, open.type->create(ctx, open.device, &open.model));
+  verify_ok(ctx, dea_model_create(ctx, open.type, open.design, open.device, &open.model));
   return open;
 }
 

@@ -47,7 +47,7 @@ static void sweep(const char *refinement, const char *side, int count,
 {
   struct dea_model *model;
   device_create(refinement, side);
-  verify_ok(ctx, dea_solid_module.create(ctx, device, &model));
+  verify_ok(ctx, dea_model_create(ctx, &dea_solid_module, design, device, &model));
   for (int i = 0; i < count; i++) {
     verify_ok(ctx, dea_solid_module.solve(ctx, model, 1e3 * voltage_kV[i], &points[i]));
     verify_absolute("unstable modes", points[i].unstable_modes, 0, 0);
@@ -90,7 +90,8 @@ static size_t centre;
 static void solid_create(const char *refinement)
 {
   device_create(refinement, "any");
-  verify_ok(ctx, dea_actuator_create(ctx, device, &actuator));
+  const struct dea_model_settings settings = dea_model_settings_of(design);
+  verify_ok(ctx, dea_actuator_create(ctx, device, &settings, &actuator));
   verify_ok(ctx, dea_fibre_disc_create(ctx, &actuator.plate, &grid));
   verify_ok(ctx, dea_solid_of_actuator(ctx, &actuator, grid, &solid));
   centre = dea_grid_nearest(grid, (const double[3]){0});

@@ -94,7 +94,7 @@ static double exact(double a_m, double voltage_V)
   device.film.law = dea_law_find("yeoh");
   memcpy(device.film.param, yeoh, sizeof yeoh);
   device.film.permittivity.at_rest = 2.8;
-  verify_ok(ctx, type->create(ctx, &device, &model));
+  verify_ok(ctx, type->create(ctx, &device, NULL, &model));
   verify_ok(ctx, type->solve(ctx, model, voltage_V, &point));
   type->destroy(ctx, model);
   return point.electrode_stretch - 1;

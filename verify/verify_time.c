@@ -123,7 +123,7 @@ static void lumped_create(struct lumped *l, double pre, double H, double G, doub
   d->film.branch_count = 1;
   l->type = dea_model_find("lumped");
   l->stretch = pre;
-  verify_ok(ctx, l->type->create(ctx, d, &l->model));
+  verify_ok(ctx, l->type->create(ctx, d, NULL, &l->model));
   struct dea_load_point point;
   const struct dea_time_options options = {.circuit = {.current_limit_A = INFINITY}, .rho_inf = 1};
   verify_ok(ctx, l->type->solve(ctx, l->model, 0, &point));

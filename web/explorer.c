@@ -143,7 +143,7 @@ EXPORT(explorer_make) int explorer_make(int axisymmetric)
   dea_finding_clear(ctx);
   fill_device();
   type = axisymmetric ? &dea_model_axisymmetric : &dea_model_lumped;
-  return (int)type->create(ctx, &device, &model);
+  return (int)type->create(ctx, &device, NULL, &model);
 }
 
 static void put(const struct dea_load_point *point, double *out)

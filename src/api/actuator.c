@@ -86,7 +86,7 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
   actuator->point = dea_load_point_empty();
   dea_status status = door_design_build(inner, design, &actuator->design, &actuator->device);
   if (status == DEA_OK) {
-    status = type->create(inner, actuator->device, &actuator->model);
+    status = dea_model_create(inner, type, actuator->design, actuator->device, &actuator->model);
   }
   if (status != DEA_OK) {
     dea_actuator_free(actuator);

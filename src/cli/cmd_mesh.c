@@ -74,7 +74,8 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_fibre_disc plate;
   dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
   if (status == DEA_OK) {
-    status = dea_fibre_disc_of_device(cli->ctx, device, &plate);
+    const struct dea_model_settings settings = dea_model_settings_of(design);
+    status = dea_fibre_disc_of_device(cli->ctx, device, &settings, &plate);
   }
   if (status == DEA_OK) {
     status = dea_fibre_disc_create(cli->ctx, &plate, &grid);

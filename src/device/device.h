@@ -30,13 +30,6 @@ struct dea_device {
   double fibre_outer_gap_m; // from a free outer end to the frame; 0 for other ends
 
   enum dea_gravity gravity;
-
-  enum dea_solid_film solid_film; // of model 3d, as the next four
-  enum dea_solid_domain solid_domain;
-  enum dea_solid_electrostatics solid_field;
-  enum dea_buckling_branch solid_side;
-  double solid_refinement;        // 1: the coarsest mesh
-  int solid_order, solid_order_z; // of the elements, 1 to 3; 0: 2
 };
 
 /* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:

@@ -74,13 +74,6 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
                      : design->compute.coverage_by.value == DEA_COVERAGE_AREA ? ratio * ratio
                                                                               : ratio;
   device->gravity = (enum dea_gravity)design->gravity.value;
-  device->solid_film = (enum dea_solid_film)design->compute.solid.film.value;
-  device->solid_domain = (enum dea_solid_domain)design->compute.solid.domain.value;
-  device->solid_field = (enum dea_solid_electrostatics)design->compute.solid.field.value;
-  device->solid_side = (enum dea_buckling_branch)design->compute.solid.buckling_branch.value;
-  device->solid_refinement = design->compute.solid.refinement.si;
-  device->solid_order = (int)design->compute.solid.order.si;
-  device->solid_order_z = (int)design->compute.solid.order_z.si;
   if (design->has_fibres) {
     fill_fibres(design, device);
   }

@@ -72,7 +72,7 @@ static dea_status ask(struct dea_context *ctx, const struct dea_device *device,
   const struct dea_model_type *type = dea_model_find(question->model);
   struct dea_model *model = NULL;
   struct dea_load_point point;
-  dea_status status = type->create(ctx, device, &model);
+  dea_status status = type->create(ctx, device, NULL, &model);
   if (status == DEA_OK) {
     status = type->solve(ctx, model, voltage_V, &point);
   }

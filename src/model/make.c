@@ -1,18 +1,19 @@
 #include "model/make.h"
 
-dea_status dea_model_make(struct dea_context *ctx, size_t size, const struct dea_device *device,
-                          dea_status (*prepare)(struct dea_context *ctx,
-                                                const struct dea_device *device,
-                                                struct dea_model *model),
-                          void (*destroy)(struct dea_context *ctx, struct dea_model *model),
-                          struct dea_model **out)
+dea_status dea_model_make(
+    struct dea_context *ctx, size_t size, const struct dea_device *device,
+    const struct dea_model_settings *settings,
+    dea_status (*prepare)(struct dea_context *ctx, const struct dea_device *device,
+                          const struct dea_model_settings *settings, struct dea_model *model),
+    void (*destroy)(struct dea_context *ctx, struct dea_model *model), struct dea_model **out)
 {
+  static const struct dea_model_settings usual = {0};
   *out = NULL;
   struct dea_model *model = dea_alloc(ctx, 1, size);
   if (model == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, device, model);
+  dea_status status = prepare(ctx, device, settings != NULL ? settings : &usual, model);
   if (status != DEA_OK) {
     destroy(ctx, model);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -5,12 +5,13 @@
 #include "model/model.h"
 
 /* Allocates a zeroed model of `size` bytes, prepares it, and destroys it again when that fails.
- * *out: NULL then. prepare and destroy: the model's own. */
-dea_status dea_model_make(struct dea_context *ctx, size_t size, const struct dea_device *device,
-                          dea_status (*prepare)(struct dea_context *ctx,
-                                                const struct dea_device *device,
-                                                struct dea_model *model),
-                          void (*destroy)(struct dea_context *ctx, struct dea_model *model),
-                          struct dea_model **out);
+ * *out: NULL then. settings: NULL for the defaults; prepare gets some. prepare and destroy: the
+ * model's own. */
+dea_status dea_model_make(
+    struct dea_context *ctx, size_t size, const struct dea_device *device,
+    const struct dea_model_settings *settings,
+    dea_status (*prepare)(struct dea_context *ctx, const struct dea_device *device,
+                          const struct dea_model_settings *settings, struct dea_model *model),
+    void (*destroy)(struct dea_context *ctx, struct dea_model *model), struct dea_model **out);
 
 #endif

@@ -30,6 +30,28 @@ const struct dea_model_type *dea_model_find(const char *name)
   return NULL;
 }
 
+struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
+{
+  return (struct dea_model_settings){
+      .film = (enum dea_solid_film)design->compute.solid.film.value,
+      .domain = (enum dea_solid_domain)design->compute.solid.domain.value,
+      .field = (enum dea_solid_electrostatics)design->compute.solid.field.value,
+      .buckling_branch = (enum dea_buckling_branch)design->compute.solid.buckling_branch.value,
+      .refinement = design->compute.solid.refinement.si,
+      .order = (int)design->compute.solid.order.si,
+      .order_z = (int)design->compute.solid.order_z.si,
+  };
+}
+
+dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
+                            const struct dea_design *design, const struct dea_device *device,
+                            struct dea_model **out)
+{
+  const struct dea_model_settings settings = dea_model_settings_of(design);
+  DEA_TRY(ctx, type->create(ctx, device, &settings, out));
+  return DEA_OK;
+}
+
 static dea_status lacks(struct dea_context *ctx, const struct dea_model_type *type,
                         const char *what)
 {

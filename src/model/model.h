@@ -24,6 +24,18 @@ struct dea_path_options {
   size_t max_points;
 };
 
+/* How a model is computed, which its device does not know: what a model with a mesh makes of it.
+ * All 0: the defaults. The models without a mesh take nothing from here. */
+struct dea_model_settings {
+  enum dea_solid_film film;                 // its elements
+  enum dea_solid_domain domain;             // how much of the actuator is computed
+  enum dea_solid_electrostatics field;      // where it comes from
+  enum dea_buckling_branch buckling_branch; // side of the centre that a slack film goes to
+  double refinement;                        // of the mesh; up to 1: the coarsest
+  int order;                                // of the elements in the plane, 1 to 3; 0: 2
+  int order_z;                              // through the thickness of a layer, the same
+};
+
 /* What `fields` hands out: all of the device, or the middle surface of its film. */
 enum dea_fields_part { DEA_FIELDS_VOLUME, DEA_FIELDS_SURFACE };
 
@@ -53,9 +65,9 @@ struct dea_time_options {
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
-  /* device: lent, outlives the model. */
+  /* device: lent, outlives the model. settings: copied; NULL: the defaults. */
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
-                       struct dea_model **out);
+                       const struct dea_model_settings *settings, struct dea_model **out);
   void (*destroy)(struct dea_context *ctx, struct dea_model *model);
   /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film
    * at 0 V). DEA_E_NO_EQUILIBRIUM beyond the last limit point: the model stays at its last point.
@@ -120,9 +132,16 @@ struct dea_model_type {
   /* The trial of the last advance, which succeeded, becomes the accepted state; solve, profile,
    * fields and save speak of it. Cannot fail. */
   void (*accept)(struct dea_model *model);
-  /* Size of a model whose mesh the device's solid_refinement sets; NULL when it has none. */
+  /* Size of a model whose mesh the settings' refinement sets; NULL when it has none. */
   void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };
+
+/* What a design says of how to compute (compute.solid). */
+struct dea_model_settings dea_model_settings_of(const struct dea_design *design);
+/* A model of a device with the settings of its design. */
+dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
+                            const struct dea_design *design, const struct dea_device *device,
+                            struct dea_model **out);
 
 /* Calls to what not every model can: DEA_E_UNSUPPORTED, with a message, where it is NULL. */
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,

@@ -47,7 +47,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
   *out = NULL;
   const struct dea_model_type *type = NULL;
@@ -57,7 +57,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
     return DEA_E_MEMORY;
   }
   model->type = type;
-  dea_status status = type->create(ctx, device, &model->inner);
+  dea_status status = type->create(ctx, device, settings, &model->inner);
   if (status != DEA_OK) {
     dea_free(ctx, model);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -35,7 +35,11 @@ static dea_status add_base(struct dea_context *ctx, const struct dea_model_type 
   if (dea_result_find(result, type->name, "sweep") != NULL) {
     return dea_variant_of_sweep(ctx, type, model, study_name, name, result);
   }
-  const struct dea_variant_run base = {study_name, name, result->device, design->compute.voltages_V,
+  const struct dea_variant_run base = {study_name,
+                                       name,
+                                       result->device,
+                                       dea_model_settings_of(design),
+                                       design->compute.voltages_V,
                                        design->compute.voltage_count};
   return dea_variant_run(ctx, type, &base, result);
 }
@@ -45,7 +49,10 @@ static dea_status add_other(struct dea_context *ctx, const struct dea_model_type
 {
   struct dea_device *device;
   DEA_TRY(ctx, dea_device_build(ctx, variant->design, &device));
-  const struct dea_variant_run other = {study_name, variant->name.text, device,
+  const struct dea_variant_run other = {study_name,
+                                        variant->name.text,
+                                        device,
+                                        dea_model_settings_of(variant->design),
                                         variant->design->compute.voltages_V,
                                         variant->design->compute.voltage_count};
   dea_status status = dea_variant_run(ctx, type, &other, result);

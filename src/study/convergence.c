@@ -112,17 +112,17 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   result->convergence_tolerance = settings->tolerance.si;
   snprintf(what, sizeof what, "%s convergence", type->name);
-  struct dea_device device = *result->device; // what it lends stays the original's
   struct dea_variant_run one = {.study = study_name,
                                 .name = name,
-                                .device = &device,
+                                .device = result->device,
+                                .settings = dea_model_settings_of(design),
                                 .voltages_V = voltages_V,
                                 .voltage_count =
                                     dea_study_stops(design, settings->voltages_V,
                                                     settings->voltage_count, false, voltages_V)};
   for (size_t i = 0; i < total; i++) {
-    device.solid_refinement = settings->refinements[i].si;
-    snprintf(name, sizeof name, "refinement %.4g", device.solid_refinement);
+    one.settings.refinement = settings->refinements[i].si;
+    snprintf(name, sizeof name, "refinement %.4g", one.settings.refinement);
     dea_status status = dea_variant_run(ctx, type, &one, result);
     first = first == DEA_OK ? status : first;
     if (status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {

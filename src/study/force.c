@@ -185,7 +185,7 @@ static dea_status load_line(struct dea_context *ctx, const struct dea_model_type
 {
   const struct dea_design *design = result->design;
   struct dea_model *model;
-  DEA_TRY(ctx, type->create(ctx, result->device, &model));
+  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
   dea_status status = dea_force_indent(ctx, type, model, design, stop);
   if (status == DEA_OK) {
     status = dea_study_take_points(ctx, type, model, design->compute.voltages_V,

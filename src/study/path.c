@@ -51,7 +51,7 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
   if (design->compute.path_max_stretch.origin != DEA_DEFAULT) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, type->create(ctx, result->device, &model));
+  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
   dea_status status = type->solve(ctx, model, dea_design_highest_V(design), &point);
   type->destroy(ctx, model);
   if (status == DEA_OK) {

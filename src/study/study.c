@@ -99,7 +99,7 @@ dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_t
       continue;
     }
     if (!studies[i]->own_models && model == NULL) {
-      DEA_TRY(ctx, type->create(ctx, result->device, &model));
+      DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
     }
     dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
     first = first == DEA_OK ? status : first;

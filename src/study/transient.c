@@ -397,7 +397,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient", type->name);
-  dea_status status = type->create(ctx, result->device, &p.model);
+  dea_status status = dea_model_create(ctx, type, result->design, result->device, &p.model);
   status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
   status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
   status = status == DEA_OK ? play(ctx, &p) : status;

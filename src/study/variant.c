@@ -15,11 +15,11 @@ static double now_s(void)
 }
 
 static void take_size(const struct dea_model_type *type, const struct dea_model *model,
-                      const struct dea_device *device, struct dea_variant *variant)
+                      double refinement, struct dea_variant *variant)
 {
   if (type->size != NULL) {
     type->size(model, &variant->size);
-    variant->refinement = device->solid_refinement;
+    variant->refinement = refinement;
   }
 }
 
@@ -29,7 +29,7 @@ static dea_status use_model(struct dea_context *ctx, const struct dea_model_type
                             struct dea_variant *variant)
 {
   struct dea_profile profile;
-  take_size(type, model, run->device, variant);
+  take_size(type, model, run->settings.refinement, variant);
   DEA_TRY(ctx, dea_study_take_points(ctx, type, model, run->voltages_V, run->voltage_count,
                                      &variant->curve));
   if (type->profile != NULL && variant->curve.count > 0) {
@@ -48,7 +48,7 @@ dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type 
   struct dea_model *model;
   double start_s = now_s();
   DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, run->study, run->name, &variant));
-  dea_status status = type->create(ctx, run->device, &model);
+  dea_status status = type->create(ctx, run->device, &run->settings, &model);
   if (status == DEA_OK) {
     status = use_model(ctx, type, model, run, variant);
     type->destroy(ctx, model);
@@ -78,7 +78,7 @@ dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_
   const struct dea_profile_record *last = last_profile(result, type->name);
   struct dea_variant *variant;
   DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, study, name, &variant));
-  take_size(type, model, result->device, variant);
+  take_size(type, model, dea_model_settings_of(result->design).refinement, variant);
   variant->wall_s = NAN;
   for (size_t i = 0; i < sweep->count; i++) {
     DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &sweep->points[i]));

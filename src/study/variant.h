@@ -5,10 +5,11 @@
 #include "model/model.h"
 #include "result/result.h"
 
-/* Which computation: of a device, through voltages in their order. */
+/* Which computation: of a device, so computed, through voltages in their order. */
 struct dea_variant_run {
   const char *study, *name;
   const struct dea_device *device;
+  struct dea_model_settings settings;
   const double *voltages_V; // [voltage_count]
   size_t voltage_count;
 };

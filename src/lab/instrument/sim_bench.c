@@ -246,7 +246,9 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
   *bench =
       (struct dea_sim_bench){.ctx = ctx, .protocol = protocol, .settings = *settings, .type = type};
   dea_status status = dea_device_build(ctx, protocol->design, &bench->device);
-  status = status == DEA_OK ? type->create(ctx, bench->device, &bench->model) : status;
+  status = status == DEA_OK
+               ? dea_model_create(ctx, type, protocol->design, bench->device, &bench->model)
+               : status;
   status = status == DEA_OK ? begin(bench) : status;
   if (status != DEA_OK) {
     dea_sim_bench_destroy(ctx, bench);

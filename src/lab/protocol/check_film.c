@@ -69,7 +69,7 @@ static dea_status allowed_voltage(const struct film *film, double high_V, double
     double middle_V = 0.5 * (low_V + high_V);
     struct dea_load_point point;
     struct dea_model *model = NULL;
-    DEA_TRY(film->ctx, film->type->create(film->ctx, film->device, &model));
+    DEA_TRY(film->ctx, film->type->create(film->ctx, film->device, NULL, &model));
     dea_status status = film->type->solve(film->ctx, model, middle_V, &point);
     film->type->destroy(film->ctx, model);
     if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
@@ -193,7 +193,7 @@ dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_pro
     film.device->fibre_count = 0;
     film.device->gravity = DEA_GRAVITY_OFF;
   }
-  status = status == DEA_OK ? film.type->create(ctx, film.device, &film.model) : status;
+  status = status == DEA_OK ? film.type->create(ctx, film.device, NULL, &film.model) : status;
   status = status == DEA_OK ? look(&film, peak, plan) : status;
   if (film.model != NULL) {
     film.type->destroy(ctx, film.model);

@@ -124,8 +124,9 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 }
 
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
-                          struct dea_model *model)
+                          const struct dea_model_settings *settings, struct dea_model *model)
 {
+  (void)settings; // of a mesh, which this model has not
   model->device = device;
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
@@ -146,9 +147,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, prepare, destroy, out));
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   return DEA_OK;
 }
 

@@ -92,7 +92,7 @@ static dea_status trace(struct dea_context *ctx, const struct dea_device *device
   const struct dea_model_type *type = dea_model_find("lumped");
   const struct dea_path_options options = {10 * device->pre_stretch, map->top_V, PATH_POINTS};
   struct dea_model *model;
-  DEA_TRY(ctx, type->create(ctx, device, &model));
+  DEA_TRY(ctx, type->create(ctx, device, NULL, &model));
   map->before = dea_load_point_empty();
   dea_status status = dea_model_path(ctx, type, model, &options, take_point, take_event, map);
   type->destroy(ctx, model);
@@ -135,7 +135,7 @@ static dea_status choose_levels(struct dea_report *report, const struct dea_repo
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_model *model;
   struct dea_load_point point = dea_load_point_empty();
-  DEA_TRY(report->ctx, type->create(report->ctx, run->device, &model));
+  DEA_TRY(report->ctx, type->create(report->ctx, run->device, NULL, &model));
   double reached = NAN;
   for (double share = 1; share > 0.1 && !(reached > 0); share -= 0.1) {
     if (type->solve(report->ctx, model, share * map->last_V, &point) == DEA_OK) {

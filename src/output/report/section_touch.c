@@ -127,7 +127,7 @@ static double free_height(struct dea_context *ctx, const struct dea_device *devi
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_model *model;
   struct dea_load_point point = dea_load_point_empty();
-  if (type->create(ctx, device, &model) != DEA_OK) {
+  if (type->create(ctx, device, NULL, &model) != DEA_OK) {
     return NAN;
   }
   dea_status status = type->solve(ctx, model, voltage_V, &point);

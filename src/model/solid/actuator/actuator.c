@@ -104,13 +104,13 @@ static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
 }
 
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
-                               struct dea_actuator *out)
+                               const struct dea_model_settings *settings, struct dea_actuator *out)
 {
   const struct dea_device *d = device;
   struct dea_film film;
-  *out = (struct dea_actuator){.device = device};
+  *out = (struct dea_actuator){.device = device, .settings = *settings};
   DEA_TRY(ctx, dea_film_create(ctx, d, &film)); // laws and permittivity are there
-  DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, &out->plate));
+  DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, settings, &out->plate));
   struct dea_constituent *constituents = out->constituents;
   for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) { // also what this device has not
     constituents[i] = dea_constituent_bonded(out->param[i]);
@@ -141,7 +141,7 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
                       constituents[i].law->name, d->pre_stretch);
     }
   }
-  if (out->plate.membrane && d->solid_field == DEA_FIELD_COUPLED) {
+  if (out->plate.membrane && settings->field == DEA_FIELD_COUPLED) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "compute.solid.field: coupled needs a film with a thickness; take "
                     "compute.solid.film: solid");

@@ -2,6 +2,7 @@
 #ifndef DEA_MODEL_SOLID_ACTUATOR_ACTUATOR_H
 #define DEA_MODEL_SOLID_ACTUATOR_ACTUATOR_H
 
+#include "model/model.h"
 #include "model/solid/mesh/fibre_disc.h"
 
 enum {
@@ -17,19 +18,21 @@ enum {
 /* Stays where it is: constituents lend from it. */
 struct dea_actuator {
   const struct dea_device *device; // lent
+  struct dea_model_settings settings;
   struct dea_fibre_disc plate;
   struct dea_constituent constituents[DEA_CONSTITUENT_COUNT];
   double param[DEA_CONSTITUENT_COUNT][2]; // of the laws of what is bonded, lent to constituents
 };
 
-/* The plate of a device, on the domain and with the refinement that it names. DEA_E_UNSUPPORTED for
- * a domain that cannot show what the device does. */
+/* The plate of a device, on the domain and with the mesh that the settings name. DEA_E_UNSUPPORTED
+ * for a domain that cannot show what the device does. */
 dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *device,
+                                    const struct dea_model_settings *settings,
                                     struct dea_fibre_disc *out);
 
-/* Plate and constituents. device: lent, outlives the actuator. */
+/* Plate and constituents. device: lent, outlives the actuator. settings: copied. */
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
-                               struct dea_actuator *out);
+                               const struct dea_model_settings *settings, struct dea_actuator *out);
 
 /* Before anything that takes the constituents' densities: DEA_E_DESIGN where that of film or fibres
  * is unknown, a note where that of electrodes or glue is and the film's is taken. */

@@ -9,14 +9,15 @@
 static const double size_share = 0.26, beside_share = 0.13, edge_share = 0.0125;
 
 dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *d,
+                                    const struct dea_model_settings *settings,
                                     struct dea_fibre_disc *out)
 {
-  double finer = exp2(1 - fmax(1, d->solid_refinement)), a = d->electrode_radius_m;
+  double finer = exp2(1 - fmax(1, settings->refinement)), a = d->electrode_radius_m;
   double l = d->pre_stretch;
   *out = (struct dea_fibre_disc){
-      .order = d->solid_order > 0 ? d->solid_order : 2,
-      .order_z = d->solid_order_z > 0 ? d->solid_order_z : 2,
-      .membrane = d->solid_film == DEA_FILM_MEMBRANE,
+      .order = settings->order > 0 ? settings->order : 2,
+      .order_z = settings->order_z > 0 ? settings->order_z : 2,
+      .membrane = settings->film == DEA_FILM_MEMBRANE,
       .fibres = d->fibre_count,
       .sectors = 1,
       .electrode_radius = a,
@@ -39,7 +40,7 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
                     "model 3d does not know films with a direction of their own (law '%s') yet",
                     d->film.law->name);
   }
-  if (d->solid_domain == DEA_DOMAIN_DISC) {
+  if (settings->domain == DEA_DOMAIN_DISC) {
     out->sectors = dea_fibre_disc_sectors(out);
   }
   return DEA_OK;

@@ -124,10 +124,10 @@ static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model
 }
 
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
-                          struct dea_model *model)
+                          const struct dea_model_settings *settings, struct dea_model *model)
 {
   model->device = device;
-  DEA_TRY(ctx, dea_actuator_create(ctx, device, &model->actuator));
+  DEA_TRY(ctx, dea_actuator_create(ctx, device, settings, &model->actuator));
   DEA_TRY(ctx, dea_fibre_disc_create(ctx, &model->actuator.plate, &model->grid));
   DEA_TRY(ctx, say_mesh(ctx, model));
   DEA_TRY(ctx, dea_solid_start(ctx));
@@ -153,9 +153,9 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         struct dea_model **out)
+                         const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, prepare, destroy, out));
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   return DEA_OK;
 }
 
@@ -247,8 +247,8 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_buckling_branch_take(ctx, model->solid, model->grid, &model->actuator.plate,
-                                        model->centre, model->device->solid_side, &model->report,
-                                        &moved));
+                                        model->centre, model->actuator.settings.buckling_branch,
+                                        &model->report, &moved));
   if (moved) {
     double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},

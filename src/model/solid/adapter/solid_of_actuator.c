@@ -5,7 +5,7 @@
 dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actuator *actuator,
                                  const struct dea_grid *grid, struct dea_solid **out)
 {
-  bool coupled = actuator->device->solid_field == DEA_FIELD_COUPLED;
+  bool coupled = actuator->settings.field == DEA_FIELD_COUPLED;
   const struct dea_solid_options options = {
       .order_z = actuator->plate.order_z,
       .layer_count = DEA_CONSTITUENT_COUNT,
