@@ -106,8 +106,9 @@ static inline void quarter_reverse_cuts(double *cuts, size_t count)
 }
 
 /* The first ply is the film, solid or not; the others are there for the fibres. */
-static inline bool quarter_film_everywhere(int region, int ply)
+static inline bool quarter_film_everywhere(const void *self, int region, int ply)
 {
+  (void)self;
   return ply == 0 || region == DEA_REGION_FIBRE;
 }
 

@@ -35,8 +35,9 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = length_m * t;
 }
 
-static bool fibre_on_second(int region, int ply)
+static bool fibre_on_second(const void *self, int region, int ply)
 {
+  (void)self;
   return ply == 0 || region == 1;
 }
 

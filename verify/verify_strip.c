@@ -42,13 +42,15 @@ static void map_part(const void *self, double s, double t, double x[2])
 }
 
 /* The film is all plies but the last (solid) or the first one (membrane). */
-static bool present_in_solid(int region, int ply)
+static bool present_in_solid(const void *self, int region, int ply)
 {
+  (void)self;
   return ply != HALVINGS_MAX + 1 || region == REGION_BEAM;
 }
 
-static bool present_in_membrane(int region, int ply)
+static bool present_in_membrane(const void *self, int region, int ply)
 {
+  (void)self;
   return ply == 0 || region == REGION_BEAM;
 }
 

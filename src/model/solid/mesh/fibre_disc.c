@@ -377,15 +377,17 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
 /* ---- plies ---- */
 
 /* Which regions have which plies: fibres beside the electrodes or without electrode layers, ... */
-static bool present_beside(int region, int ply)
+static bool present_beside(const void *self, int region, int ply)
 {
+  (void)self;
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
   return ply == DEA_FIBRE_DISC_FILM || (ply <= DEA_FIBRE_DISC_TOP ? electrode : fibre);
 }
 
 /* ... or on an electrode layer, which a filler then continues. */
-static bool present_on_top(int region, int ply)
+static bool present_on_top(const void *self, int region, int ply)
 {
+  (void)self;
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
   return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode
                                         : ply == DEA_FIBRE_DISC_TOP  ? electrode || fibre
@@ -393,8 +395,9 @@ static bool present_on_top(int region, int ply)
 }
 
 /* With a membrane: all but film and electrodes is under fibres. */
-static bool present_membrane(int region, int ply)
+static bool present_membrane(const void *self, int region, int ply)
 {
+  (void)self;
   bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
   return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
 }
@@ -406,7 +409,7 @@ static struct dea_ply sheet_of(const struct dea_fibre_disc *p, double thickness)
 }
 
 static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *p,
-                          const struct dea_block *blocks, size_t block_count, struct dea_grid **out)
+                          const struct dea_plane_mesh *mesh, struct dea_grid **out)
 {
   bool fibres = p->fibres > 0;
   bool on_top = fibres && p->tip_radius < p->electrode_radius - same * p->frame_radius;
@@ -424,12 +427,14 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *
     plies[DEA_FIBRE_DISC_BOTTOM].thickness_m = plies[DEA_FIBRE_DISC_FILM].thickness_m = bottom = 0;
     plies[DEA_FIBRE_DISC_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
   }
-  DEA_TRY(ctx, dea_grid_create_skipping(ctx, p->order, blocks, block_count, plies,
-                                        DEA_FIBRE_DISC_PLIES, skips,
-                                        p->membrane ? present_membrane
-                                        : on_top    ? present_on_top
-                                                    : present_beside,
-                                        bottom, p->frame_radius, out));
+  const struct dea_stack stack = {.plies = plies,
+                                  .count = DEA_FIBRE_DISC_PLIES,
+                                  .skips = skips,
+                                  .present = p->membrane ? present_membrane
+                                             : on_top    ? present_on_top
+                                                         : present_beside,
+                                  .bottom_m = bottom};
+  DEA_TRY(ctx, dea_grid_extrude(ctx, mesh, &stack, out));
   return DEA_OK;
 }
 
@@ -448,9 +453,14 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b, struc
                               b->lines.alpha * (double)(sector + mirrored), mirrored};
     blocks[i] = copied(copies[i].block, &copies[i]);
   }
+  struct dea_plane_mesh *mesh = NULL;
   if (status == DEA_OK) {
-    status = extrude(ctx, p, blocks, count, out);
+    status = dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, &mesh);
   }
+  if (status == DEA_OK) {
+    status = extrude(ctx, p, mesh, out);
+  }
+  dea_plane_mesh_destroy(ctx, mesh);
   dea_free(ctx, blocks);
   dea_free(ctx, copies);
   return status;

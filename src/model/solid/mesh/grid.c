@@ -3,104 +3,7 @@
 #include "base/quadrature.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
-
-/* Plane mesh under construction, and a hash of its nodes by place. */
-struct plane_mesh {
-  struct dea_context *ctx;
-  size_t node_count, node_room, quad_count, table_size;
-  double *x;   // [node_room][2]
-  int *quads;  // [quad_count][(order + 1)^2]
-  int *region; // [quad_count]
-  int *table;  // node of a hash slot, -1: empty
-  double close;
-};
-
-static size_t slot_of(const struct plane_mesh *m, int64_t i, int64_t j)
-{
-  uint64_t h = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
-  return (size_t)(h ^ (h >> 29)) % m->table_size;
-}
-
-/* Node at a place, made when there is none. The place is looked up in its cell and the neighbours',
- * so that rounding cannot part two nodes. */
-static int node_at(struct plane_mesh *m, const double x[2])
-{
-  double cell = 4 * m->close;
-  int64_t ci = (int64_t)floor(x[0] / cell), cj = (int64_t)floor(x[1] / cell);
-  for (int64_t i = ci - 1; i <= ci + 1; i++) {
-    for (int64_t j = cj - 1; j <= cj + 1; j++) {
-      for (size_t k = slot_of(m, i, j); m->table[k] >= 0; k = (k + 1) % m->table_size) {
-        const double *other = m->x + 2 * m->table[k];
-        if (fabs(other[0] - x[0]) < m->close && fabs(other[1] - x[1]) < m->close) {
-          return m->table[k];
-        }
-      }
-    }
-  }
-  size_t k = slot_of(m, ci, cj);
-  while (m->table[k] >= 0) {
-    k = (k + 1) % m->table_size;
-  }
-  m->table[k] = (int)m->node_count;
-  memcpy(m->x + 2 * m->node_count, x, 2 * sizeof *x);
-  return (int)m->node_count++;
-}
-
-static void add_block(struct plane_mesh *m, int order, const struct dea_block *block)
-{
-  double at[DEA_HEX_ORDER_MAX + 1];
-  int n = order + 1;
-  dea_lobatto_nodes((size_t)order, at);
-  for (size_t t = 0; t < block->count_t; t++) {
-    for (size_t s = 0; s < block->count_s; s++) {
-      int *quad = m->quads + m->quad_count * (size_t)(n * n);
-      for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-          double x[2], fs = 0.5 * (1 + at[i]), ft = 0.5 * (1 + at[j]);
-          block->map(block->self, block->cuts_s[s] + fs * (block->cuts_s[s + 1] - block->cuts_s[s]),
-                     block->cuts_t[t] + ft * (block->cuts_t[t + 1] - block->cuts_t[t]), x);
-          quad[n * j + i] = node_at(m, x);
-        }
-      }
-      m->region[m->quad_count++] = block->region;
-    }
-  }
-}
-
-static void plane_release(struct plane_mesh *m)
-{
-  dea_free(m->ctx, m->x);
-  dea_free(m->ctx, m->quads);
-  dea_free(m->ctx, m->region);
-  dea_free(m->ctx, m->table);
-}
-
-static dea_status plane_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
-                               size_t block_count, double length_m, struct plane_mesh *m)
-{
-  size_t quads = 0, per_quad = (size_t)((order + 1) * (order + 1));
-  for (size_t i = 0; i < block_count; i++) {
-    quads += blocks[i].count_s * blocks[i].count_t;
-  }
-  m->ctx = ctx;
-  m->close = 1e-9 * length_m;
-  m->node_room = quads * per_quad;
-  m->table_size = 2 * m->node_room + 1;
-  m->x = dea_alloc(ctx, m->node_room, 2 * sizeof(double));
-  m->quads = dea_alloc(ctx, quads * per_quad, sizeof(int));
-  m->region = dea_alloc(ctx, quads, sizeof(int));
-  m->table = dea_alloc(ctx, m->table_size, sizeof(int));
-  if (m->x == NULL || m->quads == NULL || m->region == NULL || m->table == NULL) {
-    return DEA_E_MEMORY;
-  }
-  memset(m->table, -1, m->table_size * sizeof(int));
-  for (size_t i = 0; i < block_count; i++) {
-    add_block(m, order, &blocks[i]);
-  }
-  return DEA_OK;
-}
 
 /* Levels that a ply has above its bottom: none without thickness. */
 static size_t ply_levels(const struct dea_ply *ply)
@@ -115,26 +18,25 @@ struct ply_place {
   double z;
 };
 
-static struct ply_place ply_place(const struct dea_ply *plies, const size_t *skips, size_t s,
-                                  double bottom_m)
+static struct ply_place ply_place(const struct dea_stack *stack, size_t s)
 {
-  struct ply_place at = {0, 1, bottom_m};
+  struct ply_place at = {0, 1, stack->bottom_m};
   for (size_t k = 0; k < s; k++) {
-    at.own += ply_levels(&plies[k]);
+    at.own += ply_levels(&stack->plies[k]);
   }
-  size_t passed = skips != NULL ? skips[s] : 0;
+  size_t passed = stack->skips != NULL ? stack->skips[s] : 0;
   if (s > passed) { // on the top of another one
     size_t under = s - 1 - passed;
-    size_t levels = ply_levels(&plies[under]);
-    struct ply_place below = ply_place(plies, skips, under, bottom_m);
+    size_t levels = ply_levels(&stack->plies[under]);
+    struct ply_place below = ply_place(stack, under);
     at.bottom = levels > 0 ? below.own + levels - 1 : below.bottom;
-    at.z = below.z + plies[under].thickness_m;
+    at.z = below.z + stack->plies[under].thickness_m;
   }
   return at;
 }
 
 /* Nodes of a level. */
-static void place_level(const struct plane_mesh *m, size_t levels, size_t level, double z,
+static void place_level(const struct dea_plane_mesh *m, size_t levels, size_t level, double z,
                         struct dea_grid *grid)
 {
   for (size_t n = 0; n < m->node_count; n++) {
@@ -147,13 +49,13 @@ static void place_level(const struct plane_mesh *m, size_t levels, size_t level,
 
 /* Elements of one layer of a ply, of a surface with order_z 0; level[]: of their nodes, from bottom
  * to top; levels: of all. */
-static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_t *level,
-                          int order_z, int ply, bool (*present)(int region, int ply),
+static void extrude_layer(const struct dea_plane_mesh *m, size_t levels, const size_t *level,
+                          int order_z, const struct dea_stack *stack, int ply,
                           struct dea_grid *grid)
 {
   int per_quad = (grid->order + 1) * (grid->order + 1);
   for (size_t e = 0; e < m->quad_count; e++) {
-    if (present != NULL && !present(m->region[e], ply)) {
+    if (stack->present != NULL && !stack->present(stack->self, m->region[e], ply)) {
       continue;
     }
     int *to = grid->nodes + grid->element_count * DEA_HEX_NODES_MAX;
@@ -172,30 +74,30 @@ static void extrude_layer(const struct plane_mesh *m, size_t levels, const size_
 
 /* Nodes of all levels through the plies, and elements between them. The nodes of a column follow
  * each other, so that a range of numbers is a part of the plate. */
-static void extrude(const struct plane_mesh *m, const struct dea_ply *plies, size_t ply_count,
-                    const size_t *skips, bool (*present)(int region, int ply), double bottom_m,
+static void extrude(const struct dea_plane_mesh *m, const struct dea_stack *stack,
                     struct dea_grid *grid)
 {
   size_t levels = grid->node_count / m->node_count;
   double at[DEA_HEX_ORDER_MAX + 1];
   grid->element_count = 0;
-  for (size_t s = 0; s < ply_count; s++) {
-    bool surface = ply_levels(&plies[s]) == 0;
-    int order_z = surface ? 0 : plies[s].order_z;
-    struct ply_place place = ply_place(plies, skips, s, bottom_m);
+  for (size_t s = 0; s < stack->count; s++) {
+    const struct dea_ply *ply = &stack->plies[s];
+    bool surface = ply_levels(ply) == 0;
+    int order_z = surface ? 0 : ply->order_z;
+    struct ply_place place = ply_place(stack, s);
     at[0] = -1;
     if (!surface) {
       dea_lobatto_nodes((size_t)order_z, at);
     }
-    for (size_t k = 0; k < plies[s].count; k++) {
+    for (size_t k = 0; k < ply->count; k++) {
       size_t level[DEA_HEX_ORDER_MAX + 1];
-      double step = plies[s].thickness_m / (double)plies[s].count;
+      double step = ply->thickness_m / (double)ply->count;
       for (int l = 0; l <= order_z; l++) {
         size_t up = k * (size_t)order_z + (size_t)l;
         level[l] = up == 0 ? place.bottom : place.own + up - 1;
         place_level(m, levels, level[l], place.z + ((double)k + 0.5 * (1 + at[l])) * step, grid);
       }
-      extrude_layer(m, levels, level, order_z, (int)s, present, grid);
+      extrude_layer(m, levels, level, order_z, stack, (int)s, grid);
     }
   }
 }
@@ -235,57 +137,68 @@ int dea_grid_nodes_of(const struct dea_grid *grid, size_t element)
   return (grid->order + 1) * (grid->order + 1) * grid->levels[element];
 }
 
-dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
-                           size_t block_count, const struct dea_ply *plies, size_t ply_count,
-                           bool (*present)(int region, int ply), double bottom_m, double length_m,
-                           struct dea_grid **out)
+/* With room for all plies in all regions. */
+static struct dea_grid *allocate(struct dea_context *ctx, int order, size_t node_count,
+                                 size_t element_count)
 {
-  return dea_grid_create_skipping(ctx, order, blocks, block_count, plies, ply_count, NULL, present,
-                                  bottom_m, length_m, out);
+  struct dea_grid *grid = dea_alloc(ctx, 1, sizeof *grid);
+  if (grid == NULL) {
+    return NULL;
+  }
+  grid->order = order;
+  grid->node_count = node_count;
+  grid->X = dea_alloc(ctx, node_count, 3 * sizeof *grid->X);
+  grid->nodes = dea_alloc(ctx, element_count, DEA_HEX_NODES_MAX * sizeof *grid->nodes);
+  grid->region = dea_alloc(ctx, element_count, sizeof *grid->region);
+  grid->ply = dea_alloc(ctx, element_count, sizeof *grid->ply);
+  grid->levels = dea_alloc(ctx, element_count, sizeof *grid->levels);
+  grid->kind = dea_alloc(ctx, element_count, sizeof *grid->kind);
+  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->ply == NULL ||
+      grid->levels == NULL || grid->kind == NULL) {
+    dea_grid_destroy(ctx, grid);
+    return NULL;
+  }
+  return grid;
 }
 
-dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
-                                    const struct dea_block *blocks, size_t block_count,
-                                    const struct dea_ply *plies, size_t ply_count,
-                                    const size_t *skips, bool (*present)(int region, int ply),
-                                    double bottom_m, double length_m, struct dea_grid **out)
+dea_status dea_grid_extrude(struct dea_context *ctx, const struct dea_plane_mesh *mesh,
+                            const struct dea_stack *stack, struct dea_grid **out)
 {
-  struct plane_mesh m = {0};
   size_t through = 0, levels = 1;
   *out = NULL;
-  for (size_t s = 0; s < ply_count; s++) {
-    through += plies[s].count;
-    levels += ply_levels(&plies[s]);
+  for (size_t s = 0; s < stack->count; s++) {
+    through += stack->plies[s].count;
+    levels += ply_levels(&stack->plies[s]);
   }
-  dea_status status = plane_create(ctx, order, blocks, block_count, length_m, &m);
-  struct dea_grid *grid = status == DEA_OK ? dea_alloc(ctx, 1, sizeof *grid) : NULL;
-  if (grid != NULL) {
-    grid->order = order;
-    grid->order_z = plies[0].order_z;
-    grid->node_count = m.node_count * levels;
-    grid->element_count = m.quad_count * through;
-    grid->X = dea_alloc(ctx, grid->node_count, 3 * sizeof(double));
-    grid->nodes = dea_alloc(ctx, grid->element_count, DEA_HEX_NODES_MAX * sizeof(int));
-    grid->region = dea_alloc(ctx, grid->element_count, sizeof(int));
-    grid->ply = dea_alloc(ctx, grid->element_count, sizeof(int));
-    grid->levels = dea_alloc(ctx, grid->element_count, sizeof *grid->levels);
-    grid->kind = dea_alloc(ctx, grid->element_count, sizeof *grid->kind);
-  }
-  if (grid == NULL || grid->X == NULL || grid->nodes == NULL || grid->region == NULL ||
-      grid->ply == NULL || grid->levels == NULL || grid->kind == NULL) {
-    dea_grid_destroy(ctx, grid);
-    plane_release(&m);
+  struct dea_grid *grid =
+      allocate(ctx, mesh->order, mesh->node_count * levels, mesh->quad_count * through);
+  if (grid == NULL) {
     return DEA_E_MEMORY;
   }
-  extrude(&m, plies, ply_count, skips, present, bottom_m, grid);
-  status = compact(ctx, grid);
-  plane_release(&m);
+  grid->order_z = stack->plies[0].order_z;
+  extrude(mesh, stack, grid);
+  dea_status status = compact(ctx, grid);
   if (status != DEA_OK) {
     dea_grid_destroy(ctx, grid);
     return status;
   }
   *out = grid;
   return DEA_OK;
+}
+
+dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
+                           size_t block_count, const struct dea_ply *plies, size_t ply_count,
+                           bool (*present)(const void *self, int region, int ply), double bottom_m,
+                           double length_m, struct dea_grid **out)
+{
+  const struct dea_stack stack = {
+      .plies = plies, .count = ply_count, .present = present, .bottom_m = bottom_m};
+  struct dea_plane_mesh *mesh;
+  *out = NULL;
+  DEA_TRY(ctx, dea_blocks_mesh(ctx, order, blocks, block_count, length_m, &mesh));
+  dea_status status = dea_grid_extrude(ctx, mesh, &stack, out);
+  dea_plane_mesh_destroy(ctx, mesh);
+  return status;
 }
 
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)

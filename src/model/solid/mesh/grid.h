@@ -1,17 +1,9 @@
-/* Structured meshes of layered plates: mapped blocks of quadrilaterals, extruded through layers. */
+/* Meshes of layered plates: plane meshes of quadrilaterals, extruded through plies. */
 #ifndef DEA_MODEL_SOLID_MESH_GRID_H
 #define DEA_MODEL_SOLID_MESH_GRID_H
 
 #include "model/solid/element/element.h"
-
-/* A block of a plate: [0, 1]^2 mapped into the plane. */
-struct dea_block {
-  void (*map)(const void *self, double s, double t, double x[2]);
-  const void *self;
-  const double *cuts_s, *cuts_t; // ascending from 0 to 1, [count_s + 1], [count_t + 1]
-  size_t count_s, count_t;       // elements
-  int region;                    // of its elements
-};
+#include "model/solid/mesh/plane_mesh.h"
 
 /* One ply of a stack, from bottom to top. Of thickness 0 it is a surface of membranes: (order +
  * 1)^2 nodes at its level, which are those of the solid elements there. */
@@ -19,6 +11,18 @@ struct dea_ply {
   double thickness_m;
   size_t count; // elements through it, 1 of a surface; 0: the ply is not there
   int order_z;
+};
+
+/* A stack of plies that starts at z = bottom_m. All plies have the same order_z. */
+struct dea_stack {
+  const struct dea_ply *plies; // [count]
+  size_t count;
+  /* A ply need not lie on the one before it in the list: how many it passes over, [count]; NULL:
+   * none. */
+  const size_t *skips;
+  bool (*present)(const void *self, int region, int ply); // a ply in a region; NULL: all in all
+  const void *self;
+  double bottom_m;
 };
 
 struct dea_grid {
@@ -34,28 +38,22 @@ struct dea_grid {
 /* Nodes of an element. */
 int dea_grid_nodes_of(const struct dea_grid *grid, size_t element);
 
-/* Plate of blocks (joined where their edge nodes coincide) through plies that start at z =
- * bottom_m. All plies have the same order_z. present: whether a region has a ply; NULL: all have
- * all. length_m: a typical length of the plate, nodes closer than 1e-9 of it are one. out: owned by
- * the caller, NULL on failure. */
+/* Plate of a plane mesh through plies. Nodes above each other have consecutive numbers, elements
+ * those of their ply. out: owned by the caller, NULL on failure. */
+dea_status dea_grid_extrude(struct dea_context *ctx, const struct dea_plane_mesh *mesh,
+                            const struct dea_stack *stack, struct dea_grid **out);
+/* The same of blocks, which dea_blocks_mesh makes one plane mesh, and plies that lie on each other.
+ * present: called without a self. */
 dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_block *blocks,
                            size_t block_count, const struct dea_ply *plies, size_t ply_count,
-                           bool (*present)(int region, int ply), double bottom_m, double length_m,
-                           struct dea_grid **out);
-/* The same where a ply need not lie on the one before it in the list: skips[] says how many it
- * passes over, [ply_count]; NULL: none. */
-dea_status dea_grid_create_skipping(struct dea_context *ctx, int order,
-                                    const struct dea_block *blocks, size_t block_count,
-                                    const struct dea_ply *plies, size_t ply_count,
-                                    const size_t *skips, bool (*present)(int region, int ply),
-                                    double bottom_m, double length_m, struct dea_grid **out);
+                           bool (*present)(const void *self, int region, int ply), double bottom_m,
+                           double length_m, struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
 /* The node nearest to a place [m]. */
 size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
 
-/* Least of all elements' smallest Jacobian in the plane (at the nodes) over the mean one of the
- * element: 1 for a parallelogram, 0 or less for an element that is folded. */
+/* As dea_plane_mesh_smallest_jacobian, in the plane. */
 double dea_grid_smallest_jacobian(const struct dea_grid *grid);
 
 #endif

@@ -1,0 +1,68 @@
+#include "model/solid/mesh/plane_mesh.h"
+
+#include <stdint.h>
+#include <string.h>
+
+struct dea_plane_mesh *dea_plane_mesh_create(struct dea_context *ctx, int order, size_t node_count,
+                                             size_t quad_count)
+{
+  size_t per_quad = (size_t)((order + 1) * (order + 1));
+  struct dea_plane_mesh *mesh = dea_alloc(ctx, 1, sizeof *mesh);
+  if (mesh == NULL) {
+    return NULL;
+  }
+  mesh->order = order;
+  mesh->node_count = node_count;
+  mesh->quad_count = quad_count;
+  mesh->x = dea_alloc(ctx, node_count, 2 * sizeof *mesh->x);
+  mesh->quads = dea_alloc(ctx, quad_count * per_quad, sizeof *mesh->quads);
+  mesh->region = dea_alloc(ctx, quad_count, sizeof *mesh->region);
+  if (mesh->x == NULL || mesh->quads == NULL || mesh->region == NULL) {
+    dea_plane_mesh_destroy(ctx, mesh);
+    return NULL;
+  }
+  return mesh;
+}
+
+static void free_names(struct dea_context *ctx, char **names, size_t count)
+{
+  for (size_t i = 0; i < count && names != NULL; i++) {
+    dea_free(ctx, names[i]);
+  }
+  dea_free(ctx, names);
+}
+
+void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh)
+{
+  if (mesh != NULL) {
+    free_names(ctx, mesh->group, mesh->group_count);
+    free_names(ctx, mesh->curve, mesh->curve_count);
+    dea_free(ctx, mesh->x);
+    dea_free(ctx, mesh->quads);
+    dea_free(ctx, mesh->region);
+    dea_free(ctx, mesh->within);
+    dea_free(ctx, mesh->edges);
+    dea_free(ctx, mesh->edge_curve);
+    dea_free(ctx, mesh);
+  }
+}
+
+static size_t find(char *const names[], size_t count, const char *name)
+{
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(names[i], name) == 0) {
+      return i;
+    }
+  }
+  return SIZE_MAX;
+}
+
+size_t dea_plane_mesh_group(const struct dea_plane_mesh *mesh, const char *name)
+{
+  return find(mesh->group, mesh->group_count, name);
+}
+
+size_t dea_plane_mesh_curve(const struct dea_plane_mesh *mesh, const char *name)
+{
+  return find(mesh->curve, mesh->curve_count, name);
+}
