@@ -18,6 +18,7 @@ static const struct material_sample material_samples[] = {
     {"mooney-rivlin", {160e3, 18.4e3}},
     {"mooney-rivlin", {200e3, -20e3}},
     {"yeoh", {178.4e3, -6.0e3, 4.2e3}},
+    {"third-order", {160e3, 18.4e3, -3e3, 2e3, 0.5e3}},
     {"gent", {43e3, 115.0}},
     {"gent", {43e3, 12.0}},
     {"ogden", {630e3, 1.3, 1.2e3, 5.0, -10e3, -2.0}}, // rubber of Ogden (1972)

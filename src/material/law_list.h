@@ -7,6 +7,7 @@
   X(neo_hookean)                                                                                   \
   X(mooney_rivlin)                                                                                 \
   X(yeoh)                                                                                          \
+  X(third_order)                                                                                   \
   X(gent)                                                                                          \
   X(ogden)                                                                                         \
   X(arruda_boyce)                                                                                  \
