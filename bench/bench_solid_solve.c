@@ -54,7 +54,7 @@ static void measure(struct dea_context *ctx, struct dea_solid *s, struct sample 
     bench_need(dea_solid_assemble(ctx, s, 2e3, DEA_TANGENT, &energy), ctx);
     out->of[ASSEMBLE] = fmin(out->of[ASSEMBLE], bench_now_s() - start);
     start = bench_now_s();
-    bench_need(dea_solid_energy(s, s->u, 2e3, &energy), ctx);
+    bench_need(dea_solid_energy(s, s->state.u, 2e3, &energy), ctx);
     out->of[ENERGY] = fmin(out->of[ENERGY], bench_now_s() - start);
   }
   for (int i = 0; i < 3; i++) { // the first one with the analysis
@@ -63,7 +63,7 @@ static void measure(struct dea_context *ctx, struct dea_solid *s, struct sample 
     double time = bench_now_s() - start;
     out->of[i == 0 ? FIRST : FACTOR] = fmin(out->of[i == 0 ? FIRST : FACTOR], time);
     start = bench_now_s();
-    bench_need(dea_solid_solve_linear(ctx, s, s->g, s->step), ctx);
+    bench_need(dea_solid_solve_linear(ctx, s, s->work.g, s->work.step), ctx);
     out->of[SOLVE] = fmin(out->of[SOLVE], bench_now_s() - start);
   }
 }
@@ -105,7 +105,7 @@ static int run_one(double unknowns)
   bench_need(dea_solid_create(ctx, grid, &options, &solid), ctx);
   sample.of[CREATE] = bench_now_s() - start;
   measure(ctx, solid, &sample);
-  sample.of[UNKNOWNS] = (double)solid->dofs;
+  sample.of[UNKNOWNS] = (double)solid->problem.dofs;
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   sample.of[MEMORY] = 1024.0 * (double)usage.ru_maxrss;

@@ -6,16 +6,17 @@
 /* Potentials of a coupled field [V], owned by the caller; NULL for thin films. */
 static dea_status find_potentials(struct dea_context *ctx, const struct dea_solid *s, double **out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   *out = NULL;
-  if (s->field == NULL) {
+  if (p->field == NULL) {
     return DEA_OK;
   }
-  *out = dea_alloc(ctx, s->grid->node_count, sizeof **out);
+  *out = dea_alloc(ctx, p->grid->node_count, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  for (size_t n = 0; n < s->grid->node_count; n++) {
-    (*out)[n] = dea_solid_field_scale(s) * s->u[3 * s->grid->node_count + n];
+  for (size_t n = 0; n < p->grid->node_count; n++) {
+    (*out)[n] = dea_solid_field_scale(s) * s->state.u[3 * p->grid->node_count + n];
   }
   return DEA_OK;
 }
@@ -24,19 +25,20 @@ static dea_status find_potentials(struct dea_context *ctx, const struct dea_soli
 static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, int ply,
                           struct dea_field_mesh **out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   double *potential_V;
   *out = NULL;
   DEA_TRY(ctx, find_potentials(ctx, s, &potential_V));
-  const struct dea_recover_input input = {.grid = s->grid,
-                                          .elements = &s->elements,
-                                          .kind = s->kind,
-                                          .constituents = s->layers,
-                                          .constituent = s->layer,
-                                          .active = s->active,
-                                          .u = s->u,
-                                          .multiplier = s->multiplier,
+  const struct dea_recover_input input = {.grid = p->grid,
+                                          .elements = &p->elements,
+                                          .kind = p->kind,
+                                          .constituents = p->constituents,
+                                          .constituent = p->constituent_of,
+                                          .active = p->active,
+                                          .u = s->state.u,
+                                          .multiplier = s->state.multiplier,
                                           .potential_V = potential_V,
-                                          .voltage_V = s->voltage_V};
+                                          .voltage_V = s->state.voltage_V};
   dea_status status =
       ply < 0 ? dea_recover_volume(ctx, &input, out) : dea_recover_surface(ctx, &input, ply, out);
   dea_free(ctx, potential_V);

@@ -8,9 +8,10 @@ enum { LAYER_NUMBERS = 8 }; // beside the parameters of the law
 
 static size_t layer_count(const struct dea_solid *s)
 {
+  const struct dea_solid_problem *p = &s->problem;
   size_t count = 0;
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    count = count > (size_t)s->layer[e] ? count : (size_t)s->layer[e] + 1;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    count = count > (size_t)p->constituent_of[e] ? count : (size_t)p->constituent_of[e] + 1;
   }
   return count;
 }
@@ -22,7 +23,7 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
   double *to = out->numbers + out->number_count;
   size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
   for (size_t i = 0; i < layer_count(s); i++) {
-    const struct dea_constituent *l = &s->layers[i];
+    const struct dea_constituent *l = &s->problem.constituents[i];
     const double own[LAYER_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
@@ -41,21 +42,22 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
 
 dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct dea_state *out)
 {
-  const struct dea_grid *grid = s->grid;
-  struct dea_load_steps *path = &s->path;
+  const struct dea_solid_problem *p = &s->problem;
+  const struct dea_grid *grid = p->grid;
+  struct dea_load_steps *path = &s->work.load_steps;
   DEA_TRY(ctx, dea_load_steps_prepare(ctx, s));
   dea_solid_state_get(s, path->keep);
   dea_solid_controls_get(s, path->controls);
-  const double own[] = {s->force_largest, s->energy_largest};
+  const double own[] = {s->found.force_largest_N, s->found.energy_largest_J};
   DEA_TRY(ctx,
           dea_state_add_mark(ctx, out, "mesh", grid->X, 3 * grid->node_count * sizeof(double)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
                                   grid->element_count * DEA_HEX_NODES_MAX * sizeof(int)));
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", s->layer,
-                                  grid->element_count * sizeof *s->layer));
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "electrodes", s->active,
-                                  grid->element_count * sizeof *s->active));
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", s->held, s->dofs));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", p->constituent_of,
+                                  grid->element_count * sizeof *p->constituent_of));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "electrodes", p->active,
+                                  grid->element_count * sizeof *p->active));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", p->held, p->dofs));
   DEA_TRY(ctx, mark_materials(ctx, s, out));
   DEA_TRY(ctx, dea_state_add(ctx, out, "state", path->keep, path->state_count));
   DEA_TRY(ctx, dea_state_add(ctx, out, "controls", path->controls, path->control_count));
@@ -66,7 +68,7 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
 dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
                           const struct dea_state *state)
 {
-  struct dea_load_steps *path = &s->path;
+  struct dea_load_steps *path = &s->work.load_steps;
   DEA_TRY(ctx, dea_load_steps_prepare(ctx, s));
   const double *now = dea_state_find(state, "state", path->state_count);
   const double *controls = dea_state_find(state, "controls", path->control_count);
@@ -76,8 +78,8 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
   }
   dea_solid_state_set(s, now);
   dea_solid_controls_set(s, controls);
-  memcpy(s->force_goal, s->force, s->dofs * sizeof(double));
-  s->force_largest = own[0];
-  s->energy_largest = own[1];
+  memcpy(s->state.force_goal, s->state.force, s->problem.dofs * sizeof(double));
+  s->found.force_largest_N = own[0];
+  s->found.energy_largest_J = own[1];
   return DEA_OK;
 }

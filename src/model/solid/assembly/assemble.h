@@ -14,15 +14,14 @@ struct dea_solid_inertia {
   double *force;    // [node_count][3] M (u - u*) of the last evaluation
 };
 
-/* Checks that flat elements are what they can be, and makes s->spring for them if there are any.
- * DEA_E_UNSUPPORTED for anisotropic layers, without a law, in a coupled field. */
+/* Makes problem.spring if there are elements that need it. */
 dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
 
 /* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
 dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
 
-/* At s->u: energy and, up to the level, g and K; also theta, reactions and the scales. With
- * s->predicted_fits K has the predicted stresses. */
+/* At the state: energy and, up to the level, g and K; also theta, reactions and the scales. With
+ * found.predicted_fits K has the predicted stresses. */
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               enum dea_eval_order level, double *energy);
 

@@ -10,23 +10,25 @@ static const double rounding = 1e-12; // of a displacement, relative
 /* Displacements, without the potentials of a coupled field. */
 static size_t move_count(const struct dea_solid *s)
 {
-  return 3 * s->grid->node_count;
+  return 3 * s->problem.grid->node_count;
 }
 
 static size_t control_count(const struct dea_solid *s)
 {
-  size_t count = 1 + s->dofs + move_count(s);
-  for (size_t i = 0; i < s->load_count; i++) {
-    count += s->loads[i].parameter_count;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t count = 1 + p->dofs + move_count(s);
+  for (size_t i = 0; i < p->load_count; i++) {
+    count += p->loads[i].parameter_count;
   }
   return count;
 }
 
 static size_t state_count(const struct dea_solid *s)
 {
-  size_t count = s->dofs + dea_solid_pressure_count(s);
-  for (size_t i = 0; i < s->load_count; i++) {
-    count += s->loads[i].multiplier_count;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t count = p->dofs + dea_solid_pressure_count(s);
+  for (size_t i = 0; i < p->load_count; i++) {
+    count += p->loads[i].multiplier_count;
   }
   return count;
 }
@@ -43,7 +45,7 @@ void dea_load_steps_release(struct dea_context *ctx, struct dea_load_steps *path
 
 dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
 {
-  struct dea_load_steps *path = &s->path;
+  struct dea_load_steps *path = &s->work.load_steps;
   size_t states = state_count(s), controls = control_count(s);
   if (path->state_count == states && path->control_count == controls) {
     return DEA_OK;
@@ -66,26 +68,28 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
 
 void dea_solid_state_get(const struct dea_solid *s, double *state)
 {
+  const struct dea_solid_problem *p = &s->problem;
   size_t pressures = dea_solid_pressure_count(s);
-  memcpy(state, s->u, s->dofs * sizeof *state);
-  memcpy(state += s->dofs, s->multiplier, pressures * sizeof *state);
+  memcpy(state, s->state.u, p->dofs * sizeof *state);
+  memcpy(state += p->dofs, s->state.multiplier, pressures * sizeof *state);
   state += pressures;
-  for (size_t i = 0; i < s->load_count; state += s->loads[i].multiplier_count, i++) {
-    if (s->loads[i].multiplier_count > 0) {
-      memcpy(state, s->loads[i].multiplier, s->loads[i].multiplier_count * sizeof *state);
+  for (size_t i = 0; i < p->load_count; state += p->loads[i].multiplier_count, i++) {
+    if (p->loads[i].multiplier_count > 0) {
+      memcpy(state, p->loads[i].multiplier, p->loads[i].multiplier_count * sizeof *state);
     }
   }
 }
 
 void dea_solid_state_set(struct dea_solid *s, const double *state)
 {
+  const struct dea_solid_problem *p = &s->problem;
   size_t pressures = dea_solid_pressure_count(s);
-  memcpy(s->u, state, s->dofs * sizeof *state);
-  memcpy(s->multiplier, state += s->dofs, pressures * sizeof *state);
+  memcpy(s->state.u, state, p->dofs * sizeof *state);
+  memcpy(s->state.multiplier, state += p->dofs, pressures * sizeof *state);
   state += pressures;
-  for (size_t i = 0; i < s->load_count; state += s->loads[i].multiplier_count, i++) {
-    if (s->loads[i].multiplier_count > 0) {
-      memcpy(s->loads[i].multiplier, state, s->loads[i].multiplier_count * sizeof *state);
+  for (size_t i = 0; i < p->load_count; state += p->loads[i].multiplier_count, i++) {
+    if (p->loads[i].multiplier_count > 0) {
+      memcpy(p->loads[i].multiplier, state, p->loads[i].multiplier_count * sizeof *state);
     }
   }
 }
@@ -94,14 +98,15 @@ void dea_solid_state_set(struct dea_solid *s, const double *state)
 static void pack(const struct dea_solid *s, double voltage_V, const double *force,
                  const double *place, bool wanted, double *controls)
 {
+  const struct dea_solid_problem *p = &s->problem;
   *controls++ = voltage_V;
-  memcpy(controls, force, s->dofs * sizeof *controls);
-  controls += s->dofs;
+  memcpy(controls, force, p->dofs * sizeof *controls);
+  controls += p->dofs;
   for (size_t i = 0; i < move_count(s); i++) {
-    *controls++ = s->held[i] ? place[i] : 0;
+    *controls++ = p->held[i] ? place[i] : 0;
   }
-  for (size_t i = 0; i < s->load_count; i++) {
-    const struct dea_solid_load *load = &s->loads[i];
+  for (size_t i = 0; i < p->load_count; i++) {
+    const struct dea_solid_load *load = &p->loads[i];
     for (size_t k = 0; k < load->parameter_count; k++) {
       *controls++ = wanted ? load->goal[k] : load->now[k];
     }
@@ -110,45 +115,47 @@ static void pack(const struct dea_solid *s, double voltage_V, const double *forc
 
 void dea_solid_controls_get(struct dea_solid *s, double *controls)
 {
-  memcpy(s->trial, s->u, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, false, s->trial);
-  pack(s, s->voltage_V, s->force, s->trial, false, controls);
+  memcpy(s->work.trial, s->state.u, s->problem.dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->work.trial);
+  pack(s, s->state.voltage_V, s->state.force, s->work.trial, false, controls);
 }
 
 void dea_solid_controls_goal(struct dea_solid *s, double voltage_V, double *controls)
 {
-  memcpy(s->trial, s->u, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, false, s->trial);
+  memcpy(s->work.trial, s->state.u, s->problem.dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->work.trial);
   for (size_t i = 0; i < move_count(s); i++) { // what is only held stays where it is
-    s->trial[i] = s->held[i] == DEA_PRESCRIBED ? s->place[i] : s->trial[i];
+    s->work.trial[i] = s->problem.held[i] == DEA_PRESCRIBED ? s->state.u_goal[i] : s->work.trial[i];
   }
-  pack(s, voltage_V, s->force_goal, s->trial, true, controls);
+  pack(s, voltage_V, s->state.force_goal, s->work.trial, true, controls);
 }
 
 void dea_solid_controls_set(struct dea_solid *s, const double *controls)
 {
-  s->voltage_V = *controls++;
-  memcpy(s->force, controls, s->dofs * sizeof *controls);
-  controls += s->dofs + move_count(s);
-  for (size_t i = 0; i < s->load_count; i++) {
-    for (size_t k = 0; k < s->loads[i].parameter_count; k++) {
-      s->loads[i].now[k] = *controls++;
+  const struct dea_solid_problem *p = &s->problem;
+  s->state.voltage_V = *controls++;
+  memcpy(s->state.force, controls, p->dofs * sizeof *controls);
+  controls += p->dofs + move_count(s);
+  for (size_t i = 0; i < p->load_count; i++) {
+    for (size_t k = 0; k < p->loads[i].parameter_count; k++) {
+      p->loads[i].now[k] = *controls++;
     }
   }
 }
 
 bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
 {
-  const double *place = controls + 1 + s->dofs;
+  const struct dea_solid_problem *p = &s->problem;
+  const double *place = controls + 1 + p->dofs;
   bool any = false;
-  memcpy(s->drive, s->u, s->dofs * sizeof(double));
-  dea_solid_frame_vector(s, false, s->drive);
-  for (size_t i = 0; i < s->dofs; i++) {
-    bool moves = i < move_count(s) && s->held[i];
-    double way = moves ? place[i] - s->drive[i] : 0;
-    s->drive[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
-    any = any || s->drive[i] != 0;
+  memcpy(s->work.increment, s->state.u, p->dofs * sizeof(double));
+  dea_solid_frame_vector(s, false, s->work.increment);
+  for (size_t i = 0; i < p->dofs; i++) {
+    bool moves = i < move_count(s) && p->held[i];
+    double way = moves ? place[i] - s->work.increment[i] : 0;
+    s->work.increment[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
+    any = any || s->work.increment[i] != 0;
   }
-  dea_solid_frame_vector(s, true, s->drive);
+  dea_solid_frame_vector(s, true, s->work.increment);
   return any;
 }

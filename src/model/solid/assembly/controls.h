@@ -18,8 +18,8 @@ void dea_solid_controls_get(struct dea_solid *s, double *controls);
 void dea_solid_controls_goal(struct dea_solid *s, double voltage_V, double *controls);
 /* Voltage, dead loads and parameters; the held components stay where they are. */
 void dea_solid_controls_set(struct dea_solid *s, const double *controls);
-/* s->drive: from the held components' displacements to those of the controls. false: they are
- * there. */
+/* Sets work.increment: from the held components' displacements to those of the controls. false:
+ * they are there. */
 bool dea_solid_controls_increment(struct dea_solid *s, const double *controls);
 
 #endif

@@ -5,17 +5,18 @@
 
 static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t e)
 {
-  const struct dea_constituent *constituent = &s->layers[s->layer[e]];
-  enum dea_element_kind kind = s->grid->kind[e];
+  struct dea_solid_problem *p = &s->problem;
+  const struct dea_constituent *constituent = dea_solid_constituent(s, e);
+  enum dea_element_kind kind = p->grid->kind[e];
   const struct dea_element_type *type = dea_element_types[kind];
-  if (s->per_node > type->per_node && constituent->permittivity_F_per_m > 0) {
+  if (p->per_node > type->per_node && constituent->permittivity_F_per_m > 0) {
     if (type->with_potential == kind) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a %s takes the field V/h, not a coupled one",
                       type->name);
     }
     kind = type->with_potential;
   }
-  s->kind[e] = kind;
+  p->kind[e] = kind;
   type = dea_element_types[kind];
   dea_status status = type->check(constituent);
   return status == DEA_OK ? DEA_OK
@@ -24,7 +25,7 @@ static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t 
 
 dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s)
 {
-  for (size_t e = 0; e < s->grid->element_count; e++) {
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) {
     DEA_TRY(ctx, set_kind(ctx, s, e));
   }
   return DEA_OK;
@@ -33,11 +34,12 @@ dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s)
 void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
                              struct dea_solid_element_place *place, struct dea_element_input *out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   const struct dea_element *element = dea_solid_element(s, e);
   const int *nodes;
   int count = dea_solid_nodes(s, e, &nodes);
   place->constituent = dea_solid_constituent_at(s, e);
-  dea_solid_gather(s, e, s->grid->X, place->X);
+  dea_solid_gather(s, e, p->grid->X, place->X);
   dea_solid_gather(s, e, u, place->u);
   for (int n = 0; n < count && element->type->per_node > 3; n++) {
     place->potential[n] = u[dea_solid_at(s, nodes[n], 3)];
@@ -46,9 +48,9 @@ void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *
       .constituent = &place->constituent,
       .X = place->X,
       .u = place->u,
-      .multiplier = s->multiplier + e * (size_t)s->elements.pressures,
+      .multiplier = s->state.multiplier + e * (size_t)p->elements.pressures,
       .potential = place->potential,
       .potential_V_per_m = dea_solid_field_scale(s),
-      .voltage_V = s->active[e] ? voltage_V : 0,
+      .voltage_V = p->active[e] ? voltage_V : 0,
   };
 }

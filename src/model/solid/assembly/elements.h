@@ -4,8 +4,8 @@
 
 #include "model/solid/assembly/problem.h"
 
-/* Makes s->kind. DEA_E_UNSUPPORTED for an element that cannot be of its constituent, or has no
- * potential in a coupled field. */
+/* Sets problem.kind. DEA_E_UNSUPPORTED for an element that cannot be of its constituent, or has
+ * no potential in a coupled field. */
 dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s);
 
 /* Memory that an input lends from. */

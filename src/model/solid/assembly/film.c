@@ -17,13 +17,13 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   struct dea_solid_element_place place;
   struct dea_element_input in;
   struct dea_membrane_state film;
-  dea_solid_element_input(s, e, s->u, s->voltage_V, &place, &in);
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   dea_status status = element->type->membrane_state(element, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
     double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
     double stretch = pre_stretch * sqrt(film.area[p]);
     out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
-    if (s->active[e]) {
+    if (s->problem.active[e]) {
       out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
       out->breakdown_margin =
           fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
@@ -35,22 +35,23 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                                  double *capacitance_F)
 {
+  const struct dea_solid_problem *p = &s->problem;
   // charge: minus the derivative of the energy by V at fixed displacements; by V^2 it is C/2. The
   // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
   double thickness = 0, energy[2] = {0, 0};
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[e]];
-    bool counts = s->active[e] || dea_solid_element(s, e)->type->per_node > 3;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    const struct dea_constituent *layer = dea_solid_constituent(s, e);
+    bool counts = p->active[e] || dea_solid_element(s, e)->type->per_node > 3;
     thickness = fmax(thickness, counts ? layer->thickness_m : 0);
   }
-  double step = 1e12 * thickness * thickness, square = s->voltage_V * s->voltage_V;
+  double step = 1e12 * thickness * thickness, square = s->state.voltage_V * s->state.voltage_V;
   const double squares[2] = {fmax(square - step, 0), square + step};
   dea_status status = DEA_OK;
-  memcpy(s->trial, s->u, s->dofs * sizeof(double));
+  memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    status = dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->trial);
+    status = dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->work.trial);
     if (status == DEA_OK) {
-      status = dea_solid_energy(s, s->trial, sqrt(squares[i]), &energy[i]);
+      status = dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i]);
     }
   }
   *capacitance_F =
@@ -63,9 +64,9 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *ma
 {
   dea_status status = DEA_OK;
   *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    size_t e = s->own[k];
-    if (s->layers[s->layer[e]].permittivity_F_per_m > 0) { // the film
+  for (size_t k = 0; k < s->problem.own_count && status == DEA_OK; k++) {
+    size_t e = s->problem.own[k];
+    if (dea_solid_constituent(s, e)->permittivity_F_per_m > 0) { // the film
       status = extremes_of(s, e, material, pre_stretch, out);
     }
   }

@@ -11,34 +11,34 @@ double dea_solid_theta_max(const struct dea_solid *s)
 {
   double most = 0;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    most = fmax(most, fabs(s->theta[i]));
+    most = fmax(most, fabs(s->state.theta[i]));
   }
   return most;
 }
 
 void dea_solid_update_multipliers(struct dea_solid *s)
 {
-  size_t pressures = (size_t)s->elements.pressures;
+  size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] += layer->kappa_Pa * s->theta[i];
+    const struct dea_constituent *layer = dea_solid_constituent(s, i / pressures);
+    s->state.multiplier[i] += layer->kappa_Pa * s->state.theta[i];
   }
 }
 
 void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
 {
-  for (size_t k = 0; k < s->layer_count; k++) {
-    s->layers[k].kappa_Pa *= factor;
+  for (size_t k = 0; k < s->problem.constituent_count; k++) {
+    s->problem.constituents[k].kappa_Pa *= factor;
   }
 }
 
 /* p + kappa theta stays what it is when kappa becomes factor times as large. */
 static void keep_pressures(struct dea_solid *s, double factor)
 {
-  size_t pressures = (size_t)s->elements.pressures;
+  size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[i / pressures]];
-    s->multiplier[i] -= (factor - 1) * layer->kappa_Pa * s->theta[i];
+    const struct dea_constituent *layer = dea_solid_constituent(s, i / pressures);
+    s->state.multiplier[i] -= (factor - 1) * layer->kappa_Pa * s->state.theta[i];
   }
 }
 
@@ -62,10 +62,10 @@ void dea_solid_restore_bulk_modulus(struct dea_solid *s)
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)
 {
   double energy;
-  s->predicted_fits = s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
+  s->found.predicted_fits = s->found.factor_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy)); // for theta
   dea_solid_raise_bulk_modulus(s);
-  dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
+  dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
   dea_solid_restore_bulk_modulus(s);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

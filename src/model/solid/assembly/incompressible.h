@@ -14,12 +14,12 @@ void dea_solid_update_multipliers(struct dea_solid *s);
 /* Another kappa of all layers with a law, factor (a power of 2) times the present one. */
 void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor);
 /* kappa so large that the solid is as good as incompressible, at the same pressures, and back;
- * s->theta has to belong to s->u. at_pressure: back with multipliers that are the pressures by
- * themselves. */
+ * theta has to belong to u. at_pressure: back with multipliers that are the
+ * pressures by themselves. */
 void dea_solid_raise_bulk_modulus(struct dea_solid *s);
 void dea_solid_restore_bulk_modulus(struct dea_solid *s);
 void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s);
-/* K with a kappa so large that its inertia is that of the incompressible solid, at s->u. */
+/* K with a kappa so large that its inertia is that of the incompressible solid, at u. */
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s);
 /* That, and its factor. */
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);

@@ -13,9 +13,9 @@ static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_e
 {
   const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = u};
-  dea_solid_gather(s, e, s->grid->X, X);
-  dea_solid_gather(s, e, s->u, u);
+  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = u};
+  dea_solid_gather(s, e, s->problem.grid->X, X);
+  dea_solid_gather(s, e, s->state.u, u);
   return element->type->strains(element, &in, out);
 }
 
@@ -25,8 +25,8 @@ static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_e
 static size_t place_points(const struct dea_solid *s, struct dea_internal_variables *h)
 {
   size_t count = 0;
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    bool viscous = h->branches[s->layer[e]].count > 0;
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) {
+    bool viscous = h->branches[s->problem.constituent_of[e]].count > 0;
     h->first[e] = viscous ? count : ELASTIC;
     count += viscous ? (size_t)dea_solid_element(s, e)->points : 0;
   }
@@ -36,7 +36,7 @@ static size_t place_points(const struct dea_solid *s, struct dea_internal_variab
 static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_variables *h)
 {
   dea_status status = DEA_OK;
-  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
+  for (size_t e = 0; e < s->problem.grid->element_count && status == DEA_OK; e++) {
     struct dea_element_strains strains;
     if (h->first[e] == ELASTIC) {
       continue;
@@ -45,7 +45,7 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_v
     for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse[at], strains.inverse[q], TENSOR_BYTES);
-      for (size_t i = 0; i < h->branches[s->layer[e]].count; i++) {
+      for (size_t i = 0; i < h->branches[s->problem.constituent_of[e]].count; i++) {
         memcpy(h->A[at][i], strains.inverse[q], TENSOR_BYTES);
       }
     }
@@ -57,14 +57,15 @@ static dea_status allocate_points(struct dea_context *ctx, const struct dea_soli
                                   const struct dea_branches *branches,
                                   struct dea_internal_variables *h)
 {
-  h->branches = dea_alloc(ctx, s->layer_count, sizeof *h->branches);
-  h->steps = dea_alloc(ctx, s->layer_count, sizeof *h->steps);
-  h->b_Pa = dea_alloc(ctx, s->layer_count, sizeof *h->b_Pa);
-  h->first = dea_alloc(ctx, s->grid->element_count, sizeof *h->first);
+  const struct dea_solid_problem *p = &s->problem;
+  h->branches = dea_alloc(ctx, p->constituent_count, sizeof *h->branches);
+  h->steps = dea_alloc(ctx, p->constituent_count, sizeof *h->steps);
+  h->b_Pa = dea_alloc(ctx, p->constituent_count, sizeof *h->b_Pa);
+  h->first = dea_alloc(ctx, p->grid->element_count, sizeof *h->first);
   if (h->branches == NULL || h->steps == NULL || h->b_Pa == NULL || h->first == NULL) {
     return DEA_E_MEMORY;
   }
-  memcpy(h->branches, branches, s->layer_count * sizeof *branches);
+  memcpy(h->branches, branches, p->constituent_count * sizeof *branches);
   size_t points = place_points(s, h);
   h->B = dea_alloc(ctx, points + 1, TENSOR_BYTES);
   h->inverse = dea_alloc(ctx, points + 1, TENSOR_BYTES);
@@ -111,11 +112,11 @@ void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal
 
 struct dea_constituent dea_solid_constituent_at(const struct dea_solid *s, size_t e)
 {
-  const struct dea_internal_variables *h = s->history;
-  struct dea_constituent layer = s->layers[s->layer[e]];
+  const struct dea_internal_variables *h = s->state.internal_variables;
+  struct dea_constituent layer = *dea_solid_constituent(s, e);
   if (h != NULL && h->first[e] != ELASTIC) {
     layer.viscous = h->B + 6 * h->first[e];
-    layer.viscous_Pa = h->b_Pa[s->layer[e]];
+    layer.viscous_Pa = h->b_Pa[s->problem.constituent_of[e]];
   }
   return layer;
 }
@@ -139,7 +140,8 @@ static void begin_element(struct dea_internal_variables *h, size_t from, size_t 
 void dea_internal_variables_begin(struct dea_internal_variables *h, const struct dea_solid *s,
                                   double step_s)
 {
-  for (size_t l = 0; l < s->layer_count; l++) {
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t l = 0; l < p->constituent_count; l++) {
     const struct dea_branches *branches = &h->branches[l];
     struct dea_branch_step *steps = h->steps[l];
     h->b_Pa[l] = 0;
@@ -147,8 +149,8 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
       dea_branch_step_set(&branches->branch[i], step_s, &steps[i]);
       h->b_Pa[l] += branches->branch[i].modulus_Pa * (steps[i].end.e + steps[i].end.w0);
     }
-    for (size_t e = 0; e < s->grid->element_count; e++) {
-      if ((size_t)s->layer[e] == l && branches->count > 0) {
+    for (size_t e = 0; e < p->grid->element_count; e++) {
+      if ((size_t)p->constituent_of[e] == l && branches->count > 0) {
         begin_element(h, h->first[e], (size_t)dea_solid_element(s, e)->points, branches, steps);
       }
     }
@@ -174,10 +176,11 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
                                         const struct dea_solid *s,
                                         struct dea_solid_branch_energies *out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   dea_status status = DEA_OK;
   *out = (struct dea_solid_branch_energies){0};
-  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
-    const struct dea_branches *branches = &h->branches[s->layer[e]];
+  for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
+    const struct dea_branches *branches = &h->branches[p->constituent_of[e]];
     struct dea_element_strains strains;
     if (h->first[e] == ELASTIC) {
       continue;
@@ -186,7 +189,8 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
     for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
-      add_energies(h, at, branches, h->steps[s->layer[e]], strains.C[q], strains.volume_m3[q], out);
+      add_energies(h, at, branches, h->steps[p->constituent_of[e]], strains.C[q],
+                   strains.volume_m3[q], out);
     }
   }
   return status == DEA_OK ? DEA_OK
@@ -195,9 +199,10 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
 
 void dea_internal_variables_accept(struct dea_internal_variables *h, const struct dea_solid *s)
 {
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_branches *branches = &h->branches[s->layer[e]];
-    const struct dea_branch_step *steps = h->steps[s->layer[e]];
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    const struct dea_branches *branches = &h->branches[p->constituent_of[e]];
+    const struct dea_branch_step *steps = h->steps[p->constituent_of[e]];
     size_t from = h->first[e],
            to = from != ELASTIC ? from + (size_t)dea_solid_element(s, e)->points : from;
     for (size_t at = from; at < to; at++) {

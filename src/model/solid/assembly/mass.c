@@ -10,8 +10,8 @@ static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
 {
   const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX];
-  dea_solid_gather(s, e, s->grid->X, X);
-  return element->type->mass(element, &s->layers[s->layer[e]], X, mass);
+  dea_solid_gather(s, e, s->problem.grid->X, X);
+  return element->type->mass(element, dea_solid_constituent(s, e), X, mass);
 }
 
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor)
@@ -22,7 +22,7 @@ dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat 
 
 dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *M)
 {
-  DEA_PETSC(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, M));
+  DEA_PETSC(ctx, MatDuplicate(s->work.K, MAT_DO_NOT_COPY_VALUES, M));
   DEA_PETSC(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   DEA_TRY(ctx, dea_solid_add_mass(ctx, s, *M, 1));
   PetscReal size;
@@ -34,13 +34,14 @@ dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, M
 dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *s, const double *v,
                                 double *out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   dea_status status = DEA_OK;
-  memset(out, 0, 3 * s->grid->node_count * sizeof *out);
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+  memset(out, 0, 3 * p->grid->node_count * sizeof *out);
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
     double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-    size_t e = s->own[k];
-    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(s->grid, e);
+    size_t e = p->own[k];
+    const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+    int count = dea_grid_nodes_of(p->grid, e);
     status = mass_of(s, e, mass);
     for (int a = 0; a < count && status == DEA_OK; a++) {
       for (int b = 0; b < count; b++) {
@@ -54,7 +55,7 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "an element is inverted");
   }
-  dea_solid_sum(out, 3 * s->grid->node_count);
+  dea_solid_sum(out, 3 * p->grid->node_count);
   return DEA_OK;
 }
 
@@ -66,8 +67,9 @@ static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace
 {
   double X[DEA_HEX_DOFS_MAX] = {0};
   const struct dea_element *element = dea_solid_element(s, e);
-  int count = dea_solid_gather(s, e, s->grid->X, X);
-  dea_status status = element->type->metric(element, &s->layers[s->layer[e]], X, laplace, lumped);
+  int count = dea_solid_gather(s, e, s->problem.grid->X, X);
+  dea_status status =
+      element->type->metric(element, dea_solid_constituent(s, e), X, laplace, lumped);
   *volume = 0;
   for (int n = 0; n < count && status == DEA_OK; n++) {
     *volume += lumped[n];
@@ -90,12 +92,13 @@ dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, M
 
 void dea_solid_lump_volume(const struct dea_solid *s, double *volume)
 {
-  memset(volume, 0, s->dofs * sizeof *volume);
-  for (size_t e = 0; e < s->grid->element_count; e++) {
+  const struct dea_solid_problem *p = &s->problem;
+  memset(volume, 0, p->dofs * sizeof *volume);
+  for (size_t e = 0; e < p->grid->element_count; e++) {
     double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
-    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
+    const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
     metric_of(s, e, laplace, lumped, &whole);
-    for (int n = 0; n < dea_grid_nodes_of(s->grid, e); n++) {
+    for (int n = 0; n < dea_grid_nodes_of(p->grid, e); n++) {
       for (int i = 0; i < 3; i++) {
         volume[3 * nodes[n] + i] += lumped[n];
       }

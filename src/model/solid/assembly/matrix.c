@@ -9,24 +9,25 @@
 dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
                                    const struct dea_solid_options *options)
 {
-  size_t nodes = s->grid->node_count, count = 0;
+  struct dea_solid_problem *p = &s->problem;
+  size_t nodes = p->grid->node_count, count = 0;
   double Q[9];
   for (size_t n = 0; options->frame != NULL && n < nodes; n++) {
-    count += options->frame(options->self, s->grid->X + 3 * n, Q);
+    count += options->frame(options->self, p->grid->X + 3 * n, Q);
   }
   if (count == 0) {
     return DEA_OK;
   }
-  s->frame = dea_alloc(ctx, nodes, sizeof *s->frame);
-  s->frames = dea_alloc(ctx, count, sizeof *s->frames);
-  if (s->frame == NULL || s->frames == NULL) {
+  p->frame = dea_alloc(ctx, nodes, sizeof *p->frame);
+  p->frames = dea_alloc(ctx, count, sizeof *p->frames);
+  if (p->frame == NULL || p->frames == NULL) {
     return DEA_E_MEMORY;
   }
   count = 0;
   for (size_t n = 0; n < nodes; n++) {
-    if (options->frame(options->self, s->grid->X + 3 * n, Q)) {
-      memcpy(s->frames[count], Q, sizeof Q);
-      s->frame[n] = (int)++count;
+    if (options->frame(options->self, p->grid->X + 3 * n, Q)) {
+      memcpy(p->frames[count], Q, sizeof Q);
+      p->frame[n] = (int)++count;
     }
   }
   return DEA_OK;
@@ -35,7 +36,8 @@ dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
 /* Local axes of a node, NULL: the global ones. */
 static const double *frame_of(const struct dea_solid *s, size_t node)
 {
-  return s->frame == NULL || s->frame[node] == 0 ? NULL : s->frames[s->frame[node] - 1];
+  const struct dea_solid_problem *p = &s->problem;
+  return p->frame == NULL || p->frame[node] == 0 ? NULL : p->frames[p->frame[node] - 1];
 }
 
 /* v = Q v or, back, v = Q^T v; the components of v lie `apart` from each other. */
@@ -50,7 +52,7 @@ static void turn(const double Q[9], bool back, double *v, size_t apart)
 
 void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K)
 {
-  size_t per = (size_t)s->per_node, dofs = per * (size_t)node_count;
+  size_t per = (size_t)s->problem.per_node, dofs = per * (size_t)node_count;
   for (size_t n = 0; n < (size_t)node_count; n++) {
     const double *Q = frame_of(s, (size_t)nodes[n]);
     if (Q != NULL) {
@@ -66,7 +68,7 @@ void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int
 
 void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v)
 {
-  for (size_t n = 0; s->frame != NULL && n < s->grid->node_count; n++) {
+  for (size_t n = 0; s->problem.frame != NULL && n < s->problem.grid->node_count; n++) {
     const double *Q = frame_of(s, n);
     if (Q != NULL) {
       turn(Q, back, v + 3 * n, 1);
@@ -77,8 +79,8 @@ void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v)
 void dea_solid_release_held(const struct dea_solid *s, double *v)
 {
   dea_solid_frame_vector(s, false, v);
-  for (size_t i = 0; i < s->dofs; i++) {
-    v[i] = s->held[i] ? 0 : v[i];
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    v[i] = s->problem.held[i] ? 0 : v[i];
   }
   dea_solid_frame_vector(s, true, v);
 }
@@ -89,17 +91,18 @@ void dea_solid_release_held(const struct dea_solid *s, double *v)
  * adds to K stays there. */
 static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
 {
-  const struct dea_grid *grid = s->grid;
-  s->own = dea_alloc(ctx, grid->element_count, sizeof *s->own);
-  if (s->own == NULL) {
+  struct dea_solid_problem *p = &s->problem;
+  const struct dea_grid *grid = p->grid;
+  p->own = dea_alloc(ctx, grid->element_count, sizeof *p->own);
+  if (p->own == NULL) {
     return DEA_E_MEMORY;
   }
-  s->own_count = 0;
+  p->own_count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     size_t node =
         (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)dea_grid_nodes_of(grid, e) / 2];
-    if (node >= s->first_node && node < s->end_node) {
-      s->own[s->own_count++] = e;
+    if (node >= p->first_node && node < p->end_node) {
+      p->own[p->own_count++] = e;
     }
   }
   return DEA_OK;
@@ -109,7 +112,7 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
  * first: [node_count + 2]. */
 static void list_elements(const struct dea_solid *s, size_t *first, int *elements)
 {
-  const struct dea_grid *grid = s->grid;
+  const struct dea_grid *grid = s->problem.grid;
   for (size_t e = 0; e < grid->element_count; e++) {
     for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e); n++) {
       first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 2]++;
@@ -130,7 +133,8 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
 static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *s, PetscInt *own,
                                PetscInt *others)
 {
-  const struct dea_grid *grid = s->grid;
+  const struct dea_solid_problem *p = &s->problem;
+  const struct dea_grid *grid = p->grid;
   size_t places = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     places += (size_t)dea_grid_nodes_of(grid, e);
@@ -141,8 +145,8 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
   bool done = first != NULL && elements != NULL && seen != NULL;
   if (done) {
     list_elements(s, first, elements);
-    for (size_t i = s->first_node; i < s->end_node; i++) {
-      size_t row = i - s->first_node;
+    for (size_t i = p->first_node; i < p->end_node; i++) {
+      size_t row = i - p->first_node;
       own[row] = others[row] = 0;
       for (size_t k = first[i]; k < first[i + 1]; k++) {
         const int *nodes = grid->nodes + (size_t)elements[k] * DEA_HEX_NODES_MAX;
@@ -151,7 +155,7 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
           size_t column = (size_t)nodes[n];
           if (column >= i && seen[column] != (int)i + 1) {
             seen[column] = (int)i + 1;
-            *(column < s->end_node ? &own[row] : &others[row]) += 1;
+            *(column < p->end_node ? &own[row] : &others[row]) += 1;
           }
         }
       }
@@ -166,12 +170,14 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
 static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
                                   struct dea_solid_row_lengths *lengths)
 {
-  size_t rows = s->end_node - s->first_node;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t rows = p->end_node - p->first_node;
   DEA_TRY(ctx, split_elements(ctx, s));
-  s->predicted = dea_alloc(ctx, s->own_count * s->elements.predicted_count, sizeof *s->predicted);
+  s->work.predicted =
+      dea_alloc(ctx, p->own_count * p->elements.predicted_count, sizeof *s->work.predicted);
   lengths->own = dea_alloc(ctx, rows, sizeof *lengths->own);
   lengths->others = dea_alloc(ctx, rows, sizeof *lengths->others);
-  return s->predicted != NULL && lengths->own != NULL && lengths->others != NULL
+  return s->work.predicted != NULL && lengths->own != NULL && lengths->others != NULL
              ? count_blocks(ctx, s, lengths->own, lengths->others)
              : DEA_E_MEMORY;
 }
@@ -179,25 +185,26 @@ static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before,
                                    struct dea_solid_row_lengths *lengths)
 {
-  dea_solid_share(s->grid->node_count, &s->first_node, &s->end_node);
+  struct dea_solid_problem *p = &s->problem;
+  dea_solid_share(p->grid->node_count, &p->first_node, &p->end_node);
   dea_status status = before == DEA_OK ? split_and_count(ctx, s, lengths) : before;
   status = dea_solid_agree(ctx, status); // from here on all ranks have to take part
   DEA_TRY(ctx, status);
-  PetscInt per = s->per_node, all = (PetscInt)s->dofs;
-  PetscInt rows = per * (PetscInt)(s->end_node - s->first_node);
+  PetscInt per = p->per_node, all = (PetscInt)p->dofs;
+  PetscInt rows = per * (PetscInt)(p->end_node - p->first_node);
   DEA_PETSC(ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, per, rows, rows, all, all, 0, lengths->own, 0,
-                                lengths->others, &s->K));
-  DEA_PETSC(ctx, MatSetOption(s->K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
-  DEA_PETSC(ctx, MatCreateVecs(s->K, &s->solution, &s->right));
+                                lengths->others, &s->work.K));
+  DEA_PETSC(ctx, MatSetOption(s->work.K, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  DEA_PETSC(ctx, MatCreateVecs(s->work.K, &s->work.solution, &s->work.right));
   return DEA_OK;
 }
 
 void dea_solid_destroy_matrix(struct dea_solid *s)
 {
-  MatDestroy(&s->factor);
-  MatDestroy(&s->K);
-  VecDestroy(&s->right);
-  VecDestroy(&s->solution);
+  MatDestroy(&s->work.factor);
+  MatDestroy(&s->work.K);
+  VecDestroy(&s->work.right);
+  VecDestroy(&s->work.solution);
 }
 
 dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
@@ -212,7 +219,7 @@ dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
 static void block_of(const struct dea_solid *s, int count, const int *nodes, double amount,
                      const double *scalar, double *block)
 {
-  int per = s->per_node, dofs = per * count;
+  int per = s->problem.per_node, dofs = per * count;
   memset(block, 0, (size_t)(dofs * dofs) * sizeof *block);
   for (int a = 0; a < count; a++) {
     for (int b = 0; b < count; b++) {
@@ -223,7 +230,7 @@ static void block_of(const struct dea_solid *s, int count, const int *nodes, dou
   }
   dea_solid_frame_matrix(s, count, nodes, block);
   for (int i = 0; i < dofs; i++) {
-    for (int j = 0; j < dofs && s->held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
+    for (int j = 0; j < dofs && s->problem.held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
       block[i * dofs + j] = block[j * dofs + i] = 0;
     }
   }
@@ -233,21 +240,22 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
                                 dea_status (*of)(const struct dea_solid *s, size_t e,
                                                  double *scalar))
 {
+  const struct dea_solid_problem *p = &s->problem;
   dea_status status = DEA_OK;
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
     double scalar[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
     PetscInt block[DEA_HEX_NODES_MAX];
-    size_t e = s->own[k];
-    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(s->grid, e);
+    size_t e = p->own[k];
+    const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+    int count = dea_grid_nodes_of(p->grid, e);
     status = of(s, e, scalar);
     if (status == DEA_OK) {
-      block_of(s, count, nodes, amount, scalar, s->element->K);
+      block_of(s, count, nodes, amount, scalar, s->work.element->K);
       for (int n = 0; n < count; n++) {
         block[n] = nodes[n];
       }
       status = dea_solid_petsc(
-          ctx, MatSetValuesBlocked(A, count, block, count, block, s->element->K, ADD_VALUES),
+          ctx, MatSetValuesBlocked(A, count, block, count, block, s->work.element->K, ADD_VALUES),
           "MatSetValuesBlocked");
     }
   }
@@ -331,17 +339,18 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
-  DEA_TRY(ctx, dea_solid_factor(ctx, s->K, &s->factor));
-  DEA_PETSC(ctx, MatGetInertia(s->factor, &minus, &zero, &plus));
-  *negative = (int)(minus + zero) - (int)s->free_potentials;
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
+  DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
+  *negative = (int)(minus + zero) - (int)s->problem.free_potentials;
   return DEA_OK;
 }
 
 /* This rank's unknowns as K has them, node by node, from where the solid has them. */
 static void to_nodes(const struct dea_solid *s, const double *solid, double *nodes)
 {
-  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
-    for (int i = 0; i < s->per_node; i++) {
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
       nodes[k++] = solid[dea_solid_at(s, (int)n, i)];
     }
   }
@@ -349,8 +358,9 @@ static void to_nodes(const struct dea_solid *s, const double *solid, double *nod
 
 static void from_nodes(const struct dea_solid *s, const double *nodes, double *solid)
 {
-  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
-    for (int i = 0; i < s->per_node; i++) {
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
       solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
     }
   }
@@ -361,10 +371,10 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
 {
   const PetscScalar *values;
   DEA_PETSC(ctx, VecGetArrayRead(vector, &values));
-  memset(out, 0, s->dofs * sizeof(double)); // zero where other ranks have it
+  memset(out, 0, s->problem.dofs * sizeof(double)); // zero where other ranks have it
   from_nodes(s, values, out);
   DEA_PETSC(ctx, VecRestoreArrayRead(vector, &values));
-  dea_solid_sum(out, s->dofs);
+  dea_solid_sum(out, s->problem.dofs);
   dea_solid_frame_vector(s, true, out);
   return DEA_OK;
 }
@@ -383,9 +393,9 @@ dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
-  memmove(out, right, s->dofs * sizeof(double));
-  DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->right));
-  DEA_PETSC(ctx, MatSolve(s->factor, s->right, s->solution));
-  DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out));
+  memmove(out, right, s->problem.dofs * sizeof(double));
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
+  DEA_PETSC(ctx, MatSolve(s->work.factor, s->work.right, s->work.solution));
+  DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
   return DEA_OK;
 }

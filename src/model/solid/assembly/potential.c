@@ -14,7 +14,7 @@ struct dea_solid_field {
 
 double dea_solid_field_scale(const struct dea_solid *s)
 {
-  return s->field != NULL ? s->field->scale_V_per_m : 0;
+  return s->problem.field != NULL ? s->problem.field->scale_V_per_m : 0;
 }
 
 static bool has_potential(const struct dea_solid *s, size_t e)
@@ -26,7 +26,7 @@ static bool has_potential(const struct dea_solid *s, size_t e)
 static void set_scale(const struct dea_solid *s, size_t layer_count, struct dea_solid_field *field)
 {
   for (size_t i = 0; i < layer_count && field->permittivity == 0; i++) {
-    const struct dea_constituent *l = &s->layers[i];
+    const struct dea_constituent *l = &s->problem.constituents[i];
     if (l->permittivity_F_per_m > 0) {
       field->permittivity = l->permittivity_F_per_m;
       field->scale_V_per_m = sqrt(dea_constituent_modulus(l) / l->permittivity_F_per_m);
@@ -38,25 +38,26 @@ static void set_scale(const struct dea_solid *s, size_t layer_count, struct dea_
 static dea_status hold_potentials(struct dea_context *ctx, struct dea_solid *s,
                                   const struct dea_solid_options *options)
 {
-  size_t nodes = s->grid->node_count, electrodes = 0;
-  unsigned char *held = s->held + 3 * nodes;
+  struct dea_solid_problem *p = &s->problem;
+  size_t nodes = p->grid->node_count, electrodes = 0;
+  unsigned char *held = p->held + 3 * nodes;
   memset(held, 1, nodes);
-  for (size_t e = 0; e < s->grid->element_count; e++) {
+  for (size_t e = 0; e < p->grid->element_count; e++) {
     for (int n = 0; n < dea_solid_element(s, e)->nodes && has_potential(s, e); n++) {
-      held[s->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 0;
+      held[p->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 0;
     }
   }
   for (size_t n = 0; n < nodes; n++) {
     double share = 0;
     if (options->electrode != NULL && !held[n] &&
-        options->electrode(options->self, s->grid->X + 3 * n, &share)) {
+        options->electrode(options->self, p->grid->X + 3 * n, &share)) {
       held[n] = 1;
-      s->field->share[n] = share;
+      p->field->share[n] = share;
       electrodes++;
     }
-    s->free_potentials += !held[n];
+    p->free_potentials += !held[n];
   }
-  return electrodes > 0 && s->field->scale_V_per_m > 0
+  return electrodes > 0 && p->field->scale_V_per_m > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_ARGUMENT,
                         "a coupled field needs a layer with permittivity and electrodes on it");
@@ -65,22 +66,23 @@ static dea_status hold_potentials(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
                                   const struct dea_solid_options *options)
 {
-  size_t nodes = s->grid->node_count;
+  struct dea_solid_problem *p = &s->problem;
+  size_t nodes = p->grid->node_count;
   if (options->field == DEA_SOLID_FIELD_THIN) {
     return DEA_OK;
   }
-  s->field = dea_alloc(ctx, 1, sizeof *s->field);
-  if (s->field == NULL) {
+  p->field = dea_alloc(ctx, 1, sizeof *p->field);
+  if (p->field == NULL) {
     return DEA_E_MEMORY;
   }
-  s->field->share = dea_alloc(ctx, nodes, sizeof(double));
-  s->field->right = dea_alloc(ctx, nodes, sizeof(double));
-  if (s->field->share == NULL || s->field->right == NULL) {
+  p->field->share = dea_alloc(ctx, nodes, sizeof(double));
+  p->field->right = dea_alloc(ctx, nodes, sizeof(double));
+  if (p->field->share == NULL || p->field->right == NULL) {
     return DEA_E_MEMORY;
   }
-  set_scale(s, options->layer_count, s->field);
+  set_scale(s, options->layer_count, p->field);
   for (size_t i = 0; i < options->layer_count; i++) {
-    if (s->layers[i].permittivity_slope_F_per_m != 0) {
+    if (p->constituents[i].permittivity_slope_F_per_m != 0) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
     }
   }
@@ -91,8 +93,9 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
                                   const struct dea_solid_row_lengths *lengths)
 {
-  struct dea_solid_field *field = s->field;
-  PetscInt rows = (PetscInt)(s->end_node - s->first_node), all = (PetscInt)s->grid->node_count;
+  const struct dea_solid_problem *p = &s->problem;
+  struct dea_solid_field *field = p->field;
+  PetscInt rows = (PetscInt)(p->end_node - p->first_node), all = (PetscInt)p->grid->node_count;
   if (field == NULL) {
     return DEA_OK;
   }
@@ -105,14 +108,15 @@ dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
 
 void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s)
 {
-  if (s->field != NULL) {
-    MatDestroy(&s->field->factor);
-    MatDestroy(&s->field->L);
-    VecDestroy(&s->field->charge);
-    VecDestroy(&s->field->solution);
-    dea_free(ctx, s->field->share);
-    dea_free(ctx, s->field->right);
-    dea_free(ctx, s->field);
+  struct dea_solid_problem *p = &s->problem;
+  if (p->field != NULL) {
+    MatDestroy(&p->field->factor);
+    MatDestroy(&p->field->L);
+    VecDestroy(&p->field->charge);
+    VecDestroy(&p->field->solution);
+    dea_free(ctx, p->field->share);
+    dea_free(ctx, p->field->right);
+    dea_free(ctx, p->field);
   }
 }
 
@@ -120,14 +124,15 @@ void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s)
 static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, size_t e,
                                const double *u, const double *psi)
 {
-  double X[DEA_HEX_DOFS_MAX] = {0}, at[DEA_HEX_DOFS_MAX] = {0}, *L = s->element->K;
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  const unsigned char *held = s->held + 3 * s->grid->node_count;
+  const struct dea_solid_problem *p = &s->problem;
+  double X[DEA_HEX_DOFS_MAX] = {0}, at[DEA_HEX_DOFS_MAX] = {0}, *L = s->work.element->K;
+  const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+  const unsigned char *held = p->held + 3 * p->grid->node_count;
   PetscInt rows[DEA_HEX_NODES_MAX];
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = at};
+  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = at};
   int count = element->nodes;
-  dea_solid_gather(s, e, s->grid->X, X);
+  dea_solid_gather(s, e, p->grid->X, X);
   dea_solid_gather(s, e, u, at);
   for (int n = 0; n < count; n++) {
     rows[n] = nodes[n];
@@ -139,26 +144,27 @@ static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, siz
   for (int a = 0; a < count; a++) {
     for (int b = 0; b < count && held[nodes[a]]; b++) {
       if (!held[nodes[b]]) {
-        s->field->right[nodes[b]] -= L[a * count + b] * psi[nodes[a]];
+        p->field->right[nodes[b]] -= L[a * count + b] * psi[nodes[a]];
       }
       L[a * count + b] = L[b * count + a] = a == b ? L[a * count + a] : 0;
     }
   }
   return dea_solid_petsc(ctx,
-                         MatSetValuesBlocked(s->field->L, count, rows, count, rows, L, ADD_VALUES),
+                         MatSetValuesBlocked(p->field->L, count, rows, count, rows, L, ADD_VALUES),
                          "MatSetValuesBlocked");
 }
 
 /* Keeps the rows of nodes without dielectric from being empty. */
 static dea_status add_pins(struct dea_context *ctx, struct dea_solid *s, size_t e)
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  const unsigned char *held = s->held + 3 * s->grid->node_count;
-  const double *a = s->grid->X + 3 * nodes[0], *b = s->grid->X + 3 * nodes[1];
+  const struct dea_solid_problem *p = &s->problem;
+  const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+  const unsigned char *held = p->held + 3 * p->grid->node_count;
+  const double *a = p->grid->X + 3 * nodes[0], *b = p->grid->X + 3 * nodes[1];
   double size = fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
   for (int n = 0; n < dea_solid_element(s, e)->nodes; n++) {
     if (held[nodes[n]]) {
-      DEA_PETSC(ctx, MatSetValue(s->field->L, nodes[n], nodes[n], s->field->permittivity * size,
+      DEA_PETSC(ctx, MatSetValue(p->field->L, nodes[n], nodes[n], p->field->permittivity * size,
                                  ADD_VALUES));
     }
   }
@@ -169,12 +175,13 @@ static dea_status add_pins(struct dea_context *ctx, struct dea_solid *s, size_t 
 static dea_status assemble_capacity(struct dea_context *ctx, struct dea_solid *s, const double *u,
                                     const double *psi)
 {
-  Mat L = s->field->L;
+  const struct dea_solid_problem *p = &s->problem;
+  Mat L = p->field->L;
   dea_status status = DEA_OK;
-  memset(s->field->right, 0, s->grid->node_count * sizeof(double));
+  memset(p->field->right, 0, p->grid->node_count * sizeof(double));
   DEA_PETSC(ctx, MatZeroEntries(L));
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    size_t e = s->own[k];
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
+    size_t e = p->own[k];
     status = has_potential(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
   status = dea_solid_agree(NULL, status);
@@ -182,40 +189,42 @@ static dea_status assemble_capacity(struct dea_context *ctx, struct dea_solid *s
   if (status != DEA_OK) {
     return status; // an inverted element: not worth a message in a line search
   }
-  dea_solid_sum(s->field->right, s->grid->node_count);
+  dea_solid_sum(p->field->right, p->grid->node_count);
   return DEA_OK;
 }
 
 /* field->right becomes L^-1 times itself. */
 static dea_status solve_capacity(struct dea_context *ctx, struct dea_solid *s)
 {
-  struct dea_solid_field *field = s->field;
-  size_t first = s->first_node, here = s->end_node - first;
+  const struct dea_solid_problem *p = &s->problem;
+  struct dea_solid_field *field = p->field;
+  size_t first = p->first_node, here = p->end_node - first;
   PetscScalar *values;
   DEA_PETSC(ctx, VecGetArray(field->charge, &values));
   memcpy(values, field->right + first, here * sizeof(double));
   DEA_PETSC(ctx, VecRestoreArray(field->charge, &values));
   DEA_TRY(ctx, dea_solid_factor(ctx, field->L, &field->factor));
   DEA_PETSC(ctx, MatSolve(field->factor, field->charge, field->solution));
-  memset(field->right, 0, s->grid->node_count * sizeof(double));
+  memset(field->right, 0, p->grid->node_count * sizeof(double));
   DEA_PETSC(ctx, VecGetArray(field->solution, &values));
   memcpy(field->right + first, values, here * sizeof(double));
   DEA_PETSC(ctx, VecRestoreArray(field->solution, &values));
-  dea_solid_sum(field->right, s->grid->node_count);
+  dea_solid_sum(field->right, p->grid->node_count);
   return DEA_OK;
 }
 
 dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *u)
 {
-  struct dea_solid_field *field = s->field;
-  size_t nodes = s->grid->node_count;
+  const struct dea_solid_problem *p = &s->problem;
+  struct dea_solid_field *field = p->field;
+  size_t nodes = p->grid->node_count;
   if (field == NULL) {
     return DEA_OK;
   }
   double *psi = u + 3 * nodes, c = field->scale_V_per_m;
-  const double *force = s->force + 3 * nodes;
-  const unsigned char *held = s->held + 3 * nodes;
+  const double *force = s->state.force + 3 * nodes;
+  const unsigned char *held = p->held + 3 * nodes;
   for (size_t n = 0; n < nodes; n++) {
     psi[n] = held[n] ? field->share[n] * voltage_V / c : psi[n];
   }
@@ -235,17 +244,18 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
 
 void dea_solid_potential(const struct dea_solid *solid, double *potential_V)
 {
-  size_t nodes = solid->grid->node_count;
+  size_t nodes = solid->problem.grid->node_count;
   for (size_t n = 0; n < nodes; n++) {
-    potential_V[n] =
-        solid->field == NULL ? NAN : solid->field->scale_V_per_m * solid->u[3 * nodes + n];
+    potential_V[n] = solid->problem.field == NULL
+                         ? NAN
+                         : solid->problem.field->scale_V_per_m * solid->state.u[3 * nodes + n];
   }
 }
 
 void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C)
 {
-  size_t nodes = solid->grid->node_count;
-  for (size_t n = 0; n < nodes && solid->field != NULL; n++) {
-    solid->force_goal[3 * nodes + n] = -solid->field->scale_V_per_m * charge_C[n];
+  size_t nodes = solid->problem.grid->node_count;
+  for (size_t n = 0; n < nodes && solid->problem.field != NULL; n++) {
+    solid->state.force_goal[3 * nodes + n] = -solid->problem.field->scale_V_per_m * charge_C[n];
   }
 }

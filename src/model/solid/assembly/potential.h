@@ -1,5 +1,5 @@
 /* The potential of a coupled field: unknowns, electrodes, and the solution at given displacements
- * (docs/theory/coupled.md). Nothing to do for a thin film, where s->field is NULL. */
+ * (docs/theory/coupled.md). Nothing to do for a thin film, where problem.field is NULL. */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
 #define DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
 

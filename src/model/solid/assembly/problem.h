@@ -1,4 +1,4 @@
-/* A solid from within. */
+/* A solid from within: what is solved, how, where it is, what that takes, what is known of it. */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
 #define DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
 
@@ -15,91 +15,148 @@ struct dea_solid_field;
 struct dea_internal_variables;
 struct dea_solid_inertia;
 
-/* An equilibrium and a goal. State: displacements and multipliers; controls: what an equilibrium is
- * asked for at, see controls.c. */
-struct dea_load_steps {
-  size_t state_count, control_count;
-  double *keep;                               // [state_count] last equilibrium
-  double *controls;                           // [control_count] of it
-  double *controls_from, *controls_goal, *at; // start and end of a solve, and where it is
-};
-
 enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED }; // held: where it is; prescribed: at its place
 
-/* Unknowns of the whole: displacements [nodes][3], then, of a coupled field, psi [nodes]. In K they
- * stand node by node, per_node to each. */
-struct dea_solid {
-  size_t first_node, end_node; // rows of K here
-  size_t *own, own_count;      // [own_count] elements here
-  const struct dea_grid *grid;
-  struct dea_element_set elements; // at the orders of the grid
-  enum dea_element_kind *kind;     // [elements]
-  double *spring; // [dofs] M of docs/theory/membrane.md; NULL without modes that need it
-  struct dea_constituent *layers; // [layer_count]
-  size_t layer_count;
-  int per_node;                  // 3, or 4 with a potential
-  size_t dofs;                   // per_node * nodes
-  struct dea_solid_field *field; // NULL: thin film
-  size_t free_potentials;        // negative pivots that are none of a mode
-  int *layer;                    // [elements]
-  bool *active;                  // [elements]
-  unsigned char *held;           // [dofs] DEA_FREE, ..., of the node's local components
-  int *frame;          // [nodes] one more than the place in frames, 0: global axes; NULL: all are
+/* What is solved: mesh, constituents, supports, loads. Filled by dea_solid_create (the function is
+ * named where it is another) and constant from then on, but for what is said of kappa, held, loads.
+ *
+ * Unknowns of the whole [dofs]: displacements [nodes][3], then, of a coupled field, psi [nodes]. In
+ * K they stand node by node, per_node to each. */
+struct dea_solid_problem {
+  const struct dea_grid *grid; // lent
+  int per_node;                // unknowns of a node: 3, or 4 with a potential
+  size_t dofs;                 // per_node * nodes
+
+  struct dea_element_set elements;      // all kinds at the orders of the grid
+  enum dea_element_kind *kind;          // [elements] by dea_solid_set_kinds
+  struct dea_constituent *constituents; // [constituent_count]; their kappa: incompressible.h
+  size_t constituent_count;
+  int *constituent_of; // [elements] place in constituents
+  bool *active;        // [elements] whether it lies between electrodes
+  double *spring; // [dofs] M of docs/theory/membrane.md by dea_solid_create_springs; NULL: none
+  struct dea_solid_field *field; // of a coupled field, by dea_solid_field_create; NULL: thin film
+  size_t free_potentials;        // negative pivots of K that are none of a mode, by the same
+
+  unsigned char *held; // [dofs] DEA_FREE, ..., of a node's local components; dea_solid_prescribe
+                       // and dea_solid_release change it
+  int *frame;          // [nodes] one more than the place in frames, 0: the global axes; NULL: all
+                       // are; by dea_solid_frames_create
   double (*frames)[9]; // rows are local axes
-  double *u, *trial, *g, *step, *force; // [dofs]
-  double *multiplier, *theta;           // [elements][elements.pressures]
-  double *force_goal; // [dofs] dead loads that were asked for; force: as they stand
-  double *place;      // [dofs] displacements that were asked for of prescribed (local) components
-  double *reaction;   // [dofs] forces of the supports at the last assembly
-  double *drive;      // [dofs] how far held components go in the next linear step, else 0
-  bool driven;        // whether they do
-  struct dea_load_steps path;
-  double voltage_V;    // of the last equilibrium
-  double squares;      // of element forces at the last assembly
-  double force_scale;  // root of the sum of squared element forces at the last assembly
-  double energy_scale; // sum of absolute element energies there
-  double force_largest, energy_largest; // of those two at any assembly
-  struct dea_element_result *element;
-  struct dea_solid_load *loads; // [load_count]
+  struct dea_solid_load *loads; // [load_count] by dea_solid_add_load
   size_t load_count;
-  struct dea_piece *piece;
-  Mat K, factor;
-  Vec right, solution;
-  bool checked;
-  double *predicted;   // [own_count][elements.predicted_count] stresses at the end of the last step
-  bool predicted_fits; // they belong to s->u
-  bool stay;           // at unstable equilibria
-  bool factor_fits;    // factor is of K at the last equilibrium, positive definite
-  double modulus_Pa;   // shear modulus of the softest layer
-  double length_m;     // smallest extent of the grid
-  double energy_floor; // rounding of the energy
-  struct dea_internal_variables *history; // of a step in time, lent (time.h); NULL: elastic
-  struct dea_solid_inertia *inertia;      // lent; NULL: none
+
+  double modulus_Pa;     // shear modulus of the softest element
+  double length_m;       // smallest extent of the grid
+  double energy_floor_J; // what rounding leaves of the energy of the undeformed solid
+
+  size_t first_node; // rows of K on this rank: of nodes from here
+  size_t end_node;   // to before this one
+  size_t *own;       // [own_count] elements of this rank, by dea_solid_create_matrix
+  size_t own_count;
+};
+
+/* How it is solved. */
+struct dea_solid_settings {
+  bool accept_unstable; // solves stay at unstable equilibria; false: they descend from them
+};
+
+/* Where the solid is. */
+struct dea_solid_state {
+  double voltage_V;   // by dea_solid_controls_set
+  double *u;          // [dofs] displacements [m], then psi, by the solvers
+  double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
+  double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
+                      // dea_solid_predict writes over it
+  double *force;      // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
+  double *force_goal; // [dofs] those that the next solve goes to, by the caller
+  double *u_goal;     // [nodes][3] of prescribed (local) components [m], by dea_solid_prescribe
+  /* Of a step in time that is under way (motion/time.h), lent. NULL: elastic; without inertia. */
+  struct dea_internal_variables *internal_variables;
+  struct dea_solid_inertia *inertia;
+};
+
+/* An equilibrium and a goal. Controls: what an equilibrium is asked for at, see controls.h. Made by
+ * dea_load_steps_prepare. */
+struct dea_load_steps {
+  size_t state_count;
+  size_t control_count;
+  double *keep;          // [state_count] last equilibrium
+  double *controls;      // [control_count] of it
+  double *controls_from; // [control_count] start of a solve
+  double *controls_goal; // [control_count] end of it
+  double *at;            // [control_count] where it is
+};
+
+/* Memory of the solvers: what stands in it is theirs from one call to the next, no longer. */
+struct dea_solid_work {
+  double *trial;        // [dofs] displacements that are tried
+  double *g;            // [dofs] residual forces [N], 0 at held components, by dea_solid_assemble
+  double *step;         // [dofs] of Newton's method [m]
+  double *increment;    // [dofs] how far held components go in the next linear step [m], else 0;
+                        // by dea_solid_controls_increment
+  bool takes_increment; // the next assembly adds K times it to g
+  double *predicted; // [own_count][elements.predicted_count] stresses at the end of the last step,
+                     // by dea_solid_predict
+  double squares;    // sum of squared element forces in an assembly [N^2]
+  struct dea_element_result *element; // of one element in an assembly
+  struct dea_piece *piece;            // of one piece of a load in it
+  Mat K;                              // tangent, by dea_solid_assemble
+  Mat factor;                         // LDL^T of K, by dea_solid_factorise
+  Vec right;                          // of K's rows
+  Vec solution;                       // of K's rows
+  struct dea_load_steps load_steps;
+};
+
+/* What is known of the state; by dea_solid_assemble unless it is said. */
+struct dea_solid_found {
+  double *reaction;      // [dofs] forces of the supports [N]
+  double force_scale_N;  // root of the sum of squared element forces
+  double energy_scale_J; // sum of absolute element energies
+  double force_largest_N;
+  double energy_largest_J; // of those two at any assembly
+  bool checked;            // dea_solid_check has nothing to say
+  bool predicted_fits;     // work.predicted belongs to state.u, by dea_solid_predict
+  bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
+};
+
+struct dea_solid {
+  struct dea_solid_problem problem;
+  struct dea_solid_settings settings;
+  struct dea_solid_state state;
+  struct dea_solid_work work;
+  struct dea_solid_found found;
 };
 
 /* All multipliers of a solid. */
 static inline size_t dea_solid_pressure_count(const struct dea_solid *s)
 {
-  return s->grid->element_count * (size_t)s->elements.pressures;
+  return s->problem.grid->element_count * (size_t)s->problem.elements.pressures;
 }
 
 /* Place of an unknown of a node. */
 static inline size_t dea_solid_at(const struct dea_solid *s, int node, int i)
 {
-  return i < 3 ? 3 * (size_t)node + (size_t)i : 3 * s->grid->node_count + (size_t)node;
+  return i < 3 ? 3 * (size_t)node + (size_t)i : 3 * s->problem.grid->node_count + (size_t)node;
 }
 
 /* The kind of an element at its orders. */
 static inline const struct dea_element *dea_solid_element(const struct dea_solid *s, size_t e)
 {
-  return &s->elements.of[s->kind[e]];
+  return &s->problem.elements.of[s->problem.kind[e]];
+}
+
+/* What an element is of. */
+static inline const struct dea_constituent *dea_solid_constituent(const struct dea_solid *s,
+                                                                  size_t e)
+{
+  return &s->problem.constituents[s->problem.constituent_of[e]];
 }
 
 /* Nodes of an element; *nodes: [count] them. */
 static inline int dea_solid_nodes(const struct dea_solid *s, size_t e, const int **nodes)
 {
-  *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  return dea_grid_nodes_of(s->grid, e);
+  *nodes = s->problem.grid->nodes + e * DEA_HEX_NODES_MAX;
+  return dea_grid_nodes_of(s->problem.grid, e);
 }
 
 /* Values [node_count][3] at the nodes of an element; returns their number. */
@@ -118,7 +175,7 @@ static inline int dea_solid_gather(const struct dea_solid *s, size_t e, const do
 static inline double dea_solid_dot(const struct dea_solid *s, const double *a, const double *b)
 {
   double sum = 0;
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < s->problem.dofs; i++) {
     sum += a[i] * b[i];
   }
   return sum;

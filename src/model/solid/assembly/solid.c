@@ -16,68 +16,72 @@
 /* Sets modulus_Pa, length_m and energy_floor. */
 static void find_sizes(struct dea_solid *s)
 {
+  struct dea_solid_problem *p = &s->problem;
   double squares = 0, extent[3];
-  s->modulus_Pa = INFINITY;
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    double modulus = dea_constituent_modulus(&s->layers[s->layer[e]]);
+  p->modulus_Pa = INFINITY;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    double modulus = dea_constituent_modulus(dea_solid_constituent(s, e));
     double volume_m3 = dea_solid_volume_of(s, e); // an inverted one: dea_solid_check speaks of it
     squares += modulus * modulus * volume_m3 * volume_m3;
-    s->modulus_Pa = fmin(s->modulus_Pa, modulus);
+    p->modulus_Pa = fmin(p->modulus_Pa, modulus);
   }
-  s->energy_floor = DBL_EPSILON * sqrt(squares);
-  s->length_m = INFINITY;
+  p->energy_floor_J = DBL_EPSILON * sqrt(squares);
+  p->length_m = INFINITY;
   for (int i = 0; i < 3; i++) {
     double least = INFINITY, most = -INFINITY;
-    for (size_t n = 0; n < s->grid->node_count; n++) {
-      least = fmin(least, s->grid->X[3 * n + (size_t)i]);
-      most = fmax(most, s->grid->X[3 * n + (size_t)i]);
+    for (size_t n = 0; n < p->grid->node_count; n++) {
+      least = fmin(least, p->grid->X[3 * n + (size_t)i]);
+      most = fmax(most, p->grid->X[3 * n + (size_t)i]);
     }
     extent[i] = most - least;
-    s->length_m = extent[i] > 0 ? fmin(s->length_m, extent[i]) : s->length_m;
+    p->length_m = extent[i] > 0 ? fmin(p->length_m, extent[i]) : p->length_m;
   }
 }
 
 static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
                              const struct dea_solid_options *options)
 {
-  const struct dea_grid *grid = s->grid;
-  size_t elements = grid->element_count, pressures = (size_t)s->elements.pressures;
-  s->layers = dea_alloc(ctx, options->layer_count, sizeof *s->layers);
-  s->layer = dea_alloc(ctx, elements, sizeof *s->layer);
-  s->active = dea_alloc(ctx, elements, sizeof *s->active);
-  s->kind = dea_alloc(ctx, elements, sizeof *s->kind);
-  s->held = dea_alloc(ctx, s->dofs, 1);
-  s->u = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->trial = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->g = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->step = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->force = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->multiplier = dea_alloc(ctx, elements * pressures, sizeof(double));
-  s->theta = dea_alloc(ctx, elements * pressures, sizeof(double));
-  s->force_goal = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->place = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->reaction = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->drive = dea_alloc(ctx, s->dofs, sizeof(double));
-  s->element = dea_alloc(ctx, 1, sizeof *s->element);
-  s->piece = dea_alloc(ctx, 1, sizeof *s->piece);
-  if (s->layers == NULL || s->layer == NULL || s->kind == NULL || s->active == NULL ||
-      s->held == NULL || s->u == NULL || s->trial == NULL || s->g == NULL || s->step == NULL ||
-      s->force == NULL || s->multiplier == NULL || s->theta == NULL || s->force_goal == NULL ||
-      s->place == NULL || s->reaction == NULL || s->drive == NULL || s->element == NULL ||
-      s->piece == NULL) {
+  struct dea_solid_problem *p = &s->problem;
+  const struct dea_grid *grid = p->grid;
+  size_t elements = grid->element_count, pressures = (size_t)p->elements.pressures;
+  p->constituents = dea_alloc(ctx, options->layer_count, sizeof *p->constituents);
+  p->constituent_of = dea_alloc(ctx, elements, sizeof *p->constituent_of);
+  p->active = dea_alloc(ctx, elements, sizeof *p->active);
+  p->kind = dea_alloc(ctx, elements, sizeof *p->kind);
+  p->held = dea_alloc(ctx, p->dofs, 1);
+  s->state.u = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->work.trial = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->work.g = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->work.step = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->state.force = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->state.multiplier = dea_alloc(ctx, elements * pressures, sizeof(double));
+  s->state.theta = dea_alloc(ctx, elements * pressures, sizeof(double));
+  s->state.force_goal = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->state.u_goal = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->found.reaction = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->work.increment = dea_alloc(ctx, p->dofs, sizeof(double));
+  s->work.element = dea_alloc(ctx, 1, sizeof *s->work.element);
+  s->work.piece = dea_alloc(ctx, 1, sizeof *s->work.piece);
+  if (p->constituents == NULL || p->constituent_of == NULL || p->kind == NULL ||
+      p->active == NULL || p->held == NULL || s->state.u == NULL || s->work.trial == NULL ||
+      s->work.g == NULL || s->work.step == NULL || s->state.force == NULL ||
+      s->state.multiplier == NULL || s->state.theta == NULL || s->state.force_goal == NULL ||
+      s->state.u_goal == NULL || s->found.reaction == NULL || s->work.increment == NULL ||
+      s->work.element == NULL || s->work.piece == NULL) {
     return DEA_E_MEMORY;
   }
-  s->layer_count = options->layer_count;
-  memcpy(s->layers, options->layers, options->layer_count * sizeof *s->layers);
+  p->constituent_count = options->layer_count;
+  memcpy(p->constituents, options->layers, options->layer_count * sizeof *p->constituents);
   for (size_t e = 0; e < elements; e++) {
     int region = grid->region[e], ply = grid->ply[e];
-    s->layer[e] = options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
-    s->active[e] = options->active != NULL && options->active(options->self, region, ply);
+    p->constituent_of[e] =
+        options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
+    p->active[e] = options->active != NULL && options->active(options->self, region, ply);
   }
   for (size_t n = 0; n < grid->node_count; n++) {
     int bits = options->held(options->self, grid->X + 3 * n);
     for (int i = 0; i < 3; i++) {
-      s->held[3 * n + (size_t)i] = (bits >> i) & 1;
+      p->held[3 * n + (size_t)i] = (bits >> i) & 1;
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
@@ -97,10 +101,11 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
     dea_free(ctx, s);
     return DEA_E_MEMORY;
   }
-  s->grid = grid;
-  s->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
-  s->dofs = (size_t)s->per_node * grid->node_count;
-  dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &s->elements);
+  struct dea_solid_problem *p = &s->problem;
+  p->grid = grid;
+  p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
+  p->dofs = (size_t)p->per_node * grid->node_count;
+  dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &p->elements);
   if (status == DEA_OK) {
     status = fill_solid(ctx, s, options);
   }
@@ -121,18 +126,38 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
 
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
 {
+  struct dea_solid_problem *p = &s->problem;
   if (s == NULL) {
     return;
   }
   dea_solid_field_destroy(ctx, s);
   dea_solid_destroy_matrix(s);
-  dea_load_steps_release(ctx, &s->path);
-  void *const memory[] = {s->layers,  s->layer,      s->active, s->held,       s->u,
-                          s->trial,   s->g,          s->step,   s->multiplier, s->theta,
-                          s->force,   s->force_goal, s->place,  s->reaction,   s->drive,
-                          s->element, s->piece,      s->loads,  s->own,        s->frame,
-                          s->frames,  s->predicted,  s->spring, s->kind};
-  dea_element_set_release(ctx, &s->elements);
+  dea_load_steps_release(ctx, &s->work.load_steps);
+  void *const memory[] = {p->constituents,
+                          p->constituent_of,
+                          p->active,
+                          p->held,
+                          s->state.u,
+                          s->work.trial,
+                          s->work.g,
+                          s->work.step,
+                          s->state.multiplier,
+                          s->state.theta,
+                          s->state.force,
+                          s->state.force_goal,
+                          s->state.u_goal,
+                          s->found.reaction,
+                          s->work.increment,
+                          s->work.element,
+                          s->work.piece,
+                          p->loads,
+                          p->own,
+                          p->frame,
+                          p->frames,
+                          s->work.predicted,
+                          p->spring,
+                          p->kind};
+  dea_element_set_release(ctx, &p->elements);
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     dea_free(ctx, memory[i]);
   }
@@ -141,34 +166,34 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
 
 double dea_solid_voltage(const struct dea_solid *solid)
 {
-  return solid->voltage_V;
+  return solid->state.voltage_V;
 }
 
 double *dea_solid_displacement(struct dea_solid *solid)
 {
-  return solid->u;
+  return solid->state.u;
 }
 
 double *dea_solid_force(struct dea_solid *solid)
 {
-  return solid->force_goal;
+  return solid->state.force_goal;
 }
 
 const double *dea_solid_reaction(const struct dea_solid *solid)
 {
-  return solid->reaction;
+  return solid->found.reaction;
 }
 
 dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
                                int components, const double displacement_m[3])
 {
-  if (node >= solid->grid->node_count || (components & ~7) != 0) {
+  if (node >= solid->problem.grid->node_count || (components & ~7) != 0) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
   }
   for (size_t i = 0; i < 3; i++) {
     if ((components >> i) & 1) {
-      solid->held[3 * node + i] = DEA_PRESCRIBED;
-      solid->place[3 * node + i] = displacement_m[i];
+      solid->problem.held[3 * node + i] = DEA_PRESCRIBED;
+      solid->state.u_goal[3 * node + i] = displacement_m[i];
     }
   }
   return DEA_OK;
@@ -177,15 +202,15 @@ dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid,
 dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, size_t node,
                              int components)
 {
-  if (node >= solid->grid->node_count || (components & ~7) != 0) {
+  if (node >= solid->problem.grid->node_count || (components & ~7) != 0) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
   }
   for (size_t i = 0; i < 3; i++) {
     if ((components >> i) & 1) {
-      solid->held[3 * node + i] = DEA_FREE;
+      solid->problem.held[3 * node + i] = DEA_FREE;
     }
   }
-  solid->checked = false;
+  solid->found.checked = false;
   return DEA_OK;
 }
 
@@ -193,11 +218,11 @@ dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load)
 {
   struct dea_solid_load *loads =
-      dea_resize(ctx, solid->loads, solid->load_count + 1, sizeof *loads);
+      dea_resize(ctx, solid->problem.loads, solid->problem.load_count + 1, sizeof *loads);
   if (loads == NULL) {
     return DEA_E_MEMORY;
   }
-  solid->loads = loads;
-  loads[solid->load_count++] = *load;
+  solid->problem.loads = loads;
+  loads[solid->problem.load_count++] = *load;
   return DEA_OK;
 }

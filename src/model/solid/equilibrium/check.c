@@ -12,12 +12,13 @@ enum { RIGID = 6 }; // motions of a rigid body
 /* Middle of an element [mm]. */
 static void middle(const struct dea_solid *s, size_t e, double x[3])
 {
-  const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-  int count = dea_grid_nodes_of(s->grid, e);
+  const struct dea_solid_problem *p = &s->problem;
+  const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+  int count = dea_grid_nodes_of(p->grid, e);
   x[0] = x[1] = x[2] = 0;
   for (int n = 0; n < count; n++) {
     for (int i = 0; i < 3; i++) {
-      x[i] += 1e3 * s->grid->X[3 * nodes[n] + i] / count;
+      x[i] += 1e3 * p->grid->X[3 * nodes[n] + i] / count;
     }
   }
 }
@@ -28,8 +29,9 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX], x[3];
-  const struct dea_element_input in = {.constituent = &s->layers[s->layer[e]], .X = X, .u = rest};
-  dea_solid_gather(s, e, s->grid->X, X);
+  const struct dea_element_input in = {
+      .constituent = dea_solid_constituent(s, e), .X = X, .u = rest};
+  dea_solid_gather(s, e, s->problem.grid->X, X);
   if (element->type->strains(element, &in, strains) == DEA_OK) {
     return DEA_OK;
   }
@@ -42,11 +44,12 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
 
 static dea_status check_layers(struct dea_context *ctx, const struct dea_solid *s)
 {
+  const struct dea_solid_problem *p = &s->problem;
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   struct dea_point point;
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const struct dea_constituent *layer = &s->layers[s->layer[e]];
-    if ((e == 0 || s->layer[e] != s->layer[e - 1]) &&
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    const struct dea_constituent *layer = dea_solid_constituent(s, e);
+    if ((e == 0 || p->constituent_of[e] != p->constituent_of[e - 1]) &&
         dea_constituent_point(layer, one, one, 1, 0, 0, &point) != DEA_OK) {
       return dea_fail(
           ctx, DEA_E_DOMAIN,
@@ -88,14 +91,15 @@ static void rigid_row(const double X[3], const double centre[3], double length, 
 static void collect(const struct dea_solid *s, const int *parent, int body, const double centre[3],
                     double length, double gram[RIGID * RIGID])
 {
+  const struct dea_solid_problem *p = &s->problem;
   static const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   memset(gram, 0, RIGID * RIGID * sizeof *gram);
-  for (size_t n = 0; n < s->grid->node_count; n++) {
-    const double *Q = s->frame != NULL && s->frame[n] != 0 ? s->frames[s->frame[n] - 1] : axes;
+  for (size_t n = 0; n < p->grid->node_count; n++) {
+    const double *Q = p->frame != NULL && p->frame[n] != 0 ? p->frames[p->frame[n] - 1] : axes;
     for (int i = 0; i < 3 && parent[n] == body; i++) {
       double row[RIGID];
-      if (s->held[3 * n + (size_t)i]) {
-        rigid_row(s->grid->X + 3 * n, centre, length, Q + 3 * i, row);
+      if (p->held[3 * n + (size_t)i]) {
+        rigid_row(p->grid->X + 3 * n, centre, length, Q + 3 * i, row);
         for (int a = 0; a < RIGID * RIGID; a++) {
           gram[a] += row[a / RIGID] * row[a % RIGID];
         }
@@ -107,12 +111,13 @@ static void collect(const struct dea_solid *s, const int *parent, int body, cons
 /* Whether supports leave a body no rigid motion. */
 static bool is_held(const struct dea_solid *s, const int *parent, int body)
 {
+  const struct dea_solid_problem *p = &s->problem;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   double centre[3], length = 0, gram[RIGID * RIGID], values[RIGID];
-  for (size_t n = 0; n < s->grid->node_count; n++) {
+  for (size_t n = 0; n < p->grid->node_count; n++) {
     for (int i = 0; i < 3 && parent[n] == body; i++) {
-      low[i] = fmin(low[i], s->grid->X[3 * n + (size_t)i]);
-      high[i] = fmax(high[i], s->grid->X[3 * n + (size_t)i]);
+      low[i] = fmin(low[i], p->grid->X[3 * n + (size_t)i]);
+      high[i] = fmax(high[i], p->grid->X[3 * n + (size_t)i]);
     }
   }
   for (int i = 0; i < 3; i++) {
@@ -126,26 +131,27 @@ static bool is_held(const struct dea_solid *s, const int *parent, int body)
 
 static dea_status check_supports(struct dea_context *ctx, const struct dea_solid *s)
 {
-  int *parent = dea_alloc(ctx, s->grid->node_count, sizeof *parent);
+  const struct dea_solid_problem *p = &s->problem;
+  int *parent = dea_alloc(ctx, p->grid->node_count, sizeof *parent);
   dea_status status = DEA_OK;
   if (parent == NULL) {
     return DEA_E_MEMORY;
   }
-  for (size_t n = 0; n < s->grid->node_count; n++) {
+  for (size_t n = 0; n < p->grid->node_count; n++) {
     parent[n] = (int)n;
   }
-  for (size_t e = 0; e < s->grid->element_count; e++) {
-    const int *nodes = s->grid->nodes + e * DEA_HEX_NODES_MAX;
-    for (int n = 1; n < dea_grid_nodes_of(s->grid, e); n++) {
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
+    for (int n = 1; n < dea_grid_nodes_of(p->grid, e); n++) {
       parent[root_of(parent, nodes[n])] = root_of(parent, nodes[0]);
     }
   }
-  for (size_t n = 0; n < s->grid->node_count; n++) {
+  for (size_t n = 0; n < p->grid->node_count; n++) {
     parent[n] = root_of(parent, (int)n);
   }
-  for (size_t n = 0; n < s->grid->node_count && status == DEA_OK; n++) {
+  for (size_t n = 0; n < p->grid->node_count && status == DEA_OK; n++) {
     if (parent[n] == (int)n && !is_held(s, parent, (int)n)) {
-      const double *X = s->grid->X + 3 * n;
+      const double *X = p->grid->X + 3 * n;
       status = dea_fail(ctx, DEA_E_ARGUMENT,
                         "the body at (%.4g, %.4g, %.4g) mm is not held: it can move or turn as a "
                         "whole, so there is no one equilibrium; hold more of its nodes, or give it "
@@ -159,7 +165,7 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
 
 dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
 {
-  if (s->checked) {
+  if (s->found.checked) {
     return DEA_OK;
   }
   struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
@@ -167,15 +173,15 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
     return DEA_E_MEMORY;
   }
   dea_status status = DEA_OK;
-  for (size_t e = 0; e < s->grid->element_count && status == DEA_OK; e++) {
+  for (size_t e = 0; e < s->problem.grid->element_count && status == DEA_OK; e++) {
     status = check_element(ctx, s, e, strains);
   }
   dea_free(ctx, strains);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, check_layers(ctx, s));
-  if (s->load_count == 0) { // springs and tips may hold what nothing else does
+  if (s->problem.load_count == 0) { // springs and tips may hold what nothing else does
     DEA_TRY(ctx, check_supports(ctx, s));
   }
-  s->checked = true;
+  s->found.checked = true;
   return DEA_OK;
 }

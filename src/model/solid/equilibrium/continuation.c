@@ -74,7 +74,7 @@ struct dea_solid_continuation {
 static double size_of(const struct dea_solid_continuation *t, const double *du)
 {
   double sum = 0;
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     sum += t->metric[i] * du[i] * du[i];
   }
   return sqrt(sum);
@@ -89,15 +89,15 @@ static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuatio
   if (square < least) {
     return dea_fail(ctx, DEA_E_DOMAIN, "the path ends at 0 V");
   }
-  for (size_t i = 1; i < s->path.control_count; i++) {
+  for (size_t i = 1; i < s->work.load_steps.control_count; i++) {
     t->now[i] = t->from[i] + tau * (t->goal[i] - t->from[i]);
   }
   t->now[0] = sqrt(fmax(square, 0));
   t->load = tau;
   dea_solid_controls_set(s, t->now);
   if (dea_solid_controls_increment(s, t->now)) {
-    for (size_t i = 0; i < s->dofs; i++) {
-      s->u[i] += s->drive[i];
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      s->state.u[i] += s->work.increment[i];
     }
   }
   return DEA_OK;
@@ -108,7 +108,7 @@ static void orient_plane(struct dea_solid_continuation *t, const double *directi
 {
   double size = hypot(size_of(t, direction), load);
   size = size > 0 ? size : 1;
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->plane.weight[i] = t->metric[i] * direction[i] / size;
   }
   t->plane.load = load / size;
@@ -122,16 +122,16 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
 {
   struct dea_solid *s = t->s;
   double energy, tau = t->load, by = difference;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
-  memcpy(t->right, s->g, s->dofs * sizeof(double));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
+  memcpy(t->right, s->work.g, s->problem.dofs * sizeof(double));
   if (set_load(ctx, t, tau + by) != DEA_OK) {
     dea_context_clear(ctx);
     by = -by;
     DEA_TRY(ctx, set_load(ctx, t, tau + by));
   }
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
-  for (size_t i = 0; i < s->dofs; i++) {
-    t->right[i] = (t->right[i] - s->g[i]) / by;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    t->right[i] = (t->right[i] - s->work.g[i]) / by;
   }
   DEA_TRY(ctx, set_load(ctx, t, tau));
   return DEA_OK;
@@ -141,7 +141,7 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
 static dea_status displacement_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
   DEA_TRY(ctx, dea_solid_solve_linear(ctx, t->s, t->right, t->rate));
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->rate[i] += t->held_rate[i];
   }
   return DEA_OK;
@@ -152,34 +152,35 @@ static double off_plane(const struct dea_solid_continuation *t)
 {
   const struct dea_continuation_plane *plane = &t->plane;
   double off = plane->load * (t->load - plane->tau0) - plane->length;
-  for (size_t i = 0; i < t->s->dofs; i++) {
-    off += plane->weight[i] * (t->s->u[i] - plane->u0[i]);
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    off += plane->weight[i] * (t->s->state.u[i] - plane->u0[i]);
   }
   return off;
 }
 
-/* s->step and *dtau: the Newton step of g = 0 and of the plane's equation, with K factorised. */
+/* step and *dtau: the Newton step of g = 0 and of the plane's equation, with K factorised. */
 static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_continuation *t,
                                 double *dtau)
 {
   struct dea_solid *s = t->s;
+  const struct dea_solid_problem *p = &s->problem;
   const struct dea_continuation_plane *plane = &t->plane;
   double off = off_plane(t), along = plane->load;
   DEA_TRY(ctx, displacement_rate(ctx, t));
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->trial[i] = -s->g[i];
+  for (size_t i = 0; i < p->dofs; i++) {
+    s->work.trial[i] = -s->work.g[i];
   }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
-  for (size_t i = 0; i < s->dofs; i++) {
-    off += plane->weight[i] * s->step[i];
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  for (size_t i = 0; i < p->dofs; i++) {
+    off += plane->weight[i] * s->work.step[i];
     along += plane->weight[i] * t->rate[i];
   }
   if (along == 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path does not cross the plane");
   }
   *dtau = -off / along;
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->step[i] += *dtau * t->rate[i];
+  for (size_t i = 0; i < p->dofs; i++) {
+    s->work.step[i] += *dtau * t->rate[i];
   }
   return DEA_OK;
 }
@@ -193,8 +194,9 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   double dtau = 0, size = 0;
   int negative;
   DEA_TRY(ctx, force_rate(ctx, t));
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &t->energy_J));
-  *residual = sqrt(dea_solid_dot(s, s->g, s->g)) / (s->force_scale > 0 ? s->force_scale : 1);
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
+  *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
+              (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   bool constrained = dea_solid_theta_max(s) < theta_small;
   *there = constrained && *residual < residual_small &&
            fabs(off_plane(t)) < plane_small * fabs(t->plane.length);
@@ -203,13 +205,13 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   }
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
-  *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->g, s->step));
-  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->voltage_V, s->step, 1, true, true));
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->u[i] += s->step[i];
-    size = fmax(size, fabs(s->step[i]));
+  *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
+  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, 1, true, true));
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    s->state.u[i] += s->work.step[i];
+    size = fmax(size, fabs(s->work.step[i]));
   }
-  *small = constrained && size < step_small * s->length_m;
+  *small = constrained && size < step_small * s->problem.length_m;
   DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
   return DEA_OK;
 }
@@ -242,7 +244,7 @@ static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_conti
   dea_solid_scale_bulk_modulus(t->s, harder);
   dea_status status = correct(ctx, t, iterations);
   dea_solid_scale_bulk_modulus(t->s, 1 / harder);
-  t->s->predicted_fits = false;
+  t->s->found.predicted_fits = false;
   return status;
 }
 
@@ -252,13 +254,13 @@ static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_conti
 static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuation *t, int *modes)
 {
   struct dea_solid *s = t->s;
-  s->predicted_fits = s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &t->energy_J));
+  s->found.predicted_fits = s->found.factor_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &t->energy_J));
   dea_solid_raise_bulk_modulus(s);
   double energy;
   dea_status status = force_rate(ctx, t);
   if (status == DEA_OK) {
-    status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
+    status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
   }
   dea_solid_restore_bulk_modulus(s);
   DEA_TRY(ctx, status);
@@ -276,14 +278,14 @@ static dea_status record_point(struct dea_context *ctx, struct dea_solid_continu
   struct dea_solid *s = t->s;
   double product = along_load;
   DEA_TRY(ctx, find_rate(ctx, t, &place->modes));
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < s->problem.dofs; i++) {
     product += t->metric[i] * along[i] * t->rate[i];
   }
   place->slope = copysign(1 / hypot(size_of(t, t->rate), 1), product);
   place->load = t->load;
   place->energy_J = t->energy_J;
   dea_solid_state_get(s, place->state);
-  for (size_t i = 0; i < s->dofs && tangent; i++) {
+  for (size_t i = 0; i < s->problem.dofs && tangent; i++) {
     t->tangent[i] = place->slope * t->rate[i];
   }
   t->tangent_load = tangent ? place->slope : t->tangent_load;
@@ -295,7 +297,7 @@ static dea_status return_to(struct dea_context *ctx, struct dea_solid_continuati
                             const struct dea_continuation_path_point *place)
 {
   dea_solid_state_set(t->s, place->state);
-  t->s->predicted_fits = t->s->factor_fits = false;
+  t->s->found.predicted_fits = t->s->found.factor_fits = false;
   DEA_TRY(ctx, set_load(ctx, t, place->load));
   return DEA_OK;
 }
@@ -306,14 +308,14 @@ static dea_status predict_from(struct dea_context *ctx, struct dea_solid_continu
 {
   struct dea_solid *s = t->s;
   double energy;
-  s->predicted_fits = false;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy)); // for theta
+  s->found.predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy)); // for theta
   dea_solid_raise_bulk_modulus(s);
-  dea_status status = dea_solid_predict(ctx, s, s->voltage_V, du, 1, true, true);
+  dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, du, 1, true, true);
   dea_solid_restore_bulk_modulus_at_pressure(s); // the multipliers are those of the end of the step
   DEA_TRY(ctx, status);
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->u[i] += du[i];
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    s->state.u[i] += du[i];
   }
   DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
   return DEA_OK;
@@ -324,7 +326,7 @@ static void report_point(const struct dea_solid_continuation *t,
                          enum dea_continuation_event event, struct dea_continuation_point *out)
 {
   *out = (struct dea_continuation_point){.load = place->load,
-                                         .voltage_V = t->s->voltage_V,
+                                         .voltage_V = t->s->state.voltage_V,
                                          .slope = place->slope,
                                          .arc = place->arc,
                                          .energy_J = place->energy_J,
@@ -338,8 +340,8 @@ static void report_point(const struct dea_solid_continuation *t,
 static double distance_from(struct dea_solid_continuation *t, const double *predicted, double tau)
 {
   double sum = (t->load - tau) * (t->load - tau);
-  for (size_t i = 0; i < t->s->dofs; i++) {
-    double way = t->s->u[i] - predicted[i];
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    double way = t->s->state.u[i] - predicted[i];
     sum += t->metric[i] * way * way;
   }
   return sqrt(sum);
@@ -361,7 +363,7 @@ static double bend(const struct dea_solid_continuation *t)
 {
   double chord_load = t->next.load - t->last.load, size = chord_load * chord_load;
   double tangents = t->tangent_load, first = chord_load * t->tangent_load, second = chord_load;
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     double chord = t->next.state[i] - t->last.state[i];
     size += t->metric[i] * chord * chord;
     first += t->metric[i] * chord * t->tangent[i];
@@ -378,11 +380,11 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
 {
   struct dea_solid *s = t->s;
   DEA_TRY(ctx, return_to(ctx, t, &t->last));
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < s->problem.dofs; i++) {
     t->start[i] = t->step * t->tangent[i];
   }
   DEA_TRY(ctx, predict_from(ctx, t, t->start, t->step * t->tangent_load));
-  memcpy(t->start, s->u, s->dofs * sizeof *t->start);
+  memcpy(t->start, s->state.u, s->problem.dofs * sizeof *t->start);
   double tau = t->load;
   orient_plane(t, t->tangent, t->tangent_load);
   t->plane.u0 = t->last.state;
@@ -407,7 +409,7 @@ static void accept_point(struct dea_solid_continuation *t)
   t->before = t->last;
   t->last = t->next;
   t->next = old;
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->tangent[i] = t->last.slope * t->rate[i];
   }
   t->tangent_load = t->last.slope;
@@ -456,7 +458,8 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
                                 const struct dea_continuation_options *options,
                                 struct dea_solid_continuation *t)
 {
-  size_t controls = s->path.control_count, states = s->path.state_count;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t controls = s->work.load_steps.control_count, states = s->work.load_steps.state_count;
   double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
                               &t->rate,   &t->right,     &t->start,   &t->mode};
   double **const of_controls[] = {&t->from, &t->goal, &t->now};
@@ -464,7 +467,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
                                 &t->next.state};
   bool all = true;
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
-    *of_dofs[i] = dea_alloc(ctx, s->dofs, sizeof(double));
+    *of_dofs[i] = dea_alloc(ctx, p->dofs, sizeof(double));
     all = all && *of_dofs[i] != NULL;
   }
   for (size_t i = 0; i < sizeof of_controls / sizeof of_controls[0]; i++) {
@@ -480,10 +483,10 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   }
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < p->dofs; i++) {
     volume += t->metric[i] / 3;
   }
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < p->dofs; i++) {
     t->metric[i] /= volume * options->unit_m * options->unit_m;
   }
   t->step = fabs(options->step);
@@ -501,12 +504,12 @@ static dea_status begin_path(struct dea_context *ctx, struct dea_solid_continuat
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, &report));
   dea_solid_controls_get(s, t->from);
-  memcpy(t->goal, goal, s->path.control_count * sizeof(double));
+  memcpy(t->goal, goal, s->work.load_steps.control_count * sizeof(double));
   dea_solid_controls_increment(s, t->from);
-  memcpy(t->held_rate, s->drive, s->dofs * sizeof(double));
+  memcpy(t->held_rate, s->work.increment, s->problem.dofs * sizeof(double));
   dea_solid_controls_increment(s, t->goal);
-  for (size_t i = 0; i < s->dofs; i++) {
-    t->held_rate[i] = s->drive[i] - t->held_rate[i];
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    t->held_rate[i] = s->work.increment[i] - t->held_rate[i];
   }
   DEA_TRY(ctx, record_point(ctx, t, t->tangent, sense, true, &t->last));
   return DEA_OK;
@@ -545,11 +548,11 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   if (!(options->unit_m > 0) || !(fabs(options->step) > 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
   }
-  if (s->field != NULL) {
+  if (s->problem.field != NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
   }
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  double *goal = dea_alloc(ctx, s->path.control_count, sizeof *goal);
+  double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
   DEA_TRY(ctx, dea_solid_agree(ctx, goal != NULL ? DEA_OK : DEA_E_MEMORY));
   dea_solid_controls_goal(s, voltage_V, goal);
   dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
@@ -592,7 +595,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   if (t->event == DEA_CONTINUATION_LIMIT) {
     return DEA_OK;
   }
-  size_t count = b->mode + 1, dofs = 3 * s->grid->node_count;
+  size_t count = b->mode + 1, dofs = 3 * s->problem.grid->node_count;
   double values[DEA_MODES_MAX];
   double *vectors = dea_alloc(ctx, count * dofs, sizeof *vectors);
   DEA_TRY(ctx, dea_solid_agree(ctx, vectors != NULL ? DEA_OK : DEA_E_MEMORY));
@@ -608,8 +611,8 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_conti
                                  const struct bracket *b, double share)
 {
   int iterations;
-  memcpy(t->critical.state, b->from->state, t->s->path.state_count * sizeof(double));
-  for (size_t i = 0; i < t->s->path.state_count; i++) {
+  memcpy(t->critical.state, b->from->state, t->s->work.load_steps.state_count * sizeof(double));
+  for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
     t->critical.state[i] += share * b->way[i];
   }
   t->critical.load = b->from->load + share * b->way_load;
@@ -675,7 +678,7 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
 {
   const struct dea_continuation_path_point *ends[2] = {&t->before, &t->last};
   b->from = ends[0];
-  for (size_t i = 0; i < t->s->path.state_count; i++) {
+  for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
     b->way[i] = ends[1]->state[i] - ends[0]->state[i];
   }
   b->way_load = ends[1]->load - ends[0]->load;
@@ -703,7 +706,7 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   if (t->event == DEA_CONTINUATION_NOTHING) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
-  b.way = dea_alloc(ctx, t->s->path.state_count, sizeof *b.way);
+  b.way = dea_alloc(ctx, t->s->work.load_steps.state_count, sizeof *b.way);
   dea_status status = dea_solid_agree(ctx, b.way != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status == DEA_OK) {
     status = locate_between(ctx, t, &b);
@@ -726,7 +729,7 @@ static dea_status leave_along(struct dea_context *ctx, struct dea_solid_continua
   int iterations;
   DEA_TRY(ctx, return_to(ctx, t, &t->critical));
   double size = size_of(t, t->mode);
-  for (size_t i = 0; i < t->s->dofs; i++) {
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->start[i] = distance / size * t->mode[i];
   }
   DEA_TRY(ctx, predict_from(ctx, t, t->start, 0));
@@ -735,8 +738,8 @@ static dea_status leave_along(struct dea_context *ctx, struct dea_solid_continua
   t->plane.tau0 = t->critical.load;
   t->plane.length = distance;
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
-  for (size_t i = 0; i < t->s->dofs; i++) {
-    t->start[i] = t->s->u[i] - t->critical.state[i];
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    t->start[i] = t->s->state.u[i] - t->critical.state[i];
   }
   return DEA_OK;
 }

@@ -33,16 +33,17 @@ static const double step_first = 0.1, step_most = 1; // of the solid's length, r
 static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid *s, double value,
                                       const double *mode, double *from, double *goal)
 {
-  size_t moves = 3 * s->grid->node_count;
-  double volume = 0, *mass = dea_alloc(ctx, s->dofs, sizeof *mass);
+  const struct dea_solid_problem *p = &s->problem;
+  size_t moves = 3 * p->grid->node_count;
+  double volume = 0, *mass = dea_alloc(ctx, p->dofs, sizeof *mass);
   DEA_TRY(ctx, dea_solid_agree(ctx, mass != NULL ? DEA_OK : DEA_E_MEMORY));
   dea_solid_lump_volume(s, mass);
   for (size_t i = 0; i < moves; i++) {
     volume += mass[i] / 3;
   }
-  double amplitude = s->length_m * sqrt(volume);
+  double amplitude = p->length_m * sqrt(volume);
   dea_solid_controls_get(s, from);
-  memcpy(goal, from, s->path.control_count * sizeof *goal);
+  memcpy(goal, from, s->work.load_steps.control_count * sizeof *goal);
   for (size_t i = 0; i < moves; i++) {
     goal[1 + i] += fabs(value) * amplitude * mass[i] * mode[i];
   }
@@ -73,10 +74,10 @@ static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int 
 {
   // the stiffness is negative: a force against the mode leads along it
   const struct dea_continuation_options options = {side > 0 ? -step_first : step_first, step_most,
-                                                   s->length_m};
+                                                   s->problem.length_m};
   struct dea_solid_continuation *trace = NULL;
-  double *from = dea_alloc(ctx, s->path.control_count, sizeof *from);
-  double *goal = dea_alloc(ctx, s->path.control_count, sizeof *goal);
+  double *from = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *from);
+  double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
   dea_status status = dea_solid_agree(ctx, from != NULL && goal != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status == DEA_OK) {
     status = mode_force_controls(ctx, s, value, mode, from, goal);
@@ -99,17 +100,17 @@ static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int 
 
 /* ---- from an unstable equilibrium down to a stable one ---- */
 
-/* s->trial = u + size v, and the energy there; INFINITY where there is none. */
+/* trial = u + size v, and the energy there; INFINITY where there is none. */
 static double energy_beside(struct dea_context *ctx, struct dea_solid *s, const double *u,
                             const double *mode, double size)
 {
   double energy;
-  memcpy(s->trial, u, s->dofs * sizeof *s->trial);
-  for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
-    s->trial[i] += size * mode[i];
+  memcpy(s->work.trial, u, s->problem.dofs * sizeof *s->work.trial);
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
+    s->work.trial[i] += size * mode[i];
   }
-  return dea_solid_solve_potential(ctx, s, s->voltage_V, s->trial) == DEA_OK &&
-                 dea_solid_energy(s, s->trial, s->voltage_V, &energy) == DEA_OK
+  return dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->work.trial) == DEA_OK &&
+                 dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK
              ? energy
              : INFINITY;
 }
@@ -120,7 +121,7 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
                           const double *mode, double metres, int side, double energy)
 {
   double most = 0, push = 0, lowest = energy;
-  for (size_t i = 0; i < 3 * s->grid->node_count; i++) {
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
     most = fmax(most, fabs(mode[i]));
   }
   for (double size = metres / most; push == 0 && size > 1e-4 * metres / most; size /= 2) {
@@ -146,17 +147,18 @@ static dea_status step_down(struct dea_context *ctx, struct dea_solid *s, int si
 {
   double value;
   DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
-  double push = choose_push(ctx, s, s->u, mode, push_first * s->length_m, side, report->energy_J);
+  double push = choose_push(ctx, s, s->state.u, mode, push_first * s->problem.length_m, side,
+                            report->energy_J);
   if (push == 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "an unstable mode without a way down");
   }
-  s->factor_fits = false;
+  s->found.factor_fits = false;
   if (pull) {
     DEA_TRY(ctx, follow_mode(ctx, s, push > 0 ? 1 : -1, value, mode, report));
     return DEA_OK;
   }
-  energy_beside(ctx, s, s->u, mode, push);
-  memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
+  energy_beside(ctx, s, s->state.u, mode, push);
+  memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   return DEA_OK;
 }
@@ -180,10 +182,10 @@ static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int sid
 {
   const struct dea_solid_report before = *report;
   dea_status status = descend(ctx, s, side, false, mode, report);
-  if (dea_solid_may_shorten(status) && s->field == NULL) {
+  if (dea_solid_may_shorten(status) && s->problem.field == NULL) {
     dea_context_clear(ctx);
     dea_solid_state_set(s, state);
-    s->factor_fits = s->predicted_fits = false;
+    s->found.factor_fits = s->found.predicted_fits = false;
     *report = before;
     status = descend(ctx, s, side, true, mode, report);
   }
@@ -195,8 +197,8 @@ static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int sid
 static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int side,
                                struct dea_solid_report *report)
 {
-  double *mode = dea_alloc(ctx, 3 * s->grid->node_count, sizeof *mode);
-  double *state = dea_alloc(ctx, s->path.state_count, sizeof *state);
+  double *mode = dea_alloc(ctx, 3 * s->problem.grid->node_count, sizeof *mode);
+  double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
   dea_status status = dea_solid_agree(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status == DEA_OK) {
     struct dea_solid_report before = *report;
@@ -207,7 +209,7 @@ static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int
     } else {
       dea_solid_state_set(s, state);
       *report = before;
-      s->factor_fits = s->predicted_fits = false;
+      s->found.factor_fits = s->found.predicted_fits = false;
     }
   }
   dea_free(ctx, mode);
@@ -233,13 +235,14 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
 static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
                                struct dea_solid_report *report)
 {
-  memset(s->step, 0, s->dofs * sizeof *s->step);
-  memcpy(s->step, push_m, 3 * s->grid->node_count * sizeof *s->step);
-  dea_solid_release_held(s, s->step);
-  for (size_t i = 0; i < s->dofs; i++) {
-    s->u[i] += s->step[i];
+  const struct dea_solid_problem *p = &s->problem;
+  memset(s->work.step, 0, p->dofs * sizeof *s->work.step);
+  memcpy(s->work.step, push_m, 3 * p->grid->node_count * sizeof *s->work.step);
+  dea_solid_release_held(s, s->work.step);
+  for (size_t i = 0; i < p->dofs; i++) {
+    s->state.u[i] += s->work.step[i];
   }
-  s->factor_fits = false;
+  s->found.factor_fits = false;
   *report = (struct dea_solid_report){.way = 1};
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   return DEA_OK;
@@ -252,15 +255,15 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   struct dea_solid_report before = *report;
   *found = false;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  double *state = dea_alloc(ctx, s->path.state_count, sizeof *state);
+  double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
   DEA_TRY(ctx, dea_solid_agree(ctx, state != NULL ? DEA_OK : DEA_E_MEMORY));
   dea_solid_state_get(s, state);
   dea_status status = solve_pushed(ctx, s, push_m, report);
-  *found = status == DEA_OK && report->unstable_modes == 0 && accept(self, s->u);
+  *found = status == DEA_OK && report->unstable_modes == 0 && accept(self, s->state.u);
   if (!*found) {
     dea_solid_state_set(s, state);
     *report = before;
-    s->factor_fits = s->predicted_fits = false;
+    s->found.factor_fits = s->found.predicted_fits = false;
   }
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -274,7 +277,7 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
 
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
 {
-  solid->stay = stay;
+  solid->settings.accept_unstable = stay;
 }
 
 /* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
@@ -294,7 +297,7 @@ static dea_status leave_unstable(struct dea_context *ctx, struct dea_solid *s,
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, double way,
                                  struct dea_solid_report *report)
 {
-  struct dea_load_steps *path = &s->path;
+  struct dea_load_steps *path = &s->work.load_steps;
   const double *from = path->controls_from;
   double *next = path->at;
   for (size_t i = 0; i < path->control_count; i++) {
@@ -310,7 +313,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   if (status == DEA_OK) {
     status = dea_solid_equilibrate(ctx, s, report);
   }
-  if (status == DEA_OK && report->unstable_modes > 0 && !s->stay) {
+  if (status == DEA_OK && report->unstable_modes > 0 && !s->settings.accept_unstable) {
     status = leave_unstable(ctx, s, report);
   }
   if (status != DEA_OK) {
@@ -325,7 +328,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
 static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report)
 {
-  const struct dea_load_steps *path = &s->path;
+  const struct dea_load_steps *path = &s->work.load_steps;
   bool moves = memcmp(path->controls_from, path->controls_goal,
                       path->control_count * sizeof *path->controls_from) != 0;
   double part = 1;
@@ -349,7 +352,7 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report)
 {
-  struct dea_load_steps *path = &s->path;
+  struct dea_load_steps *path = &s->work.load_steps;
   *report = (struct dea_solid_report){0};
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));

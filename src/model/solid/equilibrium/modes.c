@@ -43,7 +43,7 @@ static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
 {
   struct dea_solid *s;
   CHECK(PCShellGetContext(pc, &s));
-  return MatSolve(s->factor, x, y);
+  return MatSolve(s->work.factor, x, y);
 }
 
 /* *which: below 0 where eigenvalue a is wanted before b. */
@@ -64,7 +64,7 @@ static PetscErrorCode configure(EPS eps, struct eigen *f, PetscInt wanted)
   ST st;
   KSP ksp;
   PC pc;
-  CHECK(EPSSetOperators(eps, f->solid->K, f->B));
+  CHECK(EPSSetOperators(eps, f->solid->work.K, f->B));
   CHECK(EPSSetProblemType(eps, EPS_GHEP));
   CHECK(EPSSetType(eps, EPSKRYLOVSCHUR));
   CHECK(EPSSetTarget(eps, 0));
@@ -127,9 +127,9 @@ static void sort(struct eigen *f)
 static dea_status count_below(struct dea_context *ctx, struct eigen *f, double value, int *count)
 {
   struct dea_solid *s = f->solid;
-  DEA_PETSC(ctx, MatAXPY(s->K, -value, f->B, SAME_NONZERO_PATTERN));
+  DEA_PETSC(ctx, MatAXPY(s->work.K, -value, f->B, SAME_NONZERO_PATTERN));
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
-  DEA_PETSC(ctx, MatAXPY(s->K, value, f->B, SAME_NONZERO_PATTERN));
+  DEA_PETSC(ctx, MatAXPY(s->work.K, value, f->B, SAME_NONZERO_PATTERN));
   return DEA_OK;
 }
 
@@ -177,7 +177,7 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
       break;
     }
     if (!below) {
-      DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->K, &f->solid->factor));
+      DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->work.K, &f->solid->work.factor));
     }
     wanted = below ? count - f->count : EXTRA + count / 2;
   }
@@ -188,21 +188,22 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
 static dea_status create_metric(struct dea_context *ctx, struct dea_solid *s,
                                 enum dea_mode_metric metric, Mat *B)
 {
+  const struct dea_solid_problem *p = &s->problem;
   if (metric == DEA_MODES_BY_MASS) {
     return dea_solid_create_mass(ctx, s, B);
   }
   PetscScalar *rows;
-  DEA_PETSC(ctx, MatDuplicate(s->K, MAT_DO_NOT_COPY_VALUES, B));
-  dea_solid_lump_volume(s, s->trial);
-  DEA_PETSC(ctx, VecGetArray(s->right, &rows));
-  for (size_t n = s->first_node, k = 0; n < s->end_node; n++) {
-    for (int i = 0; i < s->per_node; i++) { // the same in local axes as in global ones
+  DEA_PETSC(ctx, MatDuplicate(s->work.K, MAT_DO_NOT_COPY_VALUES, B));
+  dea_solid_lump_volume(s, s->work.trial);
+  DEA_PETSC(ctx, VecGetArray(s->work.right, &rows));
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) { // the same in local axes as in global ones
       size_t at = dea_solid_at(s, (int)n, i);
-      rows[k++] = s->held[at] ? 0 : s->trial[at];
+      rows[k++] = p->held[at] ? 0 : s->work.trial[at];
     }
   }
-  DEA_PETSC(ctx, VecRestoreArray(s->right, &rows));
-  DEA_PETSC(ctx, MatDiagonalSet(*B, s->right, INSERT_VALUES));
+  DEA_PETSC(ctx, VecRestoreArray(s->work.right, &rows));
+  DEA_PETSC(ctx, MatDiagonalSet(*B, s->work.right, INSERT_VALUES));
   return DEA_OK;
 }
 
@@ -221,12 +222,12 @@ static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size
                             double *value, double *vector)
 {
   struct dea_solid *s = f->solid;
-  size_t dofs = 3 * s->grid->node_count;
+  size_t dofs = 3 * s->problem.grid->node_count;
   for (size_t k = 0; k < count; k++) {
     value[k] = f->value[f->order[k]];
     if (vector != NULL) {
-      DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], s->trial));
-      memcpy(vector + k * dofs, s->trial, dofs * sizeof *vector);
+      DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], s->work.trial));
+      memcpy(vector + k * dofs, s->work.trial, dofs * sizeof *vector);
       dea_mode_orient(dofs, vector + k * dofs);
     }
   }
@@ -244,7 +245,7 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
-  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->right, f->room, &f->vectors));
+  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->room, &f->vectors));
   if (unstable > 0) {
     DEA_TRY(ctx, find_end(ctx, f, unstable, true));
   }
@@ -262,7 +263,7 @@ static void release(struct dea_context *ctx, struct eigen *f)
   MatDestroy(&f->B);
   dea_free(ctx, f->value);
   dea_free(ctx, f->order);
-  f->solid->factor_fits = f->solid->predicted_fits = false;
+  f->solid->found.factor_fits = f->solid->found.predicted_fits = false;
 }
 
 dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s,

@@ -43,7 +43,7 @@ static double norm(const struct dea_solid *s, const double *v)
 static double largest(const struct dea_solid *s, const double *v)
 {
   double most = 0;
-  for (size_t i = 0; i < s->dofs; i++) {
+  for (size_t i = 0; i < s->problem.dofs; i++) {
     most = fmax(most, fabs(v[i]));
   }
   return most;
@@ -59,7 +59,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   for (int i = 0; i < SHIFTS_MAX; i++) {
     int negative;
     if (d->shift_Pa != *there) {
-      DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->K, d->shift_Pa - *there));
+      DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, d->shift_Pa - *there));
       *there = d->shift_Pa;
     }
     DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
@@ -72,18 +72,18 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
       return DEA_OK;
     }
     double more = shift_up * (negative > 20 ? 16 : negative > 5 ? 4 : 1);
-    d->shift_Pa = *there > 0 ? more * *there : shift_first * s->modulus_Pa;
+    d->shift_Pa = *there > 0 ? more * *there : shift_first * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
 }
 
-/* s->step = -K^-1 g with the factor that is there. */
+/* step = -K^-1 g with the factor that is there. */
 static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
 {
-  for (size_t k = 0; k < s->dofs; k++) {
-    s->trial[k] = -s->g[k];
+  for (size_t k = 0; k < s->problem.dofs; k++) {
+    s->work.trial[k] = -s->work.g[k];
   }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->trial, s->step));
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
   return DEA_OK;
 }
 
@@ -91,11 +91,11 @@ static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
 
 bool dea_solid_resolved(const struct dea_solid *s, double change)
 {
-  return fabs(change) > energy_small * s->energy_scale + s->energy_floor;
+  return fabs(change) > energy_small * s->found.energy_scale_J + s->problem.energy_floor_J;
 }
 
-/* The longest share of the step that the energy lets pass, into s->trial. *rise: of the energy over
- * the slope's size there, -1/2 where the energy is quadratic. false: none. */
+/* The longest share of the step that the energy lets pass, into work.trial. *rise: of the energy
+ * over the slope's size there, -1/2 where the energy is quadratic. false: none. */
 static bool search_line(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
                         double slope, double *share, double *rise)
 {
@@ -103,11 +103,11 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
   *rise = -0.5;
   *share = 1;
   for (int i = 0; i < HALVINGS_MAX; i++, *share /= 2) {
-    for (size_t k = 0; k < s->dofs; k++) {
-      s->trial[k] = s->u[k] + *share * s->step[k];
+    for (size_t k = 0; k < s->problem.dofs; k++) {
+      s->work.trial[k] = s->state.u[k] + *share * s->work.step[k];
     }
-    if (dea_solid_solve_potential(ctx, s, d->voltage_V, s->trial) == DEA_OK &&
-        dea_solid_energy(s, s->trial, d->voltage_V, &at) == DEA_OK) {
+    if (dea_solid_solve_potential(ctx, s, d->voltage_V, s->work.trial) == DEA_OK &&
+        dea_solid_energy(s, s->work.trial, d->voltage_V, &at) == DEA_OK) {
       if (!dea_solid_resolved(s, slope)) {
         return true;
       }
@@ -125,54 +125,56 @@ static void adapt_shift(struct dea_solid *s, struct newton *d, double share, dou
 {
   if (share < 1 || rise > 0) {
     d->shift_Pa = d->shift_Pa > 0 ? d->shift_Pa * (share < 0.2 ? shift_up * shift_up : shift_up)
-                                  : shift_first * s->modulus_Pa;
+                                  : shift_first * s->problem.modulus_Pa;
   } else if (rise < -0.25) {
     d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_down * shift_down : shift_down;
   }
-  if (d->shift_Pa < shift_least * s->modulus_Pa) {
+  if (d->shift_Pa < shift_least * s->problem.modulus_Pa) {
     d->shift_Pa = 0;
   }
 }
 
 /* ---- stresses and pressures at the end of a step ---- */
 
-/* One element: predicted stresses into their place, pressures into s->theta, which is free here. */
+/* One element: predicted stresses into their place, pressures into theta, which is free here. */
 static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_V,
                                   const double *step, double share, bool stresses)
 {
-  size_t e = s->own[k], pressures = (size_t)s->elements.pressures;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t e = p->own[k], pressures = (size_t)p->elements.pressures;
   const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
-  double way[DEA_HEX_DOFS_MAX], *out = s->predicted + k * s->elements.predicted_count;
-  dea_solid_element_input(s, e, s->u, voltage_V, &place, &in);
+  double way[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &place, &in);
   dea_solid_gather(s, e, step, way);
   dea_status status = element->type->predict(element, &in, way, share, stresses, out);
-  memcpy(s->theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
+  memcpy(s->state.theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }
 
 dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                              const double *step, double share, bool stresses, bool pressures)
 {
+  const struct dea_solid_problem *p = &s->problem;
   size_t count = dea_solid_pressure_count(s);
   dea_status status = DEA_OK;
-  stresses = stresses && s->field == NULL;
-  memset(s->theta, 0, count * sizeof *s->theta);
-  for (size_t k = 0; k < s->own_count && status == DEA_OK; k++) {
-    if (dea_solid_element(s, s->own[k])->type->predict != NULL) {
+  stresses = stresses && p->field == NULL;
+  memset(s->state.theta, 0, count * sizeof *s->state.theta);
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
+    if (dea_solid_element(s, p->own[k])->type->predict != NULL) {
       status = predict_element(s, k, voltage_V, step, share, stresses);
     }
   }
-  s->predicted_fits = false;
+  s->found.predicted_fits = false;
   status = dea_solid_agree(ctx, status);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the stresses at the end of a step cannot be had");
   }
-  s->predicted_fits = stresses;
+  s->found.predicted_fits = stresses;
   if (pressures) {
-    dea_solid_sum(s->theta, count);
-    memcpy(s->multiplier, s->theta, count * sizeof *s->multiplier);
+    dea_solid_sum(s->state.theta, count);
+    memcpy(s->state.multiplier, s->state.theta, count * sizeof *s->state.multiplier);
   }
   return DEA_OK;
 }
@@ -184,10 +186,10 @@ static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const 
                             double share, bool stresses)
 {
   if (!d->strict) {
-    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->step, share, stresses,
-                                   d->shift_Pa <= s->modulus_Pa));
+    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->work.step, share, stresses,
+                                   d->shift_Pa <= s->problem.modulus_Pa));
   }
-  memcpy(s->u, s->trial, s->dofs * sizeof *s->u);
+  memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
   return DEA_OK;
 }
 
@@ -195,13 +197,13 @@ static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const 
 static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
   DEA_TRY(ctx, linear_step(ctx, s));
-  for (size_t k = 0; k < s->dofs; k++) {
-    s->trial[k] = s->u[k] + s->step[k];
+  for (size_t k = 0; k < s->problem.dofs; k++) {
+    s->work.trial[k] = s->state.u[k] + s->work.step[k];
   }
-  dea_status status = dea_solid_solve_potential(ctx, s, d->voltage_V, s->trial);
+  dea_status status = dea_solid_solve_potential(ctx, s, d->voltage_V, s->work.trial);
   double energy;
   if (status == DEA_OK) {
-    status = dea_solid_energy(s, s->trial, d->voltage_V, &energy);
+    status = dea_solid_energy(s, s->work.trial, d->voltage_V, &energy);
   }
   if (status != DEA_OK) { // too far: the next step has a tangent of its own
     d->chord = false;
@@ -226,10 +228,10 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       d->report->iterations++;
     }
     DEA_TRY(ctx, linear_step(ctx, s));
-    double slope = dea_solid_dot(s, s->g, s->step);
+    double slope = dea_solid_dot(s, s->work.g, s->work.step);
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
-      *done = !start && there == 0 && largest(s, s->step) < step_small * s->length_m;
+      *done = !start && there == 0 && largest(s, s->work.step) < step_small * s->problem.length_m;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
       if (start) {
@@ -243,20 +245,20 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (start) {
       return DEA_OK; // the next step has a tangent of its own
     }
-    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : shift_first * s->modulus_Pa;
+    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : shift_first * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
 }
 
-/* Energy, forces and, where the next step needs one, the tangent at s->u. */
+/* Energy, forces and, where the next step needs one, the tangent at u. */
 static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
   struct dea_solid_report *report = d->report;
   bool chord = d->chord || d->start;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : DEA_TANGENT,
                                   &report->energy_J));
-  double size = norm(s, s->g);
-  report->residual = size / (s->force_scale > 0 ? s->force_scale : 1);
+  double size = norm(s, s->work.g);
+  report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   report->theta_max = dea_solid_theta_max(s);
   if (d->chord && (d->chords == CHORDS_MAX || !(size < chord_rate * d->norm_before)) &&
       !(report->residual < residual_small)) {
@@ -271,39 +273,39 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
 static dea_status count_unstable(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                                  bool tangent)
 {
-  s->predicted_fits = false;
+  s->found.predicted_fits = false;
   if (!tangent) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &d->report->energy_J));
   }
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
   d->report->factorisations++;
-  s->factor_fits = d->report->unstable_modes == 0;
-  if (!s->factor_fits) { // of a solid that kappa leaves a little compressible
+  s->found.factor_fits = d->report->unstable_modes == 0;
+  if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible
     DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
     d->report->factorisations++;
   }
   return DEA_OK;
 }
 
-/* Stationary point of the energy, downhill from s->u: a minimum, or a point that has a valley on
- * all sides that a Newton step sees. Pressures follow; where they do not, report->theta_max is
- * above DEA_SOLID_THETA_SMALL. */
+/* Stationary point of the energy, downhill from where it is: a minimum, or a point that has a
+ * valley on all sides that a Newton step sees. Pressures follow; where they do not,
+ * report->theta_max is above DEA_SOLID_THETA_SMALL. */
 static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report)
 {
-  struct newton d = {.voltage_V = voltage_V, .start = s->factor_fits, .report = report};
-  s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+  struct newton d = {.voltage_V = voltage_V, .start = s->found.factor_fits, .report = report};
+  s->found.factor_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
   for (int i = 0; i < NEWTON_MAX; i++) {
     bool done = false;
     if (i == FREE_MAX) {
       d.strict = true;
-      d.chord = s->predicted_fits = false;
+      d.chord = s->found.predicted_fits = false;
     }
     DEA_TRY(ctx, evaluate(ctx, s, &d));
     bool fits = d.strict || report->theta_max < DEA_SOLID_THETA_SMALL;
     if (i > 0 && fits && (report->residual < residual_small || d.unresolved > 2)) {
-      return count_unstable(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->predicted_fits);
+      return count_unstable(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits);
     }
     if (d.chord) {
       DEA_TRY(ctx, chord_step(ctx, s, &d));
@@ -323,24 +325,24 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double 
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
                                           struct dea_solid_report *report)
 {
-  struct newton d = {.voltage_V = s->voltage_V, .report = report};
+  struct newton d = {.voltage_V = s->state.voltage_V, .report = report};
   double energy, there = 0;
-  s->factor_fits = s->predicted_fits = false;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->voltage_V, s->u));
-  s->driven = true;
-  dea_status status = dea_solid_assemble(ctx, s, s->voltage_V, DEA_TANGENT, &energy);
-  s->driven = false;
+  s->found.factor_fits = s->found.predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
+  s->work.takes_increment = true;
+  dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
+  s->work.takes_increment = false;
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, factorise_definite(ctx, s, &d, &there));
   DEA_TRY(ctx, linear_step(ctx, s));
   // where the whole of the linear step leads too far the held components go their way all the same
   for (double length = 1; length > 0.1; length /= 2) {
-    for (size_t i = 0; i < s->dofs; i++) {
-      s->trial[i] = s->u[i] + s->drive[i] + length * s->step[i];
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      s->work.trial[i] = s->state.u[i] + s->work.increment[i] + length * s->work.step[i];
     }
-    if (dea_solid_energy(s, s->trial, s->voltage_V, &energy) == DEA_OK) {
-      for (size_t i = 0; i < s->dofs; i++) {
-        s->step[i] = s->trial[i] - s->u[i];
+    if (dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK) {
+      for (size_t i = 0; i < s->problem.dofs; i++) {
+        s->work.step[i] = s->work.trial[i] - s->state.u[i];
       }
       return take_step(ctx, s, &d, 1, true);
     }
@@ -352,10 +354,11 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
 
 double dea_solid_update_loads(struct dea_solid *s)
 {
+  const struct dea_solid_problem *p = &s->problem;
   double error = 0;
-  for (size_t k = 0; k < s->load_count; k++) {
-    if (s->loads[k].update != NULL) {
-      error = fmax(error, s->loads[k].update(s->loads[k].self, s->u));
+  for (size_t k = 0; k < p->load_count; k++) {
+    if (p->loads[k].update != NULL) {
+      error = fmax(error, p->loads[k].update(p->loads[k].self, s->state.u));
     }
   }
   return error;
@@ -368,7 +371,7 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
 {
   double best = INFINITY;
   for (int i = 0, worse = 0; i < OUTER_MAX && worse < WORSE_MAX; i++) {
-    DEA_TRY(ctx, minimise(ctx, s, s->voltage_V, report));
+    DEA_TRY(ctx, minimise(ctx, s, s->state.voltage_V, report));
     report->load_error = dea_solid_update_loads(s);
     double error = fmax(report->theta_max / DEA_SOLID_THETA_SMALL, report->load_error);
     if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {

@@ -5,17 +5,17 @@
 
 #include "model/solid/assembly/problem.h"
 
-/* Equilibrium at the controls as they are, downhill from s->u, with the constraints of the
+/* Equilibrium at the controls as they are, downhill from where it is, with the constraints of the
  * multipliers met: a minimum, or a point that has a valley on all sides that a Newton step sees. */
 dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report);
-/* One linear step in which the held components go the whole of s->drive and the rest follows. */
+/* One linear step in which the held components go their work.increment and the rest follows. */
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
                                           struct dea_solid_report *report);
 
 /* ---- for continuation, which is Newton's method too ---- */
 
-/* Before s->u goes on by share step: stresses there into s->predicted, pressures there into the
+/* Before u goes on by share step: stresses there into work.predicted, pressures there into the
  * multipliers, each if it is wanted. */
 dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                              const double *step, double share, bool stresses, bool pressures);

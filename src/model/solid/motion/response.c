@@ -38,15 +38,15 @@ void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_respon
 /* -dg/dV = -2 V dg/d(V^2). */
 dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, double *force)
 {
-  double energy, square = s->voltage_V * s->voltage_V, step = part_of_V2 * square;
-  memset(force, 0, s->dofs * sizeof *force);
+  double energy, square = s->state.voltage_V * s->state.voltage_V, step = part_of_V2 * square;
+  memset(force, 0, s->problem.dofs * sizeof *force);
   for (int side = -1; side <= 1 && step > 0; side += 2) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(square + side * step), DEA_FORCE, &energy));
-    for (size_t i = 0; i < s->dofs; i++) {
-      force[i] -= side * s->voltage_V / step * s->g[i];
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      force[i] -= side * s->state.voltage_V / step * s->work.g[i];
     }
   }
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   return DEA_OK;
 }
 
@@ -72,12 +72,12 @@ static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
 static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_response *r, double *force)
 {
-  DEA_TRY(ctx, dea_solid_factor(ctx, s->K, &s->factor));
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
   for (size_t k = 0; k < TERMS; k++) {
     double *term = r->rest + k * r->dofs;
-    DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, force, s->trial));
-    memcpy(term, s->trial, r->dofs * sizeof *term);
-    DEA_TRY(ctx, purge(ctx, s, r, term, s->step));
+    DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, force, s->work.trial));
+    memcpy(term, s->work.trial, r->dofs * sizeof *term);
+    DEA_TRY(ctx, purge(ctx, s, r, term, s->work.step));
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, term, force));
     dea_solid_release_held(s, force);
   }
@@ -88,7 +88,7 @@ static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, 
                             struct dea_solid_response *r)
 {
   r->count = count;
-  r->dofs = 3 * s->grid->node_count;
+  r->dofs = 3 * s->problem.grid->node_count;
   r->square = dea_alloc(ctx, count + 1, sizeof *r->square);
   r->push = dea_alloc(ctx, count + 1, sizeof *r->push);
   r->shape = dea_alloc(ctx, count * r->dofs + 1, sizeof *r->shape);
@@ -146,18 +146,18 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
                                      double highest_rad_per_s, struct dea_solid_response **out)
 {
   *out = NULL;
-  if (s->field != NULL) {
+  if (s->problem.field != NULL) {
     return dea_fail(
         ctx, DEA_E_UNSUPPORTED,
         "the response to an AC excitation of the voltage needs the field V/h, not a coupled one");
   }
-  double *force = dea_alloc(ctx, s->dofs, sizeof *force);
+  double *force = dea_alloc(ctx, s->problem.dofs, sizeof *force);
   struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
   dea_status status = dea_solid_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
   if (status == DEA_OK) {
     status = fill(ctx, s, highest_rad_per_s, r, force);
   }
-  s->factor_fits = s->predicted_fits = false;
+  s->found.factor_fits = s->found.predicted_fits = false;
   dea_free(ctx, force);
   if (status != DEA_OK) {
     dea_solid_response_destroy(ctx, r);

@@ -41,9 +41,9 @@ static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t,
 {
   struct dea_solid *s = t->solid;
   double energy;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->voltage_V, DEA_FORCE, &energy));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   for (size_t i = 0; i < t->count; i++) {
-    F[i] = s->g[i] + s->reaction[i];
+    F[i] = s->work.g[i] + s->found.reaction[i];
   }
   return DEA_OK;
 }
@@ -54,17 +54,17 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
 {
   struct dea_solid *s = t->solid;
   double potential = 0, capacitance = 0;
-  s->history = NULL;
-  dea_status status = dea_solid_energy(s, s->u, s->voltage_V, &potential);
+  s->state.internal_variables = NULL;
+  dea_status status = dea_solid_energy(s, s->state.u, s->state.voltage_V, &potential);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, s, &capacitance);
   }
-  s->history = t->history;
+  s->state.internal_variables = t->history;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
   }
   *capacitance_F = isnan(capacitance) ? 0 : capacitance; // NAN: no electrodes
-  *stored = potential + *capacitance_F * s->voltage_V * s->voltage_V;
+  *stored = potential + *capacitance_F * s->state.voltage_V * s->state.voltage_V;
   return DEA_OK;
 }
 
@@ -102,12 +102,12 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
   if (options->branches != NULL) {
     DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->history));
     dea_internal_variables_begin(t->history, s, 0);
-    s->history = t->history;
+    s->state.internal_variables = t->history;
   }
   if (t->inertial) {
-    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, s->u, t->work)); // from here on it cannot fail
+    DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, s->state.u, t->work)); // from here on it cannot fail
   }
-  memcpy(t->first, s->u, t->count * sizeof *t->first);
+  memcpy(t->first, s->state.u, t->count * sizeof *t->first);
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
   DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F));
   return DEA_OK;
@@ -129,10 +129,10 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   t->solid = solid;
   t->inertial = options->inertia;
   t->alpha = dea_alpha_of(options->spectral_radius);
-  t->count = 3 * solid->grid->node_count;
+  t->count = 3 * solid->problem.grid->node_count;
   t->stiffened = 1;
-  t->stay = solid->stay;
-  solid->stay = t->stay || t->inertial; // inertia decides where a film goes
+  t->stay = solid->settings.accept_unstable;
+  solid->settings.accept_unstable = t->stay || t->inertial; // inertia decides where a film goes
   dea_status status = start_time(ctx, t, options);
   if (status != DEA_OK) {
     dea_solid_time_destroy(ctx, t);
@@ -147,10 +147,10 @@ static void return_to_accepted(struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   t->open = false;
-  s->inertia = NULL;
+  s->state.inertia = NULL;
   dea_solid_state_set(s, t->keep);
   dea_solid_controls_set(s, t->controls);
-  s->factor_fits = false;
+  s->found.factor_fits = false;
 }
 
 void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
@@ -161,9 +161,9 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   if (t->open) {
     return_to_accepted(t);
   }
-  t->solid->history = NULL;
-  t->solid->inertia = NULL;
-  t->solid->stay = t->stay;
+  t->solid->state.internal_variables = NULL;
+  t->solid->state.inertia = NULL;
+  t->solid->settings.accept_unstable = t->stay;
   dea_solid_scale_bulk_modulus(t->solid, 1 / t->stiffened);
   dea_internal_variables_destroy(ctx, t->history);
   double *const memory[] = {t->first,
@@ -198,7 +198,7 @@ double *dea_solid_velocity(struct dea_solid_time *time)
 static dea_status save_accepted(struct dea_context *ctx, struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
-  const struct dea_load_steps *path = &s->path;
+  const struct dea_load_steps *path = &s->work.load_steps;
   if (t->open) {
     return_to_accepted(t);
   }
@@ -226,8 +226,8 @@ static void follow_stiffness(struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   double most = 0;
-  for (size_t l = 0; l < s->layer_count && t->history != NULL; l++) {
-    const struct dea_constituent *layer = &s->layers[l];
+  for (size_t l = 0; l < s->problem.constituent_count && t->history != NULL; l++) {
+    const struct dea_constituent *layer = &s->problem.constituents[l];
     if (layer->kappa_Pa > 0) {
       most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(layer));
     }
@@ -236,7 +236,7 @@ static void follow_stiffness(struct dea_solid_time *t)
   if (factor != t->stiffened) {
     dea_solid_scale_bulk_modulus(s, factor / t->stiffened);
     t->stiffened = factor;
-    s->factor_fits = false;
+    s->found.factor_fits = false;
   }
 }
 
@@ -245,7 +245,7 @@ static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t,
 {
   const struct dea_alpha *alpha = &t->alpha;
   struct dea_solid_inertia *inertia = &t->inertia;
-  const double *u = t->solid->u;
+  const double *u = t->solid->state.u;
   double share = alpha->f / (1 - alpha->f), mass = alpha->m / (1 - alpha->f);
   inertia->factor = (1 - alpha->m) / ((1 - alpha->f) * alpha->beta * h * h);
   DEA_TRY(ctx, dea_solid_mass_apply(ctx, t->solid, t->a, t->work));
@@ -262,9 +262,9 @@ static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, 
 {
   struct dea_solid *s = t->solid;
   follow_stiffness(t);
-  s->inertia = t->inertial ? &t->inertia : NULL;
+  s->state.inertia = t->inertial ? &t->inertia : NULL;
   dea_status status = dea_solid_solve(ctx, s, voltage_V, report);
-  s->inertia = NULL;
+  s->state.inertia = NULL;
   if (status != DEA_OK) {
     return_to_accepted(t);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -280,20 +280,20 @@ static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_ti
   struct dea_solid *s = t->solid;
   struct dea_solid_inertia *inertia = &t->inertia;
   double h = 0.1 * step_s;
-  memcpy(inertia->around, s->u, t->count * sizeof *s->u);
+  memcpy(inertia->around, s->state.u, t->count * sizeof *s->state.u);
   inertia->factor = 1 / (h * h);
   for (size_t i = 0; i < t->count; i++) {
     inertia->around[i] += h * t->v[i];
     inertia->constant[i] = 0;
   }
-  s->factor_fits = false;
-  DEA_TRY(ctx, solve_step(ctx, t, s->voltage_V, report));
+  s->found.factor_fits = false;
+  DEA_TRY(ctx, solve_step(ctx, t, s->state.voltage_V, report));
   for (size_t i = 0; i < t->count; i++) {
-    t->a[i] = (s->u[i] - inertia->around[i]) / (h * h);
+    t->a[i] = (s->state.u[i] - inertia->around[i]) / (h * h);
   }
-  memcpy(s->u, t->keep, s->dofs * sizeof *s->u);
-  s->factor_fits = false;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->voltage_V, s->u));
+  memcpy(s->state.u, t->keep, s->problem.dofs * sizeof *s->state.u);
+  s->found.factor_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
   dea_solid_state_get(s, t->keep); // with its pressures
   return DEA_OK;
@@ -315,7 +315,8 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
     DEA_TRY(ctx, set_inertia(ctx, t, h));
   }
   t->start_next = false;
-  s->factor_fits = s->factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
+  s->found.factor_fits =
+      s->found.factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
   t->step_s = h;
   DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
   return DEA_OK;
@@ -369,7 +370,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
     DEA_TRY(ctx, dea_internal_variables_close(ctx, t->history, s, &branches));
   }
   DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F));
-  const double voltage_V[2] = {t->controls[0], s->voltage_V};
+  const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
   const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
   sums->supply += dea_solid_source_work(voltage_V, capacitance_F);
   sums->stored = stored - t->first_J;
@@ -377,7 +378,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   sums->dissipated += branches.dissipated;
   if (t->inertial) {
     for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
-      work -= 0.5 * (t->F[i] + t->F_next[i]) * (s->u[i] - t->keep[i]);
+      work -= 0.5 * (t->F[i] + t->F_next[i]) * (s->state.u[i] - t->keep[i]);
     }
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->v_next, t->work));
     sums->kinetic = half_square(t->v_next, t->work, t->count);
@@ -390,9 +391,9 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
 static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;
-  for (size_t l = 0; l < t->solid->layer_count && t->history != NULL; l++) {
+  for (size_t l = 0; l < t->solid->problem.constituent_count && t->history != NULL; l++) {
     const struct dea_branches *branches = &t->history->branches[l];
-    double sum = 0, all = dea_constituent_modulus(&t->solid->layers[l]);
+    double sum = 0, all = dea_constituent_modulus(&t->solid->problem.constituents[l]);
     for (size_t i = 0; i < branches->count; i++) {
       sum -= branches->branch[i].modulus_Pa * expm1(-t->step_s / branches->branch[i].time_s);
       all += branches->branch[i].modulus_Pa;
@@ -408,7 +409,7 @@ static double relaxing(const struct dea_solid_time *t)
  * before drawn on; after a corner, where there is none, to the way gone. */
 static double step_error(const struct dea_solid_time *t)
 {
-  const double *u = t->solid->u, *from = t->keep;
+  const double *u = t->solid->state.u, *from = t->keep;
   double h = t->step_s, before = t->step_before_s, most = 0, share = relaxing(t);
   double weight = before > 0 ? 0.25 * h / (h + before) : 0.125;
   for (size_t i = 0; i < t->count; i++) {
@@ -441,7 +442,7 @@ dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *
   const struct dea_alpha *alpha = &t->alpha;
   double h = t->step_s;
   for (size_t i = 0; i < t->count && t->inertial && h > 0; i++) {
-    t->a_next[i] = (t->solid->u[i] - t->inertia.around[i]) / (alpha->beta * h * h);
+    t->a_next[i] = (t->solid->state.u[i] - t->inertia.around[i]) / (alpha->beta * h * h);
     t->v_next[i] = t->v[i] + h * ((1 - alpha->gamma) * t->a[i] + alpha->gamma * t->a_next[i]);
   }
   DEA_TRY(ctx, close_step(ctx, t));
@@ -490,8 +491,8 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
   if (t->inertial) {
     memcpy(t->v_next, t->v, t->count * sizeof *t->v);
     memcpy(t->a_next, t->a, t->count * sizeof *t->a);
-    s->voltage_V = voltage_V;
-    DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->u));
+    s->state.voltage_V = voltage_V;
+    DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
   } else {
     DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
   }
@@ -507,7 +508,7 @@ double dea_solid_time_motion(const struct dea_solid_time *t)
 {
   double most = 0;
   for (size_t i = 0; i < t->count; i++) {
-    most = fmax(most, fabs(t->solid->u[i] - t->first[i]));
+    most = fmax(most, fabs(t->solid->state.u[i] - t->first[i]));
   }
   return most;
 }

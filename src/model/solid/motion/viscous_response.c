@@ -28,7 +28,7 @@ struct system {
 static dea_status copy_tangent(struct dea_context *ctx, struct system *y, Mat *out)
 {
   DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, y->solid));
-  DEA_PETSC(ctx, MatDuplicate(y->solid->K, MAT_COPY_VALUES, out));
+  DEA_PETSC(ctx, MatDuplicate(y->solid->work.K, MAT_COPY_VALUES, out));
   return DEA_OK;
 }
 
@@ -38,13 +38,13 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
 {
   struct dea_solid *s = y->solid;
   struct dea_internal_variables *history;
-  memset(only, 0, s->layer_count * sizeof *only);
+  memset(only, 0, s->problem.constituent_count * sizeof *only);
   only[layer] = y->branches[layer];
   DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &history));
   dea_internal_variables_begin(history, s, 0);
-  s->history = history;
+  s->state.internal_variables = history;
   dea_status status = copy_tangent(ctx, y, out);
-  s->history = NULL;
+  s->state.internal_variables = NULL;
   dea_internal_variables_destroy(ctx, history);
   DEA_TRY(ctx, status);
   DEA_PETSC(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN));
@@ -68,7 +68,7 @@ static dea_status make_parts(struct dea_context *ctx, struct system *y, struct d
   DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
   DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
   y->part_count = PARTS;
-  for (size_t l = 0; l < y->solid->layer_count; l++) {
+  for (size_t l = 0; l < y->solid->problem.constituent_count; l++) {
     if (y->branches[l].count > 0) {
       y->layer[y->part_count] = l;
       DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
@@ -233,8 +233,8 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
   DEA_TRY(ctx, dea_solid_factor(ctx, y->A, &y->factor));
   DEA_PETSC(ctx, MatSolve(y->factor, y->right, y->answer));
   for (int c = 0; c < 2; c++) {
-    DEA_TRY(ctx, interleave(ctx, s->solution, y->answer, c, true));
-    DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->solution, out[c]));
+    DEA_TRY(ctx, interleave(ctx, s->work.solution, y->answer, c, true));
+    DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out[c]));
   }
   return DEA_OK;
 }
@@ -242,9 +242,9 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
 /* The force per volt as the right side; force: [dofs], changed. */
 static dea_status set_right(struct dea_context *ctx, struct system *y, double *force)
 {
-  DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->right));
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->work.right));
   DEA_PETSC(ctx, VecSet(y->right, 0));
-  DEA_TRY(ctx, interleave(ctx, y->solid->right, y->right, 0, false));
+  DEA_TRY(ctx, interleave(ctx, y->solid->work.right, y->right, 0, false));
   return DEA_OK;
 }
 
@@ -253,9 +253,10 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
                           const size_t *nodes, size_t node_count, double (*out)[2][3])
 {
   struct dea_solid *s = y->solid;
+  const struct dea_solid_problem *p = &s->problem;
   double complex *sum = NULL;
-  double *memory = dea_alloc(ctx, 3 * s->dofs, sizeof *memory);
-  struct dea_branches *only = dea_alloc(ctx, s->layer_count, sizeof *only);
+  double *memory = dea_alloc(ctx, 3 * p->dofs, sizeof *memory);
+  struct dea_branches *only = dea_alloc(ctx, p->constituent_count, sizeof *only);
   dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? check_stable(ctx, s) : status;
   status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, memory) : status;
@@ -263,7 +264,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
   status = status == DEA_OK ? set_right(ctx, y, memory) : status;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    double *real = memory + s->dofs, *imaginary = real + s->dofs;
+    double *real = memory + p->dofs, *imaginary = real + p->dofs;
     if (dea_solid_any(dea_interrupted(ctx))) {
       status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at frequency %zu of %zu", i, count);
       break;
@@ -289,7 +290,7 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
   Mat parts[PARTS + LAYERS_MAX] = {NULL};
   size_t layers[PARTS + LAYERS_MAX] = {0};
   struct system y = {.solid = s, .branches = branches, .part = parts, .layer = layers};
-  if (s->field != NULL || s->layer_count > LAYERS_MAX) {
+  if (s->problem.field != NULL || s->problem.constituent_count > LAYERS_MAX) {
     return dea_fail(
         ctx, DEA_E_UNSUPPORTED,
         "the response to an AC excitation of the voltage needs the field V/h, and at most %d "
@@ -304,6 +305,6 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
   MatDestroy(&y.factor);
   VecDestroy(&y.right);
   VecDestroy(&y.answer);
-  s->factor_fits = s->predicted_fits = false;
+  s->found.factor_fits = s->found.predicted_fits = false;
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
