@@ -1,0 +1,943 @@
+/* First the file is parsed into a list of nodes and one of elements with the physical groups that
+ * they are in; then the quadrilaterals are sorted along a curve that fills the plane, numbered, and
+ * brought into the order of nodes of the project's elements. */
+#include "model/solid/mesh/msh_read.h"
+
+#include "base/file.h"
+#include "base/write_file.h"
+#include "model/solid/mesh/places.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FILE_MAX = 1000000000, SAID_MAX = 400, NODES_MAX = 10, NAME_SIZE = 128 };
+static const double flat = 1e-6; // of the mesh's size: nodes further apart in z are no plane
+static const double same = 1e-9; // of the mesh's size: one place
+static const double size_least_m = 1e-9, size_most_m = 1e6;
+
+/* Gmsh's types of elements that are known here. */
+static const struct kind {
+  int type, nodes, dimension, order;
+  bool triangle;
+} kinds[] = {
+    {15, 1, 0, 0, false}, {1, 2, 1, 1, false},  {8, 3, 1, 2, false}, {3, 4, 2, 1, false},
+    {16, 8, 2, 2, false}, {10, 9, 2, 2, false}, {2, 3, 2, 1, true},  {9, 6, 2, 2, true},
+    {20, 9, 2, 3, true},  {21, 10, 2, 3, true},
+};
+
+struct raw_node {
+  long long tag;
+  double x[3];
+};
+
+struct raw_element {
+  const struct kind *kind;
+  long long group; // of 2.2: physical; of 4.1: entity
+  long long nodes[NODES_MAX];
+  size_t line;
+  uint64_t key; // along the curve
+};
+
+struct physical {
+  int dimension;
+  long long tag;
+  size_t index; // among the groups or curves of the mesh; SIZE_MAX: none yet
+  char name[NAME_SIZE];
+};
+
+/* That an entity (4.1) is in a physical group. */
+struct member {
+  int dimension;
+  long long entity, physical;
+};
+
+struct list {
+  void *data;
+  size_t count, room;
+};
+
+struct reader {
+  struct dea_context *ctx;
+  const char *file; // interned
+  const char *at;
+  size_t line;
+  const char *section;
+  int version; // 2 or 4
+  struct list nodes, elements, physicals, members;
+};
+
+// Faults, lists, words
+// -----------------------------------------------------------------------------
+
+static dea_status fault(struct reader *r, size_t line, const char *format, ...) DEA_PRINTF(3, 4);
+
+static dea_status fault(struct reader *r, size_t line, const char *format, ...)
+{
+  char said[SAID_MAX];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(said, sizeof said, format, args);
+  va_end(args);
+  const struct dea_location location = {r->file, line, 0};
+  DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, location, "%s", said));
+  return line > 0 ? dea_fail(r->ctx, DEA_E_DESIGN, "%s:%zu: %s", r->file, line, said)
+                  : dea_fail(r->ctx, DEA_E_DESIGN, "%s: %s", r->file, said);
+}
+
+/* Room for one more, zeroed; NULL for want of memory. */
+static void *list_add(struct dea_context *ctx, struct list *list, size_t size)
+{
+  if (list->count == list->room) {
+    size_t room = list->room > 0 ? 2 * list->room : 64;
+    void *moved = dea_resize(ctx, list->data, room, size);
+    if (moved == NULL) {
+      return NULL;
+    }
+    list->data = moved;
+    list->room = room;
+  }
+  void *item = (char *)list->data + list->count++ * size;
+  memset(item, 0, size);
+  return item;
+}
+
+static void skip_space(struct reader *r)
+{
+  for (; isspace((unsigned char)*r->at); r->at++) {
+    r->line += *r->at == '\n';
+  }
+}
+
+static bool is_end_of_word(char c)
+{
+  return c == '\0' || isspace((unsigned char)c);
+}
+
+static size_t word_length(const char *word)
+{
+  size_t n = 0;
+  while (!is_end_of_word(word[n])) {
+    n++;
+  }
+  return n;
+}
+
+/* What stands there is not what was wanted. */
+static dea_status not_that(struct reader *r, const char *wanted)
+{
+  size_t n = word_length(r->at);
+  if (n == 0) {
+    return fault(r, r->line, "the file ends in %s", r->section);
+  }
+  return fault(r, r->line, "'%.*s' in %s is not %s", (int)(n < 30 ? n : 30), r->at, r->section,
+               wanted);
+}
+
+static dea_status read_int(struct reader *r, const char *what, long long *out)
+{
+  char *end;
+  skip_space(r);
+  *out = strtoll(r->at, &end, 10);
+  if (end == r->at || !is_end_of_word(*end) || *out > INT32_MAX || *out < -INT32_MAX) {
+    return not_that(r, what);
+  }
+  r->at = end;
+  return DEA_OK;
+}
+
+static dea_status read_count(struct reader *r, const char *what, size_t *out)
+{
+  long long value;
+  *out = 0;
+  DEA_TRY(r->ctx, read_int(r, what, &value));
+  if (value < 0) {
+    return fault(r, r->line, "%lld in %s is not %s", value, r->section, what);
+  }
+  *out = (size_t)value;
+  return DEA_OK;
+}
+
+static dea_status read_number(struct reader *r, double *out)
+{
+  char *end;
+  skip_space(r);
+  *out = strtod(r->at, &end);
+  if (end == r->at || !is_end_of_word(*end) || !isfinite(*out)) {
+    return not_that(r, "a number");
+  }
+  r->at = end;
+  return DEA_OK;
+}
+
+static dea_status skip_numbers(struct reader *r, size_t count)
+{
+  double unused;
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(r->ctx, read_number(r, &unused));
+  }
+  return DEA_OK;
+}
+
+// Sections of the file
+// -----------------------------------------------------------------------------
+
+static dea_status read_format(struct reader *r)
+{
+  double version;
+  long long binary, size;
+  DEA_TRY(r->ctx, read_number(r, &version));
+  DEA_TRY(r->ctx, read_int(r, "0 (ASCII) or 1 (binary)", &binary));
+  DEA_TRY(r->ctx, read_int(r, "a size", &size));
+  if (binary != 0) {
+    return fault(r, r->line, "the file is binary: write it as ASCII (Mesh.Binary = 0)");
+  }
+  if (version != 2.2 && version != 4.1) {
+    return fault(r, r->line, "format %g is not known: 4.1 and 2.2 are (Mesh.MshFileVersion = 4.1)",
+                 version);
+  }
+  r->version = version < 4 ? 2 : 4;
+  return DEA_OK;
+}
+
+static struct physical *find_physical(const struct reader *r, int dimension, long long tag)
+{
+  struct physical *all = r->physicals.data;
+  for (size_t i = 0; i < r->physicals.count; i++) {
+    if (all[i].dimension == dimension && all[i].tag == tag) {
+      return &all[i];
+    }
+  }
+  return NULL;
+}
+
+static dea_status add_physical(struct reader *r, int dimension, long long tag,
+                               struct physical **out)
+{
+  *out = list_add(r->ctx, &r->physicals, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->dimension = dimension;
+  (*out)->tag = tag;
+  (*out)->index = SIZE_MAX;
+  snprintf((*out)->name, NAME_SIZE, "%lld", tag);
+  return DEA_OK;
+}
+
+static dea_status read_physical_names(struct reader *r)
+{
+  size_t count;
+  DEA_TRY(r->ctx, read_count(r, "a number of names", &count));
+  for (size_t i = 0; i < count; i++) {
+    size_t dimension;
+    long long tag;
+    struct physical *physical;
+    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
+    DEA_TRY(r->ctx, read_int(r, "the number of a group", &tag));
+    skip_space(r);
+    size_t n = *r->at == '"' ? strcspn(r->at + 1, "\"\n") : 0;
+    if (n == 0 || r->at[1 + n] != '"') {
+      return not_that(r, "a name in quotes");
+    }
+    if (n >= NAME_SIZE) {
+      return fault(r, r->line, "a name of %zu bytes is too long: %d at most", n, NAME_SIZE - 1);
+    }
+    if (dimension > 3 || find_physical(r, (int)dimension, tag) != NULL) {
+      return fault(r, r->line, "the group %lld of dimension %zu is there twice, or cannot be", tag,
+                   dimension);
+    }
+    DEA_TRY(r->ctx, add_physical(r, (int)dimension, tag, &physical));
+    memcpy(physical->name, r->at + 1, n);
+    physical->name[n] = '\0';
+    r->at += n + 2;
+  }
+  return DEA_OK;
+}
+
+/* Which entities of 4.1 are in which groups. */
+static dea_status read_entities(struct reader *r)
+{
+  size_t counts[4];
+  for (int i = 0; i < 4; i++) {
+    DEA_TRY(r->ctx, read_count(r, "a number of entities", &counts[i]));
+  }
+  for (int dimension = 0; dimension < 4; dimension++) {
+    for (size_t i = 0; i < counts[dimension]; i++) {
+      long long tag;
+      size_t groups, bounds;
+      DEA_TRY(r->ctx, read_int(r, "the number of an entity", &tag));
+      DEA_TRY(r->ctx, skip_numbers(r, dimension == 0 ? 3 : 6));
+      DEA_TRY(r->ctx, read_count(r, "a number of groups", &groups));
+      for (size_t k = 0; k < groups; k++) {
+        struct member *member = list_add(r->ctx, &r->members, sizeof *member);
+        if (member == NULL) {
+          return DEA_E_MEMORY;
+        }
+        *member = (struct member){.dimension = dimension, .entity = tag};
+        DEA_TRY(r->ctx, read_int(r, "the number of a group", &member->physical));
+        member->physical = llabs(member->physical); // negative: the other way round
+      }
+      if (dimension > 0) {
+        DEA_TRY(r->ctx, read_count(r, "a number of bounds", &bounds));
+        DEA_TRY(r->ctx, skip_numbers(r, bounds));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status add_node(struct reader *r, long long tag, struct raw_node **out)
+{
+  *out = list_add(r->ctx, &r->nodes, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->tag = tag;
+  return DEA_OK;
+}
+
+static dea_status read_place(struct reader *r, struct raw_node *node)
+{
+  for (int i = 0; i < 3; i++) {
+    DEA_TRY(r->ctx, read_number(r, &node->x[i]));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_nodes_2(struct reader *r)
+{
+  size_t count;
+  DEA_TRY(r->ctx, read_count(r, "a number of nodes", &count));
+  for (size_t i = 0; i < count; i++) {
+    long long tag;
+    struct raw_node *node;
+    DEA_TRY(r->ctx, read_int(r, "the number of a node", &tag));
+    DEA_TRY(r->ctx, add_node(r, tag, &node));
+    DEA_TRY(r->ctx, read_place(r, node));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_nodes_4(struct reader *r)
+{
+  size_t head[4]; // blocks, nodes, least and largest number
+  for (int i = 0; i < 4; i++) {
+    DEA_TRY(r->ctx, read_count(r, "a number of nodes", &head[i]));
+  }
+  for (size_t b = 0; b < head[0]; b++) {
+    size_t dimension, parametric, count, first = r->nodes.count;
+    long long tag;
+    struct raw_node *node;
+    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
+    DEA_TRY(r->ctx, read_int(r, "the number of an entity", &tag));
+    DEA_TRY(r->ctx, read_count(r, "0 or 1", &parametric));
+    DEA_TRY(r->ctx, read_count(r, "a number of nodes", &count));
+    for (size_t i = 0; i < count; i++) {
+      DEA_TRY(r->ctx, read_int(r, "the number of a node", &tag));
+      DEA_TRY(r->ctx, add_node(r, tag, &node));
+    }
+    for (size_t i = 0; i < count; i++) {
+      DEA_TRY(r->ctx, read_place(r, (struct raw_node *)r->nodes.data + first + i));
+      DEA_TRY(r->ctx, skip_numbers(r, parametric != 0 && dimension < 3 ? dimension : 0));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status find_kind(struct reader *r, long long type, const struct kind **out)
+{
+  *out = NULL;
+  for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+    if (kinds[i].type == type) {
+      *out = &kinds[i];
+      return DEA_OK;
+    }
+  }
+  return fault(r, r->line,
+               "elements of Gmsh's type %lld cannot be used: a plane mesh of quadrilaterals of "
+               "first or second order is wanted (types 3, 10, 16)",
+               type);
+}
+
+static dea_status read_element(struct reader *r, const struct kind *kind, long long group)
+{
+  struct raw_element *element = list_add(r->ctx, &r->elements, sizeof *element);
+  if (element == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *element = (struct raw_element){.kind = kind, .group = group, .line = r->line};
+  for (int n = 0; n < kind->nodes; n++) {
+    DEA_TRY(r->ctx, read_int(r, "the number of a node", &element->nodes[n]));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_elements_2(struct reader *r)
+{
+  size_t count;
+  DEA_TRY(r->ctx, read_count(r, "a number of elements", &count));
+  for (size_t i = 0; i < count; i++) {
+    long long tag, type, group = 0;
+    size_t tags;
+    const struct kind *kind;
+    DEA_TRY(r->ctx, read_int(r, "the number of an element", &tag));
+    DEA_TRY(r->ctx, read_int(r, "a type of elements", &type));
+    DEA_TRY(r->ctx, find_kind(r, type, &kind));
+    DEA_TRY(r->ctx, read_count(r, "a number of tags", &tags));
+    for (size_t k = 0; k < tags; k++) {
+      DEA_TRY(r->ctx, read_int(r, "a tag", &tag));
+      group = k == 0 ? llabs(tag) : group;
+    }
+    DEA_TRY(r->ctx, read_element(r, kind, group));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_elements_4(struct reader *r)
+{
+  size_t head[4]; // blocks, elements, least and largest number
+  for (int i = 0; i < 4; i++) {
+    DEA_TRY(r->ctx, read_count(r, "a number of elements", &head[i]));
+  }
+  for (size_t b = 0; b < head[0]; b++) {
+    size_t dimension, count;
+    long long entity, type, tag;
+    const struct kind *kind;
+    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
+    DEA_TRY(r->ctx, read_int(r, "the number of an entity", &entity));
+    DEA_TRY(r->ctx, read_int(r, "a type of elements", &type));
+    DEA_TRY(r->ctx, find_kind(r, type, &kind));
+    DEA_TRY(r->ctx, read_count(r, "a number of elements", &count));
+    for (size_t i = 0; i < count; i++) {
+      DEA_TRY(r->ctx, read_int(r, "the number of an element", &tag));
+      DEA_TRY(r->ctx, read_element(r, kind, entity));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Goes on behind the end of a section; rest: over what is left of it. */
+static dea_status end_section(struct reader *r, const char *name, size_t length, bool rest)
+{
+  for (;;) {
+    skip_space(r);
+    size_t n = word_length(r->at);
+    if (n == length + 3 && strncmp(r->at, "$End", 4) == 0 &&
+        strncmp(r->at + 4, name + 1, length - 1) == 0) {
+      r->at += n;
+      return DEA_OK;
+    }
+    if (!rest || n == 0) {
+      return not_that(r, "its end");
+    }
+    r->at += n;
+  }
+}
+
+static dea_status read_sections(struct reader *r)
+{
+  static const struct {
+    const char *name;
+    dea_status (*read[2])(struct reader *r); // of 2.2, 4.1
+  } sections[] = {
+      {"$MeshFormat", {read_format, read_format}},
+      {"$PhysicalNames", {read_physical_names, read_physical_names}},
+      {"$Entities", {NULL, read_entities}},
+      {"$Nodes", {read_nodes_2, read_nodes_4}},
+      {"$Elements", {read_elements_2, read_elements_4}},
+  };
+  enum { KNOWN = sizeof sections / sizeof sections[0] };
+  for (skip_space(r); *r->at != '\0'; skip_space(r)) {
+    const char *name = r->at;
+    size_t length = word_length(name), k = 0;
+    while (k < KNOWN &&
+           (strlen(sections[k].name) != length || strncmp(sections[k].name, name, length) != 0)) {
+      k++;
+    }
+    if (name[0] != '$' || (r->version == 0 && k != 0)) {
+      return fault(r, r->line,
+                   "this is no .msh file: it begins with $MeshFormat, and has sections "
+                   "such as $Nodes and $Elements");
+    }
+    dea_status (*read)(struct reader *) = k < KNOWN ? sections[k].read[r->version == 4] : NULL;
+    r->section = k < KNOWN ? sections[k].name : "a section";
+    r->at += length;
+    if (read != NULL) {
+      DEA_TRY(r->ctx, read(r));
+    }
+    DEA_TRY(r->ctx, end_section(r, name, length, read == NULL));
+  }
+  return DEA_OK;
+}
+
+// From what was read to a mesh
+// ---------------------------------------------------------------------
+
+static int compare_nodes(const void *a, const void *b)
+{
+  long long x = ((const struct raw_node *)a)->tag, y = ((const struct raw_node *)b)->tag;
+  return (x > y) - (x < y);
+}
+
+/* By key, then by nodes: the copies of an element in several groups follow each other. */
+static int compare_elements(const void *a, const void *b)
+{
+  const struct raw_element *x = a, *y = b;
+  if (x->key != y->key) {
+    return (x->key > y->key) - (x->key < y->key);
+  }
+  for (int n = 0; n < NODES_MAX; n++) {
+    if (x->nodes[n] != y->nodes[n]) {
+      return (x->nodes[n] > y->nodes[n]) - (x->nodes[n] < y->nodes[n]);
+    }
+  }
+  return (x->line > y->line) - (x->line < y->line);
+}
+
+static bool is_copy(const struct raw_element *a, const struct raw_element *b)
+{
+  return memcmp(a->nodes, b->nodes, sizeof a->nodes) == 0;
+}
+
+static const struct raw_node *find_node(const struct reader *r, long long tag)
+{
+  const struct raw_node wanted = {.tag = tag};
+  return r->nodes.count > 0
+             ? bsearch(&wanted, r->nodes.data, r->nodes.count, sizeof wanted, compare_nodes)
+             : NULL;
+}
+
+/* Middle of an element's corners. */
+static void middle_of(const struct reader *r, const struct raw_element *e, double out[2])
+{
+  int corners = e->kind->dimension == 1 ? 2 : e->kind->triangle ? 3 : 4;
+  out[0] = out[1] = 0;
+  for (int n = 0; n < corners; n++) {
+    const struct raw_node *node = find_node(r, e->nodes[n]);
+    out[0] += node->x[0] / corners;
+    out[1] += node->x[1] / corners;
+  }
+}
+
+/* Place of a point of [0, 1)^2 along Hilbert's curve, which fills the plane: points that are near
+ * on the curve are near each other. */
+static uint64_t along_hilbert(double u, double v)
+{
+  enum { BITS = 20 };
+  uint64_t x = (uint64_t)(u * (1 << BITS)), y = (uint64_t)(v * (1 << BITS)), key = 0;
+  for (uint64_t side = (uint64_t)1 << (BITS - 1); side > 0; side >>= 1) {
+    uint64_t right = (x & side) != 0, up = (y & side) != 0;
+    key += side * side * ((3 * right) ^ up);
+    if (up == 0) { // turn the quarter
+      if (right != 0) {
+        x = 2 * side - 1 - (x & (2 * side - 1));
+        y = 2 * side - 1 - (y & (2 * side - 1));
+      }
+      uint64_t keep = x;
+      x = y;
+      y = keep;
+    }
+  }
+  return key;
+}
+
+/* What the mesh is made of: box of its nodes, order, numbers. */
+struct survey {
+  double low[3], high[3], size;
+  int order;
+  size_t quads, lines, triangles, ungrouped;
+  const struct raw_element *first_triangle, *first_ungrouped;
+};
+
+static bool is_quad(const struct raw_element *e)
+{
+  return e->kind->dimension == 2 && !e->kind->triangle;
+}
+
+/* The physical groups of an element one after the other, *cursor from 0; 0 after the last. */
+static long long next_group(const struct reader *r, const struct raw_element *e, size_t *cursor)
+{
+  if (r->version == 2) {
+    return (*cursor)++ == 0 ? e->group : 0;
+  }
+  const struct member *all = r->members.data;
+  while (*cursor < r->members.count) {
+    const struct member *m = &all[(*cursor)++];
+    if (m->dimension == e->kind->dimension && m->entity == e->group) {
+      return m->physical;
+    }
+  }
+  return 0;
+}
+
+static dea_status check_element(struct reader *r, const struct raw_element *e, struct survey *s)
+{
+  for (int n = 0; n < e->kind->nodes; n++) {
+    const struct raw_node *node = find_node(r, e->nodes[n]);
+    if (node == NULL) {
+      return fault(r, e->line, "there is no node %lld", e->nodes[n]);
+    }
+    for (int i = 0; i < 3; i++) {
+      s->low[i] = fmin(s->low[i], node->x[i]);
+      s->high[i] = fmax(s->high[i], node->x[i]);
+    }
+  }
+  if (e->kind->triangle) {
+    s->first_triangle = s->triangles++ == 0 ? e : s->first_triangle;
+  } else if (is_quad(e)) {
+    if (s->order != 0 && s->order != e->kind->order) {
+      return fault(r, e->line, "quadrilaterals of first and of second order in one mesh");
+    }
+    size_t cursor = 0;
+    s->order = e->kind->order;
+    s->quads++;
+    if (next_group(r, e, &cursor) == 0) {
+      s->first_ungrouped = s->ungrouped++ == 0 ? e : s->first_ungrouped;
+    }
+  } else {
+    s->lines += e->kind->dimension == 1;
+  }
+  return DEA_OK;
+}
+
+static dea_status check_all(struct reader *r, double unit_m, struct survey *s)
+{
+  const struct raw_node *nodes = r->nodes.data;
+  const struct raw_element *elements = r->elements.data;
+  double middle[2], mm = 1e3 * unit_m;
+  *s = (struct survey){.low = {INFINITY, INFINITY, INFINITY},
+                       .high = {-INFINITY, -INFINITY, -INFINITY}};
+  for (size_t i = 1; i < r->nodes.count; i++) {
+    if (nodes[i].tag == nodes[i - 1].tag) {
+      return fault(r, 0, "node %lld is there twice", nodes[i].tag);
+    }
+  }
+  for (size_t i = 0; i < r->elements.count; i++) {
+    DEA_TRY(r->ctx, check_element(r, &elements[i], s));
+  }
+  if (s->triangles > 0) {
+    middle_of(r, s->first_triangle, middle);
+    return fault(r, s->first_triangle->line,
+                 "%zu triangle%s, the first at (%.4g, %.4g) mm: only quadrilaterals can be used "
+                 "(Mesh.RecombineAll = 1, Mesh.RecombinationAlgorithm = 1)",
+                 s->triangles, s->triangles > 1 ? "s" : "", mm * middle[0], mm * middle[1]);
+  }
+  if (s->quads == 0) {
+    return fault(r, 0, "the file has no quadrilaterals");
+  }
+  if (s->ungrouped > 0) {
+    middle_of(r, s->first_ungrouped, middle);
+    return fault(r, s->first_ungrouped->line,
+                 "%zu quadrilaterals are in no physical surface, the first at (%.4g, %.4g) mm: "
+                 "name what they belong to (Physical Surface(\"film\") = ...)",
+                 s->ungrouped, mm * middle[0], mm * middle[1]);
+  }
+  s->size = fmax(s->high[0] - s->low[0], s->high[1] - s->low[1]);
+  double far = fmax(fmax(-s->low[0], s->high[0]), fmax(-s->low[1], s->high[1]));
+  if (!(s->size * unit_m > size_least_m && s->size * unit_m < size_most_m && far < 1e6 * s->size)) {
+    return fault(r, 0, "a mesh of %.3g mm, up to %.3g mm away from the origin, cannot be used",
+                 mm * s->size, mm * far);
+  }
+  if (s->high[2] - s->low[2] > flat * s->size) {
+    return fault(r, 0, "the mesh is not plane: z is from %.6g to %.6g mm", mm * s->low[2],
+                 mm * s->high[2]);
+  }
+  return DEA_OK;
+}
+
+/* Quadrilaterals first, along the curve; then lines; then the rest. */
+static void sort_elements(struct reader *r, const struct survey *s)
+{
+  struct raw_element *elements = r->elements.data;
+  for (size_t i = 0; i < r->elements.count; i++) {
+    struct raw_element *e = &elements[i];
+    double middle[2], inside = 1 - 1e-9;
+    if (is_quad(e)) {
+      middle_of(r, e, middle);
+      e->key = along_hilbert(inside * (middle[0] - s->low[0]) / s->size,
+                             inside * (middle[1] - s->low[1]) / s->size);
+    } else {
+      e->key = UINT64_MAX - (e->kind->dimension == 1 ? 1 : 0);
+    }
+  }
+  qsort(elements, r->elements.count, sizeof *elements, compare_elements);
+}
+
+/* A group or a curve of the mesh for a physical group of the file. */
+static dea_status add_name(struct reader *r, struct physical *physical, struct dea_plane_mesh *mesh)
+{
+  size_t *count = physical->dimension == 2 ? &mesh->group_count : &mesh->curve_count;
+  char ***names = physical->dimension == 2 ? &mesh->group : &mesh->curve;
+  char **moved = dea_resize(r->ctx, *names, *count + 1, sizeof *moved);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *names = moved;
+  moved[*count] = dea_copy_text(r->ctx, physical->name, strlen(physical->name));
+  if (moved[*count] == NULL) {
+    return DEA_E_MEMORY;
+  }
+  physical->index = (*count)++;
+  return DEA_OK;
+}
+
+/* Those with a name in the order of the file, then those without. */
+static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
+{
+  const struct raw_element *elements = r->elements.data;
+  for (size_t i = 0; i < r->elements.count; i++) {
+    const struct raw_element *e = &elements[i];
+    size_t cursor = 0;
+    struct physical *unused;
+    for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
+      if (find_physical(r, e->kind->dimension, tag) == NULL) {
+        DEA_TRY(r->ctx, add_physical(r, e->kind->dimension, tag, &unused));
+      }
+    }
+  }
+  struct physical *all = r->physicals.data;
+  for (size_t i = 0; i < r->physicals.count; i++) {
+    if (all[i].dimension == 1 || all[i].dimension == 2) {
+      DEA_TRY(r->ctx, add_name(r, &all[i], mesh));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Node of the mesh at that of the file. */
+static int mesh_node(const struct reader *r, long long tag, double unit_m,
+                     struct dea_places *places)
+{
+  const struct raw_node *node = find_node(r, tag);
+  return dea_places_node(places, (const double[2]){unit_m * node->x[0], unit_m * node->x[1]});
+}
+
+/* Nodes of a quadrilateral in the project's order, counter-clockwise. */
+static void place_quad(const struct reader *r, const struct raw_element *e, double unit_m,
+                       struct dea_places *places, int *quad)
+{
+  static const int order_1[4] = {0, 1, 3, 2}, order_2[9] = {0, 2, 8, 6, 1, 5, 7, 3, 4};
+  int per = e->kind->order + 1;
+  const int *order = per == 2 ? order_1 : order_2;
+  for (int n = 0; n < e->kind->nodes; n++) {
+    quad[order[n]] = mesh_node(r, e->nodes[n], unit_m, places);
+  }
+  if (e->kind->nodes == 8) { // middle of the polynomial that has no xi^2 eta^2
+    double middle[2];
+    for (int i = 0; i < 2; i++) {
+      const double *x = places->x + i;
+      middle[i] = 0.5 * (x[2 * quad[1]] + x[2 * quad[3]] + x[2 * quad[5]] + x[2 * quad[7]]) -
+                  0.25 * (x[2 * quad[0]] + x[2 * quad[2]] + x[2 * quad[6]] + x[2 * quad[8]]);
+    }
+    quad[4] = dea_places_node(places, middle);
+  }
+  const double *a = places->x + 2 * quad[0], *b = places->x + 2 * quad[per - 1];
+  const double *c = places->x + 2 * quad[per * per - 1], *d = places->x + 2 * quad[per * per - per];
+  if ((c[0] - a[0]) * (d[1] - b[1]) - (c[1] - a[1]) * (d[0] - b[0]) < 0) {
+    for (int i = 0; i < per; i++) {
+      for (int j = 0; j < i; j++) {
+        int keep = quad[per * i + j];
+        quad[per * i + j] = quad[per * j + i];
+        quad[per * j + i] = keep;
+      }
+    }
+  }
+}
+
+/* Number of the region that is in these groups. */
+static dea_status region_of(struct reader *r, struct dea_plane_mesh *mesh,
+                            const unsigned char *within, int *out)
+{
+  size_t n = mesh->group_count, k = 0;
+  while (k < mesh->region_count && memcmp(mesh->within + k * n, within, n) != 0) {
+    k++;
+  }
+  if (k == mesh->region_count) {
+    unsigned char *moved = dea_resize(r->ctx, mesh->within, k + 1, n);
+    if (moved == NULL) {
+      return DEA_E_MEMORY;
+    }
+    mesh->within = moved;
+    memcpy(moved + k * n, within, n);
+    mesh->region_count++;
+  }
+  *out = (int)k;
+  return DEA_OK;
+}
+
+/* The copies of one quadrilateral, elements[i] and on; *next: behind them. */
+static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea_places *places,
+                           struct dea_plane_mesh *mesh, unsigned char *within, size_t *next)
+{
+  const struct raw_element *elements = r->elements.data;
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  place_quad(r, &elements[i], unit_m, places, mesh->quads + mesh->quad_count * per_quad);
+  memset(within, 0, mesh->group_count);
+  for (*next = i; *next < r->elements.count && is_quad(&elements[*next]) &&
+                  is_copy(&elements[i], &elements[*next]);
+       (*next)++) {
+    size_t cursor = 0;
+    for (long long tag; (tag = next_group(r, &elements[*next], &cursor)) != 0;) {
+      within[find_physical(r, 2, tag)->index] = 1;
+    }
+  }
+  DEA_TRY(r->ctx, region_of(r, mesh, within, &mesh->region[mesh->quad_count]));
+  mesh->quad_count++;
+  return DEA_OK;
+}
+
+/* A line element, once for each curve that it is on. */
+static dea_status add_line(struct reader *r, const struct raw_element *e, double unit_m,
+                           struct dea_places *places, struct dea_plane_mesh *mesh,
+                           struct list *curves)
+{
+  int nodes[3], per = mesh->order + 1;
+  size_t cursor = 0, known = places->count;
+  for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
+    if (e->kind->order != mesh->order) {
+      return fault(r, e->line, "a line of another order than the quadrilaterals");
+    }
+    for (int n = 0; n < per; n++) {
+      nodes[n] = mesh_node(r, e->nodes[n], unit_m, places);
+      if (places->count > known) {
+        return fault(r, e->line, "a line of a physical curve is not on the side of an element");
+      }
+    }
+    int *edge = list_add(r->ctx, curves, (size_t)(per + 1) * sizeof *edge);
+    if (edge == NULL) {
+      return DEA_E_MEMORY;
+    }
+    edge[0] = (int)find_physical(r, 1, tag)->index;
+    edge[1] = nodes[0];
+    edge[per] = nodes[1];
+    if (per == 3) {
+      edge[2] = nodes[2];
+    }
+  }
+  return DEA_OK;
+}
+
+/* The edges out of their list. */
+static dea_status take_edges(struct reader *r, const struct list *curves,
+                             struct dea_plane_mesh *mesh)
+{
+  size_t per = (size_t)(mesh->order + 1);
+  const int *from = curves->data;
+  mesh->edges = dea_alloc(r->ctx, curves->count * per, sizeof *mesh->edges);
+  mesh->edge_curve = dea_alloc(r->ctx, curves->count, sizeof *mesh->edge_curve);
+  if (mesh->edges == NULL || mesh->edge_curve == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < curves->count; i++, from += per + 1) {
+    mesh->edge_curve[i] = from[0];
+    memcpy(mesh->edges + i * per, from + 1, per * sizeof *from);
+  }
+  mesh->edge_count = curves->count;
+  return DEA_OK;
+}
+
+static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
+                       struct dea_places *places, struct dea_plane_mesh *mesh)
+{
+  const struct raw_element *elements = r->elements.data;
+  struct list curves = {0};
+  DEA_TRY(r->ctx, add_names(r, mesh));
+  unsigned char *within = dea_alloc(r->ctx, mesh->group_count, 1);
+  dea_status status = within != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < s->quads && status == DEA_OK;) {
+    status = add_quad(r, i, unit_m, places, mesh, within, &i);
+  }
+  mesh->node_count = places->count;
+  for (size_t i = s->quads; i < s->quads + s->lines && status == DEA_OK; i++) {
+    status = add_line(r, &elements[i], unit_m, places, mesh, &curves);
+  }
+  if (status == DEA_OK) {
+    status = take_edges(r, &curves, mesh);
+  }
+  dea_free(r->ctx, curves.data);
+  dea_free(r->ctx, within);
+  return status;
+}
+
+static dea_status check_quality(struct reader *r, const struct dea_plane_mesh *mesh)
+{
+  size_t worst = 0, per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  double least = dea_plane_mesh_smallest_jacobian(mesh, &worst), middle[2] = {0, 0};
+  if (least >= DEA_MSH_JACOBIAN_MIN) {
+    return DEA_OK;
+  }
+  for (size_t n = 0; n < per_quad; n++) {
+    const double *x = mesh->x + 2 * mesh->quads[worst * per_quad + n];
+    middle[0] += x[0] / (double)per_quad;
+    middle[1] += x[1] / (double)per_quad;
+  }
+  return fault(r, 0,
+               "the quadrilateral at (%.4g, %.4g) mm is too bad to use: its smallest Jacobian is "
+               "%.3g of the mean one, at least %g is wanted",
+               1e3 * middle[0], 1e3 * middle[1], least, DEA_MSH_JACOBIAN_MIN);
+}
+
+static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh **out)
+{
+  struct survey s;
+  struct dea_places places = {0};
+  if (r->nodes.count > 0) {
+    qsort(r->nodes.data, r->nodes.count, sizeof(struct raw_node), compare_nodes);
+  }
+  DEA_TRY(r->ctx, check_all(r, unit_m, &s));
+  sort_elements(r, &s);
+  size_t room = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
+  *out = dea_plane_mesh_create(r->ctx, s.order, room, s.quads);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->quad_count = 0;
+  DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, room, same * s.size * unit_m, &places));
+  dea_status status = fill(r, &s, unit_m, &places, *out);
+  dea_places_release(r->ctx, &places);
+  DEA_TRY(r->ctx, status);
+  DEA_TRY(r->ctx, check_quality(r, *out));
+  return DEA_OK;
+}
+
+dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *name, double unit_m,
+                         struct dea_plane_mesh **out)
+{
+  struct reader r = {.ctx = ctx, .file = dea_intern(ctx, name), .at = text, .line = 1};
+  *out = NULL;
+  if (r.file == NULL) {
+    return DEA_E_MEMORY;
+  }
+  void *locale = dea_c_locale_enter();
+  dea_status status = read_sections(&r);
+  if (status == DEA_OK) {
+    status = build(&r, unit_m, out);
+  }
+  dea_c_locale_leave(locale);
+  if (status != DEA_OK) {
+    dea_plane_mesh_destroy(ctx, *out);
+    *out = NULL;
+  }
+  dea_free(ctx, r.nodes.data);
+  dea_free(ctx, r.elements.data);
+  dea_free(ctx, r.physicals.data);
+  dea_free(ctx, r.members.data);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_msh_read(struct dea_context *ctx, const char *file, double unit_m,
+                        struct dea_plane_mesh **out)
+{
+  char *text;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, FILE_MAX, &text, &length));
+  dea_status status = dea_msh_parse(ctx, text, file, unit_m, out);
+  dea_free(ctx, text);
+  return status;
+}
