@@ -1,5 +1,5 @@
 /* Where the key of a figure stands. */
-#include "output/figure.h"
+#include "result/figure.h"
 #include "testing.h"
 
 enum { POINTS = 41 };

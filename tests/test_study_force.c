@@ -1,6 +1,5 @@
 /* Study "force" with a model of one spring: F = k d + c d^3 - b V^2 on a tip at depth d. */
 #include "design_text.h"
-#include "output/figure_stops.h"
 #include "study/design_file.h"
 #include "study/study.h"
 
@@ -69,6 +68,8 @@ static const struct dea_model_type spring = {.name = "spring",
                                              .solve = solve,
                                              .indent = indent};
 
+extern const struct dea_study dea_study_force;
+
 static void test_depths_and_preloads(void **state)
 {
   (void)state;
@@ -97,15 +98,23 @@ static void test_depths_and_preloads(void **state)
   }
   assert_close(curve->points[6].force_N, 0.18, 1e-3, 0);
   assert_close(curve->points[6].force_N - curve->points[8].force_N, b * 4e6, 1e-9, 0);
-  struct dea_stops stops; // as the figures take it apart
-  dea_stops_find(result, &stops);
+  // its load lines: against the depth, the least deep one first, at each voltage
+  struct dea_plot *plot;
+  assert_int_equal(dea_plot_create(ctx, "load_line", "", &plot), DEA_OK);
+  assert_string_equal(dea_study_force.figures[1].name, "load_line");
+  assert_int_equal(dea_study_force.figures[1].build(ctx, result, plot), DEA_OK);
   static const size_t by_depth[] = {1, 0, 2};
-  assert_int_equal(stops.count, 3);
-  for (size_t i = 0; i < 3; i++) {
-    assert_int_equal(stops.first[i], 3 * i);
-    assert_int_equal(stops.by_depth[i], by_depth[i]);
+  assert_int_equal(plot->panels[0].series_count, 3);
+  for (size_t v = 0; v < 3; v++) {
+    const struct dea_series *line = &plot->panels[0].series[v];
+    assert_int_equal(line->count, 3);
+    for (size_t i = 0; i < 3; i++) {
+      const struct dea_load_point *p = &curve->points[3 * by_depth[i] + v];
+      assert_close(line->values[i], 1e3 * p->tip_depth_m, 1e-14, 0);
+      assert_close(line->values[3 + i], 1e3 * p->force_N, 1e-14, 0);
+    }
   }
-  assert_int_equal(stops.first[3], 9);
+  dea_plot_destroy(ctx, plot);
   dea_result_destroy(ctx, result);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);

@@ -409,24 +409,21 @@ static dea_status draw(struct dea_context *ctx, const struct dea_result *inner,
 dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figure,
                           const char **out)
 {
-  size_t count, known_count = 0;
-  const char *known[64];
-  const struct dea_figure *const *all = dea_figure_all(&count);
+  const char *known[DEA_FIGURES_MAX];
+  size_t count = dea_figure_names(true, known);
+  const struct dea_figure *one;
   bool found = figure[0] == '\0';
   *out = NULL;
   DEA_TRY(ctx->inner, door_check_owner(ctx, result->ctx, "result"));
   dea_text_free(&result->svg);
-  for (size_t i = 0; i < count && result->svg.length == 0; i++) {
-    if (all[i]->build != NULL && (figure[0] == '\0' || strcmp(all[i]->name, figure) == 0)) {
+  for (size_t i = 0; (one = dea_figure_get(i)) != NULL && result->svg.length == 0; i++) {
+    if (one->build != NULL && (figure[0] == '\0' || strcmp(one->name, figure) == 0)) {
       found = true;
-      DEA_TRY(ctx->inner, draw(ctx->inner, result->inner, all[i], &result->svg));
-    }
-    if (all[i]->build != NULL && known_count < sizeof known / sizeof known[0]) {
-      known[known_count++] = all[i]->name;
+      DEA_TRY(ctx->inner, draw(ctx->inner, result->inner, one, &result->svg));
     }
   }
   if (!found) {
-    return door_unknown(ctx, "figure", figure, known, known_count);
+    return door_unknown(ctx, "figure", figure, known, count);
   }
   if (result->svg.length == 0) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the result has nothing to show in figure '%.60s'",

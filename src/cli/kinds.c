@@ -22,10 +22,20 @@
     }                                                                                              \
     return DEA_OK;                                                                                 \
   }
-NAMES_OF(list_figures, dea_figure_all)
 NAMES_OF(list_importers, dea_importer_all)
 NAMES_OF(list_models, dea_model_all)
 NAMES_OF(list_studies, dea_study_all)
+
+static dea_status list_figures(struct dea_cli *cli, struct dea_text *out)
+{
+  const char *names[DEA_FIGURES_MAX];
+  size_t count = dea_figure_names(false, names);
+  (void)cli;
+  for (size_t i = 0; i < count; i++) {
+    dea_text_add(out, "%s\n", names[i]);
+  }
+  return DEA_OK;
+}
 
 static dea_status list_commands(struct dea_cli *cli, struct dea_text *out)
 {

@@ -1,8 +1,8 @@
 /* The figures of several curves beside one reference (see compare_set.h). */
 #include "base/write_file.h"
 #include "output/compare_set.h"
-#include "output/figure.h"
 #include "output/gnuplot.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>

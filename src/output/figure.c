@@ -3,6 +3,7 @@
 #include "base/write_file.h"
 #include "output/figure_list.h"
 #include "output/gnuplot.h"
+#include "study/study.h"
 
 #include <string.h>
 
@@ -15,29 +16,49 @@ static const struct dea_figure *const figures[] = {
     DEA_FIGURE_LIST(FIGURE_ROW)
 #undef FIGURE_ROW
 };
-enum { FIGURE_COUNT = sizeof figures / sizeof figures[0] };
 
-const struct dea_figure *const *dea_figure_all(size_t *count)
+const struct dea_figure *dea_figure_get(size_t i)
 {
-  *count = FIGURE_COUNT;
-  return figures;
+  size_t count = sizeof figures / sizeof figures[0];
+  if (i < count) {
+    return figures[i];
+  }
+  i -= count;
+  const struct dea_study *const *studies = dea_study_all(&count);
+  for (size_t s = 0; s < count; s++) {
+    if (i < studies[s]->figure_count) {
+      return &studies[s]->figures[i];
+    }
+    i -= studies[s]->figure_count;
+  }
+  return NULL;
+}
+
+size_t dea_figure_names(bool plots, const char *out[DEA_FIGURES_MAX])
+{
+  const struct dea_figure *figure;
+  size_t count = 0;
+  for (size_t i = 0; (figure = dea_figure_get(i)) != NULL && count < DEA_FIGURES_MAX; i++) {
+    if (!plots || figure->build != NULL) {
+      out[count++] = figure->name;
+    }
+  }
+  return count;
 }
 
 static dea_status check_names(struct dea_context *ctx, const struct dea_figure_options *options)
 {
-  const char *names[FIGURE_COUNT];
-  for (int f = 0; f < FIGURE_COUNT; f++) {
-    names[f] = figures[f]->name;
-  }
+  const char *names[DEA_FIGURES_MAX];
+  size_t count = dea_figure_names(false, names);
   for (size_t i = 0; options->names != NULL && i < options->name_count; i++) {
     bool known = false;
-    for (int f = 0; f < FIGURE_COUNT; f++) {
+    for (size_t f = 0; f < count; f++) {
       known = known || strcmp(names[f], options->names[i]) == 0;
     }
     if (!known) {
-      const char *nearest = dea_nearest_name(options->names[i], names, FIGURE_COUNT);
+      const char *nearest = dea_nearest_name(options->names[i], names, count);
       struct dea_text all = {.ctx = ctx};
-      for (int f = 0; nearest == NULL && f < FIGURE_COUNT; f++) {
+      for (size_t f = 0; nearest == NULL && f < count; f++) {
         dea_text_add(&all, "%s%s", f > 0 ? ", " : "", names[f]);
       }
       dea_status status =
@@ -94,17 +115,18 @@ static dea_status write_one(struct dea_context *ctx, const struct dea_result *re
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
                              const char *directory, const struct dea_figure_options *options)
 {
-  const char *names[FIGURE_COUNT];
+  const char *names[DEA_FIGURES_MAX];
   size_t count = 0;
   DEA_TRY(ctx, check_names(ctx, options));
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
-  for (int f = 0; f < FIGURE_COUNT; f++) {
+  const struct dea_figure *figure;
+  for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && count < DEA_FIGURES_MAX; f++) {
     bool drawn = false;
-    if (is_wanted(options, figures[f]->name)) {
-      DEA_TRY(ctx, write_one(ctx, result, directory, options, figures[f], &drawn));
+    if (is_wanted(options, figure->name)) {
+      DEA_TRY(ctx, write_one(ctx, result, directory, options, figure, &drawn));
     }
     if (drawn) {
-      names[count++] = figures[f]->name;
+      names[count++] = figure->name;
     }
   }
   if (options->format.svg || options->format.pdf || options->format.png) {

@@ -1,6 +1,6 @@
 /* Radial strain of the electrode (left axis) and out-of-plane displacement (right axis) against the
  * voltage: the form of Fig 2 of the paper. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>

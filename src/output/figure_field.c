@@ -1,5 +1,5 @@
 /* True field against the voltage, below the breakdown field where that is known. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Out-of-plane force against the voltage. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <stdio.h>
 

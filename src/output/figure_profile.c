@@ -1,5 +1,5 @@
 /* Stretch and tension along the radius at up to four voltages: full lines radial, dashed hoop. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Electrode stretch against the voltage along the whole equilibrium path, with its events. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <stdio.h>
 

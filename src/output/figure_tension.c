@@ -1,5 +1,5 @@
 /* Smallest tension against the voltage; below zero the film is slack. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>

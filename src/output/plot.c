@@ -7,127 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char *caption,
-                           struct dea_plot **out)
-{
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
-  snprintf((*out)->name, sizeof(*out)->name, "%s", name);
-  snprintf((*out)->caption, sizeof(*out)->caption, "%s", caption);
-  (*out)->panel_count = 1;
-  (*out)->second_height = 1.0;
-  for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
-    struct dea_panel *panel = &(*out)->panels[i];
-    panel->x_min = panel->x_max = panel->y_min = panel->y_max = panel->y2_max = NAN;
-    panel->key = "top left";
-    panel->y2_colour = DEA_BLACK;
-  }
-  return DEA_OK;
-}
-
-void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot)
-{
-  if (plot == NULL) {
-    return;
-  }
-  for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
-    dea_panel_clear(ctx, &plot->panels[i]);
-  }
-  dea_free(ctx, plot);
-}
-
-void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel)
-{
-  for (size_t s = 0; s < panel->series_count; s++) {
-    dea_free(ctx, panel->series[s].values);
-  }
-  panel->series_count = 0;
-  panel->says_unstable = false;
-}
-
-dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
-                         struct dea_series **out)
-{
-  *out = NULL;
-  if (panel->series_count == DEA_PANEL_SERIES_MAX) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a figure holds at most %d series",
-                    DEA_PANEL_SERIES_MAX);
-  }
-  double *values = dea_alloc(ctx, 3 * count, sizeof *values);
-  if (values == NULL) {
-    return DEA_E_MEMORY;
-  }
-  for (size_t i = 0; i < 3 * count; i++) {
-    values[i] = NAN;
-  }
-  *out = &panel->series[panel->series_count++];
-  **out = (struct dea_series){.count = count, .values = values};
-  return DEA_OK;
-}
-
-dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
-                            const struct dea_series *look, struct dea_series **out)
-{
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
-  double *values = (*out)->values;
-  **out = *look;
-  (*out)->count = count;
-  (*out)->values = values;
-  return DEA_OK;
-}
-
-void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text)
-{
-  if (panel->mark_count < DEA_PANEL_MARKS_MAX && isfinite(at)) {
-    struct dea_mark *mark = &panel->marks[panel->mark_count++];
-    *mark = (struct dea_mark){.vertical = vertical, .at = at};
-    dea_label_escape(text, mark->text, sizeof mark->text);
-  }
-}
-
-static bool series_shows(const struct dea_series *series)
-{
-  for (size_t i = 0; i < series->count; i++) {
-    if (isfinite(series->values[i]) && isfinite(series->values[series->count + i])) {
-      return true;
-    }
-  }
-  return false;
-}
-
-bool dea_plot_shows(const struct dea_plot *plot)
-{
-  for (size_t p = 0; p < plot->panel_count; p++) {
-    for (size_t s = 0; s < plot->panels[p].series_count; s++) {
-      if (series_shows(&plot->panels[p].series[s])) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-void dea_label_escape(const char *text, char *out, size_t size)
-{
-  size_t n = 0;
-  for (; *text != '\0' && n + 4 < size; text++) {
-    unsigned char c = (unsigned char)*text;
-    if (c < ' ') {
-      c = ' ';
-    }
-    if (strchr("_^{}@&~", c) != NULL) {
-      out[n++] = '\\'; // twice: once for the string in double quotes, once for enhanced text
-      out[n++] = '\\';
-    } else if (c == '"' || c == '\\' || c == '`' || c == '$') {
-      c = '\'';
-    }
-    out[n++] = (char)c;
-  }
-  out[n] = '\0';
-}
-
 // Data -------------------------------------------------------------------------------------------
 
 static void add_value(struct dea_text *dat, double value)
@@ -163,7 +42,7 @@ static void add_data(struct dea_text *dat, const struct dea_plot *plot)
   size_t index = 0;
   for (size_t p = 0; p < plot->panel_count; p++) {
     for (size_t s = 0; s < plot->panels[p].series_count; s++) {
-      if (series_shows(&plot->panels[p].series[s])) {
+      if (dea_series_shows(&plot->panels[p].series[s])) {
         add_block(dat, index++, &plot->panels[p], &plot->panels[p].series[s]);
       }
     }
@@ -425,7 +304,7 @@ static void add_panel(struct dea_text *gp, const struct dea_plot *plot, size_t p
   add_marks(gp, panel);
   bool first = true;
   for (size_t s = 0; s < panel->series_count; s++) {
-    if (series_shows(&panel->series[s])) {
+    if (dea_series_shows(&panel->series[s])) {
       add_series(gp, &panel->series[s], (*index)++, first);
       first = false;
     }

@@ -67,12 +67,11 @@ static void forget(struct dea_context *ctx, const char *directory, const char *n
 static void forget_figures(struct dea_context *ctx, const char *directory)
 {
   static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
-  size_t count;
-  const struct dea_figure *const *figures = dea_figure_all(&count);
-  for (size_t f = 0; f < count; f++) {
+  const struct dea_figure *figure;
+  for (size_t f = 0; (figure = dea_figure_get(f)) != NULL; f++) {
     for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
       char name[128];
-      snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figures[f]->name, endings[e]);
+      snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figure->name, endings[e]);
       forget(ctx, directory, name);
     }
   }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char study_name[] = "compare-design";
 
@@ -203,6 +204,272 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   return DEA_OK;
 }
 
+// Figures ----------------------------------------------------------------------------------------
+
+enum { SHOWN_MAX = 16 };
+
+/* One curve of such a figure. */
+struct shown {
+  const struct dea_variant *variant; // lent
+  struct dea_series look;            // without title
+};
+
+enum { TITLE_SHORT = 24 }; // signs, of which two fit side by side
+
+/* Variants of the study in the order of models and designs, at most SHOWN_MAX; returns their
+ * number. profiles: only models that have profiles. A colour a design; lines for the first model
+ * that has something to show, lines with markers for the others. */
+static size_t find_shown(const struct dea_result *result, bool profiles,
+                         struct shown out[SHOWN_MAX])
+{
+  static const enum dea_colour order[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN, DEA_PURPLE,
+                                          DEA_ORANGE, DEA_SKY,        DEA_BLACK, DEA_GREY};
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t model_count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX), count = 0;
+  for (size_t m = 0, shown = 0; m < model_count; m++) {
+    size_t number = 0, before = count;
+    for (size_t i = 0; i < result->variant_count; i++) {
+      const struct dea_variant *variant = &result->variants[i];
+      if (!dea_variant_is(variant, models[m], study_name)) {
+        continue;
+      }
+      if (count < SHOWN_MAX && (!profiles || variant->profile.count > 0)) {
+        out[count].variant = variant;
+        out[count].look = dea_figure_style("", shown);
+        out[count++].look.colour = order[number % (sizeof order / sizeof order[0])];
+      }
+      number++;
+    }
+    shown += count > before;
+  }
+  return count;
+}
+
+/* An entry of the key; of its series only a point shows, on a curve that is there. */
+static dea_status add_entry(struct dea_context *ctx, struct dea_panel *panel,
+                            const struct dea_series *look, const char *title)
+{
+  struct dea_series *entry;
+  const struct dea_series *first = &panel->series[0];
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, 1, look, &entry));
+  snprintf(entry->title, sizeof entry->title, "%s", title);
+  entry->values[0] = first->values[0];
+  entry->values[1] = first->values[first->count];
+  return DEA_OK;
+}
+
+static bool is_first(const struct shown list[], size_t i, bool by_name)
+{
+  for (size_t k = 0; k < i; k++) {
+    const struct dea_variant *a = list[k].variant, *b = list[i].variant;
+    if (by_name ? strcmp(a->name, b->name) == 0 : strcmp(a->curve.model, b->curve.model) == 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Adds y = factor * (member + shift) of each against V, as dea_figure_add. */
+static dea_status add_shown(struct dea_context *ctx, struct dea_panel *panel,
+                            const struct shown list[], size_t count, int column, double factor,
+                            double shift)
+{
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, dea_figure_add(ctx, panel, &list[i].variant->curve, column, factor, shift,
+                                &list[i].look));
+  }
+  return DEA_OK;
+}
+
+/* Keys of so many entries, in two columns from the fourth on where their titles are short. */
+static const char *key_of(size_t entries, size_t longest)
+{
+  static const char *const keys[] = {
+      "above horizontal maxrows 1 samplen 1.5", "above vertical maxrows 2 samplen 1.5",
+      "above vertical maxrows 3 samplen 1.5",   "above vertical maxrows 4 samplen 1.5",
+      "above vertical maxrows 5 samplen 1.5",   "above vertical maxrows 6 samplen 1.5",
+  };
+  size_t rows = entries > 3 && longest <= TITLE_SHORT ? (entries + 1) / 2 : entries;
+  return keys[rows > 6 ? 5 : rows > 0 ? rows - 1 : 0];
+}
+
+/* Adds key entries above the panel: of designs by their colours, with the voltage of their profiles
+ * if asked, and of models by their markers where there are several. For a panel that has series. */
+static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
+                          const struct shown list[], size_t count, bool voltages)
+{
+  size_t entries = 0;
+  char title[DEA_LABEL_SIZE];
+  for (size_t i = 0; i < count; i++) {
+    struct dea_series look = list[i].look;
+    look.style = DEA_LINE;
+    if (is_first(list, i, true)) {
+      dea_label_escape(list[i].variant->name, title, sizeof title);
+      size_t n = strlen(title);
+      if (voltages) {
+        snprintf(title + n, sizeof title - n, ", %.3g kV",
+                 1e-3 * list[i].variant->profile.voltage_V);
+      }
+      DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
+      entries++;
+    }
+  }
+  bool several =
+      count > 0 && strcmp(list[0].variant->curve.model, list[count - 1].variant->curve.model) != 0;
+  for (size_t i = 0; i < count && several; i++) {
+    struct dea_series look = list[i].look;
+    look.colour = DEA_GREY;
+    if (is_first(list, i, false)) {
+      dea_label_escape(list[i].variant->curve.model, title, sizeof title);
+      DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
+      entries++;
+    }
+  }
+  size_t longest = 0;
+  for (size_t i = 0; i < panel->series_count; i++) {
+    size_t length = strlen(panel->series[i].title);
+    longest = length > longest ? length : longest;
+  }
+  panel->key = key_of(entries, longest);
+  return DEA_OK;
+}
+
+/* True where some design has a displacement beyond noise. */
+static bool moves(const struct shown list[], size_t count, int column)
+{
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_curve *curve = &list[i].variant->curve;
+    for (size_t k = 0; k < curve->count; k++) {
+      if (fabs(dea_point_get(&curve->points[k], column)) > 1e-9) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+static dea_status build_designs(struct dea_context *ctx, const struct dea_result *result,
+                                struct dea_plot *plot)
+{
+  struct shown list[SHOWN_MAX];
+  struct dea_panel *panels = plot->panels;
+  size_t count = find_shown(result, false, list);
+  int z = dea_point_column_find("centre_z_m"), stretch = dea_point_column_find("electrode_stretch");
+  plot->panel_count = moves(list, count, z) ? 2 : 1;
+  struct dea_panel *last = &panels[plot->panel_count - 1];
+  if (plot->panel_count == 2) {
+    DEA_TRY(ctx, add_shown(ctx, &panels[0], list, count, z, 1e6, 0));
+    snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
+  }
+  DEA_TRY(ctx, add_shown(ctx, last, list, count, stretch, 100, -1));
+  snprintf(last->y_label, DEA_LABEL_SIZE, "Electrode strain (%%)");
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    dea_figure_voltage_axis(&panels[p]);
+  }
+  panels[0].x_max = last->x_max; // all designs have a strain, and the panels share the axis
+  if (panels[0].series_count > 0) {
+    DEA_TRY(ctx, add_key(ctx, &panels[0], list, count, false));
+  }
+  return DEA_OK;
+}
+
+static dea_status build_design_tips(struct dea_context *ctx, const struct dea_result *result,
+                                    struct dea_plot *plot)
+{
+  struct shown list[SHOWN_MAX];
+  struct dea_panel *panel = &plot->panels[0];
+  size_t count = find_shown(result, false, list);
+  int column = dea_point_column_find("fibre_tip_z_m");
+  DEA_TRY(ctx, add_shown(ctx, panel, list, count, column, 1e6, 0));
+  snprintf(panel->y_label, DEA_LABEL_SIZE, "Fibre tip {/:Italic z} (\302\265m)");
+  dea_figure_voltage_axis(panel);
+  if (panel->series_count > 0) {
+    DEA_TRY(ctx, add_key(ctx, panel, list, count, false));
+  }
+  return DEA_OK;
+}
+
+static dea_status add(struct dea_context *ctx, struct dea_panel *panel, const struct shown *one,
+                      const double *values)
+{
+  const struct dea_profile_record *record = &one->variant->profile;
+  struct dea_series *series;
+  size_t n = record->count;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, n, &one->look, &series));
+  for (size_t i = 0; i < n; i++) {
+    series->values[i] = 1e3 * record->columns[i];
+    series->values[n + i] = 1e6 * values[i];
+  }
+  return DEA_OK;
+}
+
+/* True where some profile leaves the plane beyond noise. */
+static bool leaves_plane(const struct shown list[], size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_profile profile = dea_profile_of_record(&list[i].variant->profile);
+    for (size_t k = 0; k < profile.count; k++) {
+      if (fabs(profile.z_m[k]) > 1e-9) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+static dea_status build_design_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                        struct dea_plot *plot)
+{
+  struct shown list[SHOWN_MAX];
+  size_t count = find_shown(result, true, list);
+  bool z = leaves_plane(list, count);
+  plot->panel_count = z ? 2 : 1;
+  struct dea_panel *last = &plot->panels[plot->panel_count - 1];
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_profile profile = dea_profile_of_record(&list[i].variant->profile);
+    if (z) {
+      DEA_TRY(ctx, add(ctx, &plot->panels[0], &list[i], profile.z_m));
+    }
+    DEA_TRY(ctx, add(ctx, last, &list[i], profile.displacement_m));
+  }
+  snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Displacement {/:Italic z} (\302\265m)");
+  snprintf(last->y_label, DEA_LABEL_SIZE, "Radial displacement {/:Italic u} (\302\265m)");
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    snprintf(plot->panels[p].x_label, DEA_LABEL_SIZE,
+             "Radius in the stretched flat film {/:Italic R} (mm)");
+    dea_figure_even_tics(&plot->panels[p], 7);
+  }
+  if (count > 0) {
+    DEA_TRY(ctx, add_key(ctx, &plot->panels[0], list, count, true));
+  }
+  return DEA_OK;
+}
+
+static const struct dea_figure figures[] = {
+    {
+        .name = "designs",
+        .study = study_name,
+        .caption = "displacement and strain of several designs against the voltage",
+        .build = build_designs,
+    },
+    {
+        .name = "design_tips",
+        .study = study_name,
+        .caption = "displacement of the fibre tip of several designs against the voltage",
+        .build = build_design_tips,
+    },
+    {
+        .name = "design_profiles",
+        .study = study_name,
+        .caption =
+            "displacements of several designs along the radius (of model 3d: to the right along a "
+            "fibre, to the left between fibres)",
+        .build = build_design_profiles,
+    },
+};
+
+// The study --------------------------------------------------------------------------------------
+
 static bool asked(const struct dea_design *design)
 {
   return design->compute.compare_count > 0;
@@ -214,4 +481,6 @@ const struct dea_study dea_study_compare_design = {
     .needs = "compute.compare, or more design files on the command line,",
     .run = run,
     .tables = tables,
+    .figures = figures,
+    .figure_count = sizeof figures / sizeof figures[0],
 };

@@ -9,6 +9,9 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
+
+static const char study_name[] = "force";
 
 // Keys -------------------------------------------------------------------------------------------
 
@@ -87,7 +90,7 @@ static const struct dea_field fields[] = {
      .example = "[0.18 N]"},
 };
 
-static const struct dea_record record = {"force",
+static const struct dea_record record = {study_name,
                                          "force on a rigid tip against the middle of the film (3d)",
                                          fields, sizeof fields / sizeof fields[0]};
 
@@ -108,7 +111,7 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
 }
 
 static const struct dea_design_section section = {
-    .key = "force", .record = &record, .size = sizeof(struct settings), .fit = fit};
+    .key = study_name, .record = &record, .size = sizeof(struct settings), .fit = fit};
 
 static const struct settings *settings_of(const struct dea_design *design)
 {
@@ -205,7 +208,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (type->indent == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "force", &curve));
+  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = DEA_OK;
   for (size_t i = 0; i < stops && status == DEA_OK; i++) {
@@ -218,16 +221,152 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
+// Figures ----------------------------------------------------------------------------------------
+
+/* Of the first model with such a curve; count 0 when there is none. */
+struct stops {
+  const struct dea_curve *curve; // lent
+  size_t count;
+  size_t first[DEA_DESIGN_STOPS_MAX + 1]; // first point of each, and one past the last
+  size_t by_depth[DEA_DESIGN_STOPS_MAX];  // their numbers, the least deep one first
+};
+
+/* Depths are few: insertion. */
+static void sort(struct stops *stops)
+{
+  for (size_t i = 0; i < stops->count; i++) {
+    size_t k = i;
+    double depth = stops->curve->points[stops->first[i]].tip_depth_m;
+    for (; k > 0 && stops->curve->points[stops->first[stops->by_depth[k - 1]]].tip_depth_m > depth;
+         k--) {
+      stops->by_depth[k] = stops->by_depth[k - 1];
+    }
+    stops->by_depth[k] = i;
+  }
+}
+
+static void find_stops(const struct dea_result *result, struct stops *out)
+{
+  *out = (struct stops){0};
+  for (size_t i = 0; i < result->curve_count && out->curve == NULL; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    out->curve = strcmp(curve->kind, study_name) == 0 && curve->count > 0 ? curve : NULL;
+  }
+  if (out->curve == NULL) {
+    return;
+  }
+  const struct dea_load_point *p = out->curve->points;
+  for (size_t i = 0; i < out->curve->count && out->count < DEA_DESIGN_STOPS_MAX; i++) {
+    if (i == 0 || p[i].tip_depth_m != p[i - 1].tip_depth_m) { // held exactly while V rises
+      out->first[out->count++] = i;
+    }
+    out->first[out->count] = i + 1;
+  }
+  sort(out);
+}
+
+/* Look of the i-th curve, without title. */
+static struct dea_series stop_style(size_t i)
+{
+  static const enum dea_colour order[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
+                                          DEA_PURPLE, DEA_ORANGE,     DEA_BLACK};
+  return (struct dea_series){
+      .style = DEA_LINE_MARKED, .colour = order[i % 6], .marker = (int)(i % 6)};
+}
+
+static dea_status build_tip_force(struct dea_context *ctx, const struct dea_result *result,
+                                  struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  struct stops stops;
+  int column = dea_point_column_find("force_N");
+  find_stops(result, &stops);
+  for (size_t i = 0; i < stops.count; i++) {
+    struct dea_curve part = *stops.curve; // lent points: a curve of one stop
+    part.points = stops.curve->points + stops.first[i];
+    part.count = stops.first[i + 1] - stops.first[i];
+    struct dea_series look = stop_style(i);
+    snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);
+    DEA_TRY(ctx, dea_figure_add(ctx, panel, &part, column, dea_point_columns[column].factor, 0.0,
+                                &look));
+  }
+  snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
+  dea_figure_voltage_axis(panel);
+  dea_figure_place_key(panel);
+  return DEA_OK;
+}
+
+enum { SHOWN_MAX = 6 };
+
+/* Force over depth at the k-th voltage of each stop that came so far. */
+static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct stops *stops, size_t k, size_t number)
+{
+  const struct dea_series look = stop_style(number);
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
+  snprintf(series->title, sizeof series->title, "%.4g kV",
+           1e-3 * stops->curve->points[k].voltage_V);
+  for (size_t i = 0; i < stops->count; i++) {
+    size_t at = stops->first[stops->by_depth[i]] + k;
+    if (at < stops->first[stops->by_depth[i] + 1]) {
+      series->values[i] = 1e3 * stops->curve->points[at].tip_depth_m;
+      series->values[stops->count + i] = 1e3 * stops->curve->points[at].force_N;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status build_load_line(struct dea_context *ctx, const struct dea_result *result,
+                                  struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  struct stops stops;
+  find_stops(result, &stops);
+  if (stops.count < 2) { // one depth is no line
+    return DEA_OK;
+  }
+  size_t voltages = stops.first[1] - stops.first[0];
+  size_t shown = voltages < SHOWN_MAX ? voltages : SHOWN_MAX;
+  for (size_t i = 0; i < shown; i++) {
+    size_t k = shown < 2 ? 0 : (i * (voltages - 1) + (shown - 1) / 2) / (shown - 1);
+    DEA_TRY(ctx, add_line(ctx, panel, &stops, k, i));
+  }
+  snprintf(panel->x_label, sizeof panel->x_label, "Depth of the tip (mm)");
+  snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
+  dea_figure_place_key(panel);
+  return DEA_OK;
+}
+
+static const struct dea_figure figures[] = {
+    {
+        .name = "tip_force",
+        .study = study_name,
+        .caption = "force on the tip against the voltage, for each depth that it is held at",
+        .build = build_tip_force,
+    },
+    {
+        .name = "load_line",
+        .study = study_name,
+        .caption = "force on the tip against the depth that it is held at, for some voltages",
+        .build = build_load_line,
+    },
+};
+
+// The study --------------------------------------------------------------------------------------
+
 static bool asked(const struct dea_design *design)
 {
   return dea_force_stops(design) > 0;
 }
 
 const struct dea_study dea_study_force = {
-    .name = "force",
+    .name = study_name,
     .keys = &section,
     .asked = asked,
     .needs = "compute.force.depth or compute.force.preload",
     .own_models = true,
     .run = run,
+    .figures = figures,
+    .figure_count = sizeof figures / sizeof figures[0],
 };

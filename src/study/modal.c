@@ -4,6 +4,9 @@
 
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
+
+static const char study_name[] = "modal";
 
 // Keys -------------------------------------------------------------------------------------------
 
@@ -41,13 +44,13 @@ static const struct dea_field fields[] = {
 };
 
 static const struct dea_record record = {
-    "modal",
+    study_name,
     "study of vibrations, made when this section is there ({}) or with --study: frequencies and "
     "shapes about voltages (3d)",
     fields, sizeof fields / sizeof fields[0]};
 
 static const struct dea_design_section section = {
-    .key = "modal", .record = &record, .size = sizeof(struct settings)};
+    .key = study_name, .record = &record, .size = sizeof(struct settings)};
 
 // Study ------------------------------------------------------------------------------------------
 
@@ -79,10 +82,75 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, true, voltages_V);
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, "modal", type->modes != NULL, voltages_V,
-                                      count, take));
+  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, type->modes != NULL,
+                                      voltages_V, count, take));
   return DEA_OK;
 }
 
+// Figures ----------------------------------------------------------------------------------------
+
+enum { COLOURS = 6, MARKERS = 5 }; // the first of them
+
+/* The k-th mode of a curve; nothing where it has no such one. */
+static dea_status add_mode(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct dea_curve *curve, int k)
+{
+  struct dea_series *series;
+  size_t count = 0;
+  for (size_t i = 0; i < curve->count; i++) {
+    count += (int)curve->points[i].mode == k;
+  }
+  if (count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->style = DEA_LINE_MARKED;
+  series->colour = (enum dea_colour)((k - 1) % COLOURS);
+  series->marker = (k - 1) % MARKERS;
+  snprintf(series->title, sizeof series->title, "%d", k);
+  for (size_t i = 0, n = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    if ((int)p->mode == k) {
+      series->values[n] = 1e-3 * p->voltage_V;
+      series->values[count + n++] = p->frequency_Hz > 0 ? p->frequency_Hz : 0; // unstable
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    for (int k = 1; k <= DEA_DESIGN_MODES_MAX && strcmp(curve->kind, study_name) == 0; k++) {
+      DEA_TRY(ctx, add_mode(ctx, panel, curve, k));
+    }
+  }
+  snprintf(panel->y_label, sizeof panel->y_label, "Frequency {/:Italic f} (Hz)");
+  dea_figure_voltage_axis(panel);
+  panel->y_min = 0;
+  panel->key = "above horizontal maxrows 1 samplen 1.5";
+  return DEA_OK;
+}
+
+static const struct dea_figure figures[] = {
+    {
+        .name = "modes",
+        .study = study_name,
+        .caption = "frequencies of the lowest modes in vacuo against the voltage; 0: unstable",
+        .build = build,
+    },
+};
+
+// The study --------------------------------------------------------------------------------------
+
 const struct dea_study dea_study_modal = {
-    .name = "modal", .keys = &section, .own_models = true, .run = run};
+    .name = study_name,
+    .keys = &section,
+    .own_models = true,
+    .run = run,
+    .figures = figures,
+    .figure_count = sizeof figures / sizeof figures[0],
+};

@@ -5,6 +5,7 @@
 #define DEA_STUDY_STUDY_H
 
 #include "model/model.h"
+#include "result/figure.h"
 #include "result/result.h"
 
 struct dea_study {
@@ -20,6 +21,8 @@ struct dea_study {
                     struct dea_model *model, struct dea_result *result);
   /* Makes tables (result/table.h) of what the result has of that model; NULL: none. */
   dea_status (*tables)(struct dea_context *ctx, const char *model, struct dea_result *result);
+  const struct dea_figure *figures; // [figure_count] of what a result has of it
+  size_t figure_count;
 };
 
 /* Runs every study that the result's design asks for with one model. Returns the first failure,

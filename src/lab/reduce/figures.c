@@ -1,8 +1,8 @@
 /* The figures of a reduction (dea_reduction_draw). */
 #include "lab/reduce/output.h"
 
-#include "output/figure.h"
 #include "output/gnuplot.h"
+#include "result/figure.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_REPORT_PLOT_SVG_H
 #define DEA_OUTPUT_REPORT_PLOT_SVG_H
 
-#include "output/plot.h"
+#include "result/plot.h"
 
 /* Adds a <figure> with the plot, its caption and its numbers for the page's script; number: of the
  * figure on the page, for its ids. Nothing for a plot that shows nothing. */

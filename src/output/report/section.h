@@ -53,9 +53,9 @@ void dea_section_heading(struct dea_report *report, const char *text);
 void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
 void dea_table_end(struct dea_report *report);
 
-/* Figures of a run whose names begin with prefix; NULL: those that belong to no study. */
+/* Figures of a run that belong to a study; NULL: all but those of studies with a section. */
 dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
-                               const char *prefix);
+                               const char *study);
 
 typedef dea_status (*dea_run_section)(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_glance(struct dea_report *report, const struct dea_report_run *run);

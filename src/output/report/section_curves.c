@@ -21,23 +21,24 @@ static dea_status add_figure(struct dea_report *report, const struct dea_figure 
   return status;
 }
 
-/* Whether a figure belongs to the studies convergence or compare-design. */
-static bool is_of_study(const char *name)
+/* Whether a figure stands in the section of its study and not among the curves. */
+static bool stands_apart(const struct dea_figure *figure)
 {
-  return strcmp(name, "convergence") == 0 || strncmp(name, "design", 6) == 0;
+  return figure->study != NULL && (strcmp(figure->study, "convergence") == 0 ||
+                                   strcmp(figure->study, "compare-design") == 0);
 }
 
 dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
-                               const char *prefix)
+                               const char *study)
 {
-  size_t count;
-  const struct dea_figure *const *figures = dea_figure_all(&count);
+  const struct dea_figure *figure;
   dea_text_add(&report->text, "<div class=\"plots\">");
-  for (size_t i = 0; i < count; i++) {
-    bool wanted = prefix != NULL ? strncmp(figures[i]->name, prefix, strlen(prefix)) == 0
-                                 : !is_of_study(figures[i]->name);
-    if (wanted && figures[i]->build != NULL) {
-      DEA_TRY(report->ctx, add_figure(report, figures[i], run->run->result));
+  for (size_t i = 0; (figure = dea_figure_get(i)) != NULL; i++) {
+    bool wanted = study == NULL           ? !stands_apart(figure)
+                  : figure->study != NULL ? strcmp(figure->study, study) == 0
+                                          : false;
+    if (wanted && figure->build != NULL) {
+      DEA_TRY(report->ctx, add_figure(report, figure, run->run->result));
     }
   }
   dea_text_add(&report->text, "</div>");
@@ -67,7 +68,7 @@ dea_status dea_section_designs(struct dea_report *report, const struct dea_repor
     }
     if (!any) {
       dea_section_begin(report, "designs", run->number, "Designs beside each other");
-      DEA_TRY(report->ctx, dea_section_figures(report, run, "design"));
+      DEA_TRY(report->ctx, dea_section_figures(report, run, "compare-design"));
       dea_table_begin(report, "Designs at their last voltage",
                       "<th scope=\"col\">Design</th><th scope=\"col\">Model</th>"
                       "<th scope=\"col\" class=\"n\">V (kV)</th>"

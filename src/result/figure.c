@@ -1,5 +1,4 @@
-/* What the figures share (see figure.h). */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>

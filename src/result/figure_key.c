@@ -1,5 +1,5 @@
 /* Where the key of a panel stands: in a corner that no curve crosses, or else above all curves. */
-#include "output/figure.h"
+#include "result/figure.h"
 
 #include <math.h>
 

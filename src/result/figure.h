@@ -1,0 +1,60 @@
+/* Figures of a result, and what they are made of. Those of a study stand in its file, the others in
+ * folder output. */
+#ifndef DEA_RESULT_FIGURE_H
+#define DEA_RESULT_FIGURE_H
+
+#include "result/plot.h"
+#include "result/result.h"
+
+struct dea_figure_options; // output/figure.h
+
+struct dea_figure {
+  const char *name; // of its files: "displacement"
+  const char *caption;
+  const char *study; // that it belongs to; NULL: none
+  /* Fills the plot; leaves it without series when the result has nothing to show. */
+  dea_status (*build)(struct dea_context *ctx, const struct dea_result *result,
+                      struct dea_plot *plot);
+  /* In its place for a figure that is no plot of series: writes its script and data. *drawn: false
+   * when the result has nothing to show. */
+  dea_status (*write)(struct dea_context *ctx, const struct dea_result *result,
+                      const struct dea_figure_options *options, const char *directory, bool *drawn);
+};
+
+// Parts for the figures --------------------------------------------------------------------------
+
+/* Curve to draw against voltage: the model's sweep, or its path when it has none (or the other way
+ * round with prefer_path); NULL when neither has points. */
+const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
+                                         bool prefer_path);
+/* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
+ * right); stable parts so, unstable ones dashed. Adds nothing when the curve has no such number. */
+dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
+                          const struct dea_curve *curve, int column, double factor, double shift,
+                          const struct dea_series *look);
+/* Look of the m-th model. */
+struct dea_series dea_figure_style(const char *model, size_t m);
+/* Adds that column of all models, in the units of figures. */
+dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, bool prefer_path);
+/* Adds an entry of the key alone, a grey line of that style; of its series only a point shows, at
+ * x, y, which lies on a curve that is there. */
+dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel,
+                                enum dea_series_style style, const char *title, double x, double y);
+/* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
+void dea_figure_voltage_axis(struct dea_panel *panel);
+/* Marks the events of all paths on their curves, with a key entry a kind. column, factor, shift: as
+ * in dea_figure_add. whole_path: also those beyond the voltage axis as it is and on unstable
+ * branches. */
+dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
+                                 const struct dea_result *result, int column, double factor,
+                                 double shift, bool whole_path);
+/* At most about `most` tics on the left axis, all with the same number of decimals. */
+void dea_figure_even_tics(struct dea_panel *panel, int most);
+/* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
+ * called when all series are there. */
+void dea_figure_place_key(struct dea_panel *panel);
+/* "true field (V/\302\265m)": header and unit of a column as a label. */
+void dea_figure_label(const struct dea_column *column, char *out, size_t size);
+
+#endif

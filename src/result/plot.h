@@ -1,0 +1,101 @@
+/* A figure before it is drawn: panels with series and marks. What it shows is decided by who fills
+ * it, what it looks like in output/plot.c only. */
+#ifndef DEA_RESULT_PLOT_H
+#define DEA_RESULT_PLOT_H
+
+#include "base/text.h"
+
+enum {
+  DEA_PLOT_PANELS_MAX = 2,
+  DEA_PANEL_SERIES_MAX = 48,
+  DEA_PANEL_MARKS_MAX = 12,
+  DEA_LABEL_SIZE = 128,
+};
+
+/* Colours of Okabe and Ito (safe for the colour-blind), numbered as in output/plot.c. */
+enum dea_colour {
+  DEA_BLUE,
+  DEA_VERMILLION,
+  DEA_GREEN,
+  DEA_PURPLE,
+  DEA_ORANGE,
+  DEA_SKY,
+  DEA_BLACK,
+  DEA_GREY,
+};
+
+enum dea_series_style {
+  DEA_LINE,
+  DEA_THIN,        // many cycles in time
+  DEA_LINE_MARKED, // line with about ten markers
+  DEA_DASHED,      // unstable branches, second directions
+  DEA_DOTTED,      // limits
+  DEA_MARKERS,     // points only
+  DEA_ERROR_BARS,  // points with +-error where that is a number
+  DEA_BAND,        // filled from y up to `error`, pale: grey for DEA_GREY, else red
+};
+
+/* title: key entry, "" for none. marker: 0, 1, 2, ... one shape each. */
+struct dea_series {
+  char title[DEA_LABEL_SIZE];
+  enum dea_series_style style;
+  enum dea_colour colour;
+  int marker;
+  bool right; // on the right axis
+  size_t count;
+  double *values; // [3][count]: x, y, error; owned
+};
+
+/* A thin line across the panel with a word on it. */
+struct dea_mark {
+  bool vertical; // at x = at; else at y = at
+  double at;
+  char text[DEA_LABEL_SIZE]; // gnuplot's enhanced text
+};
+
+/* Labels are gnuplot's enhanced text in UTF-8. Limits that are NAN are left to gnuplot. */
+struct dea_panel {
+  char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE], y2_label[DEA_LABEL_SIZE];
+  double x_min, x_max, y_min, y_max, y2_max;
+  bool logarithmic;     // both axes
+  bool logarithmic_x;   // the x axis
+  const char *key;      // "top left", "above ..."; static storage
+  double y_step;        // between tics of the left axis; 0: gnuplot's choice
+  const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage
+  enum dea_colour y2_colour;
+  bool says_unstable; // key entry: dashed = unstable
+  size_t series_count, mark_count;
+  struct dea_series series[DEA_PANEL_SERIES_MAX];
+  struct dea_mark marks[DEA_PANEL_MARKS_MAX];
+};
+
+struct dea_plot {
+  char name[64], caption[256];
+  size_t panel_count;   // 1 or 2, one above the other with the same x axis
+  double second_height; // height of the second panel over that of the first
+  struct dea_panel panels[DEA_PLOT_PANELS_MAX];
+};
+
+/* One panel, all limits open. out: owned by the caller. */
+dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char *caption,
+                           struct dea_plot **out);
+void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot);
+/* Adds a series with room for count points, values NAN; *out lent until the plot dies, so that the
+ * caller fills title, style, values. DEA_E_UNSUPPORTED when the panel is full. */
+dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                         struct dea_series **out);
+/* The same with title, style, colour, marker and right of another series. */
+dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                            const struct dea_series *look, struct dea_series **out);
+/* Takes all series away. */
+void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
+/* Adds a mark; one too many is left out. text is plain text. */
+void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
+/* True when a series, or some series of a plot, has a point to show. */
+bool dea_series_shows(const struct dea_series *series);
+bool dea_plot_shows(const struct dea_plot *plot);
+
+/* Plain text as gnuplot's enhanced text (signs with a meaning there get a backslash). */
+void dea_label_escape(const char *text, char *out, size_t size);
+
+#endif
