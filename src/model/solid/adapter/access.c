@@ -91,26 +91,9 @@ static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec
 static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
                             struct dea_grid **out)
 {
-  struct dea_grid *grid = dea_alloc(ctx, 1, sizeof *grid);
-  *out = grid;
-  if (grid == NULL) {
-    return DEA_E_MEMORY;
-  }
-  grid->order = spec->order;
-  grid->order_z = spec->order_z;
-  grid->node_count = spec->point_count;
-  grid->element_count = spec->cell_count;
-  grid->X = dea_alloc(ctx, 3 * spec->point_count, sizeof *grid->X);
-  grid->nodes = dea_alloc(ctx, spec->cell_count * DEA_HEX_NODES_MAX, sizeof *grid->nodes);
-  grid->region = dea_alloc(ctx, spec->cell_count, sizeof *grid->region);
-  grid->ply = dea_alloc(ctx, spec->cell_count, sizeof *grid->ply);
-  grid->levels = dea_alloc(ctx, spec->cell_count, sizeof *grid->levels);
-  grid->kind = dea_alloc(ctx, spec->cell_count, sizeof *grid->kind); // hexahedra
-  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->ply == NULL ||
-      grid->levels == NULL || grid->kind == NULL) {
-    return DEA_E_MEMORY;
-  }
-  return fill_grid(ctx, spec, grid);
+  DEA_TRY(ctx, dea_grid_allocate(ctx, spec->order, spec->order_z, spec->point_count,
+                                 spec->cell_count, out));
+  return fill_grid(ctx, spec, *out);
 }
 
 static double size_of(const struct dea_grid *grid)

@@ -91,10 +91,8 @@ dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s
       continue;
     }
     if (p->spring == NULL) {
-      p->spring = dea_alloc(ctx, p->dofs, sizeof *p->spring);
-      if (p->spring == NULL) {
-        return DEA_E_MEMORY;
-      }
+      p->spring = dea_arena_alloc(&s->memory, p->dofs, sizeof *p->spring);
+      DEA_TRY(ctx, dea_arena_status(&s->memory));
     }
     dea_solid_gather(s, e, p->grid->X, X);
     dea_status status =

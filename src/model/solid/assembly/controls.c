@@ -33,13 +33,9 @@ static size_t state_count(const struct dea_solid *s)
   return count;
 }
 
-void dea_load_steps_release(struct dea_context *ctx, struct dea_load_steps *path)
+void dea_load_steps_release(struct dea_load_steps *path)
 {
-  double *const memory[] = {path->keep, path->controls, path->controls_from, path->controls_goal,
-                            path->at};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(ctx, memory[i]);
-  }
+  dea_arena_free(&path->memory);
   *path = (struct dea_load_steps){0};
 }
 
@@ -50,15 +46,15 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
   if (path->state_count == states && path->control_count == controls) {
     return DEA_OK;
   }
-  dea_load_steps_release(ctx, path); // a load more: what was before is no guide
-  path->keep = dea_alloc(ctx, states, sizeof(double));
-  path->controls = dea_alloc(ctx, controls, sizeof(double));
-  path->controls_from = dea_alloc(ctx, controls, sizeof(double));
-  path->controls_goal = dea_alloc(ctx, controls, sizeof(double));
-  path->at = dea_alloc(ctx, controls, sizeof(double));
-  if (path->keep == NULL || path->controls == NULL || path->controls_from == NULL ||
-      path->controls_goal == NULL || path->at == NULL) {
-    dea_load_steps_release(ctx, path);
+  dea_load_steps_release(path); // a load more: what was before is no guide
+  path->memory.ctx = ctx;
+  path->keep = dea_arena_alloc(&path->memory, states, sizeof(double));
+  path->controls = dea_arena_alloc(&path->memory, controls, sizeof(double));
+  path->controls_from = dea_arena_alloc(&path->memory, controls, sizeof(double));
+  path->controls_goal = dea_arena_alloc(&path->memory, controls, sizeof(double));
+  path->at = dea_arena_alloc(&path->memory, controls, sizeof(double));
+  if (path->memory.failed) {
+    dea_load_steps_release(path);
     return DEA_E_MEMORY;
   }
   path->state_count = states;

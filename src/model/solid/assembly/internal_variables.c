@@ -58,22 +58,20 @@ static dea_status allocate_points(struct dea_context *ctx, const struct dea_soli
                                   struct dea_internal_variables *h)
 {
   const struct dea_solid_problem *p = &s->problem;
-  h->branches = dea_alloc(ctx, p->constituent_count, sizeof *h->branches);
-  h->steps = dea_alloc(ctx, p->constituent_count, sizeof *h->steps);
-  h->b_Pa = dea_alloc(ctx, p->constituent_count, sizeof *h->b_Pa);
-  h->first = dea_alloc(ctx, p->grid->element_count, sizeof *h->first);
-  if (h->branches == NULL || h->steps == NULL || h->b_Pa == NULL || h->first == NULL) {
-    return DEA_E_MEMORY;
-  }
+  struct dea_arena *memory = &h->memory;
+  memory->ctx = ctx;
+  h->branches = dea_arena_alloc(memory, p->constituent_count, sizeof *h->branches);
+  h->steps = dea_arena_alloc(memory, p->constituent_count, sizeof *h->steps);
+  h->b_Pa = dea_arena_alloc(memory, p->constituent_count, sizeof *h->b_Pa);
+  h->first = dea_arena_alloc(memory, p->grid->element_count, sizeof *h->first);
+  DEA_TRY(ctx, dea_arena_status(memory));
   memcpy(h->branches, branches, p->constituent_count * sizeof *branches);
   size_t points = place_points(s, h);
-  h->B = dea_alloc(ctx, points + 1, TENSOR_BYTES);
-  h->inverse = dea_alloc(ctx, points + 1, TENSOR_BYTES);
-  h->inverse_next = dea_alloc(ctx, points + 1, TENSOR_BYTES);
-  h->A = dea_alloc(ctx, points + 1, sizeof *h->A);
-  if (h->B == NULL || h->inverse == NULL || h->inverse_next == NULL || h->A == NULL) {
-    return DEA_E_MEMORY;
-  }
+  h->B = dea_arena_alloc(memory, points + 1, TENSOR_BYTES);
+  h->inverse = dea_arena_alloc(memory, points + 1, TENSOR_BYTES);
+  h->inverse_next = dea_arena_alloc(memory, points + 1, TENSOR_BYTES);
+  h->A = dea_arena_alloc(memory, points + 1, sizeof *h->A);
+  DEA_TRY(ctx, dea_arena_status(memory));
   return held_for_long(s, h);
 }
 
@@ -96,14 +94,7 @@ dea_status dea_internal_variables_create(struct dea_context *ctx, const struct d
 void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal_variables *h)
 {
   if (h != NULL) {
-    dea_free(ctx, h->branches);
-    dea_free(ctx, h->steps);
-    dea_free(ctx, h->first);
-    dea_free(ctx, h->b_Pa);
-    dea_free(ctx, h->B);
-    dea_free(ctx, h->inverse);
-    dea_free(ctx, h->inverse_next);
-    dea_free(ctx, h->A);
+    dea_arena_free(&h->memory);
     dea_free(ctx, h);
   }
 }

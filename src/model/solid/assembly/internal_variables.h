@@ -4,6 +4,7 @@
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
 #define DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
 
+#include "base/arena.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/point/viscous.h"
 
@@ -14,6 +15,7 @@ struct dea_branches {
 };
 
 struct dea_internal_variables {
+  struct dea_arena memory;       // of all arrays
   struct dea_branches *branches; // [layer_count]
   size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
   struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [layer_count] of the step

@@ -18,11 +18,9 @@ dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
   if (count == 0) {
     return DEA_OK;
   }
-  p->frame = dea_alloc(ctx, nodes, sizeof *p->frame);
-  p->frames = dea_alloc(ctx, count, sizeof *p->frames);
-  if (p->frame == NULL || p->frames == NULL) {
-    return DEA_E_MEMORY;
-  }
+  p->frame = dea_arena_alloc(&s->memory, nodes, sizeof *p->frame);
+  p->frames = dea_arena_alloc(&s->memory, count, sizeof *p->frames);
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
   count = 0;
   for (size_t n = 0; n < nodes; n++) {
     if (options->frame(options->self, p->grid->X + 3 * n, Q)) {
@@ -93,10 +91,8 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_solid_problem *p = &s->problem;
   const struct dea_grid *grid = p->grid;
-  p->own = dea_alloc(ctx, grid->element_count, sizeof *p->own);
-  if (p->own == NULL) {
-    return DEA_E_MEMORY;
-  }
+  p->own = dea_arena_alloc(&s->memory, grid->element_count, sizeof *p->own);
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
   p->own_count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     size_t node =
@@ -173,8 +169,8 @@ static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
   const struct dea_solid_problem *p = &s->problem;
   size_t rows = p->end_node - p->first_node;
   DEA_TRY(ctx, split_elements(ctx, s));
-  s->work.predicted =
-      dea_alloc(ctx, p->own_count * p->elements.predicted_count, sizeof *s->work.predicted);
+  s->work.predicted = dea_arena_alloc(&s->memory, p->own_count * p->elements.predicted_count,
+                                      sizeof *s->work.predicted);
   lengths->own = dea_alloc(ctx, rows, sizeof *lengths->own);
   lengths->others = dea_alloc(ctx, rows, sizeof *lengths->others);
   return s->work.predicted != NULL && lengths->own != NULL && lengths->others != NULL

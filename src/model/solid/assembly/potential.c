@@ -71,15 +71,11 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
   if (options->field == DEA_SOLID_FIELD_THIN) {
     return DEA_OK;
   }
-  p->field = dea_alloc(ctx, 1, sizeof *p->field);
-  if (p->field == NULL) {
-    return DEA_E_MEMORY;
-  }
-  p->field->share = dea_alloc(ctx, nodes, sizeof(double));
-  p->field->right = dea_alloc(ctx, nodes, sizeof(double));
-  if (p->field->share == NULL || p->field->right == NULL) {
-    return DEA_E_MEMORY;
-  }
+  p->field = dea_arena_alloc(&s->memory, 1, sizeof *p->field);
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
+  p->field->share = dea_arena_alloc(&s->memory, nodes, sizeof(double));
+  p->field->right = dea_arena_alloc(&s->memory, nodes, sizeof(double));
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
   set_scale(s, options->layer_count, p->field);
   for (size_t i = 0; i < options->layer_count; i++) {
     if (p->constituents[i].permittivity_slope_F_per_m != 0) {
@@ -106,17 +102,14 @@ dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s)
+void dea_solid_field_destroy(struct dea_solid *s)
 {
-  struct dea_solid_problem *p = &s->problem;
-  if (p->field != NULL) {
-    MatDestroy(&p->field->factor);
-    MatDestroy(&p->field->L);
-    VecDestroy(&p->field->charge);
-    VecDestroy(&p->field->solution);
-    dea_free(ctx, p->field->share);
-    dea_free(ctx, p->field->right);
-    dea_free(ctx, p->field);
+  struct dea_solid_field *field = s->problem.field;
+  if (field != NULL) {
+    MatDestroy(&field->factor);
+    MatDestroy(&field->L);
+    VecDestroy(&field->charge);
+    VecDestroy(&field->solution);
   }
 }
 

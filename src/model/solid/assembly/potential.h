@@ -10,7 +10,7 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
                                   const struct dea_solid_options *options);
 dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
                                   const struct dea_solid_row_lengths *lengths);
-void dea_solid_field_destroy(struct dea_context *ctx, struct dea_solid *s);
+void dea_solid_field_destroy(struct dea_solid *s);
 /* c: a potential is c psi [V/m]. */
 double dea_solid_field_scale(const struct dea_solid *s);
 /* Sets the potentials in u [dofs] to those that belong to its displacements: the maximum of the

@@ -2,6 +2,7 @@
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
 #define DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
 
+#include "base/arena.h"
 #include "model/solid/assembly/ranks.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/element.h"
@@ -42,7 +43,7 @@ struct dea_solid_problem {
   int *frame;          // [nodes] one more than the place in frames, 0: the global axes; NULL: all
                        // are; by dea_solid_frames_create
   double (*frames)[9]; // rows are local axes
-  struct dea_solid_load *loads; // [load_count] by dea_solid_add_load
+  struct dea_solid_load *loads; // [load_count] by dea_solid_add_load; owned
   size_t load_count;
 
   double modulus_Pa;     // shear modulus of the softest element
@@ -78,6 +79,7 @@ struct dea_solid_state {
 /* An equilibrium and a goal. Controls: what an equilibrium is asked for at, see controls.h. Made by
  * dea_load_steps_prepare. */
 struct dea_load_steps {
+  struct dea_arena memory; // of the arrays
   size_t state_count;
   size_t control_count;
   double *keep;          // [state_count] last equilibrium
@@ -120,6 +122,7 @@ struct dea_solid_found {
 };
 
 struct dea_solid {
+  struct dea_arena memory; // of all arrays but the loads and those of load_steps
   struct dea_solid_problem problem;
   struct dea_solid_settings settings;
   struct dea_solid_state state;

@@ -38,41 +38,39 @@ static void find_sizes(struct dea_solid *s)
   }
 }
 
+/* All arrays whose size does not hang on what the options answer. */
+static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *options)
+{
+  struct dea_solid_problem *p = &s->problem;
+  struct dea_arena *memory = &s->memory;
+  size_t elements = p->grid->element_count, pressures = (size_t)p->elements.pressures;
+  double **const of_dofs[] = {&s->state.u,      &s->state.force,    &s->state.force_goal,
+                              &s->state.u_goal, &s->work.trial,     &s->work.g,
+                              &s->work.step,    &s->work.increment, &s->found.reaction};
+  for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
+    *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
+  }
+  p->constituents = dea_arena_alloc(memory, options->layer_count, sizeof *p->constituents);
+  p->constituent_of = dea_arena_alloc(memory, elements, sizeof *p->constituent_of);
+  p->active = dea_arena_alloc(memory, elements, sizeof *p->active);
+  p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
+  p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
+  s->state.multiplier = dea_arena_alloc(memory, elements * pressures, sizeof(double));
+  s->state.theta = dea_arena_alloc(memory, elements * pressures, sizeof(double));
+  s->work.element = dea_arena_alloc(memory, 1, sizeof *s->work.element);
+  s->work.piece = dea_arena_alloc(memory, 1, sizeof *s->work.piece);
+  return dea_arena_status(memory);
+}
+
 static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
                              const struct dea_solid_options *options)
 {
   struct dea_solid_problem *p = &s->problem;
   const struct dea_grid *grid = p->grid;
-  size_t elements = grid->element_count, pressures = (size_t)p->elements.pressures;
-  p->constituents = dea_alloc(ctx, options->layer_count, sizeof *p->constituents);
-  p->constituent_of = dea_alloc(ctx, elements, sizeof *p->constituent_of);
-  p->active = dea_alloc(ctx, elements, sizeof *p->active);
-  p->kind = dea_alloc(ctx, elements, sizeof *p->kind);
-  p->held = dea_alloc(ctx, p->dofs, 1);
-  s->state.u = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->work.trial = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->work.g = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->work.step = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->state.force = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->state.multiplier = dea_alloc(ctx, elements * pressures, sizeof(double));
-  s->state.theta = dea_alloc(ctx, elements * pressures, sizeof(double));
-  s->state.force_goal = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->state.u_goal = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->found.reaction = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->work.increment = dea_alloc(ctx, p->dofs, sizeof(double));
-  s->work.element = dea_alloc(ctx, 1, sizeof *s->work.element);
-  s->work.piece = dea_alloc(ctx, 1, sizeof *s->work.piece);
-  if (p->constituents == NULL || p->constituent_of == NULL || p->kind == NULL ||
-      p->active == NULL || p->held == NULL || s->state.u == NULL || s->work.trial == NULL ||
-      s->work.g == NULL || s->work.step == NULL || s->state.force == NULL ||
-      s->state.multiplier == NULL || s->state.theta == NULL || s->state.force_goal == NULL ||
-      s->state.u_goal == NULL || s->found.reaction == NULL || s->work.increment == NULL ||
-      s->work.element == NULL || s->work.piece == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY(ctx, allocate(s, options));
   p->constituent_count = options->layer_count;
   memcpy(p->constituents, options->layers, options->layer_count * sizeof *p->constituents);
-  for (size_t e = 0; e < elements; e++) {
+  for (size_t e = 0; e < grid->element_count; e++) {
     int region = grid->region[e], ply = grid->ply[e];
     p->constituent_of[e] =
         options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
@@ -102,6 +100,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
     return DEA_E_MEMORY;
   }
   struct dea_solid_problem *p = &s->problem;
+  s->memory.ctx = ctx;
   p->grid = grid;
   p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   p->dofs = (size_t)p->per_node * grid->node_count;
@@ -126,41 +125,15 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
 
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
 {
-  struct dea_solid_problem *p = &s->problem;
   if (s == NULL) {
     return;
   }
-  dea_solid_field_destroy(ctx, s);
+  dea_solid_field_destroy(s);
   dea_solid_destroy_matrix(s);
-  dea_load_steps_release(ctx, &s->work.load_steps);
-  void *const memory[] = {p->constituents,
-                          p->constituent_of,
-                          p->active,
-                          p->held,
-                          s->state.u,
-                          s->work.trial,
-                          s->work.g,
-                          s->work.step,
-                          s->state.multiplier,
-                          s->state.theta,
-                          s->state.force,
-                          s->state.force_goal,
-                          s->state.u_goal,
-                          s->found.reaction,
-                          s->work.increment,
-                          s->work.element,
-                          s->work.piece,
-                          p->loads,
-                          p->own,
-                          p->frame,
-                          p->frames,
-                          s->work.predicted,
-                          p->spring,
-                          p->kind};
-  dea_element_set_release(ctx, &p->elements);
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(ctx, memory[i]);
-  }
+  dea_load_steps_release(&s->work.load_steps);
+  dea_element_set_release(ctx, &s->problem.elements);
+  dea_free(ctx, s->problem.loads);
+  dea_arena_free(&s->memory);
   dea_free(ctx, s);
 }
 

@@ -56,6 +56,7 @@ struct dea_continuation_plane {
 };
 
 struct dea_solid_continuation {
+  struct dea_arena memory; // of all arrays
   struct dea_solid *s;
   double *metric;            // [dofs] of displacements: sum of metric du^2 + d tau^2 = ds^2
   double *from, *goal, *now; // [control_count] at tau = 0 and 1, and as they are
@@ -465,20 +466,17 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   double **const of_controls[] = {&t->from, &t->goal, &t->now};
   double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state,
                                 &t->next.state};
-  bool all = true;
+  t->memory.ctx = ctx;
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
-    *of_dofs[i] = dea_alloc(ctx, p->dofs, sizeof(double));
-    all = all && *of_dofs[i] != NULL;
+    *of_dofs[i] = dea_arena_alloc(&t->memory, s->problem.dofs, sizeof(double));
   }
   for (size_t i = 0; i < sizeof of_controls / sizeof of_controls[0]; i++) {
-    *of_controls[i] = dea_alloc(ctx, controls, sizeof(double));
-    all = all && *of_controls[i] != NULL;
+    *of_controls[i] = dea_arena_alloc(&t->memory, controls, sizeof(double));
   }
   for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
-    *of_states[i] = dea_alloc(ctx, states, sizeof(double));
-    all = all && *of_states[i] != NULL;
+    *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
   }
-  if (dea_solid_any(!all)) {
+  if (dea_solid_any(t->memory.failed)) {
     return DEA_E_MEMORY;
   }
   double volume = 0;
@@ -562,17 +560,10 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
 
 void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
-  if (t == NULL) {
-    return;
+  if (t != NULL) {
+    dea_arena_free(&t->memory);
+    dea_free(ctx, t);
   }
-  void *const memory[] = {t->metric,     t->held_rate,      t->tangent,   t->plane.weight,
-                          t->rate,       t->right,          t->start,     t->mode,
-                          t->from,       t->goal,           t->now,       t->before.state,
-                          t->last.state, t->critical.state, t->next.state};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(ctx, memory[i]);
-  }
-  dea_free(ctx, t);
 }
 
 /* ---- limit points and bifurcations ---- */

@@ -21,6 +21,7 @@ static const double apart = 1e-6;     // relative distance of two modes that a c
 static const double room_share = 0.5; // of the modes, that more are asked for at first
 
 struct eigen {
+  struct dea_arena memory; // of the arrays
   struct dea_solid *solid;
   Mat B;
   Vec *vectors;     // [count] of them, room for `room`
@@ -239,9 +240,10 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
                              int unstable, int count)
 {
   f->room = 3 * (unstable > count ? unstable : count) + 8 * EXTRA;
-  f->order = dea_alloc(ctx, (size_t)f->room, sizeof *f->order);
-  f->value = dea_alloc(ctx, (size_t)f->room, sizeof *f->value);
-  if (dea_solid_any(f->order == NULL || f->value == NULL)) {
+  f->memory.ctx = ctx;
+  f->order = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->order);
+  f->value = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->value);
+  if (dea_solid_any(f->memory.failed)) {
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
@@ -255,14 +257,13 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
   return DEA_OK;
 }
 
-static void release(struct dea_context *ctx, struct eigen *f)
+static void release(struct eigen *f)
 {
   if (f->vectors != NULL) {
     VecDestroyVecs(f->room, &f->vectors);
   }
   MatDestroy(&f->B);
-  dea_free(ctx, f->value);
-  dea_free(ctx, f->order);
+  dea_arena_free(&f->memory);
   f->solid->found.factor_fits = f->solid->found.predicted_fits = false;
 }
 
@@ -284,7 +285,7 @@ dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s,
   if (status == DEA_OK) {
     status = hand_over(ctx, &f, count, value, vector);
   }
-  release(ctx, &f);
+  release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
@@ -299,7 +300,7 @@ dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s,
   if (status == DEA_OK) {
     status = hand_over(ctx, &f, 1, value, vector);
   }
-  release(ctx, &f);
+  release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
@@ -314,7 +315,7 @@ dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *s,
   if (status == DEA_OK && value != 0) {
     status = count_below(ctx, &f, value, &below);
   }
-  release(ctx, &f);
+  release(&f);
   *count = (size_t)below;
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

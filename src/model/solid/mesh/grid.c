@@ -137,28 +137,32 @@ int dea_grid_nodes_of(const struct dea_grid *grid, size_t element)
   return (grid->order + 1) * (grid->order + 1) * grid->levels[element];
 }
 
-/* With room for all plies in all regions. */
-static struct dea_grid *allocate(struct dea_context *ctx, int order, size_t node_count,
-                                 size_t element_count)
+dea_status dea_grid_allocate(struct dea_context *ctx, int order, int order_z, size_t node_count,
+                             size_t element_count, struct dea_grid **out)
 {
   struct dea_grid *grid = dea_alloc(ctx, 1, sizeof *grid);
+  *out = NULL;
   if (grid == NULL) {
-    return NULL;
+    return DEA_E_MEMORY;
   }
+  struct dea_arena *memory = &grid->memory;
+  memory->ctx = ctx;
   grid->order = order;
+  grid->order_z = order_z;
   grid->node_count = node_count;
-  grid->X = dea_alloc(ctx, node_count, 3 * sizeof *grid->X);
-  grid->nodes = dea_alloc(ctx, element_count, DEA_HEX_NODES_MAX * sizeof *grid->nodes);
-  grid->region = dea_alloc(ctx, element_count, sizeof *grid->region);
-  grid->ply = dea_alloc(ctx, element_count, sizeof *grid->ply);
-  grid->levels = dea_alloc(ctx, element_count, sizeof *grid->levels);
-  grid->kind = dea_alloc(ctx, element_count, sizeof *grid->kind);
-  if (grid->X == NULL || grid->nodes == NULL || grid->region == NULL || grid->ply == NULL ||
-      grid->levels == NULL || grid->kind == NULL) {
+  grid->element_count = element_count;
+  grid->X = dea_arena_alloc(memory, node_count, 3 * sizeof *grid->X);
+  grid->nodes = dea_arena_alloc(memory, element_count, DEA_HEX_NODES_MAX * sizeof *grid->nodes);
+  grid->region = dea_arena_alloc(memory, element_count, sizeof *grid->region);
+  grid->ply = dea_arena_alloc(memory, element_count, sizeof *grid->ply);
+  grid->levels = dea_arena_alloc(memory, element_count, sizeof *grid->levels);
+  grid->kind = dea_arena_alloc(memory, element_count, sizeof *grid->kind);
+  if (memory->failed) {
     dea_grid_destroy(ctx, grid);
-    return NULL;
+    return DEA_E_MEMORY;
   }
-  return grid;
+  *out = grid;
+  return DEA_OK;
 }
 
 dea_status dea_grid_extrude(struct dea_context *ctx, const struct dea_plane_mesh *mesh,
@@ -170,12 +174,9 @@ dea_status dea_grid_extrude(struct dea_context *ctx, const struct dea_plane_mesh
     through += stack->plies[s].count;
     levels += ply_levels(&stack->plies[s]);
   }
-  struct dea_grid *grid =
-      allocate(ctx, mesh->order, mesh->node_count * levels, mesh->quad_count * through);
-  if (grid == NULL) {
-    return DEA_E_MEMORY;
-  }
-  grid->order_z = stack->plies[0].order_z;
+  struct dea_grid *grid; // with room for all plies in all regions
+  DEA_TRY(ctx, dea_grid_allocate(ctx, mesh->order, stack->plies[0].order_z,
+                                 mesh->node_count * levels, mesh->quad_count * through, &grid));
   extrude(mesh, stack, grid);
   dea_status status = compact(ctx, grid);
   if (status != DEA_OK) {
@@ -204,12 +205,7 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
 {
   if (grid != NULL) {
-    dea_free(ctx, grid->X);
-    dea_free(ctx, grid->nodes);
-    dea_free(ctx, grid->region);
-    dea_free(ctx, grid->ply);
-    dea_free(ctx, grid->levels);
-    dea_free(ctx, grid->kind);
+    dea_arena_free(&grid->memory);
     dea_free(ctx, grid);
   }
 }

@@ -2,6 +2,7 @@
 #ifndef DEA_MODEL_SOLID_MESH_GRID_H
 #define DEA_MODEL_SOLID_MESH_GRID_H
 
+#include "base/arena.h"
 #include "model/solid/element/element.h"
 #include "model/solid/mesh/plane_mesh.h"
 
@@ -26,7 +27,8 @@ struct dea_stack {
 };
 
 struct dea_grid {
-  int order, order_z; // in the plane, through a ply with a thickness
+  struct dea_arena memory; // of all arrays
+  int order, order_z;      // in the plane, through a ply with a thickness
   size_t node_count, element_count;
   double *X;         // [node_count][3]
   int *nodes;        // [element_count][DEA_HEX_NODES_MAX], the first dea_grid_nodes_of used
@@ -48,6 +50,10 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
                            size_t block_count, const struct dea_ply *plies, size_t ply_count,
                            bool (*present)(const void *self, int region, int ply), double bottom_m,
                            double length_m, struct dea_grid **out);
+/* An empty one to be filled: all numbers 0, hexahedra. out: owned by the caller, NULL on failure.
+ */
+dea_status dea_grid_allocate(struct dea_context *ctx, int order, int order_z, size_t node_count,
+                             size_t element_count, struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
 /* The node nearest to a place [m]. */

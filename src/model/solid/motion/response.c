@@ -18,19 +18,17 @@ static const double beyond = 2;        // modes up to so many times the highest 
 static const double part_of_V2 = 1e-3; // step of V^2, which forces are linear in
 
 struct dea_solid_response {
-  size_t count, dofs;     // modes; 3 node_count
-  double *square, *shape; // [count], [count][dofs]
-  double *push;           // [count] work of the electric force per volt on each mode
-  double *rest;           // [TERMS][dofs] what the modes leave, a series
+  struct dea_arena memory; // of all arrays
+  size_t count, dofs;      // modes; 3 node_count
+  double *square, *shape;  // [count], [count][dofs]
+  double *push;            // [count] work of the electric force per volt on each mode
+  double *rest;            // [TERMS][dofs] what the modes leave, a series
 };
 
 void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *r)
 {
   if (r != NULL) {
-    dea_free(ctx, r->square);
-    dea_free(ctx, r->shape);
-    dea_free(ctx, r->push);
-    dea_free(ctx, r->rest);
+    dea_arena_free(&r->memory);
     dea_free(ctx, r);
   }
 }
@@ -89,12 +87,12 @@ static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, 
 {
   r->count = count;
   r->dofs = 3 * s->problem.grid->node_count;
-  r->square = dea_alloc(ctx, count + 1, sizeof *r->square);
-  r->push = dea_alloc(ctx, count + 1, sizeof *r->push);
-  r->shape = dea_alloc(ctx, count * r->dofs + 1, sizeof *r->shape);
-  r->rest = dea_alloc(ctx, TERMS * r->dofs, sizeof *r->rest);
-  bool all = r->square != NULL && r->push != NULL && r->shape != NULL && r->rest != NULL;
-  return dea_solid_any(!all) ? DEA_E_MEMORY : DEA_OK;
+  r->memory.ctx = ctx;
+  r->square = dea_arena_alloc(&r->memory, count + 1, sizeof *r->square);
+  r->push = dea_arena_alloc(&r->memory, count + 1, sizeof *r->push);
+  r->shape = dea_arena_alloc(&r->memory, count * r->dofs + 1, sizeof *r->shape);
+  r->rest = dea_arena_alloc(&r->memory, TERMS * r->dofs, sizeof *r->rest);
+  return dea_solid_any(r->memory.failed) ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* How many modes are needed; none of them may be unstable. */

@@ -12,6 +12,7 @@
 #include <string.h>
 
 struct dea_solid_time {
+  struct dea_arena memory; // of all arrays but keep and controls
   struct dea_solid *solid;
   struct dea_internal_variables *history;
   struct dea_solid_inertia inertia;
@@ -70,7 +71,7 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
 
 /* ---- creation ---- */
 
-static dea_status allocate_time(struct dea_context *ctx, struct dea_solid_time *t)
+static dea_status allocate_time(struct dea_solid_time *t)
 {
   double **const memory[] = {&t->v,
                              &t->a,
@@ -86,19 +87,16 @@ static dea_status allocate_time(struct dea_context *ctx, struct dea_solid_time *
                              &t->inertia.away,
                              &t->inertia.force};
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    *memory[i] = dea_alloc(ctx, t->count, sizeof(double));
-    if (*memory[i] == NULL) {
-      return DEA_E_MEMORY;
-    }
+    *memory[i] = dea_arena_alloc(&t->memory, t->count, sizeof(double));
   }
-  return DEA_OK;
+  return dea_arena_status(&t->memory);
 }
 
 static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
                              const struct dea_solid_time_options *options)
 {
   struct dea_solid *s = t->solid;
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(ctx, t)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(t)));
   if (options->branches != NULL) {
     DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->history));
     dea_internal_variables_begin(t->history, s, 0);
@@ -126,6 +124,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
     dea_free(ctx, t);
     return DEA_E_MEMORY;
   }
+  t->memory.ctx = ctx;
   t->solid = solid;
   t->inertial = options->inertia;
   t->alpha = dea_alpha_of(options->spectral_radius);
@@ -166,24 +165,9 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   t->solid->settings.accept_unstable = t->stay;
   dea_solid_scale_bulk_modulus(t->solid, 1 / t->stiffened);
   dea_internal_variables_destroy(ctx, t->history);
-  double *const memory[] = {t->first,
-                            t->v,
-                            t->F_next,
-                            t->a,
-                            t->F,
-                            t->v_next,
-                            t->a_next,
-                            t->work,
-                            t->u_before,
-                            t->inertia.around,
-                            t->inertia.constant,
-                            t->keep,
-                            t->controls,
-                            t->inertia.away,
-                            t->inertia.force};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(ctx, memory[i]);
-  }
+  dea_arena_free(&t->memory);
+  dea_free(ctx, t->keep);
+  dea_free(ctx, t->controls);
   dea_free(ctx, t);
 }
 

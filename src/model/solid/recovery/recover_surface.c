@@ -10,6 +10,7 @@ enum { SUMS = 20, FIELD = 12, HEIGHT = 13, FORCE = 14, GROUPS = 4 };
 
 struct work {
   struct dea_context *ctx;
+  struct dea_arena memory; // of all arrays but the stack
   const struct dea_recover_input *in;
   int ply;
   struct dea_stacked *stack;
@@ -24,33 +25,21 @@ struct work {
   double *weight;
 };
 
-static void release(struct work *w)
-{
-  void *const memory[] = {w->stack,   w->at,   w->point, w->nodes, w->group,
-                          w->element, w->node, w->sum,   w->weight};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(w->ctx, memory[i]);
-  }
-}
-
 static dea_status prepare(struct work *w)
 {
   const struct dea_grid *grid = w->in->grid;
   size_t per = (size_t)((grid->order + 1) * (grid->order + 1)), count = grid->element_count;
+  struct dea_arena *memory = &w->memory;
   w->stack = dea_recover_stack(w->ctx, w->in);
-  w->at = dea_alloc(w->ctx, 1, sizeof *w->at);
-  w->point = dea_alloc(w->ctx, GROUPS * grid->node_count, sizeof *w->point);
-  w->nodes = dea_alloc(w->ctx, count * per, sizeof *w->nodes);
-  w->group = dea_alloc(w->ctx, count, sizeof *w->group);
-  w->element = dea_alloc(w->ctx, count * per, sizeof *w->element);
-  w->node = dea_alloc(w->ctx, count * per, sizeof *w->node);
-  w->sum = dea_alloc(w->ctx, count * per, sizeof *w->sum);
-  w->weight = dea_alloc(w->ctx, count * per, sizeof *w->weight);
-  return w->stack == NULL || w->at == NULL || w->point == NULL || w->nodes == NULL ||
-                 w->group == NULL || w->element == NULL || w->node == NULL || w->sum == NULL ||
-                 w->weight == NULL
-             ? DEA_E_MEMORY
-             : DEA_OK;
+  w->at = dea_arena_alloc(memory, 1, sizeof *w->at);
+  w->point = dea_arena_alloc(memory, GROUPS * grid->node_count, sizeof *w->point);
+  w->nodes = dea_arena_alloc(memory, count * per, sizeof *w->nodes);
+  w->group = dea_arena_alloc(memory, count, sizeof *w->group);
+  w->element = dea_arena_alloc(memory, count * per, sizeof *w->element);
+  w->node = dea_arena_alloc(memory, count * per, sizeof *w->node);
+  w->sum = dea_arena_alloc(memory, count * per, sizeof *w->sum);
+  w->weight = dea_arena_alloc(memory, count * per, sizeof *w->weight);
+  return w->stack != NULL ? dea_arena_status(memory) : DEA_E_MEMORY;
 }
 
 /* Numbers the points of a column. Those of its bottom nodes stand for it in its group. */
@@ -240,7 +229,7 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
 dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in, int ply,
                                struct dea_field_mesh **out)
 {
-  struct work work = {.ctx = ctx, .in = in, .ply = ply};
+  struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .ply = ply};
   *out = NULL;
   dea_status status = prepare(&work);
   if (status == DEA_OK) {
@@ -252,6 +241,7 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
   if (status == DEA_OK) {
     status = fill_mesh(&work, *out);
   }
-  release(&work);
+  dea_free(ctx, work.stack);
+  dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);
 }

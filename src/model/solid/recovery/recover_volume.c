@@ -10,6 +10,7 @@ enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 
 /* Points while sums are taken. A group is a ply in a region. */
 struct work {
   struct dea_context *ctx;
+  struct dea_arena memory; // of all arrays but the stack
   const struct dea_recover_input *in;
   struct dea_stacked *stack;
   int ply_count, region_count;
@@ -22,15 +23,6 @@ struct work {
   double *volume; // of an element [m^3]
   double *error;  // of an element: largest |J - 1|
 };
-
-static void release(struct work *w)
-{
-  void *const memory[] = {w->stack, w->point,  w->node,   w->element,
-                          w->sum,   w->weight, w->volume, w->error};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    dea_free(w->ctx, memory[i]);
-  }
-}
 
 static int *points_of(const struct work *w, size_t element)
 {
@@ -54,12 +46,10 @@ static dea_status number_points(struct work *w)
     w->region_count = w->region_count > grid->region[e] ? w->region_count : grid->region[e] + 1;
   }
   size_t groups = (size_t)(w->ply_count * w->region_count), per = DEA_HEX_NODES_MAX;
-  w->point = dea_alloc(w->ctx, groups * grid->node_count, sizeof *w->point);
-  w->node = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->node);
-  w->element = dea_alloc(w->ctx, grid->element_count * per, sizeof *w->element);
-  if (w->point == NULL || w->node == NULL || w->element == NULL) {
-    return DEA_E_MEMORY;
-  }
+  w->point = dea_arena_alloc(&w->memory, groups * grid->node_count, sizeof *w->point);
+  w->node = dea_arena_alloc(&w->memory, grid->element_count * per, sizeof *w->node);
+  w->element = dea_arena_alloc(&w->memory, grid->element_count * per, sizeof *w->element);
+  DEA_TRY(w->ctx, dea_arena_status(&w->memory));
   for (size_t e = 0; e < grid->element_count; e++) {
     int *points = points_of(w, e);
     for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
@@ -126,14 +116,11 @@ static dea_status take_means(struct work *w)
 {
   size_t count = w->in->grid->element_count;
   w->stack = dea_recover_stack(w->ctx, w->in);
-  w->sum = dea_alloc(w->ctx, w->point_count, sizeof *w->sum);
-  w->weight = dea_alloc(w->ctx, w->point_count, sizeof *w->weight);
-  w->volume = dea_alloc(w->ctx, count, sizeof *w->volume);
-  w->error = dea_alloc(w->ctx, count, sizeof *w->error);
-  if (w->stack == NULL || w->sum == NULL || w->weight == NULL || w->volume == NULL ||
-      w->error == NULL) {
-    return DEA_E_MEMORY;
-  }
+  w->sum = dea_arena_alloc(&w->memory, w->point_count, sizeof *w->sum);
+  w->weight = dea_arena_alloc(&w->memory, w->point_count, sizeof *w->weight);
+  w->volume = dea_arena_alloc(&w->memory, count, sizeof *w->volume);
+  w->error = dea_arena_alloc(&w->memory, count, sizeof *w->error);
+  DEA_TRY(w->ctx, w->stack != NULL ? dea_arena_status(&w->memory) : DEA_E_MEMORY);
   for (size_t from = 0; from < count;) {
     size_t end = dea_recover_column_end(w->stack, count, from, true);
     DEA_TRY(w->ctx, add_column(w, from, end));
@@ -304,7 +291,7 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
 dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_input *in,
                               struct dea_field_mesh **out)
 {
-  struct work work = {.ctx = ctx, .in = in};
+  struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in};
   *out = NULL;
   dea_status status = number_points(&work);
   if (status == DEA_OK) {
@@ -316,6 +303,7 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
   if (status == DEA_OK) {
     status = fill_mesh(&work, *out);
   }
-  release(&work);
+  dea_free(ctx, work.stack);
+  dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);
 }
