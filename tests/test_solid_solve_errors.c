@@ -38,6 +38,7 @@ static int held_at_ends(const void *self, const double X[3])
 
 static struct dea_grid *grid;
 static struct dea_solid *solid;
+static const struct dea_solid_settings *settings; // NULL: the default ones
 
 static dea_status solve(const struct dea_constituent *layer, const int *bits, double voltage_V)
 {
@@ -49,7 +50,8 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
                                             .layers = layer,
                                             .active = everywhere,
                                             .held = held_at_ends,
-                                            .self = bits};
+                                            .self = bits,
+                                            .settings = settings};
   struct dea_solid_report report;
   if (grid == NULL) {
     assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, 1e-2, &grid), DEA_OK);
@@ -218,6 +220,33 @@ static void test_memory_that_runs_out(void **state)
   clear();
 }
 
+/* Each setting is one that the solver goes by, and one that cannot be is refused by its name. */
+static void test_settings(void **state)
+{
+  (void)state;
+  const struct dea_constituent layer = film();
+  static const int held[] = {7, 0};
+  struct dea_solid_settings own = dea_solid_settings_default();
+  settings = &own;
+  assert_int_equal(solve(&layer, held, 10e3), DEA_OK);
+  clear();
+  own.iterations = 1;
+  assert_int_equal(solve(&layer, held, 10e3), DEA_E_NOT_CONVERGED);
+  expect("no equilibrium after 1 iterations");
+  clear();
+  own = dea_solid_settings_default();
+  own.shift_first = 0;
+  assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
+  expect("the setting shift_first has to be above 0");
+  clear();
+  own = dea_solid_settings_default();
+  own.bulk_stiff = 100;
+  assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
+  expect("bulk_stiff has to be a power of 2");
+  clear();
+  settings = NULL;
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -225,6 +254,7 @@ int main(void)
       cmocka_unit_test(test_inverted_element),
       cmocka_unit_test(test_law_that_ends),
       cmocka_unit_test(test_voltage_beyond_any_equilibrium),
+      cmocka_unit_test(test_settings),
       cmocka_unit_test(test_memory_that_runs_out),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);

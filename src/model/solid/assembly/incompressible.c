@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-static const double stiffer = 128; // kappa where unstable modes are counted; a power of 2
-
 double dea_solid_theta_max(const struct dea_solid *s)
 {
   double most = 0;
@@ -44,19 +42,21 @@ static void keep_pressures(struct dea_solid *s, double factor)
 
 void dea_solid_raise_bulk_modulus(struct dea_solid *s)
 {
-  keep_pressures(s, stiffer);
-  dea_solid_scale_bulk_modulus(s, stiffer);
+  const struct dea_solid_settings *o = &s->settings;
+  keep_pressures(s, o->bulk_stiff);
+  dea_solid_scale_bulk_modulus(s, o->bulk_stiff);
 }
 
 void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s)
 {
-  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
+  dea_solid_scale_bulk_modulus(s, 1 / s->settings.bulk_stiff);
 }
 
 void dea_solid_restore_bulk_modulus(struct dea_solid *s)
 {
-  keep_pressures(s, 1 / stiffer);
-  dea_solid_scale_bulk_modulus(s, 1 / stiffer);
+  const struct dea_solid_settings *o = &s->settings;
+  keep_pressures(s, 1 / o->bulk_stiff);
+  dea_solid_scale_bulk_modulus(s, 1 / o->bulk_stiff);
 }
 
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)

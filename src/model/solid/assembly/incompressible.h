@@ -5,8 +5,6 @@
 
 #include "model/solid/assembly/problem.h"
 
-#define DEA_SOLID_THETA_SMALL 1e-7 // of J - 1, projected
-
 /* Largest theta of the last assembly. */
 double dea_solid_theta_max(const struct dea_solid *s);
 /* The multipliers take over kappa theta. */

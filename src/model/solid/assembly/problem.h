@@ -56,11 +56,6 @@ struct dea_solid_problem {
   size_t own_count;
 };
 
-/* How it is solved. */
-struct dea_solid_settings {
-  bool accept_unstable; // solves stay at unstable equilibria; false: they descend from them
-};
-
 /* Where the solid is. */
 struct dea_solid_state {
   double voltage_V;   // by dea_solid_controls_set
@@ -124,7 +119,7 @@ struct dea_solid_found {
 struct dea_solid {
   struct dea_arena memory; // of all arrays but the loads and those of load_steps
   struct dea_solid_problem problem;
-  struct dea_solid_settings settings;
+  struct dea_solid_settings settings; // dea_solid_accept_unstable changes one of them
   struct dea_solid_state state;
   struct dea_solid_work work;
   struct dea_solid_found found;

@@ -67,6 +67,7 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
 {
   struct dea_solid_problem *p = &s->problem;
   const struct dea_grid *grid = p->grid;
+  DEA_TRY(ctx, dea_solid_settings_check(ctx, &s->settings));
   DEA_TRY(ctx, allocate(s, options));
   p->constituent_count = options->layer_count;
   memcpy(p->constituents, options->layers, options->layer_count * sizeof *p->constituents);
@@ -101,6 +102,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   }
   struct dea_solid_problem *p = &s->problem;
   s->memory.ctx = ctx;
+  s->settings = options->settings != NULL ? *options->settings : dea_solid_settings_default();
   p->grid = grid;
   p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   p->dofs = (size_t)p->per_node * grid->node_count;

@@ -10,6 +10,7 @@
 #define DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
 
 #include "model/solid/assembly/ranks.h"
+#include "model/solid/assembly/settings.h"
 #include "model/solid/load/load.h"
 #include "model/solid/mesh/grid.h"
 
@@ -38,6 +39,7 @@ struct dea_solid_options {
    * one is at (0 on the ground). */
   bool (*electrode)(const void *self, const double X[3], double *share);
   const void *self;
+  const struct dea_solid_settings *settings; // copied; NULL: dea_solid_settings_default
 };
 
 /* How a solve went. */

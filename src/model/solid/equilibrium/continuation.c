@@ -12,30 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { ATTEMPTS_MAX = 16, ITERATIONS_MANY = 8 };
-
-static const double off_most = 0.3;       // distance of a point from its prediction, over the step
-static const double bend_least = 0.02;    // of a unit tangent: below which it is an arc
-static const double off_good = 0.08;      // the one that steps aim at
-static const double step_shortest = 1e-6; // step over the first one
-
-/* of the corrector */
-enum { ITERATIONS_MAX = 15, HIDDEN_MANY = 3 };
-
-static const double residual_small = 1e-8; // of the sum of element forces: what kappa leaves
-static const double harder = 16;           // kappa on the way
-static const double step_small = 1e-10;    // of the solid's length
-static const double plane_small = 1e-9;    // of the distance to the plane
-static const double theta_small = 1e-2 * DEA_SOLID_THETA_SMALL; // kappa theta is no pressure then
-static const double difference = 1e-5;                          // of tau, for the force by tau
-
-/* of critical points */
-enum { ROUNDS_MAX = 20, ASIDE_MAX = 4, SIZES_MAX = 6 };
-
-static const double limit_near = 1e-6, bifurcation_near = 1e-4; // of the way between two points
-static const double flat_enough = 1e-8; // of what is 0 at the critical point, over what it was
-static const double aside = 0.03;       // of the bracket, at first
-
 /* An equilibrium on the path. */
 struct dea_continuation_path_point {
   double *state; // [state_count]
@@ -122,7 +98,7 @@ static void orient_plane(struct dea_solid_continuation *t, const double *directi
 static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
   struct dea_solid *s = t->s;
-  double energy, tau = t->load, by = difference;
+  double energy, tau = t->load, by = s->settings.path_difference;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   memcpy(t->right, s->work.g, s->problem.dofs * sizeof(double));
   if (set_load(ctx, t, tau + by) != DEA_OK) {
@@ -192,15 +168,16 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
                                double *residual, bool *there, bool *small, bool *hidden)
 {
   struct dea_solid *s = t->s;
+  const struct dea_solid_settings *o = &s->settings;
   double dtau = 0, size = 0;
   int negative;
   DEA_TRY(ctx, force_rate(ctx, t));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
   *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
               (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
-  bool constrained = dea_solid_theta_max(s) < theta_small;
-  *there = constrained && *residual < residual_small &&
-           fabs(off_plane(t)) < plane_small * fabs(t->plane.length);
+  bool constrained = dea_solid_theta_max(s) < o->path_theta * o->theta;
+  *there = constrained && *residual < o->path_residual &&
+           fabs(off_plane(t)) < o->path_plane * fabs(t->plane.length);
   if (*there) {
     return DEA_OK;
   }
@@ -212,7 +189,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
     s->state.u[i] += s->work.step[i];
     size = fmax(size, fabs(s->work.step[i]));
   }
-  *small = constrained && size < step_small * s->problem.length_m;
+  *small = constrained && size < o->path_step * s->problem.length_m;
   DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
   return DEA_OK;
 }
@@ -222,18 +199,19 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
 static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation *t,
                           int *iterations)
 {
+  const struct dea_solid_settings *o = &t->s->settings;
   double residual = 0;
   int in_a_row = 0; // hidden steps
-  for (*iterations = 1; *iterations <= ITERATIONS_MAX; ++*iterations) {
+  for (*iterations = 1; *iterations <= o->path_iterations; ++*iterations) {
     bool there = false, small = false, hidden = false;
     DEA_TRY(ctx, correct_once(ctx, t, &residual, &there, &small, &hidden));
     in_a_row = hidden ? in_a_row + 1 : 0;
-    if ((there || in_a_row >= HIDDEN_MANY || (small && *iterations > 1)) &&
+    if ((there || in_a_row >= o->path_hidden || (small && *iterations > 1)) &&
         dea_solid_update_loads(t->s) <= 1) {
       return DEA_OK;
     }
   }
-  *iterations = ITERATIONS_MAX;
+  *iterations = o->path_iterations;
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium in the plane (residual %.1e)",
                   residual);
 }
@@ -242,9 +220,10 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
 static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_continuation *t,
                                  int *iterations)
 {
-  dea_solid_scale_bulk_modulus(t->s, harder);
+  const struct dea_solid_settings *o = &t->s->settings;
+  dea_solid_scale_bulk_modulus(t->s, o->path_bulk);
   dea_status status = correct(ctx, t, iterations);
-  dea_solid_scale_bulk_modulus(t->s, 1 / harder);
+  dea_solid_scale_bulk_modulus(t->s, 1 / o->path_bulk);
   t->s->found.predicted_fits = false;
   return status;
 }
@@ -380,6 +359,7 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
                                double *off, int *iterations)
 {
   struct dea_solid *s = t->s;
+  const struct dea_solid_settings *o = &s->settings;
   DEA_TRY(ctx, return_to(ctx, t, &t->last));
   for (size_t i = 0; i < s->problem.dofs; i++) {
     t->start[i] = t->step * t->tangent[i];
@@ -393,10 +373,10 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
   t->plane.length = t->step;
   DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
   *off = distance_from(t, t->start, tau) / t->step;
-  if (*off < off_most) {
+  if (*off < o->path_off_most) {
     t->next.arc = t->last.arc + t->step;
     DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, &t->next));
-    if (bend(t) < fmax(*off, bend_least)) {
+    if (bend(t) < fmax(*off, o->path_bend_least)) {
       return DEA_OK;
     }
   }
@@ -421,10 +401,11 @@ static void accept_point(struct dea_solid_continuation *t)
 dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid_continuation *t,
                                        struct dea_continuation_point *point)
 {
+  const struct dea_solid_settings *o = &t->s->settings;
   double off = 0;
   int iterations = 0, all = 0;
   dea_status status = DEA_OK;
-  for (int i = 0; i < ATTEMPTS_MAX; i++) {
+  for (int i = 0; i < o->path_attempts; i++) {
     dea_context_clear(ctx);
     iterations = 0;
     status = attempt_step(ctx, t, &off, &iterations);
@@ -446,8 +427,8 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   accept_point(t);
   report_point(t, &t->last, t->event, point);
   point->iterations = all;
-  double longer = off > 0 ? fmin(sqrt(off_good / off), 2) : 2;
-  longer = iterations > ITERATIONS_MANY ? fmin(longer, 0.7) : longer;
+  double longer = off > 0 ? fmin(sqrt(o->path_off_good / off), 2) : 2;
+  longer = iterations > o->path_iterations_many ? fmin(longer, 0.7) : longer;
   t->step = fmin(t->step * fmax(longer, 0.5), t->step_most);
   return DEA_OK;
 }
@@ -488,7 +469,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
     t->metric[i] /= volume * options->unit_m * options->unit_m;
   }
   t->step = fabs(options->step);
-  t->step_least = step_shortest * t->step;
+  t->step_least = s->settings.path_step_least * t->step;
   t->step_most = options->step_most > 0 ? options->step_most : INFINITY;
   return DEA_OK;
 }
@@ -622,10 +603,12 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_conti
 static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_continuation *t,
                                    const struct bracket *b, double *share)
 {
+  const struct dea_solid_settings *o = &t->s->settings;
   dea_status status = solve_at_share(ctx, t, b, *share);
   bool first_half = *share - b->at[0] < b->at[1] - *share;
-  double by = (first_half ? aside : -aside) * (b->at[1] - b->at[0]), from = *share;
-  for (int i = 0; i < ASIDE_MAX && dea_solid_may_shorten(status); i++, by *= 2) {
+  double by = (first_half ? o->critical_aside : -o->critical_aside) * (b->at[1] - b->at[0]),
+         from = *share;
+  for (int i = 0; i < o->critical_aside_most && dea_solid_may_shorten(status); i++, by *= 2) {
     dea_context_clear(ctx);
     *share = from + by;
     status = solve_at_share(ctx, t, b, *share);
@@ -639,15 +622,16 @@ static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_con
 static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuation *t,
                            struct bracket *b)
 {
+  const struct dea_solid_settings *o = &t->s->settings;
   double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
   double value, before = -1;
-  double enough = t->event == DEA_CONTINUATION_LIMIT ? limit_near : bifurcation_near;
+  double enough = t->event == DEA_CONTINUATION_LIMIT ? o->critical_limit : o->critical_bifurcation;
   int stays = -1;
-  for (int i = 0; i < ROUNDS_MAX; i++) {
+  for (int i = 0; i < o->critical_rounds; i++) {
     double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
     DEA_TRY(ctx, solve_near_share(ctx, t, b, &share));
     DEA_TRY(ctx, measure_critical(ctx, t, b, &value));
-    if (fabs(share - before) < enough || fabs(value) < flat_enough * first ||
+    if (fabs(share - before) < enough || fabs(value) < o->critical_flat * first ||
         fabs(value) > fmax(seen[0], seen[1])) {
       return DEA_OK;
     }
@@ -743,7 +727,7 @@ dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_ARGUMENT, "another branch starts at a bifurcation that was located");
   }
   dea_status status = DEA_OK;
-  for (int i = 0; i < SIZES_MAX; i++, distance /= 2) {
+  for (int i = 0; i < t->s->settings.branch_attempts; i++, distance /= 2) {
     dea_context_clear(ctx);
     status = leave_along(ctx, t, side < 0 ? -distance : distance);
     if (!dea_solid_may_shorten(status)) {

@@ -13,19 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double step_smallest = 1.0 / 64; // of the way asked for
-
-/* of the descent from an unstable equilibrium */
-enum { STEPS_MAX = 4 };
-
-static const double push_first = 0.05; // of the solid's length
-static const double equal = 1e-6;      // two energies, relative to how far they fell
-
-/* of the path of a force along a mode */
-enum { POINTS_MAX = 80 };
-
-static const double step_first = 0.1, step_most = 1; // of the solid's length, root mean square
-
 /* ---- the path of a force along an unstable mode ---- */
 
 /* The controls as they are (where the path starts), and with a force that would hold the mode back
@@ -52,11 +39,12 @@ static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid 
 }
 
 /* Along the path until the force has come to nothing. */
-static dea_status follow_force(struct dea_context *ctx, struct dea_solid_continuation *trace)
+static dea_status follow_force(struct dea_context *ctx, const struct dea_solid *s,
+                               struct dea_solid_continuation *trace)
 {
   struct dea_continuation_point point = {0};
   double first = 0;
-  for (int i = 0; i < POINTS_MAX; i++) {
+  for (int i = 0; i < s->settings.mode_path_points; i++) {
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, trace, &point));
     first = i == 0 ? point.load : first;
     if (point.load * first <= 0) {
@@ -72,9 +60,11 @@ static dea_status follow_force(struct dea_context *ctx, struct dea_solid_continu
 static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int side, double value,
                               const double *mode, struct dea_solid_report *report)
 {
+  const struct dea_solid_settings *o = &s->settings;
   // the stiffness is negative: a force against the mode leads along it
-  const struct dea_continuation_options options = {side > 0 ? -step_first : step_first, step_most,
-                                                   s->problem.length_m};
+  const struct dea_continuation_options options = {side > 0 ? -o->mode_path_step
+                                                            : o->mode_path_step,
+                                                   o->mode_path_step_most, s->problem.length_m};
   struct dea_solid_continuation *trace = NULL;
   double *from = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *from);
   double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
@@ -86,7 +76,7 @@ static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int 
     status = dea_continuation_create_to(ctx, s, goal, &options, &trace);
   }
   if (status == DEA_OK) {
-    status = follow_force(ctx, trace);
+    status = follow_force(ctx, s, trace);
     dea_solid_controls_set(s, from);
   }
   if (status == DEA_OK) {
@@ -129,7 +119,7 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
     double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
     lowest = fmin(up, down);
     if (lowest < energy) {
-      push = up <= down + equal * fabs(energy - down) ? size : -size;
+      push = up <= down + s->settings.descent_equal * fabs(energy - down) ? size : -size;
     }
   }
   double next = push != 0 ? energy_beside(ctx, s, u, mode, 2 * push) : INFINITY;
@@ -147,8 +137,8 @@ static dea_status step_down(struct dea_context *ctx, struct dea_solid *s, int si
 {
   double value;
   DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
-  double push = choose_push(ctx, s, s->state.u, mode, push_first * s->problem.length_m, side,
-                            report->energy_J);
+  double push = choose_push(ctx, s, s->state.u, mode,
+                            s->settings.descent_push * s->problem.length_m, side, report->energy_J);
   if (push == 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "an unstable mode without a way down");
   }
@@ -168,7 +158,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side
                           double *mode, struct dea_solid_report *report)
 {
   double energy = report->energy_J;
-  for (int k = 0; k < STEPS_MAX && report->unstable_modes > 0; k++) {
+  for (int k = 0; k < s->settings.descent_modes && report->unstable_modes > 0; k++) {
     DEA_TRY(ctx, step_down(ctx, s, k == 0 ? side : 0, pull, mode, report));
   }
   return report->unstable_modes == 0 && report->energy_J <= energy
@@ -342,7 +332,7 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
       }
     } else {
       part /= 2;
-      if (!dea_solid_may_shorten(status) || !moves || part < step_smallest) {
+      if (!dea_solid_may_shorten(status) || !moves || part < s->settings.load_step_least) {
         return status;
       }
     }

@@ -14,12 +14,6 @@
  * eigenvalues 1/lambda are extreme at both ends for the modes that are wanted: unstable ones at
  * one, the softest stable ones at the other. Each end is searched by itself. */
 
-enum { ROUNDS_MAX = 6, EXTRA = 4 };
-
-static const double sharp = 1e-10;    // relative residual of a mode
-static const double apart = 1e-6;     // relative distance of two modes that a count can tell
-static const double room_share = 0.5; // of the modes, that more are asked for at first
-
 struct eigen {
   struct dea_arena memory; // of the arrays
   struct dea_solid *solid;
@@ -72,7 +66,8 @@ static PetscErrorCode configure(EPS eps, struct eigen *f, PetscInt wanted)
   CHECK(EPSSetEigenvalueComparison(eps, compare_eigenvalues, f));
   CHECK(EPSSetWhichEigenpairs(eps, EPS_WHICH_USER));
   CHECK(EPSSetDimensions(eps, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
-  CHECK(EPSSetTolerances(eps, sharp, 1000));
+  CHECK(
+      EPSSetTolerances(eps, f->solid->settings.mode_residual, f->solid->settings.mode_iterations));
   CHECK(EPSSetDeflationSpace(eps, f->count, f->vectors));
   CHECK(EPSGetST(eps, &st));
   CHECK(STSetType(st, STSINVERT));
@@ -142,7 +137,7 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
   for (int k = count; k <= f->count; k++) { // behind the last found there may be none
     double low = f->value[f->order[k - 1]];
     double high = k < f->count ? f->value[f->order[k]] : low + fabs(low);
-    if (high - low > apart * (fabs(low) + fabs(high))) {
+    if (high - low > f->solid->settings.mode_apart * (fabs(low) + fabs(high))) {
       int below;
       DEA_TRY(ctx, count_below(ctx, f, 0.5 * (low + high), &below));
       *all = below == k;
@@ -157,9 +152,11 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
  * ones in a round. */
 static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, bool below)
 {
-  PetscInt wanted = below ? count : count - f->count + EXTRA + (PetscInt)(room_share * count);
+  const struct dea_solid_settings *o = &f->solid->settings;
+  PetscInt wanted =
+      below ? count : count - f->count + o->mode_extra + (PetscInt)(o->mode_room * count);
   f->below = below;
-  for (int round = 0; round < ROUNDS_MAX; round++) {
+  for (int round = 0; round < o->mode_rounds; round++) {
     PetscInt before = f->count;
     wanted = wanted < f->room - f->count ? wanted : f->room - f->count;
     if (wanted < 1) {
@@ -180,7 +177,7 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
     if (!below) {
       DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->work.K, &f->solid->work.factor));
     }
-    wanted = below ? count - f->count : EXTRA + count / 2;
+    wanted = below ? count - f->count : o->mode_extra + count / 2;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",
                   (int)f->count, count);
@@ -239,7 +236,7 @@ static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size
 static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_mode_metric metric,
                              int unstable, int count)
 {
-  f->room = 3 * (unstable > count ? unstable : count) + 8 * EXTRA;
+  f->room = 3 * (unstable > count ? unstable : count) + 8 * f->solid->settings.mode_extra;
   f->memory.ctx = ctx;
   f->order = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->order);
   f->value = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->value);

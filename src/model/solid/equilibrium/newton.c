@@ -10,19 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { NEWTON_MAX = 80, FREE_MAX = 50, CHORDS_MAX = 8, SHIFTS_MAX = 40, HALVINGS_MAX = 12 };
-enum { OUTER_MAX = 30, WORSE_MAX = 4 }; // rounds of the multipliers
-
-static const double residual_small = 1e-9; // of the sum of element forces
-static const double step_small = 1e-10;    // of the solid's length
-static const double energy_small = 1e-11;  // of the element energies: what rounding hides
-static const double chord_rate = 0.2;      // at which an old factor is good enough
-static const double uphill = 20;           // rise of the energy over the slope that is let pass
-static const double downhill = 1e-4;       // Armijo
-static const double shift_first = 3e-3;    // of the modulus of the softest layer
-static const double shift_least = 3e-5;    // below which there is none
-static const double shift_up = 4, shift_down = 10;
-
 struct newton {
   double voltage_V;
   double shift_Pa;
@@ -56,7 +43,8 @@ static double largest(const struct dea_solid *s, const double *v)
 static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                                      double *there)
 {
-  for (int i = 0; i < SHIFTS_MAX; i++) {
+  const struct dea_solid_settings *o = &s->settings;
+  for (int i = 0; i < o->shifts; i++) {
     int negative;
     if (d->shift_Pa != *there) {
       DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, d->shift_Pa - *there));
@@ -71,8 +59,8 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
     if (negative <= 0) {
       return DEA_OK;
     }
-    double more = shift_up * (negative > 20 ? 16 : negative > 5 ? 4 : 1);
-    d->shift_Pa = *there > 0 ? more * *there : shift_first * s->problem.modulus_Pa;
+    double more = o->shift_up * (negative > 20 ? 16 : negative > 5 ? 4 : 1);
+    d->shift_Pa = *there > 0 ? more * *there : o->shift_first * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
 }
@@ -91,7 +79,7 @@ static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
 
 bool dea_solid_resolved(const struct dea_solid *s, double change)
 {
-  return fabs(change) > energy_small * s->found.energy_scale_J + s->problem.energy_floor_J;
+  return fabs(change) > s->settings.energy * s->found.energy_scale_J + s->problem.energy_floor_J;
 }
 
 /* The longest share of the step that the energy lets pass, into work.trial. *rise: of the energy
@@ -99,10 +87,11 @@ bool dea_solid_resolved(const struct dea_solid *s, double change)
 static bool search_line(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
                         double slope, double *share, double *rise)
 {
-  double energy = d->report->energy_J, allowed = d->strict ? -downhill : uphill, at;
+  const struct dea_solid_settings *o = &s->settings;
+  double energy = d->report->energy_J, allowed = d->strict ? -o->downhill : o->uphill, at;
   *rise = -0.5;
   *share = 1;
-  for (int i = 0; i < HALVINGS_MAX; i++, *share /= 2) {
+  for (int i = 0; i < o->halvings; i++, *share /= 2) {
     for (size_t k = 0; k < s->problem.dofs; k++) {
       s->work.trial[k] = s->state.u[k] + *share * s->work.step[k];
     }
@@ -123,13 +112,15 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
 /* The shift of the next step from how this one went. */
 static void adapt_shift(struct dea_solid *s, struct newton *d, double share, double rise)
 {
+  const struct dea_solid_settings *o = &s->settings;
   if (share < 1 || rise > 0) {
-    d->shift_Pa = d->shift_Pa > 0 ? d->shift_Pa * (share < 0.2 ? shift_up * shift_up : shift_up)
-                                  : shift_first * s->problem.modulus_Pa;
+    d->shift_Pa = d->shift_Pa > 0
+                      ? d->shift_Pa * (share < 0.2 ? o->shift_up * o->shift_up : o->shift_up)
+                      : o->shift_first * s->problem.modulus_Pa;
   } else if (rise < -0.25) {
-    d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_down * shift_down : shift_down;
+    d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
   }
-  if (d->shift_Pa < shift_least * s->problem.modulus_Pa) {
+  if (d->shift_Pa < o->shift_least * s->problem.modulus_Pa) {
     d->shift_Pa = 0;
   }
 }
@@ -219,10 +210,11 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
 static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                               bool *done)
 {
+  const struct dea_solid_settings *o = &s->settings;
   double there = 0, share, rise;
   bool start = d->start;
   d->start = d->chord = *done = false;
-  for (int i = 0; i < SHIFTS_MAX; i++) {
+  for (int i = 0; i < o->shifts; i++) {
     if (!start) {
       DEA_TRY(ctx, factorise_definite(ctx, s, d, &there));
       d->report->iterations++;
@@ -231,7 +223,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
-      *done = !start && there == 0 && largest(s, s->work.step) < step_small * s->problem.length_m;
+      *done = !start && there == 0 && largest(s, s->work.step) < o->step * s->problem.length_m;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
       if (start) {
@@ -245,7 +237,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (start) {
       return DEA_OK; // the next step has a tangent of its own
     }
-    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : shift_first * s->problem.modulus_Pa;
+    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : o->shift_first * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
 }
@@ -253,6 +245,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
 /* Energy, forces and, where the next step needs one, the tangent at u. */
 static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
+  const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_report *report = d->report;
   bool chord = d->chord || d->start;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : DEA_TANGENT,
@@ -260,8 +253,8 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   double size = norm(s, s->work.g);
   report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   report->theta_max = dea_solid_theta_max(s);
-  if (d->chord && (d->chords == CHORDS_MAX || !(size < chord_rate * d->norm_before)) &&
-      !(report->residual < residual_small)) {
+  if (d->chord && (d->chords == o->chords || !(size < o->chord_rate * d->norm_before)) &&
+      !(report->residual < o->residual)) {
     d->chord = false;
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &report->energy_J));
   }
@@ -289,22 +282,23 @@ static dea_status count_unstable(struct dea_context *ctx, struct dea_solid *s, s
 
 /* Stationary point of the energy, downhill from where it is: a minimum, or a point that has a
  * valley on all sides that a Newton step sees. Pressures follow; where they do not,
- * report->theta_max is above DEA_SOLID_THETA_SMALL. */
+ * report->theta_max is above settings.theta. */
 static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report)
 {
+  const struct dea_solid_settings *o = &s->settings;
   struct newton d = {.voltage_V = voltage_V, .start = s->found.factor_fits, .report = report};
   s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
-  for (int i = 0; i < NEWTON_MAX; i++) {
+  for (int i = 0; i < o->iterations; i++) {
     bool done = false;
-    if (i == FREE_MAX) {
+    if (i == o->iterations_free) {
       d.strict = true;
       d.chord = s->found.predicted_fits = false;
     }
     DEA_TRY(ctx, evaluate(ctx, s, &d));
-    bool fits = d.strict || report->theta_max < DEA_SOLID_THETA_SMALL;
-    if (i > 0 && fits && (report->residual < residual_small || d.unresolved > 2)) {
+    bool fits = d.strict || report->theta_max < o->theta;
+    if (i > 0 && fits && (report->residual < o->residual || d.unresolved > 2)) {
       return count_unstable(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits);
     }
     if (d.chord) {
@@ -317,7 +311,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double 
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
-                  NEWTON_MAX, report->residual);
+                  o->iterations, report->residual);
 }
 
 /* ---- held components that move ---- */
@@ -369,15 +363,16 @@ double dea_solid_update_loads(struct dea_solid *s)
 dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
                                  struct dea_solid_report *report)
 {
+  const struct dea_solid_settings *o = &s->settings;
   double best = INFINITY;
-  for (int i = 0, worse = 0; i < OUTER_MAX && worse < WORSE_MAX; i++) {
+  for (int i = 0, worse = 0; i < o->rounds && worse < o->rounds_worse; i++) {
     DEA_TRY(ctx, minimise(ctx, s, s->state.voltage_V, report));
     report->load_error = dea_solid_update_loads(s);
-    double error = fmax(report->theta_max / DEA_SOLID_THETA_SMALL, report->load_error);
-    if (report->theta_max < DEA_SOLID_THETA_SMALL && report->load_error <= 1) {
+    double error = fmax(report->theta_max / o->theta, report->load_error);
+    if (report->theta_max < o->theta && report->load_error <= 1) {
       return DEA_OK;
     }
-    if (report->theta_max >= DEA_SOLID_THETA_SMALL) {
+    if (report->theta_max >= o->theta) {
       dea_solid_update_multipliers(s);
     }
     worse = error < best ? 0 : worse + 1;
