@@ -1,119 +1,50 @@
-#define _GNU_SOURCE // posix_spawn_file_actions_addchdir_np, pipe2, environ
+#define _POSIX_C_SOURCE 200809L // unlinkat, renameat, dirfd
 #include "output/gnuplot.h"
 
 #include "base/file.h"
+#include "base/program.h"
 #include "base/write_file.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <spawn.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-enum { SAID_MAX = 4096, DRAWERS_MAX = 4, SCRIPT_MAX = 80 };
-
-static bool actions_make(posix_spawn_file_actions_t *actions, const char *directory, int pipe_end)
-{
-  return posix_spawn_file_actions_addopen(actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0) == 0 &&
-         posix_spawn_file_actions_addopen(actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0) == 0 &&
-         posix_spawn_file_actions_adddup2(actions, pipe_end, STDERR_FILENO) == 0 &&
-         posix_spawn_file_actions_addchdir_np(actions, directory) == 0;
-}
-
-/* Starts argv[0] from the PATH in a folder; returns errno's value, 0 when it runs. */
-static int start(char *const argv[], const char *directory, int pipe_end, pid_t *child)
-{
-  posix_spawn_file_actions_t actions;
-  int reason = posix_spawn_file_actions_init(&actions);
-  if (reason != 0) {
-    return reason;
-  }
-  reason = actions_make(&actions, directory, pipe_end)
-               ? posix_spawnp(child, argv[0], &actions, NULL, argv, environ)
-               : ENOMEM;
-  posix_spawn_file_actions_destroy(&actions);
-  return reason;
-}
-
-/* Keeps the first bytes of what comes out of a pipe and reads the rest away. */
-static void listen(int pipe_end, char *said)
-{
-  size_t used = 0;
-  char rest[512];
-  for (;;) {
-    bool full = used >= SAID_MAX - 1;
-    ssize_t n =
-        full ? read(pipe_end, rest, sizeof rest) : read(pipe_end, said + used, SAID_MAX - 1 - used);
-    if (n == 0 || (n < 0 && errno != EINTR)) {
-      break;
-    }
-    used += n > 0 && !full ? (size_t)n : 0;
-  }
-  said[used] = '\0';
-}
-
-/* The part of gnuplot's message that says what is wrong: its last line that is not empty. */
-static const char *last_line(char *said)
-{
-  size_t n = strlen(said);
-  while (n > 0 && (said[n - 1] == '\n' || said[n - 1] == ' ')) {
-    said[--n] = '\0';
-  }
-  char *newline = strrchr(said, '\n');
-  const char *line = newline != NULL ? newline + 1 : said;
-  return line + strspn(line, " ");
-}
-
-/* A gnuplot that draws some of the figures. */
-struct drawer {
-  pid_t child;
-  int said; // end of the pipe that it complains into
-};
+enum { DRAWERS_MAX = 4, SCRIPT_MAX = 80 };
 
 static dea_status launch(struct dea_context *ctx, char *const argv[], const char *directory,
-                         struct drawer *out)
+                         struct dea_program *out)
 {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
-    return dea_fail(ctx, DEA_E_IO, "cannot make a pipe: %s", strerror(errno));
+  int reason = dea_program_start(argv, directory, false, out);
+  if (reason == ENOENT) {
+    return dea_fail(ctx, DEA_E_TOOL,
+                    "gnuplot is not installed (on Debian: apt install gnuplot-nox); the scripts "
+                    "and data of the figures are in %s and can be drawn later",
+                    directory);
   }
-  int reason = start(argv, directory, ends[1], &out->child);
-  close(ends[1]);
   if (reason != 0) {
-    close(ends[0]);
-    if (reason == ENOENT) {
-      return dea_fail(ctx, DEA_E_TOOL,
-                      "gnuplot is not installed (on Debian: apt install gnuplot-nox); the scripts "
-                      "and data of the figures are in %s and can be drawn later",
-                      directory);
-    }
     return dea_fail(ctx, DEA_E_TOOL, "gnuplot cannot be started: %s", strerror(reason));
   }
-  out->said = ends[0];
   return DEA_OK;
 }
 
-/* Waits for its end. */
-static dea_status finish(struct dea_context *ctx, const struct drawer *drawer,
+/* Waits for its end; also after an interruption, so that figures of what there is are drawn. */
+static dea_status finish(struct dea_context *ctx, const struct dea_program *drawer,
                          const char *directory)
 {
-  char said[SAID_MAX];
-  listen(drawer->said, said);
-  close(drawer->said);
-  int state = 0;
-  while (waitpid(drawer->child, &state, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(state) && WEXITSTATUS(state) == 0) {
+  char said[DEA_PROGRAM_SAID];
+  int number;
+  if (dea_program_wait(NULL, drawer, INFINITY, said, &number) == DEA_PROGRAM_DONE) {
     return DEA_OK;
   }
   if (dea_interrupted(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while drawing");
   }
-  return dea_fail(ctx, DEA_E_TOOL, "gnuplot failed in %s: %s", directory, last_line(said));
+  const char *last = dea_last_lines(said, 1); // says what is wrong
+  return dea_fail(ctx, DEA_E_TOOL, "gnuplot failed in %s: %s", directory, last + strspn(last, " "));
 }
 
 /* How many draw at a time: starting one costs as much as a small figure. */
@@ -158,7 +89,7 @@ static dea_status empty_folder(struct dea_context *ctx, const char *from, const 
 /* Starts a gnuplot for the figures first, first + stride, ... */
 static dea_status launch_some(struct dea_context *ctx, const char *directory, char *folder,
                               const char *const names[], size_t count, size_t first, size_t stride,
-                              struct drawer *out)
+                              struct dea_program *out)
 {
   char **argv = dea_alloc(ctx, count + 5, sizeof *argv);
   char *scripts = dea_alloc(ctx, count, SCRIPT_MAX);
@@ -185,7 +116,7 @@ static dea_status draw(struct dea_context *ctx, const char *directory, const cha
                        const char *const names[], size_t count)
 {
   struct dea_text folder = {.ctx = ctx};
-  struct drawer drawers[DRAWERS_MAX];
+  struct dea_program drawers[DRAWERS_MAX];
   size_t wanted = drawer_count(count), running = 0;
   dea_text_add(&folder, "dea_folder = \"%s/\"", dea_path_name(drawing));
   dea_status status = folder.failed ? DEA_E_MEMORY : DEA_OK;

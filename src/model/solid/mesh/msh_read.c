@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILE_MAX = 1000000000, SAID_MAX = 400, NODES_MAX = 10, NAME_SIZE = 128 };
+enum { SAID_MAX = 400, NODES_MAX = 10, NAME_SIZE = 128 };
 static const double flat = 1e-6; // of the mesh's size: nodes further apart in z are no plane
 static const double same = 1e-9; // of the mesh's size: one place
 static const double size_least_m = 1e-9, size_most_m = 1e6;
@@ -63,7 +63,7 @@ struct list {
 
 struct reader {
   struct dea_context *ctx;
-  const char *file; // interned
+  const char *file; // interned; NULL: none, and no findings
   const char *at;
   size_t line;
   const char *section;
@@ -83,6 +83,9 @@ static dea_status fault(struct reader *r, size_t line, const char *format, ...)
   va_start(args, format);
   vsnprintf(said, sizeof said, format, args);
   va_end(args);
+  if (r->file == NULL) {
+    return dea_fail(r->ctx, DEA_E_DESIGN, "%s", said);
+  }
   const struct dea_location location = {r->file, line, 0};
   DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, location, "%s", said));
   return line > 0 ? dea_fail(r->ctx, DEA_E_DESIGN, "%s:%zu: %s", r->file, line, said)
@@ -668,24 +671,6 @@ static void sort_elements(struct reader *r, const struct survey *s)
   qsort(elements, r->elements.count, sizeof *elements, compare_elements);
 }
 
-/* A group or a curve of the mesh for a physical group of the file. */
-static dea_status add_name(struct reader *r, struct physical *physical, struct dea_plane_mesh *mesh)
-{
-  size_t *count = physical->dimension == 2 ? &mesh->group_count : &mesh->curve_count;
-  char ***names = physical->dimension == 2 ? &mesh->group : &mesh->curve;
-  char **moved = dea_resize(r->ctx, *names, *count + 1, sizeof *moved);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
-  *names = moved;
-  moved[*count] = dea_copy_text(r->ctx, physical->name, strlen(physical->name));
-  if (moved[*count] == NULL) {
-    return DEA_E_MEMORY;
-  }
-  physical->index = (*count)++;
-  return DEA_OK;
-}
-
 /* Those with a name in the order of the file, then those without. */
 static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
 {
@@ -702,8 +687,12 @@ static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
   }
   struct physical *all = r->physicals.data;
   for (size_t i = 0; i < r->physicals.count; i++) {
-    if (all[i].dimension == 1 || all[i].dimension == 2) {
-      DEA_TRY(r->ctx, add_name(r, &all[i], mesh));
+    if (all[i].dimension == 2) {
+      all[i].index = mesh->group_count;
+      DEA_TRY(r->ctx, dea_plane_mesh_add_group(r->ctx, mesh, all[i].name));
+    } else if (all[i].dimension == 1) {
+      all[i].index = mesh->curve_count;
+      DEA_TRY(r->ctx, dea_plane_mesh_add_curve(r->ctx, mesh, all[i].name));
     }
   }
   return DEA_OK;
@@ -749,27 +738,6 @@ static void place_quad(const struct reader *r, const struct raw_element *e, doub
   }
 }
 
-/* Number of the region that is in these groups. */
-static dea_status region_of(struct reader *r, struct dea_plane_mesh *mesh,
-                            const unsigned char *within, int *out)
-{
-  size_t n = mesh->group_count, k = 0;
-  while (k < mesh->region_count && memcmp(mesh->within + k * n, within, n) != 0) {
-    k++;
-  }
-  if (k == mesh->region_count) {
-    unsigned char *moved = dea_resize(r->ctx, mesh->within, k + 1, n);
-    if (moved == NULL) {
-      return DEA_E_MEMORY;
-    }
-    mesh->within = moved;
-    memcpy(moved + k * n, within, n);
-    mesh->region_count++;
-  }
-  *out = (int)k;
-  return DEA_OK;
-}
-
 /* The copies of one quadrilateral, elements[i] and on; *next: behind them. */
 static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea_places *places,
                            struct dea_plane_mesh *mesh, unsigned char *within, size_t *next)
@@ -786,7 +754,7 @@ static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea
       within[find_physical(r, 2, tag)->index] = 1;
     }
   }
-  DEA_TRY(r->ctx, region_of(r, mesh, within, &mesh->region[mesh->quad_count]));
+  DEA_TRY(r->ctx, dea_plane_mesh_region(r->ctx, mesh, within, &mesh->region[mesh->quad_count]));
   mesh->quad_count++;
   return DEA_OK;
 }
@@ -908,9 +876,10 @@ static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh *
 dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *name, double unit_m,
                          struct dea_plane_mesh **out)
 {
-  struct reader r = {.ctx = ctx, .file = dea_intern(ctx, name), .at = text, .line = 1};
+  struct reader r = {.ctx = ctx, .at = text, .line = 1};
   *out = NULL;
-  if (r.file == NULL) {
+  r.file = name != NULL ? dea_intern(ctx, name) : NULL;
+  if (name != NULL && r.file == NULL) {
     return DEA_E_MEMORY;
   }
   void *locale = dea_c_locale_enter();
@@ -936,7 +905,7 @@ dea_status dea_msh_read(struct dea_context *ctx, const char *file, double unit_m
   char *text;
   size_t length;
   *out = NULL;
-  DEA_TRY(ctx, dea_file_read(ctx, file, FILE_MAX, &text, &length));
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_MSH_FILE_MAX, &text, &length));
   dea_status status = dea_msh_parse(ctx, text, file, unit_m, out);
   dea_free(ctx, text);
   return status;

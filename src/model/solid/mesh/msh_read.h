@@ -16,11 +16,14 @@
 dea_status dea_msh_read(struct dea_context *ctx, const char *file, double unit_m,
                         struct dea_plane_mesh **out);
 
-/* The same of a text, which findings call `name`. */
+/* The same of a text, which findings call `name`; NULL: faults are in the
+ * message of the context only. */
 dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *name, double unit_m,
                          struct dea_plane_mesh **out);
 
 /* Elements whose smallest Jacobian is below that share of their mean one are refused. */
 #define DEA_MSH_JACOBIAN_MIN 0.05
+
+enum { DEA_MSH_FILE_MAX = 1000000000 }; // bytes
 
 #endif

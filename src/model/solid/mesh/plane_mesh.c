@@ -32,19 +32,75 @@ static void free_names(struct dea_context *ctx, char **names, size_t count)
   dea_free(ctx, names);
 }
 
+void dea_plane_mesh_forget_names(struct dea_context *ctx, struct dea_plane_mesh *mesh)
+{
+  free_names(ctx, mesh->group, mesh->group_count);
+  free_names(ctx, mesh->curve, mesh->curve_count);
+  dea_free(ctx, mesh->within);
+  dea_free(ctx, mesh->edges);
+  dea_free(ctx, mesh->edge_curve);
+  mesh->group = mesh->curve = NULL;
+  mesh->within = NULL;
+  mesh->edges = mesh->edge_curve = NULL;
+  mesh->group_count = mesh->region_count = mesh->curve_count = mesh->edge_count = 0;
+}
+
 void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh)
 {
   if (mesh != NULL) {
-    free_names(ctx, mesh->group, mesh->group_count);
-    free_names(ctx, mesh->curve, mesh->curve_count);
+    dea_plane_mesh_forget_names(ctx, mesh);
     dea_free(ctx, mesh->x);
     dea_free(ctx, mesh->quads);
     dea_free(ctx, mesh->region);
-    dea_free(ctx, mesh->within);
-    dea_free(ctx, mesh->edges);
-    dea_free(ctx, mesh->edge_curve);
     dea_free(ctx, mesh);
   }
+}
+
+static dea_status add_name(struct dea_context *ctx, char ***names, size_t *count, const char *name)
+{
+  char **moved = dea_resize(ctx, *names, *count + 1, sizeof *moved);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *names = moved;
+  moved[*count] = dea_copy_text(ctx, name, strlen(name));
+  if (moved[*count] == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*count)++;
+  return DEA_OK;
+}
+
+dea_status dea_plane_mesh_add_group(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    const char *name)
+{
+  return add_name(ctx, &mesh->group, &mesh->group_count, name);
+}
+
+dea_status dea_plane_mesh_add_curve(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    const char *name)
+{
+  return add_name(ctx, &mesh->curve, &mesh->curve_count, name);
+}
+
+dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                 const unsigned char *within, int *out)
+{
+  size_t n = mesh->group_count, k = 0;
+  while (k < mesh->region_count && memcmp(mesh->within + k * n, within, n) != 0) {
+    k++;
+  }
+  if (k == mesh->region_count) {
+    unsigned char *moved = dea_resize(ctx, mesh->within, k + 1, n);
+    if (moved == NULL) {
+      return DEA_E_MEMORY;
+    }
+    mesh->within = moved;
+    memcpy(moved + k * n, within, n);
+    mesh->region_count++;
+  }
+  *out = (int)k;
+  return DEA_OK;
 }
 
 static size_t find(char *const names[], size_t count, const char *name)

@@ -35,6 +35,17 @@ void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh
 size_t dea_plane_mesh_group(const struct dea_plane_mesh *mesh, const char *name);
 size_t dea_plane_mesh_curve(const struct dea_plane_mesh *mesh, const char *name);
 
+/* For those who make one: add a name (copied), and find the number of the region that lies in the
+ * groups where within[group_count] is 1, added when it is new. */
+dea_status dea_plane_mesh_add_group(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    const char *name);
+dea_status dea_plane_mesh_add_curve(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    const char *name);
+dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                 const unsigned char *within, int *out);
+/* Takes groups, regions, curves and edges away. */
+void dea_plane_mesh_forget_names(struct dea_context *ctx, struct dea_plane_mesh *mesh);
+
 /* Least of all elements' smallest Jacobian (at the nodes) over the mean one of the element: 1 for a
  * parallelogram, 0 or less for an element that is folded. worst: the element; may be NULL. */
 double dea_plane_mesh_smallest_jacobian(const struct dea_plane_mesh *mesh, size_t *worst);

@@ -1,0 +1,618 @@
+/* A script of lines and arcs is written, in mm. Each contour is a surface of its own there, and
+ * boolean fragments cut them along each other's edges, so the mesh conforms; what is a hole or
+ * outside is taken away afterwards, by where the elements' middles are. Sizes come from distances
+ * to points along the fine edges, whose numbers the fragments do not change. */
+#define _GNU_SOURCE // mkdtemp
+#include "model/solid/mesh/gmsh.h"
+
+#include "base/file.h"
+#include "base/program.h"
+#include "base/text.h"
+#include "base/write_file.h"
+#include "model/solid/mesh/msh_read.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { LINES_SAID = 6, SAMPLES_MAX = 20000, FOLDER_SIZE = 1000 };
+static const double pi = 3.14159265358979323846;
+static const double mm = 1e3, unit_m = 1e-3; // of the script
+static const double near = 1e-6;             // of the mesh's size: a node on a contour
+
+// Contours
+// -----------------------------------------------------------------------------------------
+
+/* From one vertex to the next: a line, or an arc of `angle` (signed) about a centre. */
+struct piece {
+  double from[2], to[2], centre[2], radius, start, angle; // angle 0: a line
+};
+
+static size_t first_of(const struct dea_gmsh_contours *c, size_t contour)
+{
+  return contour > 0 ? c->end[contour - 1] : 0;
+}
+
+static size_t piece_count(const struct dea_gmsh_contours *c, size_t contour)
+{
+  size_t vertices = c->end[contour] - first_of(c, contour);
+  return c->open && vertices > 0 ? vertices - 1 : vertices;
+}
+
+static struct piece piece_at(const struct dea_gmsh_contours *c, size_t contour, size_t i)
+{
+  size_t first = first_of(c, contour), count = c->end[contour] - first;
+  const double *a = c->vertex[first + i], *b = c->vertex[first + (i + 1) % count];
+  double dx = b[0] - a[0], dy = b[1] - a[1], bulge = a[2], chord = hypot(dx, dy);
+  struct piece piece = {.from = {a[0], a[1]}, .to = {b[0], b[1]}};
+  if (bulge != 0) {
+    double up = (1 - bulge * bulge) / (4 * bulge);
+    piece.centre[0] = 0.5 * (a[0] + b[0]) - up * dy;
+    piece.centre[1] = 0.5 * (a[1] + b[1]) + up * dx;
+    piece.radius = 0.25 * chord * (fabs(bulge) + 1 / fabs(bulge));
+    piece.start = atan2(a[1] - piece.centre[1], a[0] - piece.centre[0]);
+    piece.angle = 4 * atan(bulge);
+  }
+  return piece;
+}
+
+static double piece_length(const struct piece *p)
+{
+  return p->angle != 0 ? p->radius * fabs(p->angle)
+                       : hypot(p->to[0] - p->from[0], p->to[1] - p->from[1]);
+}
+
+static void piece_point(const struct piece *p, double share, double x[2])
+{
+  if (p->angle != 0) {
+    x[0] = p->centre[0] + p->radius * cos(p->start + share * p->angle);
+    x[1] = p->centre[1] + p->radius * sin(p->start + share * p->angle);
+  } else {
+    x[0] = p->from[0] + share * (p->to[0] - p->from[0]);
+    x[1] = p->from[1] + share * (p->to[1] - p->from[1]);
+  }
+}
+
+/* Angle from the start of an arc to a direction, along the arc, 0 to 2 pi. */
+static double along_arc(const struct piece *p, const double x[2])
+{
+  double angle = atan2(x[1] - p->centre[1], x[0] - p->centre[0]) - p->start;
+  angle = p->angle < 0 ? -angle : angle;
+  return angle - 2 * pi * floor(angle / (2 * pi));
+}
+
+static double piece_distance(const struct piece *p, const double x[2])
+{
+  double ends =
+      fmin(hypot(x[0] - p->from[0], x[1] - p->from[1]), hypot(x[0] - p->to[0], x[1] - p->to[1]));
+  if (p->angle != 0) {
+    double radial = fabs(hypot(x[0] - p->centre[0], x[1] - p->centre[1]) - p->radius);
+    return along_arc(p, x) <= fabs(p->angle) ? fmin(radial, ends) : ends;
+  }
+  double dx = p->to[0] - p->from[0], dy = p->to[1] - p->from[1], length = hypot(dx, dy);
+  double s = ((x[0] - p->from[0]) * dx + (x[1] - p->from[1]) * dy) / (length * length);
+  double off = fabs((x[0] - p->from[0]) * dy - (x[1] - p->from[1]) * dx) / length;
+  return s >= 0 && s <= 1 ? off : ends;
+}
+
+/* Turns of a piece as it is seen from a point, in radian. */
+static double piece_turn(const struct piece *p, const double x[2])
+{
+  double a[2] = {p->from[0] - x[0], p->from[1] - x[1]}, b[2] = {p->to[0] - x[0], p->to[1] - x[1]};
+  double turn = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+  if (p->angle == 0) {
+    return turn;
+  }
+  // between chord and arc it is seen the other way round
+  double side = (p->to[0] - p->from[0]) * (x[1] - p->from[1]) -
+                (p->to[1] - p->from[1]) * (x[0] - p->from[0]); // > 0: left of the chord
+  bool in_circle = hypot(x[0] - p->centre[0], x[1] - p->centre[1]) < p->radius;
+  if (p->angle > 0 && in_circle && side < 0) {
+    return turn + 2 * pi;
+  }
+  if (p->angle < 0 && in_circle && side > 0) {
+    return turn - 2 * pi;
+  }
+  return turn;
+}
+
+static bool is_inside(const struct dea_gmsh_contours *c, const double x[2])
+{
+  bool inside = false;
+  for (size_t k = 0; k < c->count; k++) {
+    double turns = 0;
+    for (size_t i = 0; i < piece_count(c, k); i++) {
+      const struct piece piece = piece_at(c, k, i);
+      turns += piece_turn(&piece, x);
+    }
+    inside = inside != (fabs(turns) > pi);
+  }
+  return inside;
+}
+
+static double distance_to(const struct dea_gmsh_contours *c, const double x[2])
+{
+  double least = INFINITY;
+  for (size_t k = 0; k < c->count; k++) {
+    for (size_t i = 0; i < piece_count(c, k); i++) {
+      const struct piece piece = piece_at(c, k, i);
+      least = fmin(least, piece_distance(&piece, x));
+    }
+  }
+  return least;
+}
+
+// The script
+// -----------------------------------------------------------------------------------------
+
+/* Ways to quadrilaterals, each for where the one before it leaves triangles or bad elements. Tried
+ * with Gmsh 4.8.4: blossom is best where it works; full-quad leaves slivers here and there;
+ * triangles divided in three, of twice the size, always work, with more elements for the same. */
+static const struct way {
+  int recombine, algorithm, subdivision;
+  double size;
+} ways[] = {{1, 1, 0, 1}, {1, 3, 0, 1}, {0, 1, 1, 2}};
+enum { WAYS = sizeof ways / sizeof ways[0] };
+static const double good_jacobian = 0.2; // smallest Jacobian with which another way is not tried
+
+static void write_settings(struct dea_text *out, const struct dea_gmsh_plan *plan,
+                           const struct way *way)
+{
+  dea_text_add(
+      out,
+      "SetFactory(\"OpenCASCADE\");\nGeneral.Terminal = 1;\nMesh.Binary = 0;\n"
+      "Mesh.MshFileVersion = 4.1;\nMesh.SaveAll = 0;\nMesh.SaveParametric = 0;\n"
+      "Mesh.Algorithm = 6;\nMesh.RecombineAll = %d;\nMesh.RecombinationAlgorithm = %d;\n"
+      "Mesh.SubdivisionAlgorithm = %d;\nMesh.ElementOrder = %d;\n"
+      "Mesh.SecondOrderLinear = 0;\nMesh.SecondOrderIncomplete = 0;\n"
+      "Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n"
+      "Mesh.MeshSizeFromCurvature = 12;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n",
+      way->recombine, way->algorithm, way->subdivision, plan->order, mm * plan->size_m * way->size);
+}
+
+/* Numbers of what was written last. */
+struct numbers {
+  size_t point, curve, surface;
+};
+
+static void write_point(struct dea_text *out, struct numbers *last, const double x[2])
+{
+  dea_text_add(out, "Point(%zu) = {%.17g, %.17g, 0};\n", ++last->point, mm * x[0], mm * x[1]);
+}
+
+/* The curves of a piece, from the last point written to the point `to` (0: one that is made). An
+ * arc is written in parts of at most a quarter: OpenCASCADE takes the shorter way. */
+static void write_piece(struct dea_text *out, struct numbers *last, const struct piece *piece,
+                        size_t to)
+{
+  int parts = piece->angle != 0 ? (int)ceil(fabs(piece->angle) / (0.5 * pi) - 1e-9) : 1;
+  size_t from = last->point, centre = 0;
+  if (piece->angle != 0) {
+    write_point(out, last, piece->centre);
+    centre = last->point;
+  }
+  for (int k = 1; k <= parts; k++) {
+    double x[2];
+    size_t next = k == parts && to != 0 ? to : last->point + 1;
+    piece_point(piece, (double)k / parts, x);
+    if (next == last->point + 1) {
+      write_point(out, last, k == parts ? piece->to : x);
+    }
+    if (centre != 0) {
+      dea_text_add(out, "Circle(%zu) = {%zu, %zu, %zu};\n", ++last->curve, from, centre, next);
+    } else {
+      dea_text_add(out, "Line(%zu) = {%zu, %zu};\n", ++last->curve, from, next);
+    }
+    from = next;
+  }
+}
+
+/* A contour as a surface. */
+static void write_contour(struct dea_text *out, struct numbers *last,
+                          const struct dea_gmsh_contours *c, size_t contour)
+{
+  size_t count = piece_count(c, contour), curve = last->curve + 1, first;
+  const struct piece start = piece_at(c, contour, 0);
+  write_point(out, last, start.from);
+  first = last->point;
+  for (size_t i = 0; i < count; i++) {
+    const struct piece piece = piece_at(c, contour, i);
+    write_piece(out, last, &piece, i + 1 == count ? first : 0);
+  }
+  last->surface++;
+  dea_text_add(out, "Curve Loop(%zu) = {%zu:%zu};\nPlane Surface(%zu) = {%zu};\n", last->surface,
+               curve, last->curve, last->surface, last->surface);
+}
+
+/* A field of sizes that grow from `fine` at the contours; its number is twice `source`. Distances
+ * are those to points half a fine element apart. */
+static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
+                        const struct dea_gmsh_contours *c, double fine, size_t source,
+                        const struct way *way)
+{
+  double step = 0.5 * fine, scale = mm * way->size;
+  double growth = plan->growth > 0 ? plan->growth : 0.4;
+  double length = 0;
+  for (size_t k = 0; k < c->count; k++) {
+    for (size_t i = 0; i < piece_count(c, k); i++) {
+      const struct piece piece = piece_at(c, k, i);
+      length += piece_length(&piece);
+    }
+  }
+  step = fmax(step, length / SAMPLES_MAX);
+  dea_text_add(out, "p = newp;\nn = 0;\n");
+  for (size_t k = 0; k < c->count; k++) {
+    for (size_t i = 0; i < piece_count(c, k); i++) {
+      const struct piece piece = piece_at(c, k, i);
+      int parts = (int)ceil(piece_length(&piece) / step) + 1;
+      for (int j = 0; j <= parts; j++) {
+        double x[2];
+        piece_point(&piece, (double)j / parts, x);
+        dea_text_add(out, "Point(p + n) = {%.17g, %.17g, 0}; n++;\n", mm * x[0], mm * x[1]);
+      }
+    }
+  }
+  dea_text_add(out,
+               "Field[%zu] = Distance;\nField[%zu].PointsList = {p:p + n - 1};\n"
+               "Field[%zu] = Threshold;\nField[%zu].IField = %zu;\nField[%zu].LcMin = %.17g;\n"
+               "Field[%zu].LcMax = %.17g;\nField[%zu].DistMin = %.17g;\nField[%zu].DistMax = "
+               "%.17g;\n",
+               2 * source - 1, 2 * source - 1, 2 * source, 2 * source, 2 * source - 1, 2 * source,
+               scale * fine, 2 * source, scale * plan->size_m, 2 * source, mm * fine, 2 * source,
+               mm * (fine + fmax(plan->size_m - fine, 1e-3 * fine) / growth));
+}
+
+static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
+                         const struct way *way)
+{
+  size_t sources = 0;
+  for (size_t i = 0; i < plan->shape_count; i++) {
+    if (plan->shapes[i].edge_size_m > 0) {
+      write_field(out, plan, &plan->shapes[i].contours, plan->shapes[i].edge_size_m, ++sources,
+                  way);
+    }
+  }
+  for (size_t i = 0; i < plan->curve_count; i++) {
+    if (plan->curves[i].edge_size_m > 0) {
+      write_field(out, plan, &plan->curves[i].contours, plan->curves[i].edge_size_m, ++sources,
+                  way);
+    }
+  }
+  if (sources > 0) {
+    dea_text_add(out, "Field[%zu] = Min;\nField[%zu].FieldsList = {", 2 * sources + 1,
+                 2 * sources + 1);
+    for (size_t i = 1; i <= sources; i++) {
+      dea_text_add(out, "%s%zu", i > 1 ? ", " : "", 2 * i);
+    }
+    dea_text_add(out, "};\nBackground Field = %zu;\n", 2 * sources + 1);
+  }
+}
+
+static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
+                         const struct way *way)
+{
+  struct numbers last = {0};
+  void *locale = dea_c_locale_enter();
+  write_settings(out, plan, way);
+  for (size_t i = 0; i < plan->shape_count; i++) {
+    for (size_t k = 0; k < plan->shapes[i].contours.count; k++) {
+      write_contour(out, &last, &plan->shapes[i].contours, k);
+    }
+  }
+  if (last.surface > 1) {
+    dea_text_add(out, "BooleanFragments{ Surface{1}; Delete; }{ Surface{2:%zu}; Delete; }\n",
+                 last.surface);
+  }
+  dea_text_add(out, "Physical Surface(\"all\") = Surface{:};\n"
+                    "Physical Curve(\"all\") = Curve{:};\n");
+  write_fields(out, plan, way);
+  dea_c_locale_leave(locale);
+}
+
+// The program
+// ----------------------------------------------------------------------------------------
+
+static dea_status explain(struct dea_context *ctx, enum dea_program_end end, int number,
+                          double limit_s, const char *said)
+{
+  const char *last = dea_last_lines(said, LINES_SAID);
+  switch (end) {
+  case DEA_PROGRAM_DONE:
+    return DEA_OK;
+  case DEA_PROGRAM_FAILED:
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh failed (exit code %d); it said last:\n%s", number, last);
+  case DEA_PROGRAM_CRASHED:
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh crashed (signal %d); it said last:\n%s", number, last);
+  case DEA_PROGRAM_TOO_LONG:
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh took more than %g s and was ended; it said last:\n%s",
+                    limit_s, last);
+  default:
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while gmsh made a mesh");
+  }
+}
+
+static dea_status run_gmsh(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                           const char *folder, char said[DEA_PROGRAM_SAID])
+{
+  char program[200], script[] = "mesh.geo", plane[] = "-2", to[] = "-o", mesh[] = "mesh.msh";
+  char format[] = "-format", msh41[] = "msh41", quiet[] = "-nopopup";
+  char *const argv[] = {program, script, plane, to, mesh, format, msh41, quiet, NULL};
+  struct dea_program running;
+  double limit_s = plan->time_limit_s > 0 ? plan->time_limit_s : 120;
+  int number;
+  snprintf(program, sizeof program, "%s", plan->program != NULL ? plan->program : "gmsh");
+  int reason = dea_program_start(argv, folder, true, &running);
+  if (reason == ENOENT) {
+    return dea_fail(ctx, DEA_E_TOOL,
+                    "%s is not installed (on Debian: apt install gmsh); a mesh can be made "
+                    "elsewhere and read from its .msh file",
+                    program);
+  }
+  if (reason != 0) {
+    return dea_fail(ctx, DEA_E_TOOL, "%s cannot be started: %s", program, strerror(reason));
+  }
+  enum dea_program_end end = dea_program_wait(ctx, &running, limit_s, said, &number);
+  return explain(ctx, end, number, limit_s, said);
+}
+
+static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                          const struct way *way, const char *folder, struct dea_plane_mesh **out)
+{
+  struct dea_text script = {.ctx = ctx};
+  char said[DEA_PROGRAM_SAID];
+  write_script(&script, plan, way);
+  dea_status status = dea_text_write(ctx, &script, folder, "mesh.geo");
+  dea_text_free(&script);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, run_gmsh(ctx, plan, folder, said));
+  char *mesh = dea_path_join(ctx, folder, "mesh.msh");
+  if (mesh == NULL) {
+    return DEA_E_MEMORY;
+  }
+  char *text = NULL;
+  size_t length;
+  if (!dea_path_exists(mesh)) {
+    status = dea_fail(ctx, DEA_E_TOOL, "gmsh wrote no mesh; it said last:\n%s",
+                      dea_last_lines(said, LINES_SAID));
+  } else {
+    status = dea_file_read(ctx, mesh, DEA_MSH_FILE_MAX, &text, &length);
+  }
+  if (status == DEA_OK) {
+    status = dea_msh_parse(ctx, text, NULL, unit_m, out);
+  }
+  dea_free(ctx, text);
+  dea_free(ctx, mesh);
+  return status;
+}
+
+static void remove_folder(struct dea_context *ctx, const char *folder)
+{
+  static const char *const files[] = {"mesh.geo", "mesh.msh"};
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    char *path = dea_path_join(ctx, folder, files[i]);
+    if (path != NULL) {
+      unlink(path);
+    }
+    dea_free(ctx, path);
+  }
+  rmdir(folder);
+}
+
+/* All that gmsh meshes, in one group and one curve "all". */
+static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                           struct dea_plane_mesh **out)
+{
+  const char *temporary = getenv("TMPDIR");
+  char folder[FOLDER_SIZE];
+  *out = NULL;
+  snprintf(folder, sizeof folder, "%s/dea-gmsh-XXXXXX",
+           temporary != NULL && temporary[0] != '\0' ? temporary : "/tmp");
+  if (mkdtemp(folder) == NULL) {
+    return dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+  }
+  dea_status status = DEA_E_DESIGN;
+  for (size_t i = 0; i < WAYS && status == DEA_E_DESIGN; i++) {
+    status = mesh_in(ctx, plan, &ways[i], folder, out);
+    if (status == DEA_OK && i + 1 < WAYS &&
+        dea_plane_mesh_smallest_jacobian(*out, NULL) < good_jacobian) {
+      dea_plane_mesh_destroy(ctx, *out);
+      *out = NULL;
+      status = DEA_E_DESIGN;
+    }
+  }
+  remove_folder(ctx, folder);
+  if (status == DEA_E_DESIGN) {
+    char said[400];
+    snprintf(said, sizeof said, "%s", dea_context_message(ctx));
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh made a mesh that cannot be used: %s", said);
+  }
+  return status;
+}
+
+// Shapes of the elements
+// -----------------------------------------------------------------------------
+
+static void middle_of(const struct dea_plane_mesh *mesh, size_t e, double out[2])
+{
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  out[0] = out[1] = 0;
+  for (size_t n = 0; n < per_quad; n++) {
+    const double *x = mesh->x + 2 * mesh->quads[e * per_quad + n];
+    out[0] += x[0] / (double)per_quad;
+    out[1] += x[1] / (double)per_quad;
+  }
+}
+
+/* Keeps the elements in shapes, with their regions; closes the gaps in the numbers of nodes.
+ * number: [node_count] of mesh. */
+static dea_status take_elements(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                                unsigned char *within, int *number, struct dea_plane_mesh *mesh)
+{
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1)), quads = 0, nodes = 0;
+  for (size_t e = 0; e < mesh->quad_count; e++) {
+    bool inside = false;
+    double x[2];
+    middle_of(mesh, e, x);
+    for (size_t i = 0; i < plan->shape_count; i++) {
+      within[i] = is_inside(&plan->shapes[i].contours, x);
+      inside = inside || within[i] != 0;
+    }
+    if (inside) {
+      memmove(mesh->quads + quads * per_quad, mesh->quads + e * per_quad,
+              per_quad * sizeof *mesh->quads);
+      DEA_TRY(ctx, dea_plane_mesh_region(ctx, mesh, within, &mesh->region[quads]));
+      quads++;
+    }
+  }
+  mesh->quad_count = quads;
+  for (size_t i = 0; i < quads * per_quad; i++) {
+    number[mesh->quads[i]] = 1;
+  }
+  for (size_t n = 0; n < mesh->node_count; n++) {
+    if (number[n] != 0) {
+      memmove(mesh->x + 2 * nodes, mesh->x + 2 * n, 2 * sizeof *mesh->x);
+      number[n] = (int)++nodes; // from 1: 0 is none
+    }
+  }
+  mesh->node_count = nodes;
+  for (size_t i = 0; i < quads * per_quad; i++) {
+    mesh->quads[i] = number[mesh->quads[i]] - 1;
+  }
+  return DEA_OK;
+}
+
+/* The contours of a curve, by its number: those of the shapes come first. */
+static const struct dea_gmsh_contours *contours_of(const struct dea_gmsh_plan *plan, size_t curve)
+{
+  return curve < plan->shape_count ? &plan->shapes[curve].contours
+                                   : &plan->curves[curve - plan->shape_count].contours;
+}
+
+/* Sides of elements that lie on a contour. before: as gmsh made them; number: as above. */
+static dea_status take_edges(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                             const int *before, size_t before_count, const int *number,
+                             double close, struct dea_plane_mesh *mesh)
+{
+  size_t per = (size_t)mesh->order + 1, curves = plan->shape_count + plan->curve_count;
+  mesh->edges = dea_alloc(ctx, before_count * curves, per * sizeof *mesh->edges);
+  mesh->edge_curve = dea_alloc(ctx, before_count * curves, sizeof *mesh->edge_curve);
+  if (mesh->edges == NULL || mesh->edge_curve == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < before_count; i++) {
+    for (size_t k = 0; k < curves; k++) {
+      bool on = true;
+      for (size_t n = 0; n < per && on; n++) {
+        int node = number[before[i * per + n]] - 1;
+        on = node >= 0 && distance_to(contours_of(plan, k), mesh->x + 2 * node) < close;
+      }
+      if (on) {
+        for (size_t n = 0; n < per; n++) {
+          mesh->edges[mesh->edge_count * per + n] = number[before[i * per + n]] - 1;
+        }
+        mesh->edge_curve[mesh->edge_count++] = (int)k;
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status name_all(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                           struct dea_plane_mesh *mesh)
+{
+  for (size_t i = 0; i < plan->shape_count; i++) {
+    DEA_TRY(ctx, dea_plane_mesh_add_group(ctx, mesh, plan->shapes[i].name));
+    DEA_TRY(ctx, dea_plane_mesh_add_curve(ctx, mesh, plan->shapes[i].name));
+  }
+  for (size_t i = 0; i < plan->curve_count; i++) {
+    DEA_TRY(ctx, dea_plane_mesh_add_curve(ctx, mesh, plan->curves[i].name));
+  }
+  return DEA_OK;
+}
+
+static dea_status check_groups(struct dea_context *ctx, const struct dea_plane_mesh *mesh)
+{
+  for (size_t g = 0; g < mesh->group_count; g++) {
+    bool used = false;
+    for (size_t k = 0; k < mesh->region_count; k++) {
+      used = used || mesh->within[k * mesh->group_count + g] != 0;
+    }
+    if (!used) {
+      return dea_fail(ctx, DEA_E_TOOL, "gmsh made no element inside of '%s'", mesh->group[g]);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Shapes and curves in the place of the one group and the one curve that gmsh knows of. */
+static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                           struct dea_plane_mesh *mesh)
+{
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (size_t i = 0; i < 2 * mesh->node_count; i++) {
+    low[i % 2] = fmin(low[i % 2], mesh->x[i]);
+    high[i % 2] = fmax(high[i % 2], mesh->x[i]);
+  }
+  double close = near * fmax(high[0] - low[0], high[1] - low[1]);
+  int *before = mesh->edges;
+  size_t before_count = mesh->edge_count;
+  mesh->edges = NULL;
+  mesh->edge_count = 0;
+  dea_plane_mesh_forget_names(ctx, mesh);
+  unsigned char *within = dea_alloc(ctx, plan->shape_count, 1);
+  int *number = dea_alloc(ctx, mesh->node_count, sizeof *number);
+  dea_status status = within != NULL && number != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = name_all(ctx, plan, mesh);
+  }
+  if (status == DEA_OK) {
+    status = take_elements(ctx, plan, within, number, mesh);
+  }
+  if (status == DEA_OK) {
+    status = take_edges(ctx, plan, before, before_count, number, close, mesh);
+  }
+  dea_free(ctx, number);
+  dea_free(ctx, within);
+  dea_free(ctx, before);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, check_groups(ctx, mesh));
+  return DEA_OK;
+}
+
+static dea_status check_plan(struct dea_context *ctx, const struct dea_gmsh_plan *plan)
+{
+  bool good = plan->shape_count > 0 && (plan->order == 1 || plan->order == 2) && plan->size_m > 0 &&
+              plan->size_m < INFINITY;
+  for (size_t i = 0; i < plan->shape_count; i++) {
+    const struct dea_gmsh_contours *c = &plan->shapes[i].contours;
+    good = good && !c->open && c->count > 0 && plan->shapes[i].edge_size_m < INFINITY;
+    for (size_t k = 0; k < c->count; k++) {
+      good = good && piece_count(c, k) >= 2;
+    }
+  }
+  return good ? DEA_OK
+              : dea_fail(ctx, DEA_E_ARGUMENT,
+                         "a mesh takes closed contours of two pieces or more, a size above 0 and "
+                         "the order 1 or 2");
+}
+
+dea_status dea_gmsh_mesh(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                         struct dea_plane_mesh **out)
+{
+  *out = NULL;
+  DEA_TRY(ctx, check_plan(ctx, plan));
+  dea_status status = mesh_all(ctx, plan, out);
+  if (status == DEA_OK) {
+    status = classify(ctx, plan, *out);
+  }
+  if (status != DEA_OK) {
+    dea_plane_mesh_destroy(ctx, *out);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,176 @@
+/* Free meshes by gmsh: a film with an electrode and stiff strips; what is said when gmsh is
+ * missing, fails, crashes, hangs, or writes something else. The first are skipped where gmsh is
+ * not installed. */
+#define _GNU_SOURCE // mkdtemp
+#include "testing.h"
+
+#include "model/solid/mesh/gmsh.h"
+
+#include "own_folder.h"
+
+#include <string.h>
+
+static const double frame = 15e-3, a = 3.75e-3, w = 0.5e-3, pi = 3.14159265358979323846;
+
+static bool has_gmsh(void)
+{
+  return system("gmsh --version >/dev/null 2>&1") == 0;
+}
+
+/* A disc with a hole, an electrode, and strips across, two of one shape; they end beyond the film,
+ * where they are film no more. */
+static const double film_vertex[][3] = {
+    {-15e-3, 0, 1}, {15e-3, 0, 1}, {-10e-3, 9e-3, -1}, {-8e-3, 9e-3, -1}};
+static const size_t film_end[] = {2, 4};
+static const double electrode_vertex[][3] = {{-3.75e-3, 0, 1}, {3.75e-3, 0, 1}};
+static const size_t circle_end[] = {2};
+static const double strip_vertex[][3] = {
+    {3e-3, -.25e-3, 0},   {17e-3, -.25e-3, 0}, {17e-3, .25e-3, 0}, {3e-3, .25e-3, 0},
+    {-17e-3, -.25e-3, 0}, {-3e-3, -.25e-3, 0}, {-3e-3, .25e-3, 0}, {-17e-3, .25e-3, 0}};
+static const size_t strip_end[] = {4, 8};
+static const double quarter_vertex[][3] = {{0, -15e-3, 0.41421356237309503}, {15e-3, 0, 0}};
+
+static const struct dea_gmsh_shape shapes[] = {
+    {"film", {film_vertex, film_end, 2, false}, 0},
+    {"electrode", {electrode_vertex, circle_end, 1, false}, 2e-4},
+    {"strips", {strip_vertex, strip_end, 2, false}, 2e-4}};
+static const struct dea_gmsh_curve quarter = {
+    "quarter", {quarter_vertex, circle_end, 1, true}, 5e-4};
+
+static const struct dea_gmsh_plan plan = {.shapes = shapes,
+                                          .shape_count = 3,
+                                          .curves = &quarter,
+                                          .curve_count = 1,
+                                          .order = 2,
+                                          .size_m = 1.5e-3};
+
+/* Area of a quadrilateral of second order by 3 x 3 Gauss points. */
+static double area_of(const struct dea_plane_mesh *mesh, size_t e)
+{
+  static const double at[3] = {-0.77459666924148338, 0, 0.77459666924148338};
+  static const double weight[3] = {5. / 9, 8. / 9, 5. / 9};
+  double area = 0;
+  for (int q = 0; q < 9; q++) {
+    double value[2][3], slope[2][3], map[2][2] = {{0, 0}, {0, 0}};
+    for (int i = 0; i < 2; i++) {
+      double s = at[i == 0 ? q % 3 : q / 3];
+      value[i][0] = 0.5 * s * (s - 1), value[i][1] = 1 - s * s, value[i][2] = 0.5 * s * (s + 1);
+      slope[i][0] = s - 0.5, slope[i][1] = -2 * s, slope[i][2] = s + 0.5;
+    }
+    for (int n = 0; n < 9; n++) {
+      const double *x = mesh->x + 2 * mesh->quads[9 * e + (size_t)n];
+      for (int c = 0; c < 2; c++) {
+        map[0][c] += slope[0][n % 3] * value[1][n / 3] * x[c];
+        map[1][c] += value[0][n % 3] * slope[1][n / 3] * x[c];
+      }
+    }
+    area += weight[q % 3] * weight[q / 3] * (map[0][0] * map[1][1] - map[0][1] * map[1][0]);
+  }
+  return area;
+}
+
+static double area_within(const struct dea_plane_mesh *mesh, const char *name)
+{
+  size_t group = dea_plane_mesh_group(mesh, name);
+  double area = 0;
+  assert_true(group < mesh->group_count);
+  for (size_t e = 0; e < mesh->quad_count; e++) {
+    bool in = mesh->within[(size_t)mesh->region[e] * mesh->group_count + group] != 0;
+    area += in ? area_of(mesh, e) : 0;
+  }
+  return area;
+}
+
+/* Length by the chords of half sides. */
+static double length_of(const struct dea_plane_mesh *mesh, const char *name)
+{
+  size_t curve = dea_plane_mesh_curve(mesh, name);
+  double length = 0;
+  assert_true(curve < mesh->curve_count);
+  for (size_t i = 0; i < mesh->edge_count; i++) {
+    for (size_t k = 0; k < 2 && (size_t)mesh->edge_curve[i] == curve; k++) {
+      const double *p = mesh->x + 2 * mesh->edges[3 * i + k];
+      const double *q = mesh->x + 2 * mesh->edges[3 * i + k + 1];
+      length += hypot(q[0] - p[0], q[1] - p[1]);
+    }
+  }
+  return length;
+}
+
+static void test_shapes(void **state)
+{
+  (void)state;
+  if (!has_gmsh()) {
+    print_message("gmsh is not installed: skipped\n");
+    skip();
+  }
+  struct dea_plane_mesh *mesh;
+  dea_status status = dea_gmsh_mesh(ctx, &plan, &mesh);
+  if (status != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  assert_true(dea_plane_mesh_smallest_jacobian(mesh, NULL) > 0.2);
+  assert_close(area_within(mesh, "film"), pi * (frame * frame - 1e-6), 2e-4, 0);
+  assert_close(area_within(mesh, "electrode"), pi * a * a, 2e-5, 0);
+  assert_close(area_within(mesh, "strips"), 2 * 14e-3 * w, 1e-5, 0);
+  assert_close(length_of(mesh, "film"), 2 * pi * (frame + 1e-3), 3e-3, 0);
+  assert_close(length_of(mesh, "electrode"), 2 * pi * a, 1e-3, 0);
+  assert_close(length_of(mesh, "strips"), 4 * (14e-3 + w), 1e-9, 0);
+  assert_close(length_of(mesh, "quarter"), 0.5 * pi * frame, 1e-3, 0);
+  size_t fine = 0; // sides along the electrode are as fine as they should be
+  for (size_t i = 0; i < mesh->edge_count; i++) {
+    fine += mesh->edge_curve[i] == 1;
+  }
+  assert_in_range(fine, (size_t)(0.8 * 2 * pi * a / 2e-4), (size_t)(1.6 * 2 * pi * a / 2e-4));
+  dea_plane_mesh_destroy(ctx, mesh);
+}
+
+// Faults -----------------------------------------------------------------------------------------
+
+/* A gmsh that is a shell script. */
+static void expect(const char *script, const char *message)
+{
+  struct dea_gmsh_plan other = plan;
+  struct dea_plane_mesh *mesh;
+  char name[700];
+  snprintf(name, sizeof name, "%s", in_folder("fake"));
+  FILE *out = fopen(name, "w");
+  assert_non_null(out);
+  fprintf(out, "#!/bin/sh\n%s\n", script);
+  fclose(out);
+  assert_int_equal(chmod(name, 0700), 0);
+  other.program = name;
+  other.time_limit_s = 1;
+  assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_TOOL);
+  assert_null(mesh);
+  if (strstr(dea_context_message(ctx), message) == NULL) {
+    fail_msg("'%s' should hold '%s'", dea_context_message(ctx), message);
+  }
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
+}
+
+static void test_faults_of_gmsh(void **state)
+{
+  (void)state;
+  struct dea_gmsh_plan other = plan;
+  struct dea_plane_mesh *mesh;
+  other.program = "no-such-gmsh";
+  assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_TOOL);
+  assert_non_null(strstr(dea_context_message(ctx), "apt install gmsh"));
+  expect("echo 'Error : Self intersecting surface mesh'; exit 1",
+         "gmsh failed (exit code 1); it said last:\nError : Self intersecting surface mesh");
+  expect("kill -SEGV $$", "gmsh crashed (signal 11)");
+  expect("echo meshing; exec sleep 60",
+         "gmsh took more than 1 s and was ended; it said last:\nmeshing");
+  expect("echo done", "gmsh wrote no mesh; it said last:\ndone");
+  expect("echo hello >mesh.msh", "gmsh made a mesh that cannot be used: this is no .msh file");
+  other.size_m = 0;
+  assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_ARGUMENT);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes),
+                                     cmocka_unit_test(test_faults_of_gmsh)};
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
