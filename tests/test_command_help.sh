@@ -60,19 +60,10 @@ has out "HDF5"
 has out "materials"
 expect 2 "doctor with an argument" dea doctor now
 
-# completion: what bash offers for a command line that ends in the word to be completed
-offer() {
-  bash -c 'source <(dea completion bash); COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
-    compopt() { :; }; _dea; printf "%s\n" "${COMPREPLY[@]}"' bash "$@" >"$folder/out" 2>"$folder/err"
-}
+# completion: what bash offers for a command line that ends in the word to be completed; the lines
+# are gathered, and one bash completes them all
 offers() { # TEXT WORD...: among the offers
-  text=$1
-  shift
-  offer "$@"
-  grep -qxF -- "$text" "$folder/out" || {
-    echo "completion of '$*' lacks '$text': $(tr '\n' ' ' <"$folder/out") $(cat "$folder/err")"
-    failed=1
-  }
+  echo "$*" >>"$folder/lines"
 }
 offers examples dea exa
 offers --copy dea examples --c
@@ -89,24 +80,48 @@ offers tdms dea import a.dat --format t
 offers vhb-4910 dea materials v
 cd "$folder" || exit 1
 offers new dea examples --copy ne
-for command in $(dea completion names commands); do
+for shell in zsh fish man; do
+  expect 0 "completion $shell" dea completion $shell
+  mv out "$shell"
+done
+expect 0 "help" dea --help
+mv out help
+expect 0 "names" dea completion names commands
+mv out commands
+while read -r command; do
   offers "$command" dea "$command"
   # Each long option of the help text is offered.
-  for option in $(dea "$command" --help | sed '1,2d' |
-    awk '/^$/ { prose = 1 } !prose || /^ +-/' | sed 's/  [A-Za-z].*//' |
-    grep -oE -- '--[a-z][a-z-]*' | sort -u); do
+  expect 0 "help on $command" dea "$command" --help
+  sed '1,2d' out | awk '/^$/ { prose = 1 } !prose || /^ +-/' | sed 's/  [A-Za-z].*//' |
+    grep -oE -- '--[a-z][a-z-]*' | sort -u | while read -r option; do
     offers "$option" dea "$command" "$option"
   done
-  dea --help | grep -qE "^  $command +[A-Z]" || { echo "$command: no capital in --help"; failed=1; }
-  dea completion man | grep -qx "\.Ss $command" || { echo "the manual lacks $command"; failed=1; }
+  grep -qE "^  $command +[A-Z]" help || { echo "$command: no capital in --help"; failed=1; }
+  grep -qx "\.Ss $command" man || { echo "the manual lacks $command"; failed=1; }
   for shell in zsh fish; do
-    dea completion $shell | grep -q "$command" || { echo "$shell: $command is missing"; failed=1; }
+    grep -q "$command" $shell || { echo "$shell: $command is missing"; failed=1; }
   done
-done
+done <commands
+cat >complete.bash <<'END'
+source <(dea completion bash)
+compopt() { :; }
+while read -r text words; do
+  read -ra COMP_WORDS <<<"$words"
+  COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+  COMPREPLY=()
+  _dea
+  printf '%s\n' "${COMPREPLY[@]}" | grep -qxF -- "$text" ||
+    echo "completion of '$words' lacks '$text': ${COMPREPLY[*]}"
+done <lines
+END
+expect 0 "completion in bash" bash complete.bash
+if [ -s out ] || [ -s err ]; then
+  cat out err
+  failed=1
+fi
 expect 0 "help on a command" dea help run
 has out "Usage: dea run"
-expect 0 "the manual" dea completion man
-has out ".It Fl q , Fl -quiet"
+has man ".It Fl q , Fl -quiet"
 # Output that is lost is a failure; a closed one is not wanted.
 cp "$source/examples/frdea-4.yaml" "$folder/a.yaml"
 expect 5 "a full disk" sh -c 'dea check a.yaml >/dev/full'
