@@ -1,8 +1,8 @@
 /* What must not be played: refused at its place, with the numbers that say why. */
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
+#include "first_root.h"
 #include "lab/protocol/export.h"
-#include "model/lumped/lumped.h"
 #include "protocol_text.h"
 #include "study/design_file.h"
 
@@ -27,22 +27,15 @@ static dea_status check(const char *text)
   "dea-protocol: 1\n"                                                                              \
   "design: design.yaml\n" PROTOCOL_AMPLIFIER
 
-/* The true field of the film by the batch solver, which is no part of the check, up to a total
- * stretch. */
+/* The true field of the film by a scan, which is no part of the check, up to a total stretch. */
 static double field_at(const char *design_file, double voltage_V, double most, double *stretch)
 {
   struct dea_design *design;
   struct dea_device *device;
   assert_int_equal(dea_design_read(ctx, design_file, NULL, 0, &design), DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  const struct dea_lumped_batch batch = {1,
-                                         &device->film_thickness_unstretched_m,
-                                         &device->pre_stretch,
-                                         &device->coverage,
-                                         &voltage_V,
-                                         most,
-                                         stretch};
-  assert_int_equal(dea_lumped_batch_solve(&device->film, &batch), DEA_OK);
+  *stretch = first_root(&device->film, device->pre_stretch, device->coverage,
+                        voltage_V / device->film_thickness_unstretched_m, most);
   double thickness_m = device->film_thickness_m / (*stretch * *stretch);
   *stretch *= device->pre_stretch;
   dea_device_destroy(ctx, device);

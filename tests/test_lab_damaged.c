@@ -308,7 +308,7 @@ static void test_full_disk(void **state)
     assert_int_equal(status, DEA_E_IO);
     assert_non_null(strstr(dea_context_message(ctx), "full.h5"));
     if (recorder != NULL) {
-      assert_int_equal(dea_recorder_flush(recorder), DEA_E_IO);
+      assert_int_equal(dea_recorder_sync(recorder), DEA_E_IO);
       assert_int_equal(dea_recorder_finish(recorder, "full"), DEA_E_IO);
     }
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);

@@ -2,15 +2,13 @@
  * and one that is full is a failure after which the recording holds what was taken. */
 #define _GNU_SOURCE
 #include "lab/drive/writer.h"
-#include "lab/recording/disk.h"
+#include "own_disk.h"
 #include "own_folder.h"
 #include "testing.h"
 
-#include <stdatomic.h>
 #include <string.h>
 
 enum { ROOM = 4000, BLOCK = 100 };
-static atomic_bool held;
 static struct dea_context *own; // of the recorder
 
 static struct dea_writer *begin(const char *file, bool waits)
@@ -22,7 +20,6 @@ static struct dea_writer *begin(const char *file, bool waits)
   struct dea_writer *writer;
   assert_int_equal(dea_context_create(NULL, &own), DEA_OK);
   assert_int_equal(dea_recorder_create(own, file, &options, &recorder), DEA_OK);
-  dea_recorder_disk(recorder)->held = &held;
   assert_int_equal(dea_writer_begin(ctx, recorder, ROOM, waits, &writer), DEA_OK);
   return writer;
 }
@@ -64,13 +61,13 @@ static void test_disk_that_blocks(void **state)
   char file[700];
   snprintf(file, sizeof file, "%s", in_folder("blocks.h5"));
   struct dea_writer *writer = begin(file, false);
-  atomic_store(&held, true);
+  atomic_store(&disk_held, true);
   size_t blocks = add_blocks(writer, 1000, &status); // comes back: nothing here waits for the disk
   assert_int_equal(status, DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "the disk is too slow, or blocks"));
   assert_true(blocks >= ROOM / (BLOCK + 5) - 1 && blocks <= ROOM / (BLOCK + 5) + 1);
   assert_int_equal(dea_writer_add(ctx, writer, 0, &(double){0}, 1), DEA_E_IO); // no gap
-  atomic_store(&held, false);
+  atomic_store(&disk_held, false);
   assert_int_equal(dea_writer_finish(ctx, writer, "", "it was too slow"), DEA_E_IO);
   dea_context_destroy(own);
   check(file, blocks, false);

@@ -43,7 +43,7 @@ static void run_studies(struct dea_context *ctx)
   struct dea_result *result = NULL;
   dea_status status = dea_result_create(ctx, &design, &device, &result);
   if (status == DEA_OK) {
-    status = dea_study_run(ctx, type, result);
+    status = dea_study_run(ctx, type, NULL, 0, result);
   }
   failing_check(ctx, status);
   if (status == DEA_OK) {

@@ -147,7 +147,8 @@ static void relax(struct strip *s, const double F[9])
     double cof[9], J = dea_cofactors(F, cof);
     if (s->layer[e] == 0 && s->kind != FLAT) {
       double field = s->active[e] ? s->in.voltage_V / h_m : 0;
-      assert_int_equal(dea_constituent_point(&s->layers[0], F, cof, J, 0, field, &point), DEA_OK);
+      assert_int_equal(dea_constituent_point(&s->layers[0], F, cof, J, 0, field, true, &point),
+                       DEA_OK);
       double push = 0, size = 0; // along the current normal
       for (int i = 0; i < 3; i++) {
         push += point.P[3 * i + 2] * cof[3 * i + 2];

@@ -73,8 +73,7 @@ static void test_designs_stand_beside_each_other(void **state)
   for (int alone = 0; alone < 2;
        alone++) { // with the sweep, which is not computed twice, or without
     set_up_result(GOOD_DESIGN COMPARE);
-    assert_int_equal(dea_study_run_named(ctx, type, alone ? only : NULL, alone ? 1 : 0, result),
-                     DEA_OK);
+    assert_int_equal(dea_study_run(ctx, type, alone ? only : NULL, alone ? 1 : 0, result), DEA_OK);
     assert_true(alone == (dea_result_find(result, "axisymmetric", "sweep") == NULL));
     assert_int_equal(result->variant_count, 4);
     const struct dea_variant *v = result->variants;
@@ -115,7 +114,7 @@ static void test_other_files(void **state)
   assert_null(design->compute.compare[1].design);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-  assert_int_equal(dea_study_run_named(ctx, dea_model_find("lumped"), only, 1, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("lumped"), only, 1, result), DEA_OK);
   assert_int_equal(result->variant_count, 2);
   assert_string_equal(result->variants[0].name, "itself");
   assert_string_equal(result->variants[1].name, "more");
@@ -164,8 +163,8 @@ static void test_is_kept(void **state)
   static const struct dea_override svg = {"report.figures", "[svg]"};
   assert_int_equal(read_and_build(ctx, GOOD_DESIGN COMPARE, &svg, 1, &design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-  assert_int_equal(dea_study_run(ctx, dea_model_find("lumped"), result), DEA_OK);
-  assert_int_equal(dea_study_run(ctx, dea_model_find("axisymmetric"), result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("lumped"), NULL, 0, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("axisymmetric"), NULL, 0, result), DEA_OK);
   assert_int_equal(dea_run_folder_write(ctx, result, in_folder("run"), NULL), DEA_OK);
   assert_true(there("run/lumped_compare-design.csv"));
   assert_false(there("run/lumped_compare-design_profiles.csv")); // it has none
@@ -201,7 +200,7 @@ static void compare_once(struct dea_context *failing)
     status = dea_result_create(failing, mine, its, &found);
   }
   if (status == DEA_OK) {
-    status = dea_study_run_named(failing, dea_model_find("lumped"), only, 1, found);
+    status = dea_study_run(failing, dea_model_find("lumped"), only, 1, found);
   }
   if (status == DEA_OK) {
     assert_int_equal(found->variant_count, 2);

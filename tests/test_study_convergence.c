@@ -192,7 +192,7 @@ static void test_meshes_are_judged(void **state)
   struct dea_convergence *c;
   struct dea_text verdict = {.ctx = ctx};
   set_up_result("{refinement: [1, 2, 3, 4], voltage: [4 kV, 6 kV, 8 kV]}");
-  assert_int_equal(dea_study_run_named(ctx, &fake, only, 1, result), DEA_E_NOT_CONVERGED);
+  assert_int_equal(dea_study_run(ctx, &fake, only, 1, result), DEA_E_NOT_CONVERGED);
   assert_int_equal(result->curve_count, 0); // only that study
   assert_int_equal(result->variant_count, 4);
   assert_false(result->variants[2].curve.complete); // the third mesh fails, the fourth is tried
@@ -223,7 +223,7 @@ static void test_is_kept(void **state)
   struct dea_run *run;
   char *text, *again;
   set_up_result("{voltage: [6 kV], tolerance: 0.03}"); // three meshes by default
-  assert_int_equal(dea_study_run_named(ctx, &fake, only, 1, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &fake, only, 1, result), DEA_OK);
   assert_int_equal(dea_run_folder_write(ctx, result, in_folder("run"), NULL), DEA_OK);
   assert_true(there("run/fake_convergence.csv") && there("run/fake_convergence_errors.csv"));
   assert_true(size_of("run/figures/convergence.svg") > 1000);
@@ -268,7 +268,7 @@ static void test_only_where_asked(void **state)
   (void)state;
   static const char *const wrong[] = {"convergense"}, *const force[] = {"force"};
   set_up_result("null");
-  assert_int_equal(dea_study_run(ctx, &fake, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &fake, NULL, 0, result), DEA_OK);
   assert_int_equal(result->variant_count, 0);
   assert_int_equal(dea_study_check(ctx, wrong, 1, design), DEA_E_ARGUMENT);
   assert_non_null(strstr(dea_context_message(ctx), "did you mean 'convergence'?"));
@@ -276,7 +276,7 @@ static void test_only_where_asked(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "compute.force.depth"));
   tear_down_result();
   set_up_result("{}"); // the section alone asks for it, at quarters of 8 kV
-  assert_int_equal(dea_study_run(ctx, &fake, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &fake, NULL, 0, result), DEA_OK);
   assert_int_equal(result->variant_count, 3);
   assert_close(result->variants[0].curve.points[1].voltage_V, 4e3, 1e-12, 0);
   tear_down_result();
@@ -297,7 +297,7 @@ static void judge_once(struct dea_context *failing)
   char *text = NULL;
   dea_status status = dea_result_create(failing, design, device, &mine);
   if (status == DEA_OK) {
-    status = dea_study_run_named(failing, &fake, only, 1, mine);
+    status = dea_study_run(failing, &fake, only, 1, mine);
   }
   if (status == DEA_OK) {
     status = dea_convergence_create(failing, mine, "fake", &c);

@@ -85,7 +85,7 @@ static void test_depths_and_preloads(void **state)
       DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-  assert_int_equal(dea_study_run(ctx, &spring, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_non_null(curve);
   assert_true(curve->complete);
@@ -132,7 +132,7 @@ static void test_nothing_asked(void **state)
       DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-  assert_int_equal(dea_study_run(ctx, &spring, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   assert_null(dea_result_find(result, "spring", "force"));
   dea_result_destroy(ctx, result);
   dea_device_destroy(ctx, device);

@@ -42,7 +42,7 @@ static struct run run_text(struct dea_context *context, const char *text)
                    ? dea_result_create(context, run.design, run.device, &run.result)
                    : run.status;
   if (run.status == DEA_OK) {
-    run.status = dea_study_run_named(context, dea_model_find("lumped"), names, 1, run.result);
+    run.status = dea_study_run(context, dea_model_find("lumped"), names, 1, run.result);
     run.curve = dea_result_find(run.result, "lumped", "transient");
   }
   return run;
@@ -247,7 +247,7 @@ static void test_not_for_all(void **state)
   end(ctx, &run);
   run = run_text(ctx, DESIGN PULSES);
   dea_finding_clear(ctx);
-  assert_int_equal(dea_study_run_named(ctx, dea_model_find("axisymmetric"), names, 1, run.result),
+  assert_int_equal(dea_study_run(ctx, dea_model_find("axisymmetric"), names, 1, run.result),
                    DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
   end(ctx, &run);

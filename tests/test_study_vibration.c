@@ -120,7 +120,7 @@ static void compute(void)
       DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-  assert_int_equal(dea_study_run(ctx, &type, result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, &type, NULL, 0, result), DEA_OK);
 }
 
 static void release(void)

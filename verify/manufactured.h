@@ -81,7 +81,7 @@ static void exact_stress(const struct exact *exact, const double X[3], double P[
   struct dea_point point;
   exact_place(exact, X, x, F);
   double J = dea_cofactors(F, cof), p = exact->pressure == NULL ? 0 : exact->pressure(X);
-  if (dea_constituent_point(&exact->layer, F, cof, J, p, 0, &point) != DEA_OK) {
+  if (dea_constituent_point(&exact->layer, F, cof, J, p, 0, true, &point) != DEA_OK) {
     fprintf(stderr, "%s: the law has no stress there\n", exact->name);
     exit(1);
   }

@@ -128,7 +128,7 @@ static struct truth find_truth(struct dea_context *ctx, const struct measurement
   verify_ok(ctx, dea_design_read(ctx, m->design, sets, 3, &t.design));
   verify_ok(ctx, dea_device_build(ctx, t.design, &t.device));
   verify_ok(ctx, dea_result_create(ctx, t.design, t.device, &t.result));
-  verify_ok(ctx, dea_study_run_named(ctx, dea_model_find("lumped"), studies, 2, t.result));
+  verify_ok(ctx, dea_study_run(ctx, dea_model_find("lumped"), studies, 2, t.result));
   t.curve = dea_result_find(t.result, "lumped", "transient");
   return t;
 }

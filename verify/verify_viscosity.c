@@ -45,7 +45,7 @@ static struct run play(const char *material, const char *waveform)
   verify_ok(ctx, dea_design_read_memory(ctx, "film", text, strlen(text), NULL, 0, &run.design));
   verify_ok(ctx, dea_device_build(ctx, run.design, &run.device));
   verify_ok(ctx, dea_result_create(ctx, run.design, run.device, &run.result));
-  dea_status status = dea_study_run_named(ctx, dea_model_find("lumped"), study, 1, run.result);
+  dea_status status = dea_study_run(ctx, dea_model_find("lumped"), study, 1, run.result);
   if (status != DEA_E_NO_EQUILIBRIUM) {
     verify_ok(ctx, status);
   }

@@ -45,8 +45,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   for (size_t i = 0;
        i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);
        i++) {
-    dea_status status =
-        dea_study_run_named(ctx, job->models[i], job->studies, job->study_count, result);
+    dea_status status = dea_study_run(ctx, job->models[i], job->studies, job->study_count, result);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
       snprintf(message, sizeof message, "%s: %s", job->models[i]->name, dea_context_message(ctx));

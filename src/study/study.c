@@ -87,9 +87,8 @@ static dea_status make_tables(struct dea_context *ctx, const struct dea_study *s
   return study->tables != NULL ? study->tables(ctx, model, result) : DEA_OK;
 }
 
-dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
-                               const char *const names[], size_t name_count,
-                               struct dea_result *result)
+dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
+                         const char *const names[], size_t name_count, struct dea_result *result)
 {
   struct dea_model *model = NULL; // made for the first study that wants it
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
@@ -116,10 +115,4 @@ dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_t
     type->destroy(ctx, model);
   }
   return first;
-}
-
-dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
-                         struct dea_result *result)
-{
-  return dea_study_run_named(ctx, type, NULL, 0, result);
 }

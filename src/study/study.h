@@ -25,16 +25,12 @@ struct dea_study {
   size_t figure_count;
 };
 
-/* Runs every study that the result's design asks for with one model. Returns the first failure,
- * after all studies had their turn (an interrupt ends it at once). */
+/* Runs the studies of these names with one model, whether the result's design asks for them or not;
+ * NULL: all that it asks for. Returns the first failure, after all studies had their turn (an
+ * interrupt ends it at once). DEA_E_ARGUMENT for a name that is none, DEA_E_DESIGN for one whose
+ * keys the design lacks. */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
-                         struct dea_result *result);
-/* The same with the studies of these names, whether the design asks for them or not; NULL: all that
- * it asks for. DEA_E_ARGUMENT for a name that is none, DEA_E_DESIGN for one whose keys the design
- * lacks. */
-dea_status dea_study_run_named(struct dea_context *ctx, const struct dea_model_type *type,
-                               const char *const names[], size_t name_count,
-                               struct dea_result *result);
+                         const char *const names[], size_t name_count, struct dea_result *result);
 /* Whether these names can be run for a design, as above. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);

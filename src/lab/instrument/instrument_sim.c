@@ -1,8 +1,6 @@
 /* Instrument "sim": the whole bench, with a model of the design as its film. It plays the output,
  * reads the inputs and sends profiles; how it gets to what is true is in sim_bench.h, what it adds
  * to that in sim_noise.h. */
-#include "lab/instrument/instrument_sim.h"
-
 #include "base/clock.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/sim_noise.h"
@@ -383,35 +381,3 @@ const struct dea_instrument_type dea_instrument_sim = {
     .stop = stop,
     .close = close_sim,
 };
-
-// Truth ------------------------------------------------------------------------------------------
-
-static dea_status play_truth(struct dea_sim_bench *bench, const struct dea_protocol *protocol,
-                             const double *time_s, size_t count, struct dea_sim_state *states)
-{
-  double rate_Hz = protocol->rate_Hz.si;
-  struct dea_sim_state state = {0};
-  size_t samples = 0;
-  for (size_t i = 0; i < count; i++) {
-    while ((double)samples / rate_Hz <= time_s[i] * (1 + 1e-12)) {
-      double asked_V = dea_protocol_value(protocol, (double)samples / rate_Hz);
-      dea_status status =
-          dea_sim_bench_sample(bench, asked_V / protocol->amplifier.gain.si, &state);
-      if (status != DEA_OK) {
-        return status;
-      }
-      samples++;
-    }
-    states[i] = state;
-  }
-  return DEA_OK;
-}
-
-dea_status dea_sim_truth(struct dea_context *ctx, struct dea_instrument *instrument,
-                         const struct dea_protocol *protocol, const double *time_s, size_t count,
-                         struct dea_sim_state *states)
-{
-  struct sim *s = (struct sim *)instrument;
-  DEA_TRY(ctx, play_truth(s->bench, protocol, time_s, count, states));
-  return DEA_OK;
-}

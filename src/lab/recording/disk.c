@@ -1,7 +1,6 @@
 #define _GNU_SOURCE // pread, pwrite, ftruncate, fsync, F_OFD_SETLK
 #include "lab/recording/disk.h"
 
-#include "base/clock.h"
 #include "lab/recording/recorder.h"
 
 #include <errno.h>
@@ -10,8 +9,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-enum { PAGE = 4096 };
 
 /* What HDF5 copies into the list of properties. */
 struct disk_of_list {
@@ -139,21 +136,6 @@ static herr_t disk_read(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t a
   return 0;
 }
 
-/* Bytes of a write that reach the disk of a test: of the last one those of its first page, because
- * a program may be killed between two pages. */
-static size_t count_down(struct dea_disk *disk, haddr_t address, size_t size)
-{
-  if (disk->writes_left < 0) {
-    return size;
-  }
-  if (disk->writes_left-- > 0) {
-    return size;
-  }
-  disk->error = ENOSPC;
-  size_t page = PAGE - (size_t)(address % PAGE);
-  return size > page ? page : 0;
-}
-
 static herr_t disk_write(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t address,
                          size_t size, const void *buffer)
 {
@@ -162,22 +144,15 @@ static herr_t disk_write(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t 
   struct disk_file *own = (struct disk_file *)file;
   const char *from = buffer;
   haddr_t end = address + size;
-  while (own->disk->held != NULL && atomic_load(own->disk->held)) {
-    dea_clock_wait(0.001);
-  }
-  if (own->disk->error == 0) {
-    size_t left = count_down(own->disk, address, size);
-    while (left > 0) {
-      ssize_t n = pwrite(own->file, from, left, (off_t)address);
-      if (n < 0 && errno != EINTR) {
-        own->disk->error = errno;
-        break;
-      }
-      if (n > 0) {
-        from += n;
-        left -= (size_t)n;
-        address += (haddr_t)n;
-      }
+  while (own->disk->error == 0 && size > 0) {
+    ssize_t n = pwrite(own->file, from, size, (off_t)address);
+    if (n < 0 && errno != EINTR) {
+      own->disk->error = errno;
+    }
+    if (n > 0) {
+      from += n;
+      size -= (size_t)n;
+      address += (haddr_t)n;
     }
   }
   own->size = end > own->size ? end : own->size;

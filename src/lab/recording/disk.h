@@ -9,13 +9,9 @@
 
 #include "base/h5.h"
 
-#include <stdatomic.h>
-
 struct dea_disk {
-  int error;               // errno of the write that failed; 0: none has
-  int file;                // descriptor, locked against other writers; -1: closed
-  const atomic_bool *held; // for tests: a write waits while it is set; NULL
-  long writes_left;        // for tests: the disk is full after so many more; negative: never
+  int error; // errno of the write that failed; 0: none has
+  int file;  // descriptor, locked against other writers; -1: closed
 };
 
 /* Sets the driver in a list of file access properties; false: HDF5 failed. disk: lent, outlives the
@@ -26,9 +22,5 @@ bool dea_disk_use(hid_t access, struct dea_disk *disk);
 bool dea_disk_is_named(const struct dea_disk *disk, const char *path);
 /* Brings what was written so far to the disk itself. */
 void dea_disk_sync(struct dea_disk *disk);
-
-struct dea_recorder;
-/* Of a recorder; lent. */
-struct dea_disk *dea_recorder_disk(struct dea_recorder *recorder);
 
 #endif

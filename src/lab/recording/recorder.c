@@ -304,8 +304,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   if (recorder == NULL) {
     return DEA_E_MEMORY;
   }
-  *recorder = (struct dea_recorder){
-      .ctx = ctx, .file = H5I_INVALID_HID, .disk = {.writes_left = -1, .file = -1}};
+  *recorder = (struct dea_recorder){.ctx = ctx, .file = H5I_INVALID_HID, .disk = {.file = -1}};
   for (size_t c = 0; c < DEA_CHANNELS_MAX; c++) {
     recorder->channels[c] = (struct recorded_channel){.values = none, .time = none};
   }
@@ -468,14 +467,6 @@ dea_status dea_recorder_sync(struct dea_recorder *recorder)
   return end(recorder, &h);
 }
 
-dea_status dea_recorder_flush(struct dea_recorder *recorder)
-{
-  struct h5 h;
-  begin(recorder, &h);
-  flush_samples(&h, recorder);
-  return end(recorder, &h);
-}
-
 void dea_recorder_set_output(struct dea_recorder *recorder, const char *text)
 {
   if (recorder != NULL) {
@@ -513,9 +504,4 @@ dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended)
 struct dea_context *dea_recorder_context(const struct dea_recorder *recorder)
 {
   return recorder->ctx;
-}
-
-struct dea_disk *dea_recorder_disk(struct dea_recorder *recorder)
-{
-  return &recorder->disk;
 }

@@ -52,7 +52,6 @@ dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
                                   const struct dea_recorded_cycle *cycle);
 /* Waits until what was flushed is on the disk, so that it survives the computer too. */
 dea_status dea_recorder_sync(struct dea_recorder *recorder);
-dea_status dea_recorder_flush(struct dea_recorder *recorder);
 /* What is known of the output at the end ("at 0 V (2 V read back)"); for dea_recorder_finish. */
 void dea_recorder_set_output(struct dea_recorder *recorder, const char *text);
 /* Whether a program records into that file at this moment. */

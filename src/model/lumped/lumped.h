@@ -57,20 +57,4 @@ dea_status dea_lift_force_max(const struct dea_lumped *lumped, const struct dea_
                               double nominal_field_V_per_m, double height_free_m, double *force_N,
                               double *height_m);
 
-/* Many equilibria at once: arrays [count]; film material and no electrode stiffness for all.
- * electrode_stretch: the smallest stable l_a >= 1, NAN when there is none up to total stretch
- * `max_stretch`. Needs no context and allocates nothing; safe to call from many threads.
- * DEA_E_ARGUMENT for a material without a law. */
-struct dea_lumped_batch {
-  size_t count;
-  const double *thickness_m; // H0
-  const double *pre_stretch;
-  const double *coverage; // R, in (0, 1)
-  const double *voltage_V;
-  double max_stretch;
-  double *electrode_stretch; // out
-};
-dea_status dea_lumped_batch_solve(const struct dea_material *material,
-                                  const struct dea_lumped_batch *batch);
-
 #endif

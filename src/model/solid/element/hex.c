@@ -192,10 +192,8 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
-  dea_status status =
-      order >= DEA_TANGENT
-          ? dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, &point)
-          : dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, field, &point);
+  dea_status status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field,
+                                            order >= DEA_TANGENT, &point);
   if (status != DEA_OK) {
     return status;
   }
@@ -345,7 +343,7 @@ static dea_status predict_point(const struct dea_constituent *constituent, int q
   struct dea_point point;
   double S[9], dP[9], dS[9];
   dea_status status =
-      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, &point);
+      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, true, &point);
   if (status != DEA_OK) {
     return status;
   }
@@ -523,8 +521,8 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
       for (int m = 0; m < shape->pressures; m++) {
         pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
       }
-      status = dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure,
-                                      in->voltage_V / constituent->thickness_m, &point);
+      status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
+                                     in->voltage_V / constituent->thickness_m, false, &point);
       if (status == DEA_OK) {
         dea_viscous_add(constituent, q, at->F, at->cof, at->J, false, &point);
       }
@@ -626,14 +624,14 @@ static dea_status recover_point(const struct dea_constituent *constituent,
 {
   struct dea_point point;
   dea_status status =
-      dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, 0, &point);
+      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, 0, false, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
   double slope, curvature;
   values[15] -= constituent->p0_Pa * (at->J - 1) +
                 dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
   if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
-    status =
-        dea_constituent_stress(constituent, at->F, at->cof, at->J, pressure, thin_V_per_m, &point);
+    status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, thin_V_per_m,
+                                   false, &point);
   }
   if (status != DEA_OK) {
     return status;

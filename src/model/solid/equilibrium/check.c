@@ -50,7 +50,7 @@ static dea_status check_layers(struct dea_context *ctx, const struct dea_solid *
   for (size_t e = 0; e < p->grid->element_count; e++) {
     const struct dea_constituent *layer = dea_solid_constituent(s, e);
     if ((e == 0 || p->constituent_of[e] != p->constituent_of[e - 1]) &&
-        dea_constituent_point(layer, one, one, 1, 0, 0, &point) != DEA_OK) {
+        dea_constituent_point(layer, one, one, 1, 0, 0, true, &point) != DEA_OK) {
       return dea_fail(
           ctx, DEA_E_DOMAIN,
           "the law '%s' ends before the pre-stretch %.4g: take a smaller pre-stretch or "

@@ -132,9 +132,9 @@ dea_status dea_constituent_relax(struct dea_constituent *constituent)
   return status;
 }
 
-static dea_status evaluate(const struct dea_constituent *constituent, const double F[9],
-                           const double cof[9], double J, double pressure, double field_V_per_m,
-                           bool tangent, struct dea_point *point)
+dea_status dea_constituent_point(const struct dea_constituent *constituent, const double F[9],
+                                 const double cof[9], double J, double pressure,
+                                 double field_V_per_m, bool tangent, struct dea_point *point)
 {
   dea_status status = elastic(constituent, F, tangent, point);
   if (status != DEA_OK) {
@@ -159,20 +159,6 @@ static dea_status evaluate(const struct dea_constituent *constituent, const doub
     add_electric(constituent, field_V_per_m, F, tangent, point);
   }
   return DEA_OK;
-}
-
-dea_status dea_constituent_point(const struct dea_constituent *constituent, const double F[9],
-                                 const double cof[9], double J, double pressure,
-                                 double field_V_per_m, struct dea_point *point)
-{
-  return evaluate(constituent, F, cof, J, pressure, field_V_per_m, true, point);
-}
-
-dea_status dea_constituent_stress(const struct dea_constituent *constituent, const double F[9],
-                                  const double cof[9], double J, double pressure,
-                                  double field_V_per_m, struct dea_point *point)
-{
-  return evaluate(constituent, F, cof, J, pressure, field_V_per_m, false, point);
 }
 
 void dea_constituent_second_stress(const double cof[9], double J, const double P[9], double S[9])

@@ -54,17 +54,13 @@ double dea_constituent_modulus(const struct dea_constituent *constituent);
  */
 dea_status dea_constituent_relax(struct dea_constituent *constituent);
 
-/* Energy, stress and tangent by F, at cofactors cof and determinant J of F. pressure: added as
- * p dJ/dF (of what takes one; its energy is the caller's). field_V_per_m: reference field E between
- * the electrodes, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
+/* Energy and stress by F, at cofactors cof and determinant J of F, and the tangent where it is
+ * wanted (point->A is not set otherwise). pressure: added as p dJ/dF (of what takes one; its energy
+ * is the caller's). field_V_per_m: reference field E between the electrodes, 0 where there is none.
+ * DEA_E_DOMAIN beyond the law's domain. */
 dea_status dea_constituent_point(const struct dea_constituent *constituent, const double F[9],
                                  const double cof[9], double J, double pressure,
-                                 double field_V_per_m, struct dea_point *point);
-
-/* The same without the tangent: point->A is not set. */
-dea_status dea_constituent_stress(const struct dea_constituent *constituent, const double F[9],
-                                  const double cof[9], double J, double pressure,
-                                  double field_V_per_m, struct dea_point *point);
+                                 double field_V_per_m, bool tangent, struct dea_point *point);
 
 /* The pointwise part kappa_s/2 ((J^2 - 1)/2 - ln J) and its derivatives by J: kappa_s/2 (J - 1)^2
  * near 1, and a barrier before J = 0. */

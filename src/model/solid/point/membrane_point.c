@@ -22,7 +22,7 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, double param[2]
   struct dea_point point;
   dea_status status = dea_membrane_check(film);
   if (status == DEA_OK) {
-    status = dea_constituent_point(film, one, one, 1, 0, 0, &point);
+    status = dea_constituent_point(film, one, one, 1, 0, 0, true, &point);
   }
   if (status == DEA_OK) {
     double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;

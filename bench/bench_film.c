@@ -1,4 +1,4 @@
-/* An 80-point sweep and the whole path of the axisymmetric disc of benchmark 4. */
+/* An 80-point sweep and the whole path of the disc of benchmark 4 by the models of a film. */
 #include "../tests/devices.h"
 #include "bench.h"
 #include "model/model.h"
@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 static struct dea_context *ctx;
+static const struct dea_model_type *type;
 
 static dea_status ignore(void *user, const struct dea_load_point *point)
 {
@@ -18,7 +19,7 @@ static dea_status ignore(void *user, const struct dea_load_point *point)
 static struct dea_model *make(const struct dea_device *device)
 {
   struct dea_model *model;
-  if (dea_model_find("axisymmetric")->create(ctx, device, NULL, &model) != DEA_OK) {
+  if (type->create(ctx, device, NULL, &model) != DEA_OK) {
     abort();
   }
   return model;
@@ -26,7 +27,6 @@ static struct dea_model *make(const struct dea_device *device)
 
 static void sweep(void *user)
 {
-  const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_model *model = make(user);
   for (int i = 0; i < 80; i++) {
     struct dea_load_point p;
@@ -39,7 +39,6 @@ static void sweep(void *user)
 
 static void path(void *user)
 {
-  const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_model *model = make(user);
   const struct dea_path_options options = {3, INFINITY, 1000};
   if (type->path(ctx, model, &options, ignore, NULL, NULL) != DEA_OK) {
@@ -54,8 +53,15 @@ int main(void)
     return 1;
   }
   struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
-  bench_print("axisymmetric.sweep_80", 1e3 * bench_best_s(sweep, &device, 20), "ms");
-  bench_print("axisymmetric.path", 1e3 * bench_best_s(path, &device, 20), "ms");
+  static const char *const names[] = {"lumped", "axisymmetric"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char figure[64];
+    type = dea_model_find(names[i]);
+    snprintf(figure, sizeof figure, "%s.sweep_80", names[i]);
+    bench_print(figure, 1e3 * bench_best_s(sweep, &device, 20), "ms");
+    snprintf(figure, sizeof figure, "%s.path", names[i]);
+    bench_print(figure, 1e3 * bench_best_s(path, &device, 20), "ms");
+  }
   dea_context_destroy(ctx);
   return 0;
 }
