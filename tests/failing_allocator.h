@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+extern long units_lent; // tables of units that are out (units_once.c)
+
 struct failing_count {
   long left;  // allocations until the one that fails; negative: none fails
   long alive; // allocated and not released
@@ -47,6 +49,7 @@ static inline void failing_check(const struct dea_context *ctx, dea_status statu
 static inline bool failing_run(void (*work)(struct dea_context *ctx, void *user), void *user,
                                long n, struct failing_count *count)
 {
+  long lent = units_lent;
   *count = (struct failing_count){.left = -1};
   struct dea_allocator allocator = {failing_resize, failing_release, count};
   struct dea_context *ctx;
@@ -58,6 +61,7 @@ static inline bool failing_run(void (*work)(struct dea_context *ctx, void *user)
   if (count->alive != 0) {
     fail_msg("%ld allocations left when number %ld failed", count->alive, n);
   }
+  assert_int_equal(units_lent, lent);
   return count->failed;
 }
 
