@@ -3,7 +3,7 @@
 #ifndef DEA_FABRICATE_CANVAS_H
 #define DEA_FABRICATE_CANVAS_H
 
-#include "fabricate/contour.h"
+#include "geometry/contour.h"
 
 enum dea_canvas_format { DEA_CANVAS_PDF, DEA_CANVAS_SVG, DEA_CANVAS_PNG };
 enum dea_align { DEA_ALIGN_LEFT, DEA_ALIGN_CENTRE, DEA_ALIGN_RIGHT };

@@ -4,7 +4,7 @@
 #define DEA_FABRICATE_PART_H
 
 #include "design/design.h"
-#include "fabricate/contour.h"
+#include "geometry/contour.h"
 
 // X(name, what it is, colour of the DXF, colour of the screen), in the order of the work
 #define DEA_LAYER_LIST(X)                                                                          \

@@ -1,6 +1,6 @@
 /* A contour at a distance from another one: the path of a cutter that removes half its kerf on
  * each side. */
-#include "fabricate/contour.h"
+#include "geometry/contour.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,77 +30,11 @@ static bool move_piece(struct dea_piece *piece, double distance)
   return true;
 }
 
-/* Intersections of a circle with a line through `at` along the unit vector t. */
-static int line_circle(const double at[2], const double t[2], const double centre[2], double radius,
-                       double out[2][2])
-{
-  double px = at[0] - centre[0], py = at[1] - centre[1];
-  double along = px * t[0] + py * t[1], off = px * t[1] - py * t[0];
-  double rest = radius * radius - off * off;
-  if (rest < 0) {
-    return 0;
-  }
-  for (int k = 0; k < 2; k++) {
-    double s = -along + (k == 0 ? -1 : 1) * sqrt(rest);
-    out[k][0] = at[0] + s * t[0];
-    out[k][1] = at[1] + s * t[1];
-  }
-  return 2;
-}
-
-static int circle_circle(const struct dea_piece *a, const struct dea_piece *b, double out[2][2])
-{
-  double dx = b->centre[0] - a->centre[0], dy = b->centre[1] - a->centre[1], d = hypot(dx, dy);
-  if (d == 0) {
-    return 0;
-  }
-  double along = 0.5 * (d + (a->radius_m * a->radius_m - b->radius_m * b->radius_m) / d);
-  double rest = a->radius_m * a->radius_m - along * along;
-  if (rest < 0) {
-    return 0;
-  }
-  for (int k = 0; k < 2; k++) {
-    double across = (k == 0 ? -1 : 1) * sqrt(rest);
-    out[k][0] = a->centre[0] + (along * dx - across * dy) / d;
-    out[k][1] = a->centre[1] + (along * dy + across * dx) / d;
-  }
-  return 2;
-}
-
-/* Where the lines and circles of two moved pieces cross. */
-static int crossings(const struct dea_piece *a, const struct dea_piece *b, double out[2][2])
-{
-  double ta[2], tb[2];
-  if (a->arc && b->arc) {
-    return circle_circle(a, b, out);
-  }
-  if (!a->arc) {
-    dea_piece_tangent(a, true, ta);
-  }
-  if (!b->arc) {
-    dea_piece_tangent(b, false, tb);
-  }
-  if (a->arc) {
-    return line_circle(b->from, tb, a->centre, a->radius_m, out);
-  }
-  if (b->arc) {
-    return line_circle(a->to, ta, b->centre, b->radius_m, out);
-  }
-  double cross = ta[0] * tb[1] - ta[1] * tb[0];
-  if (cross == 0) {
-    return 0;
-  }
-  double s = ((b->from[0] - a->to[0]) * tb[1] - (b->from[1] - a->to[1]) * tb[0]) / cross;
-  out[0][0] = a->to[0] + s * ta[0];
-  out[0][1] = a->to[1] + s * ta[1];
-  return 1;
-}
-
 /* Ends two moved pieces where they cross, at the crossing nearest to their old corner. */
 static bool trim(struct dea_piece *a, struct dea_piece *b, const double corner[2])
 {
   double at[2][2];
-  int count = crossings(a, b, at), best = 0;
+  int count = dea_piece_crossings(a, b, 0, at), best = 0;
   if (count == 0) {
     return false;
   }

@@ -2,8 +2,8 @@
  * LWPOLYLINE of a DXF file: a vertex says how the contour goes on to the next one.
  *
  * Closed contours of a part go counter-clockwise, so their inside lies on the left. */
-#ifndef DEA_FABRICATE_CONTOUR_H
-#define DEA_FABRICATE_CONTOUR_H
+#ifndef DEA_GEOMETRY_CONTOUR_H
+#define DEA_GEOMETRY_CONTOUR_H
 
 #include "base/context.h"
 
@@ -33,12 +33,25 @@ size_t dea_contour_pieces(const struct dea_contour *contour);
 struct dea_piece dea_contour_piece(const struct dea_contour *contour, size_t i);
 /* Unit tangent of a piece at its start or end. */
 void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]);
+/* Point of a piece: fraction 0 is its start, 1 its end. */
+void dea_piece_point(const struct dea_piece *piece, double fraction, double out[2]);
+/* Point of a piece that is nearest to another point. */
+void dea_piece_nearest(const struct dea_piece *piece, const double x_m[2], double out[2]);
+/* Grows a box {x min, y min, x max, y max} so that it holds the piece. */
+void dea_piece_grow_box(const struct dea_piece *piece, double box[4]);
+/* Where the line or circle of a crosses that of b, beyond their ends too; returns 0 to 2. Up to
+ * tolerance_m from touching, a line and a circle or two circles count as tangent, with one point
+ * (0: never). The same line or circle twice: none. */
+int dea_piece_crossings(const struct dea_piece *a, const struct dea_piece *b, double tolerance_m,
+                        double out[2][2]);
 /* Whether an arc lies in this direction [rad] from its centre; its ends do, for all rounding. */
 bool dea_piece_faces(const struct dea_piece *arc, double angle);
 
 /* Enclosed area, > 0 for a counter-clockwise one; of a closed contour. */
 double dea_contour_area_m2(const struct dea_contour *contour);
 double dea_contour_length_m(const struct dea_contour *contour);
+/* First moments of the enclosed area, signed as the area: area times centroid [m3]. */
+void dea_contour_moment_m3(const struct dea_contour *contour, double out[2]);
 /* Grows a box {x min, y min, x max, y max} so that it holds the contour. */
 void dea_contour_grow_box(const struct dea_contour *contour, double box[4]);
 /* Whether a point, not on it, lies inside a closed contour. */

@@ -1,5 +1,5 @@
 /* How narrow a contour is: webs of material, slots of waste, and contours that cross. */
-#include "fabricate/contour.h"
+#include "geometry/contour.h"
 
 #include <math.h>
 
@@ -7,36 +7,6 @@
 struct near {
   double distance, p[2], q[2];
 };
-
-static double clamp(double s, double low, double high)
-{
-  return s < low ? low : s > high ? high : s;
-}
-
-/* Point of a piece that is nearest to another point. */
-static void nearest_on(const struct dea_piece *piece, const double x[2], double out[2])
-{
-  double dx = piece->to[0] - piece->from[0], dy = piece->to[1] - piece->from[1];
-  const double *end = hypot(x[0] - piece->from[0], x[1] - piece->from[1]) <
-                              hypot(x[0] - piece->to[0], x[1] - piece->to[1])
-                          ? piece->from
-                          : piece->to;
-  out[0] = end[0];
-  out[1] = end[1];
-  if (piece->arc) {
-    double cx = x[0] - piece->centre[0], cy = x[1] - piece->centre[1], r = hypot(cx, cy);
-    if (r > 0 && dea_piece_faces(piece, atan2(cy, cx))) {
-      out[0] = piece->centre[0] + piece->radius_m * cx / r;
-      out[1] = piece->centre[1] + piece->radius_m * cy / r;
-    }
-    return;
-  }
-  double s = ((x[0] - piece->from[0]) * dx + (x[1] - piece->from[1]) * dy) /
-             (piece->length_m * piece->length_m);
-  s = clamp(s, 0, 1);
-  out[0] = piece->from[0] + s * dx;
-  out[1] = piece->from[1] + s * dy;
-}
 
 static void take(struct near *best, const double p[2], const double q[2])
 {
@@ -51,8 +21,8 @@ static void try_from(struct near *best, const struct dea_piece *a, const struct 
                      double x, double y)
 {
   double start[2] = {x, y}, p[2], q[2];
-  nearest_on(a, start, p);
-  nearest_on(b, p, q);
+  dea_piece_nearest(a, start, p);
+  dea_piece_nearest(b, p, q);
   take(best, p, q);
 }
 

@@ -1,4 +1,4 @@
-#include "fabricate/contour.h"
+#include "geometry/contour.h"
 
 #include <math.h>
 
@@ -44,17 +44,86 @@ void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]
   out[1] = dy / hypot(dx, dy);
 }
 
+void dea_piece_point(const struct dea_piece *piece, double fraction, double out[2])
+{
+  if (piece->arc) {
+    double angle = piece->start + fraction * piece->sweep;
+    out[0] = piece->centre[0] + piece->radius_m * cos(angle);
+    out[1] = piece->centre[1] + piece->radius_m * sin(angle);
+    return;
+  }
+  for (int k = 0; k < 2; k++) {
+    out[k] = piece->from[k] + fraction * (piece->to[k] - piece->from[k]);
+  }
+}
+
+void dea_piece_nearest(const struct dea_piece *piece, const double x_m[2], double out[2])
+{
+  double dx = piece->to[0] - piece->from[0], dy = piece->to[1] - piece->from[1];
+  const double *end = hypot(x_m[0] - piece->from[0], x_m[1] - piece->from[1]) <
+                              hypot(x_m[0] - piece->to[0], x_m[1] - piece->to[1])
+                          ? piece->from
+                          : piece->to;
+  out[0] = end[0];
+  out[1] = end[1];
+  if (piece->arc) {
+    double cx = x_m[0] - piece->centre[0], cy = x_m[1] - piece->centre[1], r = hypot(cx, cy);
+    if (r > 0 && dea_piece_faces(piece, atan2(cy, cx))) {
+      out[0] = piece->centre[0] + piece->radius_m * cx / r;
+      out[1] = piece->centre[1] + piece->radius_m * cy / r;
+    }
+    return;
+  }
+  double s = ((x_m[0] - piece->from[0]) * dx + (x_m[1] - piece->from[1]) * dy) /
+             (piece->length_m * piece->length_m);
+  s = s < 0 ? 0 : s > 1 ? 1 : s;
+  out[0] = piece->from[0] + s * dx;
+  out[1] = piece->from[1] + s * dy;
+}
+
+/* Both by Green's theorem: the polygon of the chords, seen from the first vertex so that nothing
+ * is lost far from the origin, and the circular segment between each chord and its arc, of area
+ * r^2 (s - sin s)/2 and first moment about the centre 2/3 r^3 sin^3(s/2) towards its middle. */
 double dea_contour_area_m2(const struct dea_contour *contour)
 {
   double twice = 0;
   for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
     const struct dea_piece p = dea_contour_piece(contour, i);
-    twice += p.from[0] * p.to[1] - p.from[1] * p.to[0];
-    if (p.arc) { // the segment between chord and arc
+    double x0 = contour->vertex[0].x_m, y0 = contour->vertex[0].y_m;
+    twice += (p.from[0] - x0) * (p.to[1] - y0) - (p.from[1] - y0) * (p.to[0] - x0);
+    if (p.arc) {
       twice += p.radius_m * p.radius_m * (p.sweep - sin(p.sweep));
     }
   }
   return 0.5 * twice;
+}
+
+void dea_contour_moment_m3(const struct dea_contour *contour, double out[2])
+{
+  double area = 0, moment[2] = {0, 0};
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece p = dea_contour_piece(contour, i);
+    const double origin[2] = {contour->vertex[0].x_m, contour->vertex[0].y_m};
+    double a[2] = {p.from[0] - origin[0], p.from[1] - origin[1]};
+    double b[2] = {p.to[0] - origin[0], p.to[1] - origin[1]};
+    double triangle = 0.5 * (a[0] * b[1] - a[1] * b[0]), segment = 0, arm = 0;
+    if (p.arc) {
+      double half = sin(0.5 * p.sweep);
+      segment = 0.5 * p.radius_m * p.radius_m * (p.sweep - sin(p.sweep));
+      arm = 2.0 / 3 * p.radius_m * p.radius_m * p.radius_m * half * half * half;
+    }
+    double middle = p.start + 0.5 * p.sweep;
+    moment[0] += triangle * (a[0] + b[0]) / 3 + segment * (p.centre[0] - origin[0]);
+    moment[1] += triangle * (a[1] + b[1]) / 3 + segment * (p.centre[1] - origin[1]);
+    if (p.arc) {
+      moment[0] += arm * cos(middle);
+      moment[1] += arm * sin(middle);
+    }
+    area += triangle + segment;
+  }
+  for (int k = 0; k < 2; k++) {
+    out[k] = moment[k] + area * (k == 0 ? contour->vertex[0].x_m : contour->vertex[0].y_m);
+  }
 }
 
 double dea_contour_length_m(const struct dea_contour *contour)
@@ -81,18 +150,24 @@ static void grow(double box[4], double x, double y)
   box[3] = fmax(box[3], y);
 }
 
+void dea_piece_grow_box(const struct dea_piece *piece, double box[4])
+{
+  grow(box, piece->from[0], piece->from[1]);
+  grow(box, piece->to[0], piece->to[1]);
+  for (int quarter = 0; piece->arc && quarter < 4; quarter++) {
+    static const int x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
+    if (dea_piece_faces(piece, 0.5 * pi * quarter)) {
+      grow(box, piece->centre[0] + x[quarter] * piece->radius_m,
+           piece->centre[1] + y[quarter] * piece->radius_m);
+    }
+  }
+}
+
 void dea_contour_grow_box(const struct dea_contour *contour, double box[4])
 {
   for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
     const struct dea_piece p = dea_contour_piece(contour, i);
-    grow(box, p.from[0], p.from[1]);
-    grow(box, p.to[0], p.to[1]);
-    for (int quarter = 0; p.arc && quarter < 4; quarter++) {
-      static const int x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-      if (dea_piece_faces(&p, 0.5 * pi * quarter)) {
-        grow(box, p.centre[0] + x[quarter] * p.radius_m, p.centre[1] + y[quarter] * p.radius_m);
-      }
-    }
+    dea_piece_grow_box(&p, box);
   }
 }
 

@@ -1,0 +1,228 @@
+/* What is wrong with contours, and where. */
+#include "geometry/pieces.h"
+
+#include <math.h>
+#include <stdio.h>
+
+dea_status dea_region_fault(struct dea_context *ctx, struct dea_location location, double x_m,
+                            double y_m, const char *what)
+{
+  char place[80] = "";
+  if (isfinite(x_m) && isfinite(y_m)) {
+    snprintf(place, sizeof place, " at (%.6g, %.6g) mm", 1e3 * x_m, 1e3 * y_m);
+  }
+  if (location.file == NULL) {
+    location.file = "";
+  }
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "%s%s", what, place));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s%s", what, place);
+}
+
+static double apart(const double a[2], const double b[2])
+{
+  return hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+/* Two pieces that are looked at together, and what is found. */
+struct pair {
+  const struct dea_pieces *all;
+  size_t i, j;
+  const struct dea_piece *a, *b;
+  double snap;
+  double meet[6][2]; // points where they meet, apart from each other
+  bool inner[6];     // at neither's end, and across
+  int count;
+};
+
+static bool is_end(const struct dea_piece *p, const double x[2], double snap)
+{
+  return apart(p->from, x) <= snap || apart(p->to, x) <= snap;
+}
+
+static void add_meeting(struct pair *p, const double x[2], bool across)
+{
+  for (int k = 0; k < p->count; k++) {
+    if (apart(p->meet[k], x) <= 2 * p->snap) {
+      return;
+    }
+  }
+  p->meet[p->count][0] = x[0];
+  p->meet[p->count][1] = x[1];
+  p->inner[p->count++] = across && !is_end(p->a, x, p->snap) && !is_end(p->b, x, p->snap);
+}
+
+/* All points where two pieces meet: their ends on the other one, and crossings. */
+static void find_meetings(struct pair *p)
+{
+  const double *ends[4] = {p->a->from, p->a->to, p->b->from, p->b->to};
+  for (int k = 0; k < 4; k++) {
+    if (dea_piece_distance_m(k < 2 ? p->b : p->a, ends[k]) <= p->snap) {
+      add_meeting(p, ends[k], false);
+    }
+  }
+  double at[2][2];
+  int count = dea_piece_crossings(p->a, p->b, p->snap, at);
+  bool tangent = count == 1 && (p->a->arc || p->b->arc);
+  for (int k = 0; k < count; k++) {
+    if (dea_piece_distance_m(p->a, at[k]) <= p->snap &&
+        dea_piece_distance_m(p->b, at[k]) <= p->snap) {
+      add_meeting(p, at[k], !tangent);
+    }
+  }
+}
+
+/* The first place where two pieces of one contour meet but for where one follows the other. */
+static const double *find_own_crossing(const struct pair *p)
+{
+  for (int k = 0; k < p->count; k++) {
+    bool joint = (p->all->next[p->i] == p->j && apart(p->meet[k], p->a->to) <= p->snap) ||
+                 (p->all->next[p->j] == p->i && apart(p->meet[k], p->b->to) <= p->snap);
+    if (!joint) {
+      return p->meet[k];
+    }
+  }
+  return NULL;
+}
+
+/* Whether pieces that meet more than once lie on each other in between. */
+static bool share_an_edge(const struct pair *p)
+{
+  for (int k = 0; k + 1 < p->count; k++) {
+    double middle[2], on_a[2];
+    middle[0] = 0.5 * (p->meet[k][0] + p->meet[k + 1][0]);
+    middle[1] = 0.5 * (p->meet[k][1] + p->meet[k + 1][1]);
+    dea_piece_nearest(p->a, middle, on_a);
+    if (dea_piece_distance_m(p->b, on_a) <= p->snap) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static struct dea_contour contour_of(const struct dea_pieces *all, size_t piece)
+{
+  size_t first = piece, last = piece;
+  while (first > 0 && all->contour[first - 1] == all->contour[piece]) {
+    first--;
+  }
+  while (last + 1 < all->count && all->contour[last + 1] == all->contour[piece]) {
+    last++;
+  }
+  return (struct dea_contour){all->start + first, last - first + 1, true};
+}
+
+/* Whether the contour of a goes through the other one where they touch at x: what comes a little
+ * before and what comes after lie on different sides. */
+static bool goes_through(const struct pair *p, const double x[2])
+{
+  size_t before = p->i, after = p->i;
+  if (apart(p->a->to, x) <= p->snap) {
+    after = p->all->next[p->i];
+  } else if (apart(p->a->from, x) <= p->snap) {
+    while (p->all->next[before] != p->i) {
+      before = p->all->next[before];
+    }
+  }
+  double sides[2][2];
+  for (int k = 0; k < 2; k++) {
+    const struct dea_piece *piece = &p->all->piece[k == 0 ? before : after];
+    double part = apart(piece->from, x) / (apart(piece->from, x) + apart(piece->to, x));
+    part += k == 0 ? -1e-3 : 1e-3; // along from its start, near enough
+    dea_piece_point(piece, part < 0 ? 0 : part > 1 ? 1 : part, sides[k]);
+    if (dea_piece_distance_m(p->b, sides[k]) <= p->snap) {
+      return false;
+    }
+  }
+  const struct dea_contour other = contour_of(p->all, p->j);
+  return dea_contour_inside(&other, sides[0][0], sides[0][1]) !=
+         dea_contour_inside(&other, sides[1][0], sides[1][1]);
+}
+
+/* What is wrong with two pieces; NULL when nothing is. */
+static const char *look_at(struct pair *p, const double **where)
+{
+  find_meetings(p);
+  if (p->count == 0) {
+    return NULL;
+  }
+  if (p->all->contour[p->i] == p->all->contour[p->j]) {
+    *where = find_own_crossing(p);
+    return *where != NULL ? "the contour crosses or touches itself" : NULL;
+  }
+  *where = p->meet[0];
+  if (share_an_edge(p)) {
+    return "two contours have an edge in common";
+  }
+  for (int k = 0; k < p->count; k++) {
+    *where = p->meet[k];
+    if (p->inner[k] || goes_through(p, p->meet[k])) {
+      return "two contours cross";
+    }
+  }
+  return NULL;
+}
+
+static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *all, bool apart_too)
+{
+  for (size_t i = 0; i < all->count; i++) {
+    double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    dea_piece_grow_box(&all->piece[i], box);
+    size_t cursor = 0, j;
+    while (dea_pieces_next(all, box, &cursor, &j)) {
+      if (j <= i || (!apart_too && all->contour[i] != all->contour[j])) {
+        continue;
+      }
+      struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};
+      pair.snap = all->snap_m;
+      const double *at = NULL;
+      const char *what = look_at(&pair, &at);
+      if (what != NULL) {
+        return dea_region_fault(ctx, all->start[i].location, at[0], at[1], what);
+      }
+    }
+    if ((i & 1023) == 0 && dea_interrupted(ctx)) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while contours were checked");
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *region,
+                            bool apart_too)
+{
+  double size = dea_region_size_m(region), snap = DEA_GEOMETRY_SNAP * size;
+  for (size_t c = 0; c < region->contour_count; c++) {
+    const struct dea_contour contour = dea_region_contour(region, c);
+    const struct dea_vertex *v = contour.vertex;
+    for (size_t i = 0; i < contour.count; i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i);
+      if (!isfinite(piece.length_m)) {
+        return dea_region_fault(ctx, v[i].location, NAN, NAN, "a vertex of a contour is no number");
+      }
+      if (piece.length_m <= snap) {
+        return dea_region_fault(ctx, v[i].location, v[i].x_m, v[i].y_m,
+                                "two vertices of a contour lie on each other");
+      }
+    }
+    if (contour.count < 2 ||
+        fabs(dea_contour_area_m2(&contour)) <= snap * dea_contour_length_m(&contour)) {
+      return dea_region_fault(ctx, v[0].location, v[0].x_m, v[0].y_m, "a contour encloses no area");
+    }
+  }
+  struct dea_pieces all;
+  DEA_TRY(ctx, dea_pieces_build(ctx, &region, 1, &all));
+  dea_status status = check_pairs(ctx, &all, apart_too);
+  dea_pieces_free(&all);
+  return status;
+}
+
+dea_status dea_region_add_checked(struct dea_region *region, const struct dea_region *from)
+{
+  DEA_TRY(region->ctx, dea_region_status(from));
+  DEA_TRY(region->ctx, dea_region_check(region->ctx, from, true));
+  for (size_t i = 0; i < from->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(from, i);
+    dea_region_add(region, contour.vertex, contour.count);
+  }
+  return dea_region_status(region);
+}
