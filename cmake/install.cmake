@@ -5,7 +5,7 @@ install(TARGETS libdea dea
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-foreach(module IN ITEMS dea_solid_module dea_cairo_module dea_matio_module)
+foreach(module IN ITEMS dea_solid_module dea_cairo_module dea_geos_module dea_matio_module)
   if(TARGET ${module})
     install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
   endif()

@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "fabricate/canvas.h"
+#include "geometry/boolean.h"
 #include "lab/import/mat.h"
 #include "material/catalogue.h"
 #include "model/model.h"
@@ -154,6 +155,14 @@ static void check_cairo(struct report *report)
       "install libcairo2-dev, and build again; without it dea fab writes DXF and SVG only");
 }
 
+static void check_geos(struct report *report)
+{
+  char path[4096];
+  bool ok = dea_boolean_find(path, sizeof path);
+  say(report, WISHED, ok, "booleans of regions", ok ? path : "not built",
+      "install libgeos-dev, and build again; without it regions are not united or cut");
+}
+
 static void check_matio(struct report *report)
 {
   char path[4096];
@@ -202,6 +211,7 @@ static int run(struct dea_cli *cli, void *request)
   check_gnuplot(&report);
   check_engine(&report);
   check_cairo(&report);
+  check_geos(&report);
   check_matio(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {

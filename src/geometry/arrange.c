@@ -106,15 +106,10 @@ static void find_parent(struct nesting *n, size_t c)
 static void add_contour(const struct nesting *n, size_t c, struct dea_region *out)
 {
   const struct dea_contour contour = dea_region_contour(n->region, c);
-  size_t first = out->vertex_count, count = contour.count;
-  dea_region_add(out, contour.vertex, count);
-  if ((dea_contour_area_m2(&contour) > 0) != n->hole[c] || out->failed) {
-    return;
-  }
-  for (size_t k = 0; k < count; k++) { // the other way round
-    const struct dea_vertex *v = &contour.vertex[count - 1 - k];
-    const struct dea_vertex *piece = &contour.vertex[(2 * count - 2 - k) % count];
-    out->vertex[first + k] = (struct dea_vertex){v->x_m, v->y_m, -piece->bulge, piece->location};
+  if ((dea_contour_area_m2(&contour) < 0) == n->hole[c]) {
+    dea_region_add(out, contour.vertex, contour.count);
+  } else {
+    dea_region_add_reversed(out, contour.vertex, contour.count);
   }
 }
 

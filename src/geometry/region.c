@@ -37,6 +37,18 @@ void dea_region_add(struct dea_region *region, const struct dea_vertex *vertices
   }
 }
 
+void dea_region_add_reversed(struct dea_region *region, const struct dea_vertex *vertices,
+                             size_t count)
+{
+  size_t first = region->vertex_count;
+  dea_region_add(region, vertices, count);
+  for (size_t k = 0; k < count && !region->failed; k++) {
+    const struct dea_vertex *v = &vertices[count - 1 - k];
+    const struct dea_vertex *piece = &vertices[(2 * count - 2 - k) % count];
+    region->vertex[first + k] = (struct dea_vertex){v->x_m, v->y_m, -piece->bulge, piece->location};
+  }
+}
+
 void dea_region_add_circle(struct dea_region *region, double x_m, double y_m, double radius_m,
                            bool hole, struct dea_location location)
 {
@@ -162,17 +174,21 @@ void dea_motion_apply(const struct dea_motion *motion, const double x_m[2], doub
 void dea_region_add_moved(struct dea_region *region, const struct dea_region *from,
                           const struct dea_motion *motion)
 {
-  for (size_t i = 0; i < from->contour_count && !region->failed; i++) {
+  for (size_t i = 0; i < from->contour_count; i++) {
     const struct dea_contour contour = dea_region_contour(from, i);
-    size_t n = contour.count, first = region->vertex_count;
-    dea_region_add(region, contour.vertex, n);
-    for (size_t k = 0; k < n && !region->failed; k++) {
-      // mirrored: the other way round, so that the inside stays on the left, and the bulges too
-      const struct dea_vertex *v = &contour.vertex[motion->mirrored ? n - 1 - k : k];
-      const struct dea_vertex *piece = motion->mirrored ? &contour.vertex[(2 * n - 2 - k) % n] : v;
+    size_t first = region->vertex_count;
+    if (motion->mirrored) { // so that the inside stays on the left
+      dea_region_add_reversed(region, contour.vertex, contour.count);
+    } else {
+      dea_region_add(region, contour.vertex, contour.count);
+    }
+    for (size_t k = first; k < region->vertex_count; k++) {
+      struct dea_vertex *v = &region->vertex[k];
       double x[2];
       dea_motion_apply(motion, (double[2]){v->x_m, v->y_m}, x);
-      region->vertex[first + k] = (struct dea_vertex){x[0], x[1], piece->bulge, piece->location};
+      v->x_m = x[0];
+      v->y_m = x[1];
+      v->bulge *= motion->mirrored ? -1 : 1;
     }
   }
 }

@@ -20,6 +20,9 @@ struct dea_region {
 
 /* Adds a closed contour of vertices[count]. */
 void dea_region_add(struct dea_region *region, const struct dea_vertex *vertices, size_t count);
+/* The same the other way round: what was on its left is on its right. */
+void dea_region_add_reversed(struct dea_region *region, const struct dea_vertex *vertices,
+                             size_t count);
 /* Adds a circle; counter-clockwise unless it is a hole. */
 void dea_region_add_circle(struct dea_region *region, double x_m, double y_m, double radius_m,
                            bool hole, struct dea_location location);

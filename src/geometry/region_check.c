@@ -169,7 +169,8 @@ static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *
     dea_piece_grow_box(&all->piece[i], box);
     size_t cursor = 0, j;
     while (dea_pieces_next(all, box, &cursor, &j)) {
-      if (j <= i || (!apart_too && all->contour[i] != all->contour[j])) {
+      if (j <= i || (!apart_too && all->contour[i] != all->contour[j]) ||
+          dea_pieces_apart(all, i, j)) {
         continue;
       }
       struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};

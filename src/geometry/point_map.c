@@ -1,0 +1,112 @@
+#include "geometry/point_map.h"
+
+#include <math.h>
+#include <stdint.h>
+
+static double cell_size(const struct dea_point_map *map)
+{
+  return map->cell_m > 0 ? map->cell_m : 2 * map->tolerance_m;
+}
+
+/* Where the chain of a cell starts; cells beyond the range of whole numbers share one. */
+static size_t hash(const struct dea_point_map *map, double column, double row)
+{
+  bool countable = fabs(column) < 9e18 && fabs(row) < 9e18;
+  uint64_t i = countable ? (uint64_t)(int64_t)column : 0;
+  uint64_t j = countable ? (uint64_t)(int64_t)row : 0;
+  uint64_t h =
+      i * UINT64_C(0x9e3779b97f4a7c15) ^ (j + UINT64_C(0x7f4a7c15)) * UINT64_C(0xc2b2ae3d27d4eb4f);
+  h ^= h >> 29;
+  h *= UINT64_C(0xbf58476d1ce4e5b9);
+  return (size_t)(h ^ h >> 32) & (map->heads - 1);
+}
+
+size_t dea_point_map_find(const struct dea_point_map *map, const double x_m[2])
+{
+  double size = cell_size(map), tolerance = map->tolerance_m;
+  size_t found = SIZE_MAX;
+  if (map->count == 0) {
+    return found;
+  }
+  double column[2], row[2]; // of the cells that the tolerance reaches: one or two each way
+  for (int k = 0; k < 2; k++) {
+    double reach = k == 0 ? -tolerance : tolerance;
+    column[k] = floor((x_m[0] + reach) / size);
+    row[k] = floor((x_m[1] + reach) / size);
+  }
+  for (int k = 0; k < 4; k++) {
+    if ((k % 2 == 1 && column[1] == column[0]) || (k / 2 == 1 && row[1] == row[0])) {
+      continue;
+    }
+    size_t i = map->head[hash(map, column[k % 2], row[k / 2])];
+    for (; i != SIZE_MAX; i = map->next[i]) {
+      double dx = map->point[i][0] - x_m[0], dy = map->point[i][1] - x_m[1];
+      if (hypot(dx, dy) <= tolerance && i < found) {
+        found = i;
+      }
+    }
+  }
+  return found;
+}
+
+static void put(struct dea_point_map *map, size_t i)
+{
+  double size = cell_size(map);
+  size_t h = hash(map, floor(map->point[i][0] / size), floor(map->point[i][1] / size));
+  map->next[i] = map->head[h];
+  map->head[h] = i;
+}
+
+static dea_status grow(struct dea_point_map *map)
+{
+  size_t room = map->room == 0 ? 64 : 2 * map->room;
+  double(*point)[2] = dea_resize(map->ctx, map->point, room, sizeof *point);
+  if (point == NULL) {
+    return DEA_E_MEMORY;
+  }
+  map->point = point;
+  size_t *next = dea_resize(map->ctx, map->next, room, sizeof *next);
+  if (next == NULL) {
+    return DEA_E_MEMORY;
+  }
+  map->next = next;
+  size_t *head = dea_resize(map->ctx, map->head, room, sizeof *head);
+  if (head == NULL) {
+    return DEA_E_MEMORY;
+  }
+  map->head = head;
+  map->room = map->heads = room;
+  for (size_t h = 0; h < map->heads; h++) {
+    map->head[h] = SIZE_MAX;
+  }
+  for (size_t i = 0; i < map->count; i++) {
+    put(map, i);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], size_t *index)
+{
+  *index = dea_point_map_find(map, x_m);
+  if (*index != SIZE_MAX) {
+    return DEA_OK;
+  }
+  if (map->count == map->room) {
+    DEA_TRY(map->ctx, grow(map));
+  }
+  map->point[map->count][0] = x_m[0];
+  map->point[map->count][1] = x_m[1];
+  put(map, map->count);
+  *index = map->count++;
+  return DEA_OK;
+}
+
+void dea_point_map_free(struct dea_point_map *map)
+{
+  if (map->ctx != NULL) {
+    dea_free(map->ctx, map->point);
+    dea_free(map->ctx, map->next);
+    dea_free(map->ctx, map->head);
+  }
+  *map = (struct dea_point_map){0};
+}
