@@ -270,6 +270,31 @@ static void test_page_of_an_example(void **state)
   assert_true(count >= 5);
 }
 
+/* A study with tables has a section, with its figures and its tables as the terminal has them. */
+static void test_sections_of_studies(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("run @/examples/frdea-4.yaml @/examples/plain-disc.yaml --no-figures "
+                  "--model lumped -o studies.run --set "
+                  "'drive.waveform={kind: square, high: 3 kV, frequency: 1 Hz}'"),
+      0);
+  assert_int_equal(command_run("report studies.run -o studies.html --quiet"), 0);
+  read_page("studies.html");
+  assert_well_formed();
+  const char *curves = strstr(page, "<section id=\"curves-1\""),
+             *time = strstr(page, "<section id=\"transient-1\""),
+             *designs = strstr(page, "<section id=\"compare-design-1\"");
+  assert_true(curves != NULL && time > curves && designs > time);
+  const char *history = strstr(page, "voltage and displacement against time");
+  assert_true(history > time && history < designs); // not among the curves
+  const char *given = strstr(time, "<dt>the supply gave</dt><dd>");
+  assert_true(given != NULL && given < designs);
+  assert_contains(designs, "<caption>lumped: designs at their last voltage</caption>");
+  assert_contains(designs, "<tr><td>frdea-4</td><td class=\"n\">8</td>");
+  assert_contains(designs, "<tr><td>plain-disc</td>");
+}
+
 static void test_runs_beside_each_other(void **state)
 {
   (void)state;
@@ -450,6 +475,7 @@ int main(void)
       cmocka_unit_test(test_axes),
       cmocka_unit_test(test_text_of_a_design_is_text),
       cmocka_unit_test(test_page_of_an_example),
+      cmocka_unit_test(test_sections_of_studies),
       cmocka_unit_test(test_measurement),
       cmocka_unit_test(test_only_pages_are_replaced),
       cmocka_unit_test(test_runs_beside_each_other),

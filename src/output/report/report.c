@@ -66,10 +66,9 @@ static void add_header(struct dea_report *report)
 static dea_status add_run(struct dea_report *report, const struct dea_report_run *run)
 {
   static const dea_run_section sections[] = {
-      dea_section_glance,    dea_section_design,      dea_section_membrane, dea_section_curves,
-      dea_section_limits,    dea_section_map,         dea_section_touch,    dea_section_explorer,
-      dea_section_designs,   dea_section_convergence, dea_section_points,   dea_section_materials,
-      dea_section_provenance};
+      dea_section_glance,  dea_section_design, dea_section_membrane,  dea_section_curves,
+      dea_section_limits,  dea_section_map,    dea_section_touch,     dea_section_explorer,
+      dea_section_studies, dea_section_points, dea_section_materials, dea_section_provenance};
   bool alone = report->count == 1; // then the page's heading is the run's
   dea_text_add(&report->text, "<article id=\"run-%d\" aria-label=\"Run %d\">", run->number,
                run->number);

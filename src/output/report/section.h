@@ -53,7 +53,7 @@ void dea_section_heading(struct dea_report *report, const char *text);
 void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
 void dea_table_end(struct dea_report *report);
 
-/* Figures of a run that belong to a study; NULL: all but those of studies with a section. */
+/* Figures of a run that belong to a study; NULL: those that stand in no study's section. */
 dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
                                const char *study);
 
@@ -67,8 +67,7 @@ dea_status dea_section_map(struct dea_report *report, const struct dea_report_ru
 dea_status dea_section_touch(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_explorer(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run);
-dea_status dea_section_convergence(struct dea_report *report, const struct dea_report_run *run);
-dea_status dea_section_designs(struct dea_report *report, const struct dea_report_run *run);
+dea_status dea_section_studies(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_provenance(struct dea_report *report, const struct dea_report_run *run);
 /* The C core that the explorers of a page share. */

@@ -7,44 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Adds a figure; the notes of a plot that was not asked for are nobody's. */
-static dea_status add_figure(struct dea_report *report, const struct dea_figure *figure,
-                             const struct dea_result *result)
-{
-  struct dea_plot *plot;
-  DEA_TRY(report->ctx, dea_plot_create(report->ctx, figure->name, figure->caption, &plot));
-  dea_status status = figure->build(report->ctx, result, plot);
-  if (status == DEA_OK && dea_plot_shows(plot)) {
-    dea_plot_add_svg(&report->text, plot, ++report->figures);
-  }
-  dea_plot_destroy(report->ctx, plot);
-  return status;
-}
-
-/* Whether a figure stands in the section of its study and not among the curves. */
-static bool stands_apart(const struct dea_figure *figure)
-{
-  return figure->study != NULL && (strcmp(figure->study, "convergence") == 0 ||
-                                   strcmp(figure->study, "compare-design") == 0);
-}
-
-dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
-                               const char *study)
-{
-  const struct dea_figure *figure;
-  dea_text_add(&report->text, "<div class=\"plots\">");
-  for (size_t i = 0; (figure = dea_figure_get(i)) != NULL; i++) {
-    bool wanted = study == NULL           ? !stands_apart(figure)
-                  : figure->study != NULL ? strcmp(figure->study, study) == 0
-                                          : false;
-    if (wanted && figure->build != NULL) {
-      DEA_TRY(report->ctx, add_figure(report, figure, run->run->result));
-    }
-  }
-  dea_text_add(&report->text, "</div>");
-  return DEA_OK;
-}
-
 dea_status dea_section_curves(struct dea_report *report, const struct dea_report_run *run)
 {
   if (run->run->result->curve_count == 0) {
@@ -53,50 +15,6 @@ dea_status dea_section_curves(struct dea_report *report, const struct dea_report
   dea_section_begin(report, "curves", run->number, "Curves");
   DEA_TRY(report->ctx, dea_section_figures(report, run, NULL));
   dea_section_end(report);
-  return DEA_OK;
-}
-
-dea_status dea_section_designs(struct dea_report *report, const struct dea_report_run *run)
-{
-  const struct dea_result *result = run->run->result;
-  struct dea_text *out = &report->text;
-  bool any = false;
-  for (size_t i = 0; i < result->variant_count; i++) {
-    const struct dea_variant *variant = &result->variants[i];
-    if (strcmp(variant->curve.kind, "compare-design") != 0) {
-      continue;
-    }
-    if (!any) {
-      dea_section_begin(report, "designs", run->number, "Designs beside each other");
-      DEA_TRY(report->ctx, dea_section_figures(report, run, "compare-design"));
-      dea_table_begin(report, "Designs at their last voltage",
-                      "<th scope=\"col\">Design</th><th scope=\"col\">Model</th>"
-                      "<th scope=\"col\" class=\"n\">V (kV)</th>"
-                      "<th scope=\"col\" class=\"n\">strain (%)</th>"
-                      "<th scope=\"col\" class=\"n\">z centre (\302\265m)</th>"
-                      "<th scope=\"col\" class=\"n\">z fibre tip (\302\265m)</th>"
-                      "<th scope=\"col\" class=\"n\">true field (V/\302\265m)</th>"
-                      "<th scope=\"col\">Ended</th>");
-      any = true;
-    }
-    struct dea_load_point p = variant->curve.count > 0
-                                  ? variant->curve.points[variant->curve.count - 1]
-                                  : dea_load_point_empty();
-    dea_text_add(out, "<tr>");
-    dea_html_element(out, "th scope=\"row\"", variant->name);
-    dea_html_element(out, "td", variant->curve.model);
-    dea_html_cell(out, 1e-3 * p.voltage_V, 4);
-    dea_html_cell(out, 100 * (p.electrode_stretch - 1), 4);
-    dea_html_cell(out, 1e6 * p.centre_z_m, 5);
-    dea_html_cell(out, 1e6 * p.fibre_tip_z_m, 5);
-    dea_html_cell(out, 1e-6 * p.true_field_V_per_m, 4);
-    dea_html_element(out, "td", variant->curve.complete ? "complete" : variant->curve.stopped);
-    dea_text_add(out, "</tr>");
-  }
-  if (any) {
-    dea_table_end(report);
-    dea_section_end(report);
-  }
   return DEA_OK;
 }
 

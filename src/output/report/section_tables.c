@@ -1,7 +1,6 @@
-/* Numbers of a run: what matters at a glance, limits, all points, convergence. */
+/* Numbers of a run: what matters at a glance, limits, all points. */
 #include "output/csv.h"
 #include "output/report/section.h"
-#include "result/convergence.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -239,78 +238,6 @@ dea_status dea_section_points(struct dea_report *report, const struct dea_report
       any = true;
     }
     add_curve_points(report, curve);
-  }
-  if (any) {
-    dea_section_end(report);
-  }
-  return DEA_OK;
-}
-
-static void add_error_row(struct dea_text *out, const struct dea_convergence *c,
-                          const struct dea_convergence_row *row)
-{
-  char title[96];
-  dea_column_title(&dea_point_columns[row->column], title, sizeof title);
-  dea_text_add(out, "<tr>");
-  dea_html_cell(out, 1e-3 * row->voltage_V, 4);
-  dea_html_element(out, "th scope=\"row\"", title);
-  for (size_t m = 0; m < c->mesh_count; m++) {
-    dea_html_cell(out, 100 * row->errors[m], 2);
-  }
-  dea_html_cell(out, row->order, 2);
-  dea_html_cell(out, dea_point_columns[row->column].factor * row->extrapolated, 5);
-  dea_html_element(out, "td", dea_order_text(row->kind));
-  dea_text_add(out, "</tr>");
-}
-
-static void add_convergence(struct dea_report *report, const char *model,
-                            const struct dea_convergence *c)
-{
-  struct dea_text *out = &report->text, header = {.ctx = report->ctx},
-                  verdict = {.ctx = report->ctx};
-  dea_section_heading(report, model);
-  dea_convergence_verdict(c, &verdict);
-  dea_html_element(out, "p class=\"verdict\"", dea_text_get(&verdict));
-  dea_text_add(&header, "<th scope=\"col\" class=\"n\">V (kV)</th><th scope=\"col\">Estimated "
-                        "error (%%) of</th>");
-  for (size_t m = 0; m < c->mesh_count; m++) {
-    dea_text_add(&header, "<th scope=\"col\" class=\"n\">");
-    dea_html_text(&header, c->meshes[m]->name);
-    dea_text_add(&header, "<br><small>%zu unknowns</small></th>", c->meshes[m]->size.unknowns);
-  }
-  dea_text_add(&header, "<th scope=\"col\" class=\"n\">Order</th><th scope=\"col\" class=\"n\">"
-                        "Extrapolated</th><th scope=\"col\">Remark</th>");
-  dea_table_begin(report, "Estimated errors on each mesh", dea_text_get(&header));
-  for (size_t i = 0; i < c->row_count; i++) {
-    add_error_row(out, c, &c->rows[i]);
-  }
-  dea_table_end(report);
-  out->failed = out->failed || header.failed || verdict.failed;
-  dea_text_free(&header);
-  dea_text_free(&verdict);
-}
-
-dea_status dea_section_convergence(struct dea_report *report, const struct dea_report_run *run)
-{
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_result_models(run->run->result, models, DEA_DESIGN_MODELS_MAX);
-  bool any = false;
-  for (size_t m = 0; m < count; m++) {
-    struct dea_convergence *convergence;
-    DEA_TRY(report->ctx,
-            dea_convergence_create(report->ctx, run->run->result, models[m], &convergence));
-    if (convergence == NULL) {
-      continue;
-    }
-    dea_status status = DEA_OK;
-    if (!any) {
-      dea_section_begin(report, "convergence", run->number, "Convergence");
-      status = dea_section_figures(report, run, "convergence");
-      any = true;
-    }
-    add_convergence(report, models[m], convergence);
-    dea_convergence_destroy(report->ctx, convergence);
-    DEA_TRY(report->ctx, status);
   }
   if (any) {
     dea_section_end(report);
