@@ -344,6 +344,110 @@ static void test_examples_are_good(void **state)
   }
 }
 
+/* Whether the reader refuses a value of a key, which it has to know. */
+static bool is_refused(const char *path, const char *value)
+{
+  char limit[160], choice[160];
+  const struct dea_override set = {path, value};
+  const char *key = strrchr(path, '.') != NULL ? strrchr(path, '.') + 1 : path;
+  snprintf(limit, sizeof limit, "%s must be ", key);
+  snprintf(choice, sizeof choice, "%s: '%s' is none of", key, value);
+  dea_finding_clear(ctx);
+  dea_design_destroy(ctx, design);
+  dea_design_read_memory(ctx, "t.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), &set, 1, &design);
+  if (find_error(ctx, "unknown key") != NULL) {
+    print_findings(ctx);
+    fail_msg("the reference has '%s'", path);
+  }
+  return find_error(ctx, limit) != NULL || find_error(ctx, choice) != NULL;
+}
+
+/* A limit of a form, "> 0" or "<= 1e+06": by the sign its own value may be written or not, and what
+ * is beyond it may not. */
+static void check_limit(const char *path, const char *form, const char *sign)
+{
+  char unit[32] = "", value[200], *end;
+  const char *at = strstr(form, sign);
+  if (at == NULL) {
+    return;
+  }
+  bool inclusive = at[1] == '=', list = strncmp(form, "list of ", 8) == 0;
+  double limit = strtod(at + 1 + inclusive, &end);
+  double beyond = limit + (*sign == '<' ? 1 : -1) * fmax(1, 0.01 * fabs(limit));
+  form += list ? 8 : 0;
+  if (strncmp(form, "length", 6) == 0) {
+    strcpy(unit, " m stretched");
+  } else if (sscanf(form, "number in %30[^,]", unit + 1) == 1) {
+    unit[0] = ' ';
+  }
+  for (int i = 0; i < 2; i++) {
+    double number = i == 0 ? limit : beyond;
+    snprintf(value, sizeof value, "%.17g%s", number, unit);
+    if (list) {
+      snprintf(value, sizeof value, "[%.17g%s, %.17g%s, %.17g%s]", number, unit, number, unit,
+               number, unit);
+    }
+    if (is_refused(path, value) != (i > 0 || !inclusive)) {
+      print_findings(ctx);
+      fail_msg("%s: %s, but the reference says %s", path, value, form);
+    }
+  }
+}
+
+/* The page of keys says what the reader does: every key is known and takes its example, limits are
+ * where they are said to be, one of a choice is taken and nothing else; and no value that is read
+ * lacks its row. */
+static void test_reference_says_what_is_read(void **state)
+{
+  (void)state;
+  static char page[1 << 18];
+  char path[120], form[200], line[1000];
+  size_t rows = 0;
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/design-file.md", "rb");
+  assert_non_null(file);
+  page[fread(page, 1, sizeof page - 1, file)] = '\0';
+  fclose(file);
+  char *keys = strstr(page, "## Keys"), *end = strstr(keys + 1, "\n## ");
+  assert_non_null(end);
+  *end = '\0';
+  for (const char *row = keys; (row = strstr(row, "\n| `")) != NULL; row++) {
+    snprintf(line, sizeof line, "%.*s", (int)strcspn(row + 1, "\n"), row + 1);
+    char *tail = line + strlen(line) - strlen("` |");
+    if (sscanf(line, "| `%119[^`]` | %199[^|]", path, form) != 2 || strcmp(tail, "` |") != 0 ||
+        strpbrk(path, "[(") != NULL) {
+      continue; // a section; of the rows of lists and kinds the key has no path of its own
+    }
+    *tail = '\0';
+    const char *example = strrchr(line, '`') + 1;
+    if (is_refused(path, example)) {
+      print_findings(ctx);
+      fail_msg("%s: the example '%s' is refused", path, example);
+    }
+    check_limit(path, form, "<");
+    check_limit(path, form, ">");
+    if (strncmp(form, "one of: ", 8) == 0) {
+      assert_true(is_refused(path, "nonsense"));
+      for (char *word = strtok(form + 8, ", "); word != NULL; word = strtok(NULL, ", ")) {
+        assert_false(is_refused(path, word));
+      }
+    }
+    rows++;
+  }
+  assert_true(rows > 60);
+  read_good(GOOD_DESIGN, NULL, 0);
+  for (size_t i = 0; i < design->values.count; i++) {
+    const char *value = design->values.items[i].path;
+    snprintf(line, sizeof line, "\n| `%s", value);
+    const char *row = strstr(keys, line);
+    while (row != NULL && strchr("`[", row[strlen(line)]) == NULL) {
+      row = strstr(row + 1, line);
+    }
+    if (strchr(value, '[') == NULL && row == NULL) {
+      fail_msg("the reference lacks '%s'", value);
+    }
+  }
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
@@ -363,6 +467,7 @@ int main(void)
       TEST(test_fibres_that_just_touch_are_good),
       TEST(test_taper_and_free_end),
       TEST(test_older_words_of_keys),
+      TEST(test_reference_says_what_is_read),
       TEST(test_straight_clamped_fibres_are_the_default),
       TEST(test_examples_are_good),
   };

@@ -25,7 +25,7 @@ static void device_create(const char *refinement, const char *side)
   const struct dea_override slack[] = {{"pre_stretch", "1"},
                                        {"electrodes.diameter", "7.5 mm stretched"},
                                        {"compute.solid.refinement", refinement},
-                                       {"compute.solid.side", side}};
+                                       {"compute.solid.buckling_branch", side}};
   verify_ok(ctx, dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", slack,
                                  sizeof slack / sizeof slack[0], &design));
   verify_ok(ctx, dea_device_build(ctx, design, &device));
@@ -206,7 +206,8 @@ int main(int argc, char **argv)
       "0 V, and a flat film until 0.8 to 0.9 kV.\nTolerances: 5 % of the 1.2 mm; the limit point "
       "between 0.7 and 1 kV; the side and the unstable modes that are said.\n\n"
       "## Stable arms\n\n"
-      "Centre of the film, positive to the fibres: sweep from 0 V, and with `compute.solid.side: "
+      "Centre of the film, positive to the fibres: sweep from 0 V, and with "
+      "`compute.solid.buckling_branch: "
       "fibres`. Energy: by how much\nthat of the second is higher, over that of the first.\n\n"
       "| refinement | kV | from 0 V, mm | the other, mm | energy |\n|---|---|---|---|---|");
   arms("1", small ? 3 : VOLTAGES);

@@ -13,7 +13,7 @@ static bool small;
 #define SIMULATED                                                                                  \
   NO_PRE_STRETCH,                                                                                  \
   {                                                                                                \
-    "compute.solid.side", "back"                                                                   \
+    "compute.solid.buckling_branch", "back"                                                        \
   }
 static const struct variant built4 = {{{NULL, NULL}}};
 static const struct variant built8 = {{{"fibres.count", "8"}}};
@@ -174,14 +174,16 @@ static void thickness_numbers(const struct run *b4, const struct run *b8)
 /* As simulated: the film buckles to either side. */
 static void branches(const struct run *s4)
 {
-  static const struct variant above = {{NO_PRE_STRETCH, {"compute.solid.side", "fibres"}}};
+  static const struct variant above = {
+      {NO_PRE_STRETCH, {"compute.solid.buckling_branch", "fibres"}}};
   struct run up = sweep("3d", &above, NULL, 250, 8e3);
   puts("## The two branches without pre-stretch\n\n"
        "Centre in um and energy in uJ. The one away from the fibres grows out of the flat film at "
        "0 V: "
        "the field bends fibre and film\nthat way from the first volt on. The other is detached; a "
        "sweep "
-       "reaches it by `compute.solid.side: fibres`, which goes over to it at the\nfirst voltage "
+       "reaches it by `compute.solid.buckling_branch: fibres`, which goes over to it at the\nfirst "
+       "voltage "
        "where "
        "it is there.\n\n| V (kV) | away from the fibres | energy | to the fibres | energy |\n"
        "|---|---|---|---|---|");

@@ -17,38 +17,49 @@ static bool is_number(const struct dea_field *field)
          field->kind == DEA_FIELD_INPLANE || field->kind == DEA_FIELD_STRETCHED;
 }
 
-/* "length, stretched or unstretched, > 0" and the like: what may be written. */
-static void describe_form(const struct dea_field *field, char *text, size_t size)
+static const char *word_of(enum dea_field_kind kind)
 {
-  static const char *const forms[] = {
-      [DEA_FIELD_LABEL] = "text",      [DEA_FIELD_TEXT] = "text",
-      [DEA_FIELD_NUMBER] = "number",   [DEA_FIELD_INTEGER] = "whole number",
-      [DEA_FIELD_INPLANE] = "length",  [DEA_FIELD_STRETCHED] = "length",
-      [DEA_FIELD_CHOICE] = "one of:",  [DEA_FIELD_RECORD] = "section",
-      [DEA_FIELD_SECTION] = "section", [DEA_FIELD_SETTINGS] = "section",
-  };
-  size_t used = (size_t)snprintf(text, size, "%s%s", field->list_max > 0 ? "list of " : "",
-                                 forms[field->kind]);
-  if (field->kind == DEA_FIELD_CHOICE) {
-    for (size_t i = 0; field->choices[i] != NULL && used < size; i++) {
-      used +=
-          (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : " ", field->choices[i]);
-    }
+  switch (kind) {
+  case DEA_FIELD_LABEL:
+  case DEA_FIELD_TEXT:
+    return "text";
+  case DEA_FIELD_NUMBER:
+    return "number";
+  case DEA_FIELD_INTEGER:
+    return "whole number";
+  case DEA_FIELD_INPLANE:
+  case DEA_FIELD_STRETCHED:
+    return "length";
+  case DEA_FIELD_CHOICE:
+    return "one of:";
+  case DEA_FIELD_RECORD:
+  case DEA_FIELD_SECTION:
+  case DEA_FIELD_SETTINGS:
+    return "section";
   }
-  if (field->kind == DEA_FIELD_NUMBER && strcmp(field->unit, "1") != 0 && used < size) {
-    used += (size_t)snprintf(text + used, size - used, " in %s", field->unit);
+  return "";
+}
+
+/* "length, stretched or unstretched, > 0" and the like: what may be written. */
+static void add_form(struct dea_text *out, const struct dea_field *field)
+{
+  dea_text_add(out, "%s%s", field->list_max > 0 ? "list of " : "", word_of(field->kind));
+  for (size_t i = 0; field->kind == DEA_FIELD_CHOICE && field->choices[i] != NULL; i++) {
+    dea_text_add(out, "%s%s", i > 0 ? ", " : " ", field->choices[i]);
   }
-  if (field->kind == DEA_FIELD_INPLANE && used < size) {
-    used += (size_t)snprintf(text + used, size - used, ", stretched or unstretched");
+  if (field->kind == DEA_FIELD_NUMBER && strcmp(field->unit, "1") != 0) {
+    dea_text_add(out, " in %s", field->unit);
+  }
+  if (field->kind == DEA_FIELD_INPLANE) {
+    dea_text_add(out, ", stretched or unstretched");
   }
   bool limited = is_number(field) && (field->min != 0 || field->max != 0 || field->above_min);
-  if (limited && used < size) {
-    used += (size_t)snprintf(text + used, size - used, ", %s %g",
-                             field->above_min ? ">" : ">=", field->min);
+  if (limited) {
+    dea_text_add(out, ", %s %g", field->above_min ? ">" : ">=", field->min);
   }
   bool upper = field->max > field->min || (field->max == field->min && field->max != 0);
-  if (limited && upper && used < size) {
-    snprintf(text + used, size - used, ", %s %g", field->below_max ? "<" : "<=", field->max);
+  if (limited && upper) {
+    dea_text_add(out, ", %s %g", field->below_max ? "<" : "<=", field->max);
   }
 }
 
@@ -97,15 +108,14 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
 static void print_plain(const struct dea_record *record, const struct dea_field *field,
                         const char *path, struct dea_text *out)
 {
-  char form[200];
   const char *need = describe_need(record, field);
-  describe_form(field, form, sizeof form);
   if (dea_field_has_record(field)) {
     dea_text_add(out, "\n%s: %s%s%s%s\n", path, field->doc, need[0] != '\0' ? " [" : "", need,
                  need[0] != '\0' ? "]" : "");
     return;
   }
-  dea_text_add(out, "  %s\n      %s\n      %s", path, field->doc, form);
+  dea_text_add(out, "  %s\n      %s\n      ", path, field->doc);
+  add_form(out, field);
   dea_text_add(out, "%s%s%s", need[0] != '\0' ? "; " : "",
                field->required || need[0] == '\0' || strcmp(need, "required, one way") == 0
                    ? ""
@@ -144,9 +154,9 @@ static void add_cell(struct dea_text *out, const char *text)
 static void print_row(const struct dea_record *record, const struct dea_field *field,
                       const char *path, struct dea_text *out)
 {
-  char form[200];
-  describe_form(field, form, sizeof form);
-  dea_text_add(out, "| `%s` | %s | ", path, form);
+  dea_text_add(out, "| `%s` | ", path);
+  add_form(out, field);
+  dea_text_add(out, " | ");
   add_cell(out, describe_need(record, field));
   dea_text_add(out, " | ");
   add_cell(out, field->doc);
