@@ -186,6 +186,15 @@ static void add_source(const struct dea_grid *grid, size_t e, const struct local
   }
 }
 
+static bool on_cube(const double X[3])
+{
+  bool on = false;
+  for (int i = 0; i < 3; i++) {
+    on = on || fabs(X[i]) < 1e-9 || fabs(X[i] - 1) < 1e-9;
+  }
+  return on;
+}
+
 /* Tractions and charges of the faces of an element that are faces of the cube; those on held nodes
  * do no harm. */
 static void add_faces(const struct exact *exact, const struct dea_grid *grid, size_t e,
@@ -201,7 +210,7 @@ static void add_faces(const struct exact *exact, const struct dea_grid *grid, si
       xi[b] = x[q % count];
       xi[c] = x[q / count];
       local_at(grid, e, xi, &at);
-      if (fabs(at.X[a] - 0.5 * (1 + side)) > 1e-9) {
+      if (!on_cube(at.X)) { // Gauss points of inner faces are not
         break;
       }
       for (int i = 0; i < 3; i++) { // side dX/dxi_b x dX/dxi_c

@@ -150,12 +150,14 @@ static double distance_to(const struct dea_gmsh_contours *c, const double x[2])
 // -----------------------------------------------------------------------------------------
 
 /* Ways to quadrilaterals, each for where the one before it leaves triangles or bad elements. Tried
- * with Gmsh 4.8.4: blossom is best where it works; full-quad leaves slivers here and there;
- * triangles divided in three, of twice the size, always work, with more elements for the same. */
+ * with Gmsh 4.8.4: blossom is best where it works; its full-quad form leaves slivers here and
+ * there; triangles of twice the size, divided in three, work where arcs are fine enough that no
+ * triangle has two sides on one, with more elements for the same. curvature: elements to a full
+ * turn. */
 static const struct way {
-  int recombine, algorithm, subdivision;
+  int recombine, algorithm, subdivision, curvature;
   double size;
-} ways[] = {{1, 1, 0, 1}, {1, 3, 0, 1}, {0, 1, 1, 2}};
+} ways[] = {{1, 1, 0, 12, 1}, {1, 3, 0, 12, 1}, {0, 1, 1, 20, 2}};
 enum { WAYS = sizeof ways / sizeof ways[0] };
 static const double good_jacobian = 0.2; // smallest Jacobian with which another way is not tried
 
@@ -170,8 +172,9 @@ static void write_settings(struct dea_text *out, const struct dea_gmsh_plan *pla
       "Mesh.SubdivisionAlgorithm = %d;\nMesh.ElementOrder = %d;\n"
       "Mesh.SecondOrderLinear = 0;\nMesh.SecondOrderIncomplete = 0;\n"
       "Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n"
-      "Mesh.MeshSizeFromCurvature = 12;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n",
-      way->recombine, way->algorithm, way->subdivision, plan->order, mm * plan->size_m * way->size);
+      "Mesh.MeshSizeFromCurvature = %d;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n",
+      way->recombine, way->algorithm, way->subdivision, plan->order, way->curvature,
+      mm * plan->size_m * way->size);
 }
 
 /* Numbers of what was written last. */
