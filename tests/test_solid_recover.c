@@ -51,7 +51,7 @@ struct strip {
   struct dea_constituent layers[2];
   int *layer;
   bool *active;
-  double *u, *multiplier, *potential_V;
+  double *u, *multiplier, *across_V, *potential_V;
   struct dea_recover_input in;
 };
 
@@ -86,6 +86,7 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   s->kinds = calloc(count, sizeof *s->kinds);
   s->u = calloc(3 * s->grid->node_count, sizeof *s->u);
   s->multiplier = calloc(count * (size_t)s->elements.pressures, sizeof *s->multiplier);
+  s->across_V = calloc(count, sizeof *s->across_V);
   s->potential_V = calloc(s->grid->node_count, sizeof *s->potential_V);
   for (size_t e = 0; e < count; e++) {
     s->layer[e] = s->grid->ply[e];
@@ -101,6 +102,7 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
                                      .active = s->active,
                                      .u = s->u,
                                      .multiplier = s->multiplier,
+                                     .across_V = s->across_V,
                                      .potential_V = kind == COUPLED ? s->potential_V : NULL};
   return s;
 }
@@ -114,6 +116,7 @@ static void strip_destroy(struct strip *s)
   dea_element_set_release(ctx, &s->elements);
   free(s->u);
   free(s->multiplier);
+  free(s->across_V);
   free(s->potential_V);
   free(s);
 }
@@ -132,7 +135,9 @@ static void deform(struct strip *s, const double F[9])
 /* The voltage: in a coupled field as potentials that rise through the film. */
 static void apply(struct strip *s, double voltage_V)
 {
-  s->in.voltage_V = voltage_V;
+  for (size_t e = 0; e < s->grid->element_count; e++) {
+    s->across_V[e] = s->active[e] ? voltage_V : 0;
+  }
   for (size_t n = 0; n < s->grid->node_count; n++) {
     double share = s->grid->X[3 * n + 2] / h_m + 0.5;
     s->potential_V[n] = voltage_V * fmin(share, 1);
@@ -146,7 +151,7 @@ static void relax(struct strip *s, const double F[9])
     struct dea_point point;
     double cof[9], J = dea_cofactors(F, cof);
     if (s->layer[e] == 0 && s->kind != FLAT) {
-      double field = s->active[e] ? s->in.voltage_V / h_m : 0;
+      double field = s->across_V[e] / h_m;
       assert_int_equal(dea_constituent_point(&s->layers[0], F, cof, J, 0, field, true, &point),
                        DEA_OK);
       double push = 0, size = 0; // along the current normal
@@ -439,8 +444,10 @@ static double covered(double poisson_ratio)
   int *layer = calloc(grid->element_count, sizeof *layer);
   bool *active = calloc(grid->element_count, sizeof *active);
   double *u = calloc(3 * grid->node_count, sizeof *u);
+  double *across_V = calloc(grid->element_count, sizeof *across_V);
   double *multiplier = calloc(grid->element_count * DEA_HEX_PRESSURES_MAX, sizeof *multiplier);
-  assert_true(layer != NULL && active != NULL && u != NULL && multiplier != NULL);
+  assert_true(layer != NULL && active != NULL && u != NULL && across_V != NULL &&
+              multiplier != NULL);
   for (size_t e = 0; e < grid->element_count; e++) {
     layer[e] = dea_actuator_constituent(&actuator, grid->region[e], grid->ply[e]);
   }
@@ -451,7 +458,8 @@ static double covered(double poisson_ratio)
                                        .constituent = layer,
                                        .active = active,
                                        .u = u,
-                                       .multiplier = multiplier};
+                                       .multiplier = multiplier,
+                                       .across_V = across_V};
   assert_int_equal(dea_recover_surface(ctx, &in, DEA_FIBRE_DISC_FILM, &mesh), DEA_OK);
   const double *under = values(mesh, "under_fibre");
   double sum = 0, all = 0;
@@ -472,6 +480,7 @@ static double covered(double poisson_ratio)
   free(layer);
   free(active);
   free(u);
+  free(across_V);
   free(multiplier);
   return sum / all;
 }

@@ -26,9 +26,12 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
                           struct dea_field_mesh **out)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double *potential_V;
+  double *potential_V = NULL, *across_V = dea_alloc(ctx, p->grid->element_count, sizeof *across_V);
   *out = NULL;
-  DEA_TRY(ctx, find_potentials(ctx, s, &potential_V));
+  dea_status status = across_V != NULL ? find_potentials(ctx, s, &potential_V) : DEA_E_MEMORY;
+  for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
+    across_V[e] = dea_solid_voltage_across(s, e, s->state.voltage_V);
+  }
   const struct dea_recover_input input = {.grid = p->grid,
                                           .elements = &p->elements,
                                           .kind = p->kind,
@@ -37,10 +40,13 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
                                           .active = p->active,
                                           .u = s->state.u,
                                           .multiplier = s->state.multiplier,
-                                          .potential_V = potential_V,
-                                          .voltage_V = s->state.voltage_V};
-  dea_status status =
-      ply < 0 ? dea_recover_volume(ctx, &input, out) : dea_recover_surface(ctx, &input, ply, out);
+                                          .across_V = across_V,
+                                          .potential_V = potential_V};
+  if (status == DEA_OK) {
+    status =
+        ply < 0 ? dea_recover_volume(ctx, &input, out) : dea_recover_surface(ctx, &input, ply, out);
+  }
+  dea_free(ctx, across_V);
   dea_free(ctx, potential_V);
   return status;
 }

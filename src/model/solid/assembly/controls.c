@@ -16,7 +16,7 @@ static size_t move_count(const struct dea_solid *s)
 static size_t control_count(const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
-  size_t count = 1 + p->dofs + move_count(s);
+  size_t count = 1 + p->dofs + move_count(s) + p->channel_count;
   for (size_t i = 0; i < p->load_count; i++) {
     count += p->loads[i].parameter_count;
   }
@@ -101,6 +101,9 @@ static void pack(const struct dea_solid *s, double voltage_V, const double *forc
   for (size_t i = 0; i < move_count(s); i++) {
     *controls++ = p->held[i] ? place[i] : 0;
   }
+  for (size_t k = 1; k <= p->channel_count; k++) {
+    *controls++ = wanted ? s->state.own_goal_V[k] : s->state.own_V[k];
+  }
   for (size_t i = 0; i < p->load_count; i++) {
     const struct dea_solid_load *load = &p->loads[i];
     for (size_t k = 0; k < load->parameter_count; k++) {
@@ -132,6 +135,9 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls)
   s->state.voltage_V = *controls++;
   memcpy(s->state.force, controls, p->dofs * sizeof *controls);
   controls += p->dofs + move_count(s);
+  for (size_t k = 1; k <= p->channel_count; k++) {
+    s->state.own_V[k] = *controls++;
+  }
   for (size_t i = 0; i < p->load_count; i++) {
     for (size_t k = 0; k < p->loads[i].parameter_count; k++) {
       p->loads[i].now[k] = *controls++;

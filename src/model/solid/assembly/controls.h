@@ -1,6 +1,7 @@
 /* State and controls of a solid as vectors. State: displacements, potentials and all multipliers.
  * Controls, what an equilibrium is asked for at: the voltage, the dead loads and charges [dofs],
- * the displacements of held components [node_count][3] (0 where free), the parameters of all loads.
+ * the displacements of held components [node_count][3] (0 where free), the channels' own voltages
+ * [channel_count], the parameters of all loads.
  * Only what they are differs between them; a step goes a share of the way of all of them alike. */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_CONTROLS_H
 #define DEA_MODEL_SOLID_ASSEMBLY_CONTROLS_H

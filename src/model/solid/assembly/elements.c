@@ -51,6 +51,6 @@ void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *
       .multiplier = s->state.multiplier + e * (size_t)p->elements.pressures,
       .potential = place->potential,
       .potential_V_per_m = dea_solid_field_scale(s),
-      .voltage_V = p->active[e] ? voltage_V : 0,
+      .voltage_V = dea_solid_voltage_across(s, e, voltage_V),
   };
 }

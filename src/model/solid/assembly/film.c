@@ -54,8 +54,9 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
       status = dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i]);
     }
   }
-  *capacitance_F =
-      status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
+  *capacitance_F = status == DEA_OK && step > 0 && !dea_solid_has_own_voltages(s)
+                       ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0])
+                       : NAN;
   return status;
 }
 

@@ -6,7 +6,8 @@
 
 struct dea_material;
 
-/* Capacitance between the electrodes: charge over voltage. NAN without electrodes. */
+/* Capacitance between the electrodes: charge over the voltage that all channels have their shares
+ * of. NAN without electrodes, and where a channel has a voltage of its own (channels.h). */
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
                                  double *capacitance_F);
 

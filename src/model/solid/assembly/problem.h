@@ -32,8 +32,11 @@ struct dea_solid_problem {
   enum dea_element_kind *kind;          // [elements] by dea_solid_set_kinds
   struct dea_constituent *constituents; // [constituent_count]; their kappa: incompressible.h
   size_t constituent_count;
-  int *constituent_of; // [elements] place in constituents
-  bool *active;        // [elements] whether it lies between electrodes
+  int *constituent_of;  // [elements] place in constituents
+  bool *active;         // [elements] whether it lies between electrodes of two channels
+  int (*between)[2];    // [elements] channels at its top and bottom; NULL: 1 and 0
+  size_t channel_count; // ground not counted
+  double *share;        // [channel_count + 1] of the voltage that a channel gets; [0]: 0
   double *spring; // [dofs] M of docs/theory/membrane.md by dea_solid_create_springs; NULL: none
   struct dea_solid_field *field; // of a coupled field, by dea_solid_field_create; NULL: thin film
   size_t free_potentials;        // negative pivots of K that are none of a mode, by the same
@@ -59,6 +62,8 @@ struct dea_solid_problem {
 /* Where the solid is. */
 struct dea_solid_state {
   double voltage_V;   // by dea_solid_controls_set
+  double *own_V;      // [channel_count + 1] voltage of a channel beside its share, by the same
+  double *own_goal_V; // [channel_count + 1] those that the next solve goes to, by the caller
   double *u;          // [dofs] displacements [m], then psi, by the solvers
   double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
   double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
@@ -148,6 +153,29 @@ static inline const struct dea_constituent *dea_solid_constituent(const struct d
                                                                   size_t e)
 {
   return &s->problem.constituents[s->problem.constituent_of[e]];
+}
+
+/* Whether a channel has a voltage beside its share. */
+static inline bool dea_solid_has_own_voltages(const struct dea_solid *s)
+{
+  bool any = false;
+  for (size_t k = 1; k <= s->problem.channel_count; k++) {
+    any = any || s->state.own_V[k] != 0;
+  }
+  return any;
+}
+
+/* Voltage across an element from its bottom to its top, at a voltage of the whole. */
+static inline double dea_solid_voltage_across(const struct dea_solid *s, size_t e, double voltage_V)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  if (!p->active[e]) {
+    return 0;
+  }
+  int top = p->between != NULL ? p->between[e][0] : 1;
+  int bottom = p->between != NULL ? p->between[e][1] : 0;
+  return (p->share[top] - p->share[bottom]) * voltage_V + s->state.own_V[top] -
+         s->state.own_V[bottom];
 }
 
 /* Nodes of an element; *nodes: [count] them. */

@@ -2,6 +2,7 @@
 #include "model/solid/assembly/solid.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/mass.h"
@@ -52,7 +53,6 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   }
   p->constituents = dea_arena_alloc(memory, options->layer_count, sizeof *p->constituents);
   p->constituent_of = dea_arena_alloc(memory, elements, sizeof *p->constituent_of);
-  p->active = dea_arena_alloc(memory, elements, sizeof *p->active);
   p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
   p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
   s->state.multiplier = dea_arena_alloc(memory, elements * pressures, sizeof(double));
@@ -75,8 +75,8 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
     int region = grid->region[e], ply = grid->ply[e];
     p->constituent_of[e] =
         options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
-    p->active[e] = options->active != NULL && options->active(options->self, region, ply);
   }
+  DEA_TRY(ctx, dea_solid_channels_create(ctx, s, options));
   for (size_t n = 0; n < grid->node_count; n++) {
     int bits = options->held(options->self, grid->X + 3 * n);
     for (int i = 0; i < 3; i++) {

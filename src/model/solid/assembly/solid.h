@@ -29,6 +29,13 @@ struct dea_solid_options {
    * none does; with a coupled field: for what fields and extremes report by V/h). */
   int (*layer_of)(const void *self, int region, int ply);
   bool (*active)(const void *self, int region, int ply);
+  /* Channels (docs/theory/devices.md) at the top and the bottom of an active element, each 0
+   * (ground) to channel_count; NULL: the one channel at its top, ground at its bottom. Not for a
+   * coupled field. share: [channel_count] of the voltage of a solve that a channel gets beside its
+   * own; NULL: 1 each; copied. */
+  void (*channels)(const void *self, int region, int ply, int *top, int *bottom);
+  size_t channel_count; // 0: one
+  const double *share;
   /* Components of a node that are held, as bits 1, 2, 4. */
   int (*held)(const void *self, const double X[3]);
   /* Local axes of a node as the rows of the orthonormal Q, which `held` then speaks of: for a
@@ -62,6 +69,12 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
 
 /* Voltage of the last equilibrium. */
 double dea_solid_voltage(const struct dea_solid *solid);
+
+/* Channels, ground not counted; at least 1. */
+size_t dea_solid_channel_count(const struct dea_solid *solid);
+/* Own voltages [channel_count + 1] that the next solve brings the channels to, beside their shares
+ * of its voltage; lent, at first 0; that of ground, [0], stays 0. */
+double *dea_solid_own_voltages(struct dea_solid *solid);
 
 /* Displacements [node_count][3], lent; they may be written to set a start. What the options hold
  * stays where it is. */

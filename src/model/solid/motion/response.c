@@ -38,6 +38,10 @@ dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s,
 {
   double energy, square = s->state.voltage_V * s->state.voltage_V, step = part_of_V2 * square;
   memset(force, 0, s->problem.dofs * sizeof *force);
+  if (dea_solid_has_own_voltages(s)) { // forces are then not linear in V^2
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the response to an AC excitation needs channels that share one voltage");
+  }
   for (int side = -1; side <= 1 && step > 0; side += 2) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(square + side * step), DEA_FORCE, &energy));
     for (size_t i = 0; i < s->problem.dofs; i++) {

@@ -15,7 +15,8 @@
 #include "result/field_mesh.h"
 
 /* A solid at an equilibrium. u: [nodes][3]; multiplier: [elements][elements->pressures]; kind,
- * constituent, active: [elements]; potential_V: [nodes], used by kinds with a potential. */
+ * constituent, active: [elements]; across_V: [elements] voltage from bottom to top, 0 without
+ * electrodes; potential_V: [nodes], used by kinds with a potential. */
 struct dea_recover_input {
   const struct dea_grid *grid;
   const struct dea_element_set *elements;
@@ -23,8 +24,7 @@ struct dea_recover_input {
   const struct dea_constituent *constituents;
   const int *constituent;
   const bool *active;
-  const double *u, *multiplier, *potential_V;
-  double voltage_V;
+  const double *u, *multiplier, *across_V, *potential_V;
 };
 
 /* All elements with displacement, stretches, stresses, tension, field and energy at points (one a

@@ -100,7 +100,7 @@ dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
       .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
       .potential = potential_V,
       .potential_V_per_m = 1,
-      .voltage_V = in->active[e] ? in->voltage_V : 0,
+      .voltage_V = in->across_V[e],
   };
   return element->type->recover(element, &at, out);
 }

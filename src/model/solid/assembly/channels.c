@@ -1,0 +1,226 @@
+#include "model/solid/assembly/channels.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Step of a field, for derivatives: forces are quadratic in it, energies linear in its square. */
+static const double field_step_V_per_m = 1e6;
+
+/* ---- creation ---- */
+
+dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *s,
+                                     const struct dea_solid_options *options)
+{
+  struct dea_solid_problem *p = &s->problem;
+  size_t elements = p->grid->element_count, channels = options->channel_count;
+  p->channel_count = channels > 0 ? channels : 1;
+  if (options->channels != NULL && options->field == DEA_SOLID_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field has one channel");
+  }
+  p->active = dea_arena_alloc(&s->memory, elements, sizeof *p->active);
+  p->share = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof *p->share);
+  s->state.own_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
+  s->state.own_goal_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
+  if (options->channels != NULL) {
+    p->between = dea_arena_alloc(&s->memory, elements, sizeof *p->between);
+  }
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
+  for (size_t k = 1; k <= p->channel_count; k++) {
+    p->share[k] = options->share != NULL ? options->share[k - 1] : 1;
+  }
+  for (size_t e = 0; e < elements; e++) {
+    int region = p->grid->region[e], ply = p->grid->ply[e];
+    p->active[e] = options->active != NULL && options->active(options->self, region, ply);
+    if (p->active[e] && p->between != NULL) {
+      int *at = p->between[e];
+      options->channels(options->self, region, ply, &at[0], &at[1]);
+      for (int i = 0; i < 2; i++) {
+        if (at[i] < 0 || (size_t)at[i] > p->channel_count) {
+          return dea_fail(ctx, DEA_E_ARGUMENT, "there is no channel %d: %zu of them", at[i],
+                          p->channel_count);
+        }
+      }
+      p->active[e] = at[0] != at[1];
+    }
+  }
+  return DEA_OK;
+}
+
+size_t dea_solid_channel_count(const struct dea_solid *solid)
+{
+  return solid->problem.channel_count;
+}
+
+double *dea_solid_own_voltages(struct dea_solid *solid)
+{
+  return solid->state.own_goal_V;
+}
+
+void dea_solid_channel_voltages(const struct dea_solid *s, double *voltage_V)
+{
+  for (size_t k = 0; k <= s->problem.channel_count; k++) {
+    voltage_V[k] = s->problem.share[k] * s->state.voltage_V + s->state.own_V[k];
+  }
+}
+
+/* ---- charge ---- */
+
+/* Charge over voltage of an element between electrodes: twice the derivative of its energy by the
+ * square of the voltage, at displacements that are held. */
+static dea_status capacitance_of(struct dea_solid *s, size_t e, double *capacitance_F)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  double step = field_step_V_per_m * in.constituent->thickness_m, square = in.voltage_V;
+  square *= square;
+  const double squares[2] = {fmax(square - step * step, 0), square + step * step};
+  double energy[2] = {0, 0};
+  dea_status status = DEA_OK;
+  for (int i = 0; i < 2 && status == DEA_OK; i++) {
+    in.voltage_V = sqrt(squares[i]);
+    status = element->type->evaluate(element, &in, DEA_ENERGY, s->work.element);
+    energy[i] = s->work.element->energy_J;
+  }
+  *capacitance_F = 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]);
+  return status;
+}
+
+static dea_status refuse_coupled(struct dea_context *ctx, const struct dea_solid *s)
+{
+  return s->problem.field == NULL ? DEA_OK
+                                  : dea_fail(ctx, DEA_E_UNSUPPORTED,
+                                             "charges by channel need the field V/h, not a coupled "
+                                             "one");
+}
+
+/* Adds those of this rank's elements; one of both is NULL. */
+static dea_status add_own(struct dea_solid *s, double *charge_C, double *capacitance_F)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  size_t count = p->channel_count + 1;
+  for (size_t i = 0; i < p->own_count; i++) {
+    size_t e = p->own[i];
+    double C;
+    if (!p->active[e]) {
+      continue;
+    }
+    dea_status status = capacitance_of(s, e, &C);
+    if (status != DEA_OK) {
+      return status;
+    }
+    size_t top = p->between != NULL ? (size_t)p->between[e][0] : 1;
+    size_t bottom = p->between != NULL ? (size_t)p->between[e][1] : 0;
+    if (charge_C != NULL) {
+      double charge = C * dea_solid_voltage_across(s, e, s->state.voltage_V);
+      charge_C[top] += charge;
+      charge_C[bottom] -= charge;
+    } else {
+      capacitance_F[top * count + top] += C;
+      capacitance_F[bottom * count + bottom] += C;
+      capacitance_F[top * count + bottom] -= C;
+      capacitance_F[bottom * count + top] -= C;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, double *charge_C)
+{
+  size_t count = s->problem.channel_count + 1;
+  memset(charge_C, 0, count * sizeof *charge_C);
+  DEA_TRY(ctx, refuse_coupled(ctx, s));
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, charge_C, NULL)));
+  dea_solid_sum(charge_C, count);
+  return DEA_OK;
+}
+
+/* ---- how it follows the voltages ---- */
+
+/* force: -dg/dV_k, of the voltage of a channel [dofs]. */
+static dea_status channel_force(struct dea_context *ctx, struct dea_solid *s, size_t channel,
+                                double step_V, double *force)
+{
+  double energy, *own = &s->state.own_V[channel], there = *own;
+  dea_status status = DEA_OK;
+  memset(force, 0, s->problem.dofs * sizeof *force);
+  for (int side = -1; side <= 1 && status == DEA_OK; side += 2) {
+    *own = there + side * step_V;
+    status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy);
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      force[i] -= side * s->work.g[i] / (2 * step_V);
+    }
+  }
+  *own = there;
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
+/* Factorises the tangent at the equilibrium, of the solid as good as incompressible. */
+static dea_status factorise_stable(struct dea_context *ctx, struct dea_solid *s)
+{
+  int negative;
+  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
+  if (negative > 0) {
+    return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                    "how charges follow the voltages of a film that moves has no answer at an "
+                    "unstable equilibrium (%d modes)",
+                    negative);
+  }
+  return DEA_OK;
+}
+
+/* Adds what the film takes up by moving. forces: [channel_count][dofs]. */
+static dea_status add_motion(struct dea_context *ctx, struct dea_solid *s, double *forces,
+                             double *capacitance_F)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  size_t count = p->channel_count + 1;
+  double thickness = 0;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    thickness =
+        p->active[e] ? fmax(thickness, dea_solid_constituent(s, e)->thickness_m) : thickness;
+  }
+  for (size_t k = 1; k < count && thickness > 0; k++) {
+    DEA_TRY(ctx,
+            channel_force(ctx, s, k, field_step_V_per_m * thickness, forces + (k - 1) * p->dofs));
+  }
+  DEA_TRY(ctx, factorise_stable(ctx, s));
+  for (size_t l = 1; l < count; l++) {
+    DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, forces + (l - 1) * p->dofs, s->work.step));
+    for (size_t k = 1; k < count; k++) {
+      double moved = dea_solid_dot(s, forces + (k - 1) * p->dofs, s->work.step);
+      capacitance_F[k * count + l] += moved;
+      capacitance_F[k * count] -= moved; // ground takes what is over
+      capacitance_F[l] -= moved;
+      capacitance_F[0] += moved;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *s, bool held,
+                                  double *capacitance_F)
+{
+  size_t count = s->problem.channel_count + 1;
+  memset(capacitance_F, 0, count * count * sizeof *capacitance_F);
+  DEA_TRY(ctx, refuse_coupled(ctx, s));
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, NULL, capacitance_F)));
+  dea_solid_sum(capacitance_F, count * count);
+  if (held) {
+    return DEA_OK;
+  }
+  double *forces = dea_alloc(ctx, s->problem.channel_count * s->problem.dofs, sizeof *forces);
+  dea_status status = dea_solid_agree(ctx, forces != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    status = add_motion(ctx, s, forces, capacitance_F);
+  }
+  dea_free(ctx, forces);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

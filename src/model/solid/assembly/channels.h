@@ -1,0 +1,28 @@
+/* Electrodes on several voltages: charge by channel, and how it follows the voltages
+ * (docs/theory/devices.md). Charges and voltages have a place for ground, [0], and one for each
+ * channel. */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_CHANNELS_H
+#define DEA_MODEL_SOLID_ASSEMBLY_CHANNELS_H
+
+#include "model/solid/assembly/solid.h"
+
+/* Sets active, between, share, and the own voltages. DEA_E_ARGUMENT for a channel that there is
+ * not, DEA_E_UNSUPPORTED for several in a coupled field. */
+dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *s,
+                                     const struct dea_solid_options *options);
+
+/* Voltages of the channels at the last equilibrium, [channel_count + 1]. */
+void dea_solid_channel_voltages(const struct dea_solid *solid, double *voltage_V);
+
+/* Charges at the last equilibrium, [channel_count + 1]; their sum is 0. DEA_E_UNSUPPORTED for a
+ * coupled field. */
+dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, double *charge_C);
+
+/* What charges change by with the voltages: capacitance_F [channel_count + 1] squared, symmetric,
+ * the change of charge k with voltage l in row k; rows and columns sum to 0. held: of the film as
+ * it is held in place; otherwise it moves along, by the tangent at the equilibrium, which has to be
+ * stable: DEA_E_NO_EQUILIBRIUM where it is not. DEA_E_UNSUPPORTED for a coupled field. */
+dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *solid, bool held,
+                                  double *capacitance_F);
+
+#endif

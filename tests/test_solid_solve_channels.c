@@ -1,0 +1,377 @@
+/* Electrodes on several voltages: a stack, charge by channel, reciprocity, charge and force. */
+// ctest: solid
+#include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/film.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "testing.h"
+
+#include "solid_fixture.h" // after: its context shadows no name of the headers above
+
+#include "message_fixture.h"
+
+#include <string.h>
+
+static const double h_m = 44e-6, length_m = 4e-3;
+static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
+
+static struct dea_constituent film_of(double thickness_m)
+{
+  struct dea_constituent film = {.law = dea_law_find("yeoh"),
+                                 .param = yeoh,
+                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                 .kappa_Pa = 4e7,
+                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                 .thickness_m = thickness_m};
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  return film;
+}
+
+/* ---- a strip with two electrodes side by side on one film ---- */
+
+static void map_third(const void *self, double s, double t, double x[2])
+{
+  x[0] = length_m * (*(const double *)self + s) / 3;
+  x[1] = 0.5 * length_m * t;
+}
+
+static bool all_but_the_middle(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)ply;
+  return region != 1;
+}
+
+static void two_channels(const void *self, int region, int ply, int *top, int *bottom)
+{
+  (void)self;
+  (void)ply;
+  *top = region == 0 ? 1 : 2;
+  *bottom = 0;
+}
+
+/* Its ends and sides are held, as in a frame. */
+static int framed(const void *self, const double X[3])
+{
+  (void)self;
+  bool end = X[0] < 1e-9 || X[0] > length_m - 1e-9;
+  bool side = X[1] < 1e-9 || X[1] > 0.5 * length_m - 1e-9;
+  return end || side ? 1 | 2 | 4 : 0;
+}
+
+struct strip {
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+};
+
+static struct strip strip_create(bool membrane, size_t channels, const double *share)
+{
+  static const double from[3] = {0, 1, 2}, cuts_s[] = {0, 0.5, 1}, cuts_t[] = {0, 0.5, 1};
+  struct dea_block blocks[3];
+  for (int i = 0; i < 3; i++) {
+    blocks[i] = (struct dea_block){map_third, &from[i], cuts_s, cuts_t, 2, 2, i};
+  }
+  const struct dea_ply ply = {membrane ? 0 : h_m, 1, 2};
+  const struct dea_constituent film = film_of(h_m);
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 1,
+                                            .layers = &film,
+                                            .active = all_but_the_middle,
+                                            .channels = channels > 0 ? two_channels : NULL,
+                                            .channel_count = channels,
+                                            .share = share,
+                                            .held = framed};
+  struct strip it;
+  assert_int_equal(dea_grid_create(ctx, 2, blocks, 3, &ply, 1, NULL, 0, length_m, &it.grid),
+                   DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, it.grid, &options, &it.solid), DEA_OK);
+  return it;
+}
+
+static void strip_destroy(struct strip *it)
+{
+  dea_solid_destroy(ctx, it->solid);
+  dea_grid_destroy(ctx, it->grid);
+}
+
+static void solve_at(struct strip *it, double voltage_V, double first_V, double second_V)
+{
+  struct dea_solid_report report;
+  double *own = dea_solid_own_voltages(it->solid);
+  own[1] = first_V;
+  own[2] = second_V;
+  assert_int_equal(dea_solid_solve(ctx, it->solid, voltage_V, &report), DEA_OK);
+  assert_int_equal(report.unstable_modes, 0);
+}
+
+static void assert_same_displacements(struct strip *a, struct strip *b)
+{
+  double most = 0;
+  for (size_t i = 0; i < 3 * a->grid->node_count; i++) {
+    most = fmax(most, fabs(dea_solid_displacement(a->solid)[i]));
+  }
+  assert_true(most > 1e-6);
+  for (size_t i = 0; i < 3 * a->grid->node_count; i++) {
+    assert_close(dea_solid_displacement(a->solid)[i], dea_solid_displacement(b->solid)[i], 0,
+                 1e-9 * most);
+  }
+}
+
+/* Both channels at one voltage are the one voltage of a solid without channels; shares of a voltage
+ * are own voltages of that size, whichever way is gone. */
+static void test_shares_and_own_voltages(void **state)
+{
+  (void)state;
+  const double half[2] = {1, 0.5};
+  struct strip one = strip_create(true, 0, NULL), two = strip_create(true, 2, NULL);
+  struct strip shared = strip_create(true, 2, half), own = strip_create(true, 2, half);
+  struct dea_solid_report report;
+  assert_int_equal(dea_solid_solve(ctx, one.solid, 4e3, &report), DEA_OK);
+  solve_at(&two, 4e3, 0, 0);
+  assert_same_displacements(&one, &two);
+  solve_at(&shared, 4e3, 0, 0);
+  solve_at(&own, 0, 3e3, -1e3); // and not straight there
+  solve_at(&own, 0, 4e3, 2e3);
+  assert_same_displacements(&shared, &own);
+  double V[3];
+  dea_solid_channel_voltages(shared.solid, V);
+  assert_true(V[0] == 0 && V[1] == 4e3 && V[2] == 2e3);
+  strip_destroy(&one);
+  strip_destroy(&two);
+  strip_destroy(&shared);
+  strip_destroy(&own);
+}
+
+/* Charge of channel k by central differences of equilibria against the matrix: dQ_k/dV_l. */
+static void check_matrix(bool membrane, double accuracy)
+{
+  const double none[2] = {0, 0}, V[2] = {3e3, 1.5e3}, step_V = 4;
+  struct strip strip = strip_create(membrane, 2, none);
+  double matrix[9], held[9], found[2][2], charge[2][3];
+  solve_at(&strip, 0, V[0], V[1]);
+  assert_int_equal(dea_solid_capacitances(ctx, strip.solid, false, matrix), DEA_OK);
+  assert_int_equal(dea_solid_capacitances(ctx, strip.solid, true, held), DEA_OK);
+  assert_int_equal(dea_solid_charges(ctx, strip.solid, charge[0]), DEA_OK);
+  assert_close(charge[0][1], held[4] * V[0], 1e-12, 0); // no electrode faces the other channel
+  assert_close(charge[0][2], held[8] * V[1], 1e-12, 0);
+  assert_close(charge[0][0], -charge[0][1] - charge[0][2], 1e-12, 0);
+  assert_true(held[5] == 0 && held[7] == 0);
+  assert_true(matrix[4] > held[4] && matrix[8] > held[8]);
+  for (int l = 0; l < 2; l++) {
+    for (int side = 0; side < 2; side++) {
+      double by = (2 * side - 1) * step_V;
+      solve_at(&strip, 0, V[0] + (l == 0 ? by : 0), V[1] + (l == 1 ? by : 0));
+      assert_int_equal(dea_solid_charges(ctx, strip.solid, charge[side]), DEA_OK);
+    }
+    for (int k = 0; k < 2; k++) {
+      found[k][l] = (charge[1][k + 1] - charge[0][k + 1]) / (2 * step_V);
+      assert_close(matrix[3 * (k + 1) + l + 1], found[k][l], 0, accuracy * held[4]);
+    }
+  }
+  print_message("%s: C_11 %.9g pF held, %.9g moving; dQ1/dV2 %.9g, dQ2/dV1 %.9g, matrix %.9g pF\n",
+                membrane ? "membrane" : "solid", 1e12 * held[4], 1e12 * matrix[4],
+                1e12 * found[0][1], 1e12 * found[1][0], 1e12 * matrix[5]);
+  assert_close(found[0][1], found[1][0], 0, accuracy * held[4]); // reciprocity of equilibria
+  assert_true(fabs(matrix[5]) > 1e3 * accuracy * held[4]);       // which is not that of zeros
+  assert_close(matrix[5], matrix[7], 0, 1e-12 * held[4]);
+  for (int i = 0; i < 3; i++) {
+    assert_close(matrix[3 * i] + matrix[3 * i + 1] + matrix[3 * i + 2], 0, 0, 1e-12 * held[4]);
+  }
+  strip_destroy(&strip);
+}
+
+static void test_charges_follow_voltages(void **state)
+{
+  (void)state;
+  check_matrix(true, 1e-6);
+  check_matrix(false, 1e-6);
+}
+
+/* Equilibrium with the end pulled out by so much; force of its support and charge of channel 1. */
+static void pull_end(struct strip *it, double first_V, double by_m, double *force_N,
+                     double *charge_C)
+{
+  const double end[3] = {by_m, 0, 0};
+  double charge[3];
+  for (size_t n = 0; n < it->grid->node_count; n++) {
+    if (it->grid->X[3 * n] > length_m - 1e-9) {
+      assert_int_equal(dea_solid_prescribe(ctx, it->solid, n, 1, end), DEA_OK);
+    }
+  }
+  solve_at(it, 0, first_V, 2e3);
+  *force_N = 0;
+  for (size_t n = 0; n < it->grid->node_count; n++) {
+    if (it->grid->X[3 * n] > length_m - 1e-9) {
+      *force_N += dea_solid_reaction(it->solid)[3 * n];
+    }
+  }
+  assert_int_equal(dea_solid_charges(ctx, it->solid, charge), DEA_OK);
+  *charge_C = charge[1];
+}
+
+/* Force of the support dW/dx and charge -dW/dV come from one energy: dF/dV = -dQ/dx. */
+static void test_force_and_charge(void **state)
+{
+  (void)state;
+  const double none[2] = {0, 0}, V = 3e3, x = 0.1e-3, step_V = 10, step_m = 1e-6;
+  struct strip strip = strip_create(true, 2, none);
+  double force[4], charge[4];
+  pull_end(&strip, V, x - step_m, &force[0], &charge[0]);
+  pull_end(&strip, V, x + step_m, &force[1], &charge[1]);
+  pull_end(&strip, V - step_V, x, &force[2], &charge[2]);
+  pull_end(&strip, V + step_V, x, &force[3], &charge[3]);
+  double by_V = (force[3] - force[2]) / (2 * step_V);
+  double by_x = (charge[1] - charge[0]) / (2 * step_m);
+  print_message("dF/dV %.9g, -dQ/dx %.9g nC/m\n", 1e9 * by_V, -1e9 * by_x);
+  assert_true(fabs(by_x) > 1e-9);
+  assert_close(by_V, -by_x, 1e-5, 0);
+  strip_destroy(&strip);
+}
+
+/* ---- a stack of films with electrodes between them ---- */
+
+enum { FILMS = 4 };
+
+static void map_square(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = length_m * s;
+  x[1] = length_m * t;
+}
+
+static bool everywhere(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)region;
+  (void)ply;
+  return true;
+}
+
+static void alternating(const void *self, int region, int ply, int *top, int *bottom)
+{
+  (void)self;
+  (void)region;
+  *bottom = ply % 2;
+  *top = 1 - ply % 2;
+}
+
+/* Pulled out in its plane and let go in thickness: a corner of a stack between mirror planes. */
+static int corner(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 || X[0] > length_m - 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) |
+         (X[2] < 1e-9 ? 4 : 0);
+}
+
+/* Width and charge of films of some thickness each at a voltage. */
+static void solve_stack(size_t films, double thickness_m, double voltage_V, double *width_m,
+                        double *charge_C)
+{
+  static const double cuts[] = {0, 1};
+  const struct dea_block block = {map_square, NULL, cuts, cuts, 1, 1, 0};
+  const struct dea_constituent film = film_of(thickness_m);
+  struct dea_ply plies[FILMS];
+  for (size_t i = 0; i < films; i++) {
+    plies[i] = (struct dea_ply){thickness_m, 1, 2};
+  }
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .layer_count = 1,
+                                            .layers = &film,
+                                            .active = everywhere,
+                                            .channels = alternating,
+                                            .channel_count = 1,
+                                            .held = corner};
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  double charge[2];
+  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, plies, films, NULL, 0, length_m, &grid),
+                   DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  for (int step = 0; step <= 4; step++) {
+    assert_int_equal(dea_solid_solve(ctx, solid, 0.25 * step * voltage_V, &report), DEA_OK);
+  }
+  const double top[3] = {length_m, length_m, 0};
+  *width_m = length_m + dea_solid_displacement(solid)[3 * dea_grid_nearest(grid, top) + 1];
+  assert_int_equal(dea_solid_charges(ctx, solid, charge), DEA_OK);
+  assert_close(charge[0], -charge[1], 1e-12, 0);
+  *charge_C = charge[1];
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* n films in parallel are one film n times as thick at n times the voltage, and carry n times the
+ * charge that one of them carries. */
+static void test_stack(void **state)
+{
+  (void)state;
+  const double voltage_V = 1500;
+  double width[3], charge[3];
+  solve_stack(FILMS, h_m, voltage_V, &width[0], &charge[0]);
+  solve_stack(1, FILMS * h_m, FILMS * voltage_V, &width[1], &charge[1]);
+  solve_stack(1, h_m, voltage_V, &width[2], &charge[2]);
+  print_message("width %.12g, %.12g, %.12g mm; charge %.12g, %.12g, %.12g nC\n", 1e3 * width[0],
+                1e3 * width[1], 1e3 * width[2], 1e9 * charge[0], 1e9 * charge[1], 1e9 * charge[2]);
+  assert_true(width[0] < 0.9 * length_m); // the free side has come in
+  assert_close(width[0], width[1], 1e-8, 0);
+  assert_close(width[0], width[2], 1e-8, 0);
+  assert_close(charge[0], FILMS * charge[2], 1e-8, 0);
+  assert_close(charge[0], FILMS * charge[1], 1e-8, 0); // epsilon A V/h is that of one film
+}
+
+/* ---- what is refused ---- */
+
+static void unknown_channel(const void *self, int region, int ply, int *top, int *bottom)
+{
+  (void)self;
+  (void)region;
+  (void)ply;
+  *top = 2;
+  *bottom = 0;
+}
+
+static bool no_electrode(const void *self, const double X[3], double *share)
+{
+  (void)self;
+  *share = X[2] > 0 ? 1 : 0;
+  return true;
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  struct strip strip = strip_create(false, 2, NULL);
+  const struct dea_constituent film = film_of(h_m);
+  struct dea_solid_options options = {.order_z = 2,
+                                      .layer_count = 1,
+                                      .layers = &film,
+                                      .active = everywhere,
+                                      .channels = unknown_channel,
+                                      .channel_count = 1,
+                                      .held = framed};
+  struct dea_solid *solid;
+  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_ARGUMENT,
+                 "there is no channel 2: 1 of them");
+  options.channels = two_channels;
+  options.channel_count = 2;
+  options.field = DEA_SOLID_FIELD_COUPLED;
+  options.electrode = no_electrode;
+  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_UNSUPPORTED,
+                 "a coupled field has one channel");
+  solve_at(&strip, 1e3, 500, 0);
+  double capacitance;
+  assert_int_equal(dea_solid_capacitance(ctx, strip.solid, &capacitance), DEA_OK);
+  assert_true(isnan(capacitance)); // over which voltage?
+  strip_destroy(&strip);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shares_and_own_voltages),
+      cmocka_unit_test(test_charges_follow_voltages),
+      cmocka_unit_test(test_force_and_charge),
+      cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_refused),
+  };
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
+}
