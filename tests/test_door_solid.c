@@ -187,6 +187,69 @@ static void test_modes(void **state)
   dea_solid_free(solid);
 }
 
+/* Two films on each other with an electrode between them and at both faces, held where they are:
+ * plate capacitors, eps A / h each, and a force between the plates. */
+static void test_channels(void **state)
+{
+  (void)state;
+  enum { LEVELS = 5, POINTS = 9 * LEVELS };
+  const double mu[1] = {0.1e6}, side = 1e-3, h = 50e-6, V = 1500;
+  double points[POINTS * 3];
+  int cells[2 * 27], part_of[2] = {0, 1};
+  for (int n = 0; n < POINTS; n++) {
+    points[3 * n] = 0.5 * side * (n % 3);
+    points[3 * n + 1] = 0.5 * side * (n / 3 % 3);
+    points[3 * n + 2] = 0.5 * h * (n / 9);
+  }
+  for (int e = 0; e < 2; e++) {
+    for (int n = 0; n < 27; n++) {
+      cells[27 * e + n] = 18 * e + n;
+    }
+  }
+  dea_part lower = rubber(mu), upper = rubber(mu);
+  lower.permittivity = upper.permittivity = 3;
+  lower.electrode_gap_m = upper.electrode_gap_m = h;
+  lower.channel_above = upper.channel_below = 1; // the electrode between them
+  upper.channel_above = 2;
+  const dea_part *const parts[] = {&lower, &upper};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  options.point_count = POINTS;
+  options.points_m = points;
+  options.cell_count = 2;
+  options.cells = cells;
+  options.part_of = part_of;
+  options.parts = parts;
+  options.part_count = 2;
+  dea_solid *solid;
+  const dea_array *none;
+  good(dea_solid_new(ctx, &options, &solid));
+  const double all[3] = {side, side, 2 * h};
+  good(dea_solid_hold(ctx, solid, nothing, all, 7, nothing));
+  assert_int_equal(dea_solid_set_channel(ctx, solid, 3, V), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_array(ctx, solid, "charge_C", &none), DEA_E_ARGUMENT); // not asked for
+  good(dea_solid_set_channel(ctx, solid, 1, V));
+  good(dea_solid_set_channel(ctx, solid, 2, -V));
+  good(dea_solid_solve(ctx, solid, 0));
+  good(dea_solid_find_charges(ctx, solid));
+  const double C = 3 * 8.8541878128e-12 * side * side / h;
+  const double wanted[3] = {-C * V, 3 * C * V, -2 * C * V}; // 2 V across the upper film
+  const double matrix[9] = {C, -C, 0, -C, 2 * C, -C, 0, -C, C};
+  for (int k = 0; k < 3; k++) {
+    assert_close(array(solid, "charge_C")->data[k], wanted[k], 1e-9, 0);
+    assert_close(array(solid, "channel_V")->data[k], k == 0 ? 0 : k == 1 ? V : -V, 0, 1e-9);
+  }
+  for (int i = 0; i < 9; i++) {
+    assert_close(array(solid, "capacitance_held_F")->data[i], matrix[i], 0, 1e-9 * C);
+    assert_close(array(solid, "capacitance_F")->data[i], matrix[i], 0, 1e-9 * C); // nothing moves
+  }
+  good(dea_solid_solve(ctx, solid, 0));
+  assert_int_equal(dea_solid_array(ctx, solid, "charge_C", &none), DEA_E_ARGUMENT); // of before
+  dea_solid_free(solid);
+  lower.channel_below = -1;
+  assert_int_equal(dea_solid_new(ctx, &options, &solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "part 0 has the channel -1"));
+}
+
 static void test_refused(void **state)
 {
   (void)state;
@@ -230,10 +293,8 @@ static void test_refused(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),
-      cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_modes),
-      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage), cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_channels), cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

@@ -360,6 +360,9 @@ typedef struct {
   double permittivity;      // relative
   double electrode_gap_m;   // between electrodes: height that the voltage stands over; 0: it is not
   double density_kg_per_m3; // for modes
+  /* Of the electrodes above and below a part with a gap: channels from 1, or 0 for ground. Both 0:
+   * channel 1 above ground. */
+  int channel_above, channel_below;
 } dea_part;
 
 typedef struct {
@@ -387,8 +390,16 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
  * of the solid is a box without thickness. */
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
                           const double high_m[3], const double traction_Pa[3]);
+/* Voltage of a channel that the next solve goes to, beside the one that is given to the solve,
+ * which all channels have; at first 0. DEA_E_ARGUMENT: no part is on it. */
+dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V);
 /* Stable equilibrium with these supports, loads and voltage, in steps where they are needed. */
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V);
+/* Charges at the last equilibrium, and what they change by with the voltages, at displacements that
+ * are held and in equilibrium: arrays channel_V, charge_C [channels + 1], with ground first;
+ * capacitance_held_F, capacitance_F [channels + 1][channels + 1]. DEA_E_NO_EQUILIBRIUM: it is
+ * unstable. */
+dea_status dea_solid_find_charges(dea_context *ctx, dea_solid *solid);
 /* The lowest natural modes at the last equilibrium, 1 to 200: arrays mode_Hz, mode_shape. */
 dea_status dea_solid_modes(dea_context *ctx, dea_solid *solid, size_t count);
 /* Begins a path by arc-length, through unstable equilibria too, from the last equilibrium (load 0)
@@ -399,8 +410,9 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
 /* The next point of the path: numbers load, arc, voltage_V, unstable_modes. */
 dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid);
 /* points_m, displacement_m, reaction_N, force_N [points][3], mode_Hz [modes] (negative: unstable),
- * mode_shape [modes][points][3]. *out: lent until the next call of this function; its numbers until
- * the next solve, step or modes. DEA_E_ARGUMENT for another name. */
+ * mode_shape [modes][points][3], and those of dea_solid_find_charges. *out: lent until the next
+ * call of this function; its numbers until the next solve, step or modes. DEA_E_ARGUMENT for
+ * another name. */
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out);
 /* voltage_V, energy_J, unstable_modes, iterations, load, arc. */
@@ -415,7 +427,7 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
   }
 #define DEA_PART_INIT                                                                              \
   {                                                                                                \
-    sizeof(dea_part), NULL, 0, 0, NULL, 0, 0, 0, 0, 0, 0                                           \
+    sizeof(dea_part), NULL, 0, 0, NULL, 0, 0, 0, 0, 0, 0, 0, 0                                     \
   }
 #define DEA_SOLID_OPTIONS_INIT                                                                     \
   {                                                                                                \

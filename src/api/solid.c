@@ -84,7 +84,9 @@ static dea_status take_part(dea_context *ctx, const dea_part *given, size_t numb
                                 .pre_stretch = part.pre_stretch > 0 ? part.pre_stretch : 1,
                                 .permittivity_F_per_m = part.permittivity * DEA_EPSILON_0,
                                 .electrode_gap_m = part.electrode_gap_m,
-                                .density_kg_per_m3 = part.density_kg_per_m3};
+                                .density_kg_per_m3 = part.density_kg_per_m3,
+                                .channel_above = part.channel_above,
+                                .channel_below = part.channel_below};
   if (part.law != NULL) {
     return take_law(ctx, &part, out);
   }
@@ -194,6 +196,20 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
   return DEA_OK;
 }
 
+dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->set_channel(ctx->inner, solid->object, channel, voltage_V));
+  return DEA_OK;
+}
+
+dea_status dea_solid_find_charges(dea_context *ctx, dea_solid *solid)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->find_charges(ctx->inner, solid->object));
+  return DEA_OK;
+}
+
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
@@ -226,8 +242,9 @@ dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out)
 {
-  static const char *const known[] = {"points_m", "displacement_m", "reaction_N",
-                                      "force_N",  "mode_Hz",        "mode_shape"};
+  static const char *const known[] = {
+      "points_m",  "displacement_m", "reaction_N",         "force_N",      "mode_Hz", "mode_shape",
+      "channel_V", "charge_C",       "capacitance_held_F", "capacitance_F"};
   const char *unit = "";
   size_t shape[3] = {0, 0, 0};
   *out = NULL;

@@ -16,6 +16,7 @@ struct dea_part_spec {
   double permittivity_F_per_m;
   double electrode_gap_m; // over which the voltage stands; 0: not between electrodes
   double density_kg_per_m3;
+  int channel_above, channel_below; // with a gap; both 0: channel 1 above ground
 };
 
 /* A mesh: a box of plies from the origin, or nodes and elements. All lent. */
@@ -50,7 +51,12 @@ struct dea_solid_access {
   /* Adds a dead load per reference area on the faces whose middles are there. */
   dea_status (*pull)(struct dea_context *ctx, struct dea_solid_object *object,
                      struct dea_solid_place place, const double traction_Pa[3]);
+  /* Own voltage of a channel for the next solve. DEA_E_ARGUMENT where there is no such channel. */
+  dea_status (*set_channel)(struct dea_context *ctx, struct dea_solid_object *object, int channel,
+                            double voltage_V);
   dea_status (*solve)(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V);
+  /* Makes the arrays of the channels at the last equilibrium. */
+  dea_status (*find_charges)(struct dea_context *ctx, struct dea_solid_object *object);
   dea_status (*modes)(struct dea_context *ctx, struct dea_solid_object *object, size_t count);
   /* A path of equilibria to these loads and this voltage, and its next point. */
   dea_status (*path)(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V,

@@ -2,7 +2,7 @@
 #include "model/solid_access.h"
 
 #include "base/module.h"
-#include "model/solid/assembly/solid.h"
+#include "model/solid/assembly/channels.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
@@ -25,6 +25,8 @@ struct dea_solid_object {
   struct dea_continuation_point point; // of the path
   size_t mode_count;
   double *mode_square, *mode_shape;
+  size_t channel_count; // ground not counted
+  double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
 };
 
 // Mesh -------------------------------------------------------------------------------------------
@@ -150,6 +152,34 @@ static bool is_active(const void *self, int region, int ply)
   return object->parts[region].electrode_gap_m > 0;
 }
 
+static void channels(const void *self, int region, int ply, int *top, int *bottom)
+{
+  const struct dea_solid_object *object = self;
+  const struct dea_part_spec *part = &object->parts[region];
+  (void)ply;
+  *bottom = part->channel_below;
+  *top = part->channel_above == 0 && part->channel_below == 0 ? 1 : part->channel_above;
+}
+
+/* The highest channel of a part. DEA_E_ARGUMENT for one below 0. */
+static dea_status count_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                                 size_t *count)
+{
+  enum { CHANNELS_MAX = 1000 };
+  *count = 1;
+  for (size_t i = 0; i < spec->part_count; i++) {
+    const int of[2] = {spec->parts[i].channel_above, spec->parts[i].channel_below};
+    for (int k = 0; k < 2; k++) {
+      if (of[k] < 0 || of[k] > CHANNELS_MAX) {
+        return dea_fail(ctx, DEA_E_ARGUMENT, "part %zu has the channel %d; 0 to %d are possible", i,
+                        of[k], CHANNELS_MAX);
+      }
+      *count = (size_t)of[k] > *count ? (size_t)of[k] : *count;
+    }
+  }
+  return DEA_OK;
+}
+
 static int nothing_held(const void *self, const double X[3])
 {
   (void)self;
@@ -167,6 +197,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->layers);
     dea_free(ctx, object->mode_square);
     dea_free(ctx, object->mode_shape);
+    dea_free(ctx, object->charges);
     dea_free(ctx, object);
   }
 }
@@ -187,11 +218,14 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   for (size_t i = 0; i < spec->part_count; i++) {
     DEA_TRY(ctx, make_layer(ctx, &object->parts[i], &object->layers[i]));
   }
+  DEA_TRY(ctx, count_channels(ctx, spec, &object->channel_count));
   const struct dea_solid_options options = {.order_z = spec->order_z,
                                             .layer_count = object->part_count,
                                             .layers = object->layers,
                                             .layer_of = layer_of,
                                             .active = is_active,
+                                            .channels = channels,
+                                            .channel_count = object->channel_count,
                                             .held = nothing_held,
                                             .self = object};
   DEA_TRY(ctx, dea_solid_start(ctx));
@@ -292,9 +326,52 @@ static dea_status pull(struct dea_context *ctx, struct dea_solid_object *object,
 
 // Solutions --------------------------------------------------------------------------------------
 
+static dea_status set_channel(struct dea_context *ctx, struct dea_solid_object *object, int channel,
+                              double voltage_V)
+{
+  end_path(ctx, object);
+  if (channel < 1 || (size_t)channel > object->channel_count || !isfinite(voltage_V)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "channel %d at %g V: there are channels 1 to %zu", channel,
+                    voltage_V, object->channel_count);
+  }
+  dea_solid_own_voltages(object->solid)[channel] = voltage_V;
+  return DEA_OK;
+}
+
+static void forget_charges(struct dea_context *ctx, struct dea_solid_object *object)
+{
+  dea_free(ctx, object->charges);
+  object->charges = NULL;
+}
+
+static dea_status find_charges(struct dea_context *ctx, struct dea_solid_object *object)
+{
+  size_t n = object->channel_count + 1;
+  forget_charges(ctx, object);
+  double *all = dea_alloc(ctx, 2 * n + 2 * n * n, sizeof *all);
+  if (all == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_solid_channel_voltages(object->solid, all);
+  dea_status status = dea_solid_charges(ctx, object->solid, all + n);
+  if (status == DEA_OK) {
+    status = dea_solid_capacitances(ctx, object->solid, true, all + 2 * n);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_capacitances(ctx, object->solid, false, all + 2 * n + n * n);
+  }
+  if (status != DEA_OK) {
+    dea_free(ctx, all);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  object->charges = all;
+  return DEA_OK;
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V)
 {
   end_path(ctx, object);
+  forget_charges(ctx, object);
   DEA_TRY(ctx, dea_solid_solve(ctx, object->solid, voltage_V, &object->report));
   return DEA_OK;
 }
@@ -343,6 +420,7 @@ static dea_status step(struct dea_context *ctx, struct dea_solid_object *object)
   if (object->path == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "no path was begun, or something else ended it");
   }
+  forget_charges(ctx, object);
   DEA_TRY(ctx, dea_solid_continuation_step(ctx, object->path, &object->point));
   object->report.energy_J = object->point.energy_J;
   object->report.unstable_modes = object->point.unstable_modes;
@@ -353,7 +431,8 @@ static dea_status step(struct dea_context *ctx, struct dea_solid_object *object)
 static const double *array(struct dea_solid_object *object, const char *name, const char **unit,
                            size_t shape[3])
 {
-  size_t n = object->grid->node_count;
+  size_t n = object->grid->node_count, c = object->channel_count + 1;
+  const double *charges = object->charges;
   const struct {
     const char *name, *unit;
     const double *data;
@@ -365,6 +444,10 @@ static const double *array(struct dea_solid_object *object, const char *name, co
       {"force_N", "N", dea_solid_force(object->solid), {n, 3}},
       {"mode_Hz", "Hz", object->mode_square, {object->mode_count, 0}},
       {"mode_shape", "kg^-1/2", object->mode_shape, {object->mode_count, n, 3}},
+      {"channel_V", "V", charges, {c, 0}},
+      {"charge_C", "C", charges != NULL ? charges + c : NULL, {c, 0}},
+      {"capacitance_held_F", "F", charges != NULL ? charges + 2 * c : NULL, {c, c}},
+      {"capacitance_F", "F", charges != NULL ? charges + 2 * c + c * c : NULL, {c, c}},
   };
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     if (strcmp(all[i].name, name) == 0 && all[i].data != NULL) {
@@ -404,7 +487,9 @@ const struct dea_solid_access dea_solid_access = {.create = create,
                                                   .destroy = destroy,
                                                   .hold = hold,
                                                   .pull = pull,
+                                                  .set_channel = set_channel,
                                                   .solve = solve,
+                                                  .find_charges = find_charges,
                                                   .modes = modes,
                                                   .path = path,
                                                   .step = step,
