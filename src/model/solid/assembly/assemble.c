@@ -1,5 +1,6 @@
 #include "model/solid/assembly/assemble.h"
 
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
@@ -118,6 +119,10 @@ static dea_status add_springs(struct dea_context *ctx, struct dea_solid *s)
   }
   DEA_PETSC(ctx, VecRestoreArray(s->work.right, &values));
   DEA_PETSC(ctx, MatDiagonalSet(s->work.K, s->work.right, ADD_VALUES));
+  if (p->body_count > 0) {
+    DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, s->work.K, neutral, p->spring, 3));
+    DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->work.K));
+  }
   return DEA_OK;
 }
 
@@ -148,9 +153,10 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
   return DEA_OK;
 }
 
-dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
+dea_status dea_solid_energy(struct dea_solid *s, double *u, double voltage_V, double *energy)
 {
   *energy = 0;
+  dea_solid_bodies_place(s, u);
   dea_status status = dea_solid_agree(NULL, own_energy(s, u, voltage_V, energy));
   if (status == DEA_OK) {
     dea_solid_sum(energy, 1);
@@ -211,17 +217,21 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   if (level < DEA_TANGENT) {
     return DEA_OK;
   }
-  PetscInt block[DEA_HEX_NODES_MAX];
+  PetscInt block[DEA_JOINT_NODES_MAX];
+  int joint[DEA_JOINT_NODES_MAX], all = dea_solid_bodies_nodes(s, node_count, nodes, joint);
   if (s->work.takes_increment) {
     add_increment(s, nodes, dofs, K);
   }
-  dea_solid_frame_matrix(s, node_count, nodes, K);
-  hold(s, nodes, dofs, K);
-  for (int n = 0; n < node_count; n++) {
-    block[n] = nodes[n];
+  if (all > node_count) {
+    dea_solid_bodies_join(s, node_count, all, joint, K, s->work.element->K);
+    K = s->work.element->K;
   }
-  DEA_PETSC(ctx,
-            MatSetValuesBlocked(s->work.K, node_count, block, node_count, block, K, ADD_VALUES));
+  dea_solid_frame_matrix(s, all, joint, K);
+  hold(s, joint, per * all, K);
+  for (int n = 0; n < all; n++) {
+    block[n] = joint[n];
+  }
+  DEA_PETSC(ctx, MatSetValuesBlocked(s->work.K, all, block, all, block, K, ADD_VALUES));
   return DEA_OK;
 }
 
@@ -285,6 +295,21 @@ static void keep_scales(struct dea_solid *s)
   s->found.energy_scale_J = fmax(s->found.energy_scale_J, share * s->found.energy_largest_J);
 }
 
+/* Forces on followers of bodies become those on the bodies, whose rows of K get what comes of them.
+ */
+static dea_status move_to_bodies(struct dea_context *ctx, struct dea_solid *s,
+                                 enum dea_eval_order level)
+{
+  if (s->problem.body_count > 0 && level >= DEA_TANGENT) {
+    DEA_TRY(ctx, dea_solid_bodies_add_geometric(ctx, s, s->work.K,
+                                                s->work.takes_increment ? s->work.increment : NULL,
+                                                s->work.g));
+    DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->work.K));
+  }
+  dea_solid_bodies_collect(s, s->work.g);
+  return DEA_OK;
+}
+
 /* Sums over the ranks, then the dead loads, which all ranks know, and what there is of inertia. */
 static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea_eval_order level,
                           double *energy)
@@ -303,6 +328,7 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
   s->work.squares = sums[2];
   DEA_TRY(ctx, add_inertia(ctx, s, level, energy));
   keep_scales(s);
+  DEA_TRY(ctx, move_to_bodies(ctx, s, level));
   memcpy(s->found.reaction, s->work.g, p->dofs * sizeof(double));
   dea_solid_release_held(s, s->work.g);
   for (size_t i = 0; i < p->dofs; i++) {
@@ -315,6 +341,8 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
                               enum dea_eval_order level, double *energy)
 {
   *energy = s->found.energy_scale_J = s->work.squares = 0;
+  dea_solid_bodies_place(s, s->state.u);
+  dea_solid_bodies_prepare(s);
   memset(s->work.g, 0, s->problem.dofs * sizeof(double));
   memset(s->state.theta, 0, dea_solid_pressure_count(s) * sizeof(double));
   if (level >= DEA_TANGENT) {

@@ -17,8 +17,9 @@ struct dea_solid_inertia {
 /* Makes problem.spring if there are elements that need it. */
 dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
 
-/* Energy at displacements u, dead loads included. DEA_E_DOMAIN for an inverted element. */
-dea_status dea_solid_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy);
+/* Energy at displacements u, dead loads included; sets those of followers of bodies. DEA_E_DOMAIN
+ * for an inverted element. */
+dea_status dea_solid_energy(struct dea_solid *s, double *u, double voltage_V, double *energy);
 
 /* At the state: energy and, up to the level, g and K; also theta, reactions and the scales. With
  * found.predicted_fits K has the predicted stresses. */

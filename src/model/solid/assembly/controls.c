@@ -1,5 +1,6 @@
 #include "model/solid/assembly/controls.h"
 
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/matrix.h"
 
 #include <math.h>
@@ -99,7 +100,7 @@ static void pack(const struct dea_solid *s, double voltage_V, const double *forc
   memcpy(controls, force, p->dofs * sizeof *controls);
   controls += p->dofs;
   for (size_t i = 0; i < move_count(s); i++) {
-    *controls++ = p->held[i] ? place[i] : 0;
+    *controls++ = p->held[i] && p->held[i] != DEA_FOLLOWS ? place[i] : 0;
   }
   for (size_t k = 1; k <= p->channel_count; k++) {
     *controls++ = wanted ? s->state.own_goal_V[k] : s->state.own_V[k];
@@ -153,11 +154,13 @@ bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
   memcpy(s->work.increment, s->state.u, p->dofs * sizeof(double));
   dea_solid_frame_vector(s, false, s->work.increment);
   for (size_t i = 0; i < p->dofs; i++) {
-    bool moves = i < move_count(s) && p->held[i];
+    bool moves = i < move_count(s) && p->held[i] && p->held[i] != DEA_FOLLOWS;
     double way = moves ? place[i] - s->work.increment[i] : 0;
     s->work.increment[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
     any = any || s->work.increment[i] != 0;
   }
   dea_solid_frame_vector(s, true, s->work.increment);
+  dea_solid_bodies_prepare(s);
+  dea_solid_bodies_carry(s, s->work.increment);
   return any;
 }

@@ -1,5 +1,6 @@
 #include "model/solid/assembly/mass.h"
 
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/matrix.h"
 
 #include <string.h>
@@ -14,9 +15,31 @@ static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
   return element->type->mass(element, dea_solid_constituent(s, e), X, mass);
 }
 
+/* The same in all local axes. */
+static dea_status add_point_masses(struct dea_context *ctx, struct dea_solid *s, Mat A,
+                                   double factor)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  if (p->point_mass == NULL) {
+    return DEA_OK;
+  }
+  for (size_t i = 3 * p->first_node; i < 3 * p->end_node; i++) {
+    double mass = p->held[i] ? 0 : factor * p->point_mass[i / 3];
+    int node = (int)(i / 3);
+    PetscInt row = (PetscInt)p->per_node * node + (PetscInt)(i % 3);
+    if (mass != 0) {
+      DEA_PETSC(ctx, MatSetValue(A, row, row, mass, ADD_VALUES));
+    }
+  }
+  DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, A, factor, p->point_mass, 1));
+  DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
+  return DEA_OK;
+}
+
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor)
 {
   DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, factor, mass_of));
+  DEA_TRY(ctx, add_point_masses(ctx, s, A, factor));
   return DEA_OK;
 }
 
@@ -56,6 +79,9 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
     return dea_fail(ctx, status, "an element is inverted");
   }
   dea_solid_sum(out, 3 * p->grid->node_count);
+  for (size_t i = 0; i < 3 * p->grid->node_count && p->point_mass != NULL; i++) {
+    out[i] += p->point_mass[i / 3] * v[i];
+  }
   return DEA_OK;
 }
 

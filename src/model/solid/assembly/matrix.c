@@ -2,6 +2,8 @@
  * of its rows, factor and solutions. */
 #include "model/solid/assembly/matrix.h"
 
+#include "model/solid/assembly/bodies.h"
+
 #include <string.h>
 
 /* ---- local axes ---- */
@@ -13,7 +15,7 @@ dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
   size_t nodes = p->grid->node_count, count = 0;
   double Q[9];
   for (size_t n = 0; options->frame != NULL && n < nodes; n++) {
-    count += options->frame(options->self, p->grid->X + 3 * n, Q);
+    count += !dea_solid_is_of_body(s, n) && options->frame(options->self, p->grid->X + 3 * n, Q);
   }
   if (count == 0) {
     return DEA_OK;
@@ -23,7 +25,7 @@ dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_arena_status(&s->memory));
   count = 0;
   for (size_t n = 0; n < nodes; n++) {
-    if (options->frame(options->self, p->grid->X + 3 * n, Q)) {
+    if (!dea_solid_is_of_body(s, n) && options->frame(options->self, p->grid->X + 3 * n, Q)) {
       memcpy(p->frames[count], Q, sizeof Q);
       p->frame[n] = (int)++count;
     }
@@ -78,7 +80,7 @@ void dea_solid_release_held(const struct dea_solid *s, double *v)
 {
   dea_solid_frame_vector(s, false, v);
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    v[i] = s->problem.held[i] ? 0 : v[i];
+    v[i] = s->problem.held[i] && s->problem.held[i] != DEA_FOLLOWS ? 0 : v[i];
   }
   dea_solid_frame_vector(s, true, v);
 }
@@ -104,22 +106,33 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
+/* Nodes of an element, and those of the bodies that it touches. */
+static int joint_nodes(const struct dea_solid *s, size_t e, int *joint)
+{
+  const int *nodes;
+  int count = dea_solid_nodes(s, e, &nodes);
+  return dea_solid_bodies_nodes(s, count, nodes, joint);
+}
+
 /* Elements of each node: those of node i are elements[first[i]] to elements[first[i + 1] - 1].
  * first: [node_count + 2]. */
 static void list_elements(const struct dea_solid *s, size_t *first, int *elements)
 {
   const struct dea_grid *grid = s->problem.grid;
+  int joint[DEA_JOINT_NODES_MAX];
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e); n++) {
-      first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 2]++;
+    int count = joint_nodes(s, e, joint);
+    for (int n = 0; n < count; n++) {
+      first[joint[n] + 2]++;
     }
   }
   for (size_t i = 2; i < grid->node_count + 2; i++) {
     first[i] += first[i - 1];
   }
   for (size_t e = 0; e < grid->element_count; e++) {
-    for (size_t n = 0; n < (size_t)dea_grid_nodes_of(grid, e); n++) {
-      elements[first[grid->nodes[e * DEA_HEX_NODES_MAX + n] + 1]++] = (int)e;
+    int count = joint_nodes(s, e, joint);
+    for (int n = 0; n < count; n++) {
+      elements[first[joint[n] + 1]++] = (int)e;
     }
   }
 }
@@ -131,9 +144,10 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
 {
   const struct dea_solid_problem *p = &s->problem;
   const struct dea_grid *grid = p->grid;
+  int joint[DEA_JOINT_NODES_MAX];
   size_t places = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    places += (size_t)dea_grid_nodes_of(grid, e);
+    places += (size_t)joint_nodes(s, e, joint);
   }
   size_t *first = dea_alloc(ctx, grid->node_count + 2, sizeof *first);
   int *elements = dea_alloc(ctx, places, sizeof *elements);
@@ -145,16 +159,16 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
       size_t row = i - p->first_node;
       own[row] = others[row] = 0;
       for (size_t k = first[i]; k < first[i + 1]; k++) {
-        const int *nodes = grid->nodes + (size_t)elements[k] * DEA_HEX_NODES_MAX;
-        int count = dea_grid_nodes_of(grid, (size_t)elements[k]);
+        int count = joint_nodes(s, (size_t)elements[k], joint);
         for (int n = 0; n < count; n++) {
-          size_t column = (size_t)nodes[n];
+          size_t column = (size_t)joint[n];
           if (column >= i && seen[column] != (int)i + 1) {
             seen[column] = (int)i + 1;
             *(column < p->end_node ? &own[row] : &others[row]) += 1;
           }
         }
       }
+      own[row] += own[row] == 0; // a node of a body without elements
     }
   }
   dea_free(ctx, first);
@@ -210,9 +224,9 @@ dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
   return DEA_OK;
 }
 
-/* amount times a matrix of numbers between the nodes of an element, as a block of K without the
- * rows and columns of held components. */
-static void block_of(const struct dea_solid *s, int count, const int *nodes, double amount,
+/* amount times a matrix of numbers between the first `count` of nodes [all], as a block of K
+ * without the rows and columns of held components; the others are those of bodies. */
+static void block_of(const struct dea_solid *s, int count, int all, const int *nodes, double amount,
                      const double *scalar, double *block)
 {
   int per = s->problem.per_node, dofs = per * count;
@@ -224,7 +238,11 @@ static void block_of(const struct dea_solid *s, int count, const int *nodes, dou
       }
     }
   }
-  dea_solid_frame_matrix(s, count, nodes, block);
+  if (all > count) {
+    dea_solid_bodies_join(s, count, all, nodes, block, block);
+    dofs = per * all;
+  }
+  dea_solid_frame_matrix(s, all, nodes, block);
   for (int i = 0; i < dofs; i++) {
     for (int j = 0; j < dofs && s->problem.held[dea_solid_at(s, nodes[i / per], i % per)]; j++) {
       block[i * dofs + j] = block[j * dofs + i] = 0;
@@ -238,20 +256,21 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
 {
   const struct dea_solid_problem *p = &s->problem;
   dea_status status = DEA_OK;
+  dea_solid_bodies_prepare(s);
   for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
     double scalar[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-    PetscInt block[DEA_HEX_NODES_MAX];
+    PetscInt block[DEA_JOINT_NODES_MAX];
+    int nodes[DEA_JOINT_NODES_MAX];
     size_t e = p->own[k];
-    const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(p->grid, e);
+    int count = dea_grid_nodes_of(p->grid, e), all = joint_nodes(s, e, nodes);
     status = of(s, e, scalar);
     if (status == DEA_OK) {
-      block_of(s, count, nodes, amount, scalar, s->work.element->K);
-      for (int n = 0; n < count; n++) {
+      block_of(s, count, all, nodes, amount, scalar, s->work.element->K);
+      for (int n = 0; n < all; n++) {
         block[n] = nodes[n];
       }
       status = dea_solid_petsc(
-          ctx, MatSetValuesBlocked(A, count, block, count, block, s->work.element->K, ADD_VALUES),
+          ctx, MatSetValuesBlocked(A, all, block, all, block, s->work.element->K, ADD_VALUES),
           "MatSetValuesBlocked");
     }
   }
@@ -372,6 +391,10 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
   DEA_PETSC(ctx, VecRestoreArrayRead(vector, &values));
   dea_solid_sum(out, s->problem.dofs);
   dea_solid_frame_vector(s, true, out);
+  if (s->problem.body_count > 0) {
+    dea_solid_bodies_prepare(s);
+    dea_solid_bodies_carry(s, out);
+  }
   return DEA_OK;
 }
 
@@ -390,6 +413,11 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
                                   double *out)
 {
   memmove(out, right, s->problem.dofs * sizeof(double));
+  if (s->problem.body_count > 0) {
+    dea_solid_bodies_prepare(s);
+    dea_solid_bodies_collect(s, out);
+    dea_solid_release_held(s, out);
+  }
   DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
   DEA_PETSC(ctx, MatSolve(s->work.factor, s->work.right, s->work.solution));
   DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));

@@ -27,7 +27,7 @@ dea_status dea_solid_frames_create(struct dea_context *ctx, struct dea_solid *s,
 void dea_solid_frame_matrix(const struct dea_solid *s, int node_count, const int *nodes, double *K);
 /* v [dofs] from global to local components, or back. */
 void dea_solid_frame_vector(const struct dea_solid *s, bool back, double *v);
-/* Sets held components of v [dofs], which is in global ones, to 0. */
+/* Sets held components of v [dofs], which is in global ones, to 0; not those that follow a body. */
 void dea_solid_release_held(const struct dea_solid *s, double *v);
 
 /* ---- entries ---- */
@@ -48,14 +48,16 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 /* Factor of K; *negative: its negative pivots beyond those of free potentials. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
-/* out = K^-1 right with the present factor, [dofs] both, in global components. */
+/* out = K^-1 right with the present factor, [dofs] both, in global components; what is on followers
+ * of a body goes to the body, and they move with it. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
 /* Unknowns of the whole [dofs] in global components into a vector of K's rows; they are in local
  * ones after that. */
 dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
                                Vec vector);
-/* A vector of K's rows as unknowns of the whole [dofs] in global components. */
+/* A vector of K's rows as unknowns of the whole [dofs] in global components, followers of bodies
+ * carried along. */
 dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
                                  double *out);
 

@@ -16,7 +16,8 @@ struct dea_solid_field;
 struct dea_internal_variables;
 struct dea_solid_inertia;
 
-enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED }; // held: where it is; prescribed: at its place
+/* held: where it is; prescribed: at its place; follows: where its body takes it */
+enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED, DEA_FOLLOWS };
 
 /* What is solved: mesh, constituents, supports, loads. Filled by dea_solid_create (the function is
  * named where it is another) and constant from then on, but for what is said of kappa, held, loads.
@@ -46,6 +47,10 @@ struct dea_solid_problem {
   int *frame;          // [nodes] one more than the place in frames, 0: the global axes; NULL: all
                        // are; by dea_solid_frames_create
   double (*frames)[9]; // rows are local axes
+  struct dea_solid_body *bodies; // [body_count] by dea_solid_bodies_create; NULL: none
+  size_t body_count;
+  int *body_of;       // [nodes] one more than the place in bodies, 0: of none; NULL: as bodies
+  double *point_mass; // [nodes] masses beside those of elements [kg]; NULL: none
   struct dea_solid_load *loads; // [load_count] by dea_solid_add_load; owned
   size_t load_count;
 
@@ -99,7 +104,8 @@ struct dea_solid_work {
   bool takes_increment; // the next assembly adds K times it to g
   double *predicted; // [own_count][elements.predicted_count] stresses at the end of the last step,
                      // by dea_solid_predict
-  double squares;    // sum of squared element forces in an assembly [N^2]
+  double (*body_slope)[27];           // [body_count] by dea_solid_bodies_prepare
+  double squares;                     // sum of squared element forces in an assembly [N^2]
   struct dea_element_result *element; // of one element in an assembly
   struct dea_piece *piece;            // of one piece of a load in it
   Mat K;                              // tangent, by dea_solid_assemble

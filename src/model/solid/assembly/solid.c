@@ -2,6 +2,7 @@
 #include "model/solid/assembly/solid.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
@@ -30,9 +31,13 @@ static void find_sizes(struct dea_solid *s)
   p->length_m = INFINITY;
   for (int i = 0; i < 3; i++) {
     double least = INFINITY, most = -INFINITY;
-    for (size_t n = 0; n < p->grid->node_count; n++) {
-      least = fmin(least, p->grid->X[3 * n + (size_t)i]);
-      most = fmax(most, p->grid->X[3 * n + (size_t)i]);
+    for (size_t e = 0; e < p->grid->element_count; e++) {
+      const int *nodes;
+      int count = dea_solid_nodes(s, e, &nodes);
+      for (int n = 0; n < count; n++) {
+        least = fmin(least, p->grid->X[3 * nodes[n] + i]);
+        most = fmax(most, p->grid->X[3 * nodes[n] + i]);
+      }
     }
     extent[i] = most - least;
     p->length_m = extent[i] > 0 ? fmin(p->length_m, extent[i]) : p->length_m;
@@ -77,13 +82,15 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
         options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
   }
   DEA_TRY(ctx, dea_solid_channels_create(ctx, s, options));
+  DEA_TRY(ctx, dea_solid_bodies_create(ctx, s, options));
   for (size_t n = 0; n < grid->node_count; n++) {
-    int bits = options->held(options->self, grid->X + 3 * n);
+    int bits = dea_solid_is_of_body(s, n) ? 0 : options->held(options->self, grid->X + 3 * n);
     for (int i = 0; i < 3; i++) {
       p->held[3 * n + (size_t)i] = (bits >> i) & 1;
     }
   }
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
+  DEA_TRY(ctx, dea_solid_bodies_hold(ctx, s));
   DEA_TRY(ctx, dea_solid_set_kinds(ctx, s));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
@@ -159,12 +166,22 @@ const double *dea_solid_reaction(const struct dea_solid *solid)
   return solid->found.reaction;
 }
 
-dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
-                               int components, const double displacement_m[3])
+static dea_status check_components(struct dea_context *ctx, const struct dea_solid *solid,
+                                   size_t node, int components)
 {
   if (node >= solid->problem.grid->node_count || (components & ~7) != 0) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
   }
+  return solid->problem.held[3 * node] != DEA_FOLLOWS
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_ARGUMENT, "node %zu follows a body: hold or free the body",
+                        node);
+}
+
+dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,
+                               int components, const double displacement_m[3])
+{
+  DEA_TRY(ctx, check_components(ctx, solid, node, components));
   for (size_t i = 0; i < 3; i++) {
     if ((components >> i) & 1) {
       solid->problem.held[3 * node + i] = DEA_PRESCRIBED;
@@ -177,9 +194,7 @@ dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid,
 dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, size_t node,
                              int components)
 {
-  if (node >= solid->problem.grid->node_count || (components & ~7) != 0) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "no such node or component: %zu, %d", node, components);
-  }
+  DEA_TRY(ctx, check_components(ctx, solid, node, components));
   for (size_t i = 0; i < 3; i++) {
     if ((components >> i) & 1) {
       solid->problem.held[3 * node + i] = DEA_FREE;

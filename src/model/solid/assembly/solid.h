@@ -20,6 +20,17 @@ struct dea_solid;
  * every node (docs/theory/coupled.md). */
 enum dea_solid_field_kind { DEA_SOLID_FIELD_THIN, DEA_SOLID_FIELD_COUPLED };
 
+/* Nodes that move as one: u_n = t + (R(w) - 1)(X_n - X_0), with a shift t and a rotation vector w
+ * (docs/theory/bodies.md). Made with two nodes of the grid that have no elements
+ * (dea_grid_add_nodes): the displacement of the first is t, that of the second length_m w. What is
+ * asked of nodes can be asked of these: displacements, forces (of the second: moment over
+ * length_m), reactions, springs; the functions dea_solid_body_... say it in their own units. */
+struct dea_solid_body {
+  size_t node;     // the first of the two, at X_0
+  int held;        // components that are held as bits: 1, 2, 4 of t, 8, 16, 32 of w
+  double length_m; // of the body; 0: the largest distance of its nodes from X_0
+};
+
 struct dea_solid_options {
   int order_z;
   enum dea_solid_field_kind field;
@@ -45,6 +56,13 @@ struct dea_solid_options {
   /* Of a coupled field: whether a node is on an electrode, and the share of the voltage that this
    * one is at (0 on the ground). */
   bool (*electrode)(const void *self, const double X[3], double *share);
+  /* Rigid bodies, copied; `held` and `frame` are not asked for their own nodes. body_of:
+   * [node_count] one more than the place of the body that a node follows, 0: none. A follower may
+   * be held only where its body cannot move it (a plane of symmetry). */
+  size_t body_count;
+  const struct dea_solid_body *bodies;
+  const int *body_of;
+  const double *point_mass_kg; // [node_count] beside the mass of elements, copied; NULL: none
   const void *self;
   const struct dea_solid_settings *settings; // copied; NULL: dea_solid_settings_default
 };
@@ -99,6 +117,25 @@ dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, s
 /* Forces of the supports on the nodes at the last equilibrium [node_count][3] [N], along the global
  * axes; 0 along what is free. Lent. */
 const double *dea_solid_reaction(const struct dea_solid *solid);
+
+/* Holds components (bits as in struct dea_solid_body) of a body; the next solve moves them to this
+ * shift and rotation vector, on a straight line of both. */
+dea_status dea_solid_body_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t body,
+                                    int components, const double shift_m[3],
+                                    const double turn_rad[3]);
+dea_status dea_solid_body_release(struct dea_context *ctx, struct dea_solid *solid, size_t body,
+                                  int components);
+/* Dead force at X_0 that the next solve goes to, and what does the work moment . dw: a moment while
+ * turns are small. In place of what was there. */
+void dea_solid_body_push(struct dea_solid *solid, size_t body, const double force_N[3],
+                         const double moment_N_m[3]);
+/* Where a body is. */
+void dea_solid_body_place(const struct dea_solid *solid, size_t body, double shift_m[3],
+                          double turn_rad[3]);
+/* Force and moment about X_0 + t of what holds a body, at the last equilibrium, along the global
+ * axes. */
+void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double force_N[3],
+                             double moment_N_m[3]);
 
 /* Adds a load for all solves to come; copied. */
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,

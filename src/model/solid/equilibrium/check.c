@@ -1,6 +1,7 @@
 /* What can be said of a solid before anything is solved: elements, laws, supports. */
 #include "model/solid/equilibrium/check.h"
 
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/problem.h"
 
 #include <lapacke.h>
@@ -98,8 +99,13 @@ static void collect(const struct dea_solid *s, const int *parent, int body, cons
     const double *Q = p->frame != NULL && p->frame[n] != 0 ? p->frames[p->frame[n] - 1] : axes;
     for (int i = 0; i < 3 && parent[n] == body; i++) {
       double row[RIGID];
-      if (p->held[3 * n + (size_t)i]) {
+      unsigned char held = p->held[3 * n + (size_t)i];
+      if (held && held != DEA_FOLLOWS) {
         rigid_row(p->grid->X + 3 * n, centre, length, Q + 3 * i, row);
+        if (dea_solid_turns_body(s, n)) { // a turn as such, wherever
+          memset(row, 0, sizeof row);
+          row[3 + i] = 1;
+        }
         for (int a = 0; a < RIGID * RIGID; a++) {
           gram[a] += row[a / RIGID] * row[a % RIGID];
         }
@@ -129,6 +135,44 @@ static bool is_held(const struct dea_solid *s, const int *parent, int body)
   return info == 0 && values[0] > 1e-12 * values[RIGID - 1];
 }
 
+/* Whether the nodes of elements that follow a body stay where they are under none of the turns that
+ * it may take. */
+static bool is_turned_by_film(const struct dea_solid *s, size_t body)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  const struct dea_solid_body *b = &p->bodies[body];
+  double gram[9] = {0}, values[3], row[RIGID];
+  static const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    for (int i = 0; i < dea_grid_nodes_of(p->grid, e); i++) {
+      int n = p->grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)i];
+      for (int q = 0; q < 3 && p->body_of[n] == (int)body + 1; q++) {
+        rigid_row(p->grid->X + 3 * n, p->grid->X + 3 * b->node, b->length_m, axes + 3 * q, row);
+        for (int a = 0; a < 9; a++) {
+          bool held =
+              p->held[3 * b->node + 3 + (size_t)a / 3] || p->held[3 * b->node + 3 + (size_t)a % 3];
+          gram[a] += held ? a % 4 == 0 : row[3 + a / 3] * row[3 + a % 3];
+        }
+      }
+    }
+  }
+  int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, gram, 3, values);
+  return info == 0 && values[0] > 1e-12 * values[2];
+}
+
+static dea_status check_bodies(struct dea_context *ctx, const struct dea_solid *s)
+{
+  for (size_t k = 0; k < s->problem.body_count; k++) {
+    if (!is_turned_by_film(s, k)) {
+      return dea_fail(ctx, DEA_E_ARGUMENT,
+                      "rigid body %zu can turn without moving any of its nodes: hold its turns, or "
+                      "give it springs",
+                      k);
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_supports(struct dea_context *ctx, const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
@@ -144,6 +188,13 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
     const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
     for (int n = 1; n < dea_grid_nodes_of(p->grid, e); n++) {
       parent[root_of(parent, nodes[n])] = root_of(parent, nodes[0]);
+    }
+  }
+  for (size_t n = 0; n < p->grid->node_count && p->body_count > 0; n++) {
+    if (p->body_of[n] > 0) {
+      int own = (int)p->bodies[p->body_of[n] - 1].node;
+      parent[root_of(parent, (int)n)] = root_of(parent, own);
+      parent[root_of(parent, own + 1)] = root_of(parent, own);
     }
   }
   for (size_t n = 0; n < p->grid->node_count; n++) {
@@ -180,6 +231,7 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, check_layers(ctx, s));
   if (s->problem.load_count == 0) { // springs and tips may hold what nothing else does
+    DEA_TRY(ctx, check_bodies(ctx, s));
     DEA_TRY(ctx, check_supports(ctx, s));
   }
   s->found.checked = true;

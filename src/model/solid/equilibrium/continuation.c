@@ -1,6 +1,7 @@
 #include "model/solid/equilibrium/continuation.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
@@ -121,6 +122,7 @@ static dea_status displacement_rate(struct dea_context *ctx, struct dea_solid_co
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->rate[i] += t->held_rate[i];
   }
+  dea_solid_bodies_carry(t->s, t->rate); // those of held_rate belong to where the path began
   return DEA_OK;
 }
 

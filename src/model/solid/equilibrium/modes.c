@@ -1,5 +1,6 @@
 #include "model/solid/equilibrium/modes.h"
 
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
@@ -202,6 +203,11 @@ static dea_status create_metric(struct dea_context *ctx, struct dea_solid *s,
   }
   DEA_PETSC(ctx, VecRestoreArray(s->work.right, &rows));
   DEA_PETSC(ctx, MatDiagonalSet(*B, s->work.right, INSERT_VALUES));
+  if (p->body_count > 0) {
+    DEA_PETSC(ctx, MatSetOption(*B, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+    DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, *B, 1, s->work.trial, 3));
+    DEA_TRY(ctx, dea_solid_end_matrix(ctx, *B));
+  }
   return DEA_OK;
 }
 

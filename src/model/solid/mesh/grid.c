@@ -202,6 +202,20 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
   return status;
 }
 
+dea_status dea_grid_add_nodes(struct dea_context *ctx, struct dea_grid *grid, size_t count,
+                              const double *X_m, size_t *first)
+{
+  double *X = dea_resize(ctx, grid->X, grid->node_count + count, 3 * sizeof *X);
+  if (X == NULL) {
+    return DEA_E_MEMORY;
+  }
+  grid->X = X;
+  memcpy(X + 3 * grid->node_count, X_m, 3 * count * sizeof *X);
+  *first = grid->node_count;
+  grid->node_count += count;
+  return DEA_OK;
+}
+
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid)
 {
   if (grid != NULL) {

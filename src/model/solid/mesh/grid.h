@@ -56,6 +56,11 @@ dea_status dea_grid_allocate(struct dea_context *ctx, int order, int order_z, si
                              size_t element_count, struct dea_grid **out);
 void dea_grid_destroy(struct dea_context *ctx, struct dea_grid *grid);
 
+/* Nodes without elements behind those that there are, at X [count][3]: for rigid bodies. *first:
+ * the number of the first one. */
+dea_status dea_grid_add_nodes(struct dea_context *ctx, struct dea_grid *grid, size_t count,
+                              const double *X_m, size_t *first);
+
 /* The node nearest to a place [m]. */
 size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
 

@@ -1,0 +1,577 @@
+/* Rigid bodies: energy, forces and tangent against each other at large turns, invariance, closed
+ * forms, a part that is a million times stiffer. */
+// ctest: solid
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/load/loads.h"
+#include "solid_block.h"
+
+#include "solid_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
+static const double elastic[] = {2e5, 0.3}, stiff[] = {2e11, 0.3}, no_width_change[] = {2e5, 0};
+enum { SHIFTS = 1 | 2 | 4, TURNS = 8 | 16 | 32, ALL = SHIFTS | TURNS, BODIES_MAX = 2 };
+
+/* A bar whose nodes follow bodies as `of` says (1, 2; 0: none). */
+struct bodies {
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_solid_body body[BODIES_MAX];
+  struct dea_solid_report report;
+};
+
+static struct bodies bodies_create(const struct block *block, const struct dea_constituent *layers,
+                                   size_t layer_count, size_t count, const double X0[BODIES_MAX][3],
+                                   int held, int (*of)(const double X[3]),
+                                   int (*support)(const void *self, const double X[3]),
+                                   int (*layer_of)(const void *self, int region, int ply))
+{
+  struct bodies it = {.grid = block_grid(ctx, block)};
+  for (size_t k = 0; k < count; k++) {
+    const double twice[6] = {X0[k][0], X0[k][1], X0[k][2], X0[k][0], X0[k][1], X0[k][2]};
+    it.body[k].held = held;
+    assert_int_equal(dea_grid_add_nodes(ctx, it.grid, 2, twice, &it.body[k].node), DEA_OK);
+  }
+  int *follows = dea_alloc(ctx, it.grid->node_count, sizeof *follows);
+  assert_non_null(follows);
+  for (size_t n = 0; n < it.grid->node_count - 2 * count; n++) {
+    follows[n] = of(it.grid->X + 3 * n);
+  }
+  for (size_t e = 0; e < it.grid->element_count && layer_of != NULL; e++) { // the last third
+    it.grid->region[e] = it.grid->X[3 * it.grid->nodes[e * DEA_HEX_NODES_MAX]] > 1;
+  }
+  const struct dea_solid_options options = {.order_z = block->order_z,
+                                            .layer_count = layer_count,
+                                            .layers = layers,
+                                            .layer_of = layer_of,
+                                            .held = support,
+                                            .body_count = count,
+                                            .bodies = it.body,
+                                            .body_of = follows};
+  assert_int_equal(dea_solid_create(ctx, it.grid, &options, &it.solid), DEA_OK);
+  dea_free(ctx, follows);
+  return it;
+}
+
+static void bodies_destroy(struct bodies *it)
+{
+  dea_solid_destroy(ctx, it->solid);
+  dea_grid_destroy(ctx, it->grid);
+}
+
+static void solve(struct bodies *it)
+{
+  assert_int_equal(dea_solid_solve(ctx, it->solid, 0, &it->report), DEA_OK);
+  assert_close(it->report.way, 1, 0, 0);
+}
+
+static int clamped(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 ? 7 : 0;
+}
+
+static int free_nodes(const void *self, const double X[3])
+{
+  (void)self;
+  (void)X;
+  return 0;
+}
+
+/* The last third of the bar, and a part of the section at the end of the first: elements between
+ * them touch both. */
+static int third_and_part(const double X[3])
+{
+  bool section = fabs(X[0] - 2. / 3) < 1e-9 && X[1] < 0.6 && X[2] < 0.6;
+  return X[0] > 4. / 3 - 1e-9 ? 1 : section ? 2 : 0;
+}
+
+static const double two_centres[BODIES_MAX][3] = {{1.7, 0.4, 0.5}, {0.6, 0.3, 0.1}};
+static const double shifts[BODIES_MAX][3] = {{0.2, 0.1, -0.15}, {0.02, -0.01, 0.03}};
+static const double turns[BODIES_MAX][3] = {{0.9, -0.5, 0.4}, {-0.1, 0.15, 0.2}};
+
+static struct bodies two_bodies(void)
+{
+  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  return bodies_create(&bar, &layer, 1, 2, two_centres, 0, third_and_part, clamped, NULL);
+}
+
+static void hold_both(struct bodies *it)
+{
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(dea_solid_body_prescribe(ctx, it->solid, k, ALL, shifts[k], turns[k]), DEA_OK);
+  }
+  solve(it);
+}
+
+/* At turns of 60 and 15 degrees the followers lie where the rotation takes them. */
+static void test_followers_move_as_one(void **state)
+{
+  (void)state;
+  struct bodies it = two_bodies();
+  hold_both(&it);
+  double angle = sqrt(0.81 + 0.25 + 0.16), least = INFINITY, most = 0;
+  const double axis[3] = {0.9 / angle, -0.5 / angle, 0.4 / angle};
+  for (size_t n = 0; n < it.body[0].node; n++) {
+    const double *X = it.grid->X + 3 * n, *u = dea_solid_displacement(it.solid) + 3 * n;
+    if (third_and_part(X) == 1) { // Rodrigues' formula as it stands in textbooks
+      double r[3], along = 0;
+      for (int i = 0; i < 3; i++) {
+        r[i] = X[i] - two_centres[0][i];
+        along += axis[i] * r[i];
+      }
+      for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double turned = r[i] * cos(angle) + (axis[j] * r[k] - axis[k] * r[j]) * sin(angle) +
+                        axis[i] * along * (1 - cos(angle));
+        least = fmin(least, u[i] - (shifts[0][i] + turned - r[i]));
+        most = fmax(most, u[i] - (shifts[0][i] + turned - r[i]));
+      }
+    }
+  }
+  assert_true(least > -1e-14 && most < 1e-14);
+  bodies_destroy(&it);
+}
+
+/* Forces of the supports of both bodies are the slopes of the least energy. */
+static void test_forces_are_slopes_of_the_energy(void **state)
+{
+  (void)state;
+  static const double by = 1e-4;
+  struct bodies it = two_bodies();
+  hold_both(&it);
+  double reaction[12], scale = 0;
+  for (size_t i = 0; i < 12; i++) {
+    reaction[i] = dea_solid_reaction(it.solid)[3 * it.body[0].node + i];
+    scale = fmax(scale, fabs(reaction[i]));
+  }
+  for (size_t i = 0; i < 12; i++) {
+    double energy[2];
+    size_t node = it.body[0].node + i / 3;
+    for (int side = 0; side < 2; side++) {
+      double at[3], length[2] = {0};
+      for (size_t k = 0; k < 2; k++) { // L from what stands in the turning node
+        length[k] = dea_solid_displacement(it.solid)[3 * it.body[k].node + 3] / turns[k][0];
+      }
+      for (size_t c = 0; c < 3; c++) {
+        size_t k = i / 6;
+        at[c] = i % 6 < 3 ? shifts[k][c] : length[k] * turns[k][c];
+        at[c] += c == i % 3 ? (side == 0 ? -by : by) : 0;
+      }
+      assert_int_equal(dea_solid_prescribe(ctx, it.solid, node, 7, at), DEA_OK);
+      solve(&it);
+      energy[side] = it.report.energy_J;
+      hold_both(&it);
+    }
+    assert_close((energy[1] - energy[0]) / (2 * by), reaction[i], 0, 2e-7 * scale);
+  }
+  bodies_destroy(&it);
+}
+
+/* Forces and moments of all supports about the origin are in equilibrium: the moments are those of
+ * a body, not what is conjugate to the rotation vector. */
+static void test_forces_and_moments_balance(void **state)
+{
+  (void)state;
+  struct bodies it = two_bodies();
+  hold_both(&it);
+  double force[3] = {0}, moment[3] = {0}, scale = 0;
+  for (size_t n = 0; n < it.body[0].node; n++) {
+    const double *X = it.grid->X + 3 * n, *f = dea_solid_reaction(it.solid) + 3 * n;
+    for (int i = 0; i < 3; i++) { // clamped nodes: they are where they were
+      int j = (i + 1) % 3, k = (i + 2) % 3;
+      force[i] += f[i];
+      moment[i] += X[j] * f[k] - X[k] * f[j];
+      scale += fabs(f[i]);
+    }
+  }
+  for (size_t b = 0; b < 2; b++) {
+    double f[3], m[3], x[3], t[3], w[3];
+    dea_solid_body_reaction(it.solid, b, f, m);
+    dea_solid_body_place(it.solid, b, t, w);
+    for (int i = 0; i < 3; i++) {
+      assert_close(t[i], shifts[b][i], 0, 1e-14);
+      assert_close(w[i], turns[b][i], 0, 1e-14);
+      x[i] = two_centres[b][i] + t[i];
+    }
+    for (int i = 0; i < 3; i++) {
+      int j = (i + 1) % 3, k = (i + 2) % 3;
+      force[i] += f[i];
+      moment[i] += m[i] + x[j] * f[k] - x[k] * f[j];
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    assert_close(force[i], 0, 0, 1e-8 * scale);
+    assert_close(moment[i], 0, 0, 1e-8 * scale);
+  }
+  bodies_destroy(&it);
+}
+
+/* Prescribes all that is not clamped, at u + amount v; g: forces that this takes. */
+static void force_beside(struct bodies *it, const double *u, const double *v, double amount,
+                         double *g)
+{
+  for (size_t n = 0; n < it->grid->node_count; n++) {
+    const double *X = it->grid->X + 3 * n;
+    double at[3];
+    for (size_t i = 0; i < 3; i++) {
+      at[i] = u[3 * n + i] + amount * v[3 * n + i];
+    }
+    if (n >= it->body[0].node || (third_and_part(X) == 0 && clamped(NULL, X) == 0)) {
+      assert_int_equal(dea_solid_prescribe(ctx, it->solid, n, 7, at), DEA_OK);
+    }
+  }
+  solve(it);
+  memcpy(g, dea_solid_reaction(it->solid), 3 * it->grid->node_count * sizeof *g);
+}
+
+/* Where bodies are held at large turns the tangent of what is free without that is the slope of all
+ * forces: modes v of K v = lambda B v, v . B v = 1, have w . (dg/du v) = lambda w . B v. */
+static void test_tangent_is_slope_of_forces(void **state)
+{
+  (void)state;
+  enum { MODES = 10 };
+  static const double by = 1e-5;
+  struct bodies it = two_bodies();
+  size_t dofs = 3 * it.grid->node_count;
+  double value[MODES], largest = 0;
+  double *vector = dea_alloc(ctx, MODES * dofs, sizeof *vector);
+  double *u = dea_alloc(ctx, 3 * dofs, sizeof *u), *high = u + dofs, *low = high + dofs;
+  hold_both(&it);
+  memcpy(u, dea_solid_displacement(it.solid), dofs * sizeof *u);
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(dea_solid_body_release(ctx, it.solid, k, ALL), DEA_OK);
+  }
+  assert_int_equal(dea_solid_modes(ctx, it.solid, DEA_MODES_BY_VOLUME, MODES, value, vector),
+                   DEA_OK);
+  for (int m = 0; m < MODES; m++) {
+    largest = fmax(largest, fabs(value[m]));
+  }
+  for (size_t m = 0; m < MODES; m++) {
+    double *v = vector + m * dofs;
+    force_beside(&it, u, v, by, high);
+    force_beside(&it, u, v, -by, low);
+    for (size_t o = 0; o < MODES; o++) {
+      double product = 0;
+      for (size_t i = 0; i < dofs; i++) {
+        product += vector[o * dofs + i] * (high[i] - low[i]) / (2 * by);
+      }
+      assert_close(product, m == o ? value[m] : 0, 0, 1e-7 * largest);
+    }
+  }
+  dea_free(ctx, vector);
+  dea_free(ctx, u);
+  bodies_destroy(&it);
+}
+
+/* ---- invariance ---- */
+
+static int both_ends(const double X[3])
+{
+  return X[0] < 1e-9 ? 1 : X[0] > 2 - 1e-9 ? 2 : 0;
+}
+
+/* R of a rotation vector, and back. */
+static void rotation_of(const double w[3], double R[9])
+{
+  double angle = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  const double n[3] = {w[0] / angle, w[1] / angle, w[2] / angle};
+  const double cross[9] = {0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0};
+  for (int i = 0; i < 9; i++) {
+    R[i] = (i % 4 == 0 ? cos(angle) : 0) + sin(angle) * cross[i] +
+           (1 - cos(angle)) * n[i / 3] * n[i % 3];
+  }
+}
+
+static void vector_of(const double R[9], double w[3])
+{
+  double angle = acos(0.5 * (R[0] + R[4] + R[8] - 1)), size = 0.5 * angle / sin(angle);
+  w[0] = size * (R[7] - R[5]);
+  w[1] = size * (R[2] - R[6]);
+  w[2] = size * (R[3] - R[1]);
+}
+
+static void apply(const double R[9], const double v[3], double out[3])
+{
+  for (int i = 0; i < 3; i++) {
+    out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
+  }
+}
+
+/* A bar between two bodies, bent and twisted, and the same turned by 80 degrees as a whole: the
+ * energy stays, forces and moments turn. */
+static void test_turned_as_a_whole(void **state)
+{
+  (void)state;
+  static const double ends[BODIES_MAX][3] = {{0, 0.5, 0.5}, {2, 0.5, 0.5}}, origin[3] = {0};
+  static const double bend_t[3] = {-0.2, 0.3, 0.1}, bend_w[3] = {0.5, 0.3, -0.4};
+  static const double whole_w[3] = {-0.8, 0.9, 0.7}, whole_t[3] = {0.1, -0.2, 0.3};
+  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct bodies it = bodies_create(&bar, &layer, 1, 2, ends, 0, both_ends, free_nodes, NULL);
+  double Q[9], R[9], QR[9], w[3], t[3], x[3], force[2][3], moment[2][3], energy[2];
+  dea_solid_body_prescribe(ctx, it.solid, 0, ALL, origin, origin);
+  dea_solid_body_prescribe(ctx, it.solid, 1, ALL, bend_t, bend_w);
+  solve(&it);
+  energy[0] = it.report.energy_J;
+  dea_solid_body_reaction(it.solid, 1, force[0], moment[0]);
+  rotation_of(whole_w, Q);
+  rotation_of(bend_w, R);
+  for (int i = 0; i < 9; i++) {
+    QR[i] = Q[3 * (i / 3)] * R[i % 3] + Q[3 * (i / 3) + 1] * R[3 + i % 3] +
+            Q[3 * (i / 3) + 2] * R[6 + i % 3];
+  }
+  for (size_t k = 0; k < 2; k++) {
+    for (int i = 0; i < 3; i++) {
+      x[i] = ends[k][i] + (k == 1 ? bend_t[i] : 0);
+    }
+    apply(Q, x, t);
+    for (int i = 0; i < 3; i++) {
+      t[i] += whole_t[i] - ends[k][i];
+    }
+    vector_of(QR, w);
+    dea_solid_body_prescribe(ctx, it.solid, k, ALL, t, k == 0 ? whole_w : w);
+  }
+  solve(&it);
+  energy[1] = it.report.energy_J;
+  dea_solid_body_reaction(it.solid, 1, force[1], moment[1]);
+  double size = sqrt(force[0][0] * force[0][0] + force[0][1] * force[0][1]);
+  assert_close(energy[1], energy[0], 1e-9, 0);
+  apply(Q, force[0], x);
+  apply(Q, moment[0], w);
+  for (int i = 0; i < 3; i++) {
+    assert_close(force[1][i], x[i], 0, 1e-8 * size);
+    assert_close(moment[1][i], w[i], 0, 1e-8 * size);
+  }
+  bodies_destroy(&it);
+}
+
+/* ---- closed forms ---- */
+
+static int end_of_bar(const double X[3])
+{
+  return X[0] > 2 - 1e-9;
+}
+
+static int on_planes(const void *self, const double X[3])
+{
+  (void)self;
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
+}
+
+/* A bar that keeps its width, its end on a body that only shifts: pulled to a place, then by the
+ * force that this took. W = mu/2 (I1 - 3 - 2 ln J). */
+static void test_body_that_only_shifts(void **state)
+{
+  (void)state;
+  static const double end[BODIES_MAX][3] = {{2, 0, 0}}, stretch = 1.7, mu = 1e5;
+  const struct dea_constituent layer = dea_constituent_bonded(no_width_change);
+  struct bodies it =
+      bodies_create(&bar, &layer, 1, 1, end, 2 | 4 | TURNS, end_of_bar, on_planes, NULL);
+  double force[3], moment[3], t[3], w[3];
+  const double way[3] = {2 * (stretch - 1), 0, 0}, none[3] = {0};
+  assert_int_equal(dea_solid_body_prescribe(ctx, it.solid, 0, 1, way, none), DEA_OK);
+  solve(&it);
+  dea_solid_body_reaction(it.solid, 0, force, moment);
+  assert_close(force[0], mu * (stretch - 1 / stretch), 1e-9, 0);
+  assert_int_equal(dea_solid_body_release(ctx, it.solid, 0, 1), DEA_OK);
+  dea_solid_body_push(it.solid, 0, none, none);
+  solve(&it);
+  dea_solid_body_push(it.solid, 0, force, none);
+  solve(&it);
+  assert_true(it.report.unstable_modes == 0 && it.report.residual < 1e-8);
+  dea_solid_body_place(it.solid, 0, t, w);
+  assert_close(t[0], way[0], 1e-9, 0);
+  assert_close(fabs(t[1]) + fabs(t[2]) + fabs(w[0]) + fabs(w[1]) + fabs(w[2]), 0, 0, 0);
+  bodies_destroy(&it);
+}
+
+static int whole_block(const double X[3])
+{
+  (void)X;
+  return 1;
+}
+
+/* Lowest and highest root of det (K - x M) = 0 of two coupled coordinates. */
+static void two_modes(double k1, double k2, double m1, double m2, double m12, double out[2])
+{
+  double a = m1 * m2 - m12 * m12, b = k1 * m2 + k2 * m1, root = sqrt(b * b - 4 * a * k1 * k2);
+  out[0] = (b - root) / (2 * a);
+  out[1] = (b + root) / (2 * a);
+}
+
+static int by_size(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* A rigid block on springs under its bottom: six vibrations, of its mass and its tensor of inertia,
+ * wherever its point of reference is. */
+static void test_vibrations_of_a_rigid_block(void **state)
+{
+  (void)state;
+  static const double points[2][BODIES_MAX][3] = {{{1, 0.5, 0}}, {{-0.3, 2, 0.7}}};
+  static const double k[3] = {3e3, 5e3, 11e3}, rho = 700, a = 2, b = 1, h = 1;
+  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  double wanted[6], found[6], area = a * b, m = rho * a * b * h;
+  layer.density_kg_per_m3 = rho;
+  two_modes(k[0] * area, k[2] * a * a * area / 12, m, m * (a * a / 12 + h * h / 3), m * h / 2,
+            wanted);
+  two_modes(k[1] * area, k[2] * b * b * area / 12, m, m * (b * b / 12 + h * h / 3), m * h / 2,
+            wanted + 2);
+  wanted[4] = k[2] * area / m;
+  wanted[5] = (k[0] * b * b + k[1] * a * a) * area / 12 / (m * (a * a + b * b) / 12);
+  qsort(wanted, 6, sizeof *wanted, by_size);
+  for (int p = 0; p < 2; p++) {
+    struct dea_surface *bottom;
+    struct dea_foundation *springs;
+    struct bodies it =
+        bodies_create(&bar, &layer, 1, 1, points[p], 0, whole_block, free_nodes, NULL);
+    assert_int_equal(dea_surface_create(ctx, it.grid, DEA_FACE_BOTTOM, NULL, NULL, &bottom),
+                     DEA_OK);
+    assert_int_equal(dea_foundation_create(ctx, bottom, k, &springs), DEA_OK);
+    const struct dea_solid_load load = dea_foundation_load(springs);
+    assert_int_equal(dea_solid_add_load(ctx, it.solid, &load), DEA_OK);
+    solve(&it);
+    assert_int_equal(dea_solid_modes(ctx, it.solid, DEA_MODES_BY_MASS, 6, found, NULL), DEA_OK);
+    for (int i = 0; i < 6; i++) {
+      assert_close(found[i], wanted[i], 1e-9, 0);
+    }
+    bodies_destroy(&it);
+    dea_foundation_destroy(ctx, springs);
+    dea_surface_destroy(ctx, bottom);
+  }
+}
+
+/* ---- a part that is a million times stiffer ---- */
+
+static int last_third(const double X[3])
+{
+  return X[0] > 4. / 3 - 1e-9;
+}
+
+static int none_follows(const double X[3])
+{
+  (void)X;
+  return 0;
+}
+
+static int layer_of_region(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)ply;
+  return region;
+}
+
+/* Bent and twisted by a dead force on a corner, the end of a bar moves alike whether it is rigid or
+ * elastic and that much stiffer; turns of 20 degrees. */
+static void test_stiff_part(void **state)
+{
+  (void)state;
+  static const double centre[BODIES_MAX][3] = {{1.5, 0.5, 0.5}}, corner[3] = {2, 1, 1};
+  static const double force[3] = {1e3, 5e3, -8e3};
+  const struct dea_constituent layers[2] = {dea_constituent_bonded(elastic),
+                                            dea_constituent_bonded(stiff)};
+  struct bodies rigid =
+      bodies_create(&bar, layers, 2, 1, centre, 0, last_third, clamped, layer_of_region);
+  struct bodies soft =
+      bodies_create(&bar, layers, 2, 0, centre, 0, none_follows, clamped, layer_of_region);
+  size_t node = dea_grid_nearest(soft.grid, corner);
+  memcpy(dea_solid_force(rigid.solid) + 3 * node, force, sizeof force);
+  memcpy(dea_solid_force(soft.solid) + 3 * node, force, sizeof force);
+  solve(&rigid);
+  solve(&soft);
+  const double *u = dea_solid_displacement(rigid.solid), *v = dea_solid_displacement(soft.solid);
+  double most = 0, apart = 0, t[3], w[3];
+  for (size_t i = 0; i < 3 * soft.grid->node_count; i++) {
+    most = fmax(most, fabs(v[i]));
+    apart = fmax(apart, fabs(u[i] - v[i]));
+  }
+  dea_solid_body_place(rigid.solid, 0, t, w);
+  assert_true(sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) > 0.2);
+  assert_close(apart / most, 0, 0, 1e-5);
+  bodies_destroy(&rigid);
+  bodies_destroy(&soft);
+}
+
+/* ---- what cannot be ---- */
+
+static void test_errors(void **state)
+{
+  (void)state;
+  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  size_t node, nodes = grid->node_count;
+  const double X0[6] = {2, 0.5, 0.5, 2, 0.5, 0.5};
+  assert_int_equal(dea_grid_add_nodes(ctx, grid, 2, X0, &node), DEA_OK);
+  assert_int_equal(node, nodes);
+  int *follows = dea_alloc(ctx, grid->node_count, sizeof *follows);
+  struct dea_solid_body body = {.node = node};
+  struct dea_solid_options options = {.order_z = bar.order_z,
+                                      .layer_count = 1,
+                                      .layers = &layer,
+                                      .held = clamped,
+                                      .body_count = 1,
+                                      .bodies = &body,
+                                      .body_of = follows};
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "no node follows body 0"));
+  for (size_t n = 0; n < nodes; n++) {
+    follows[n] = end_of_bar(grid->X + 3 * n);
+  }
+  options.field = DEA_SOLID_FIELD_COUPLED;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_UNSUPPORTED);
+  options.field = DEA_SOLID_FIELD_THIN;
+  options.held = on_planes;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "hold the body instead"));
+  body.node = 0;
+  options.held = clamped;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "two nodes of its own"));
+  body.node = node;
+  options.held = free_nodes;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "is not held"));
+  const double none[3] = {0};
+  assert_int_equal(dea_solid_prescribe(ctx, solid, dea_grid_nearest(grid, X0), 1, none),
+                   DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "follows a body"));
+  assert_int_equal(dea_solid_body_prescribe(ctx, solid, 0, ALL, none, none), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK); // held by its body alone
+  assert_int_equal(dea_solid_body_prescribe(ctx, solid, 1, ALL, none, none), DEA_E_ARGUMENT);
+  dea_solid_destroy(ctx, solid);
+  for (size_t n = 0; n < nodes; n++) { // an edge along x, which the body can turn about
+    follows[n] = grid->X[3 * n + 1] < 1e-9 && grid->X[3 * n + 2] < 1e-9 && grid->X[3 * n] > 1;
+  }
+  grid->X[3 * node + 1] = grid->X[3 * node + 2] = 0;
+  options.held = clamped;
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_context_message(ctx), "can turn without moving"));
+  dea_solid_destroy(ctx, solid);
+  dea_free(ctx, follows);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_followers_move_as_one),
+      cmocka_unit_test(test_forces_are_slopes_of_the_energy),
+      cmocka_unit_test(test_forces_and_moments_balance),
+      cmocka_unit_test(test_tangent_is_slope_of_forces),
+      cmocka_unit_test(test_turned_as_a_whole),
+      cmocka_unit_test(test_body_that_only_shifts),
+      cmocka_unit_test(test_vibrations_of_a_rigid_block),
+      cmocka_unit_test(test_stiff_part),
+      cmocka_unit_test(test_errors),
+  };
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
+}
