@@ -27,9 +27,8 @@ static void evaluate(void *user)
 
 int main(void)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
-                                   .param = yeoh,
+                                   .param = {178.4e3, -6e3, 4.2e3},
                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                    .kappa_Pa = 4e7,
                                    .permittivity_F_per_m = 2.5e-11,

@@ -72,19 +72,21 @@ static void measure(struct dea_context *ctx, struct dea_solid *s, struct sample 
 static int run_one(double unknowns)
 {
   enum { CUTS_MAX = 400 };
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static double cuts[CUTS_MAX + 1];
   size_t count = (size_t)lround(0.5 * (sqrt(unknowns / 15) - 1)); // (2 count + 1)^2 columns of five
   struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = yeoh,
+                                  .param = {178.4e3, -6e3, 4.2e3},
                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                   .kappa_Pa = 4e7,
                                   .permittivity_F_per_m = 2.5e-11,
                                   .thickness_m = thickness_m};
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
   const struct dea_ply plies[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
-  const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &layer, .active = under_voltage, .held = edges};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
+                                            .active = under_voltage,
+                                            .held = edges};
   struct dea_context *ctx = NULL;
   struct dea_grid *grid;
   struct dea_solid *solid;

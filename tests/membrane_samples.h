@@ -11,11 +11,11 @@ static const double permittivity = 2.8 * DEA_EPSILON_0;
 static inline struct dea_constituent film(const struct dea_law *law, const double *param, double g1,
                                           double g2)
 {
-  return (struct dea_constituent){.law = law,
-                                  .param = param,
-                                  .pre_stretch = {g1, g2, 1 / (g1 * g2)},
-                                  .permittivity_F_per_m = permittivity,
-                                  .thickness_m = 100e-6 / (g1 * g2)};
+  struct dea_constituent out = {.pre_stretch = {g1, g2, 1 / (g1 * g2)},
+                                .permittivity_F_per_m = permittivity,
+                                .thickness_m = 100e-6 / (g1 * g2)};
+  dea_constituent_set_law(&out, law, param);
+  return out;
 }
 
 static inline struct dea_constituent yeoh_film(double pre_stretch)

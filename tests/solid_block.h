@@ -43,7 +43,7 @@ static inline struct dea_solid *block_solid(struct dea_context *ctx, const struc
                                             int (*held)(const void *self, const double X[3]))
 {
   const struct dea_solid_options options = {
-      .order_z = order_z, .layer_count = 1, .layers = layer, .held = held};
+      .order_z = order_z, .constituent_count = 1, .constituents = layer, .held = held};
   struct dea_solid *solid;
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   return solid;

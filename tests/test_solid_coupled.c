@@ -9,7 +9,6 @@ static struct dea_hex_shape shape;
 static struct dea_element_result at, up, down;
 
 static const double scale = 2e8; // V/m
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 
@@ -21,7 +20,7 @@ static struct dea_constituent film(double pre_stretch)
 {
   double z = 1 / (pre_stretch * pre_stretch);
   struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = yeoh,
+                                  .param = {178.4e3, -6e3, 4.2e3},
                                   .pre_stretch = {pre_stretch, pre_stretch, z},
                                   .kappa_Pa = 4e7,
                                   .permittivity_F_per_m = 2.5e-11,

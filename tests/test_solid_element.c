@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 static const double scale_V_per_m = 2e8, h = 44e-6, rho = 970;
@@ -41,7 +40,7 @@ static void fill(int order, const struct dea_element *element, struct sample *s)
   int n = order + 1, levels = element->nodes / (n * n);
   *s = (struct sample){.element = element,
                        .film = {.law = dea_law_find("yeoh"),
-                                .param = yeoh,
+                                .param = {178.4e3, -6e3, 4.2e3},
                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                 .kappa_Pa = 4e7,
                                 .permittivity_F_per_m = 2.5e-11,

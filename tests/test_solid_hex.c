@@ -13,15 +13,13 @@
 static struct dea_hex_shape shape;
 static struct dea_element_result at, up, down;
 
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-
 /* Pre-stretched film with a field (law), or a compressible solid. */
 static struct dea_constituent film(double pre_stretch)
 {
   double h = 100e-6 / (pre_stretch * pre_stretch);
   struct dea_constituent layer = {
       .law = dea_law_find("yeoh"),
-      .param = yeoh,
+      .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,

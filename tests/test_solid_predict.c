@@ -9,12 +9,11 @@ static struct dea_element_result plain, other;
 static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], way[DEA_HEX_DOFS_MAX];
 static double predicted[DEA_HEX_PRESSURES_MAX + 6 * DEA_HEX_GAUSS_MAX];
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3, 5e2};
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
 static struct dea_constituent film(void)
 {
   struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = yeoh,
+                                  .param = {178.4e3, -6e3, 4.2e3},
                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                   .kappa_Pa = 4e7,
                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,

@@ -72,12 +72,11 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
                                    kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid),
                    DEA_OK);
   assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
-  s->layers[0] = (struct dea_constituent){.law = film.law,
-                                          .param = film.param,
-                                          .pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
+  s->layers[0] = (struct dea_constituent){.pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
                                           .kappa_Pa = 4e7,
                                           .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
                                           .thickness_m = h_m};
+  dea_constituent_set_law(&s->layers[0], film.law, film.param);
   s->layers[1] = dea_constituent_bonded(fibre);
   assert_int_equal(dea_constituent_relax(&s->layers[0]), DEA_OK);
   size_t count = s->grid->element_count;

@@ -43,11 +43,10 @@ struct disc {
 static struct disc disc_create(double H0, double pre_stretch, int order_z, size_t fine,
                                double edge_m)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   double h = H0 / (pre_stretch * pre_stretch);
   struct dea_constituent film = {
       .law = dea_law_find("yeoh"),
-      .param = yeoh,
+      .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -57,8 +56,8 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
   const struct dea_quarter quarter = {2, order_z, a_m, b_m, h, .fine = fine, .edge = edge_m};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &disc.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = order_z,
-                                            .layer_count = 1,
-                                            .layers = &film,
+                                            .constituent_count = 1,
+                                            .constituents = &film,
                                             .active = inner_region,
                                             .held = disc_held};
   assert_int_equal(dea_solid_create(ctx, disc.grid, &options, &disc.solid), DEA_OK);
@@ -168,11 +167,10 @@ static bool film_inside(const void *self, int region, int ply)
 static void test_four_fibres_as_built(void **state)
 {
   (void)state;
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static const double plastic[] = {2950e6, 0.38};
   const double h = 100e-6 / 2.25;
   struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = yeoh,
+                                      .param = {178.4e3, -6e3, 4.2e3},
                                       .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -181,9 +179,9 @@ static void test_four_fibres_as_built(void **state)
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           4,
                                       2e-3, 100e-6, .fine = 3, .across = 2, .edge = 2e-4};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = sheet_layer,
                                             .active = film_inside,
                                             .held = disc_held};
   struct dea_grid *grid;
@@ -232,7 +230,7 @@ static void test_cantilever_under_end_shear(void **state)
   const struct dea_ply ply = {0.1, 1, 2};
   const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &steel, .held = clamp};
+      .order_z = 2, .constituent_count = 1, .constituents = &steel, .held = clamp};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -271,7 +269,7 @@ static void make_solid(struct dea_context *failing)
 {
   const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &steel, .held = disc_held};
+      .order_z = 2, .constituent_count = 1, .constituents = &steel, .held = disc_held};
   struct dea_solid *solid = NULL;
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);

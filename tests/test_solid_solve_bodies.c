@@ -44,9 +44,9 @@ static struct bodies bodies_create(const struct block *block, const struct dea_c
     it.grid->region[e] = it.grid->X[3 * it.grid->nodes[e * DEA_HEX_NODES_MAX]] > 1;
   }
   const struct dea_solid_options options = {.order_z = block->order_z,
-                                            .layer_count = layer_count,
-                                            .layers = layers,
-                                            .layer_of = layer_of,
+                                            .constituent_count = layer_count,
+                                            .constituents = layers,
+                                            .constituent_of = layer_of,
                                             .held = support,
                                             .body_count = count,
                                             .bodies = it.body,
@@ -513,8 +513,8 @@ static void test_errors(void **state)
   int *follows = dea_alloc(ctx, grid->node_count, sizeof *follows);
   struct dea_solid_body body = {.node = node};
   struct dea_solid_options options = {.order_z = bar.order_z,
-                                      .layer_count = 1,
-                                      .layers = &layer,
+                                      .constituent_count = 1,
+                                      .constituents = &layer,
                                       .held = clamped,
                                       .body_count = 1,
                                       .bodies = &body,

@@ -47,7 +47,7 @@ static void create(void)
   const struct dea_ply ply = {thickness, 1, 2};
   const struct dea_constituent layer = dea_constituent_bonded(elastic);
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &layer, .held = clamped};
+      .order_z = 2, .constituent_count = 1, .constituents = &layer, .held = clamped};
   assert_int_equal(
       dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid),
       DEA_OK);

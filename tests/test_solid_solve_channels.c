@@ -12,12 +12,11 @@
 #include <string.h>
 
 static const double h_m = 44e-6, length_m = 4e-3;
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
 static struct dea_constituent film_of(double thickness_m)
 {
   struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = yeoh,
+                                 .param = {178.4e3, -6e3, 4.2e3},
                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                  .kappa_Pa = 4e7,
                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -73,8 +72,8 @@ static struct strip strip_create(bool membrane, size_t channels, const double *s
   const struct dea_ply ply = {membrane ? 0 : h_m, 1, 2};
   const struct dea_constituent film = film_of(h_m);
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &film,
+                                            .constituent_count = 1,
+                                            .constituents = &film,
                                             .active = all_but_the_middle,
                                             .channels = channels > 0 ? two_channels : NULL,
                                             .channel_count = channels,
@@ -274,8 +273,8 @@ static void solve_stack(size_t films, double thickness_m, double voltage_V, doub
     plies[i] = (struct dea_ply){thickness_m, 1, 2};
   }
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &film,
+                                            .constituent_count = 1,
+                                            .constituents = &film,
                                             .active = everywhere,
                                             .channels = alternating,
                                             .channel_count = 1,
@@ -342,8 +341,8 @@ static void test_refused(void **state)
   struct strip strip = strip_create(false, 2, NULL);
   const struct dea_constituent film = film_of(h_m);
   struct dea_solid_options options = {.order_z = 2,
-                                      .layer_count = 1,
-                                      .layers = &film,
+                                      .constituent_count = 1,
+                                      .constituents = &film,
                                       .active = everywhere,
                                       .channels = unknown_channel,
                                       .channel_count = 1,

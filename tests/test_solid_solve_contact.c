@@ -144,9 +144,8 @@ static int disc_held(const void *self, const double X[3])
 static void test_flat_punch_on_film(void **state)
 {
   (void)state;
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = yeoh,
+                                 .param = {178.4e3, -6e3, 4.2e3},
                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                  .kappa_Pa = 4e7,
                                  .thickness_m = film_h};

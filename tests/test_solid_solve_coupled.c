@@ -12,13 +12,12 @@
 #include <string.h>
 
 static const double epsilon = 2.8 * DEA_EPSILON_0;
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 
 static struct dea_constituent film(double pre_stretch, double thickness_m)
 {
   struct dea_constituent layer = {
       .law = dea_law_find("yeoh"),
-      .param = yeoh,
+      .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = epsilon,
@@ -85,9 +84,9 @@ static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, 
       2, 2, body.location.a, body.location.b, h, .fine = fine, .edge = edge};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .layer_count = 1,
-                                            .layers = &soft,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 1,
+                                            .constituents = &soft,
+                                            .constituent_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = disc_held,
                                             .electrode = faces,
@@ -174,8 +173,8 @@ static struct body strip(enum dea_solid_field_kind field, const struct location 
   const struct dea_block block = {map_strip, &body.location, cuts, one, count, 1, 0};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .layer_count = 1,
-                                            .layers = &soft,
+                                            .constituent_count = 1,
+                                            .constituents = &soft,
                                             .active = everywhere,
                                             .held = strip_held,
                                             .electrode = strip_faces,
@@ -289,9 +288,9 @@ static double lift(enum dea_solid_field_kind field, bool axes)
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 1e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = axes ? swapped_held : disc_held,
                                             .frame = axes ? swapped : NULL,
@@ -341,9 +340,9 @@ static void test_a_field_needs_electrodes(void **state)
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
   struct dea_solid_options options = {.order_z = 2,
                                       .field = DEA_SOLID_FIELD_COUPLED,
-                                      .layer_count = 1,
-                                      .layers = &soft,
-                                      .layer_of = sheet_layer,
+                                      .constituent_count = 1,
+                                      .constituents = &soft,
+                                      .constituent_of = sheet_layer,
                                       .active = electrode_film,
                                       .held = disc_held,
                                       .electrode = no_electrode,
@@ -367,9 +366,9 @@ static void make_solid(struct dea_context *failing)
   const struct dea_constituent soft = film(1.5, 44e-6);
   const struct dea_solid_options options = {.order_z = 1,
                                             .field = DEA_SOLID_FIELD_COUPLED,
-                                            .layer_count = 1,
-                                            .layers = &soft,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 1,
+                                            .constituents = &soft,
+                                            .constituent_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = disc_held,
                                             .electrode = faces,

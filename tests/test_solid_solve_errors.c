@@ -11,9 +11,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
-static const double gent[DEA_LAW_PARAM_MAX] = {100e3, 3};
-
 static void map_square(const void *self, double s, double t, double x[2])
 {
   (void)self;
@@ -46,8 +43,8 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
   const struct dea_block block = {map_square, NULL, cuts, cuts, 2, 2, 0};
   const struct dea_ply ply = {1e-3, 1, 2};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = layer,
+                                            .constituent_count = 1,
+                                            .constituents = layer,
                                             .active = everywhere,
                                             .held = held_at_ends,
                                             .self = bits,
@@ -71,7 +68,7 @@ static void clear(void)
 static struct dea_constituent film(void)
 {
   struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = yeoh,
+                                  .param = {178.4e3, -6e3, 4.2e3},
                                   .pre_stretch = {1, 1, 1},
                                   .kappa_Pa = 4e7,
                                   .permittivity_F_per_m = 2.5e-11,
@@ -126,8 +123,7 @@ static void test_law_that_ends(void **state)
   (void)state;
   struct dea_constituent layer = film();
   static const int held[] = {7, 7};
-  layer.law = dea_law_find("gent"); // I1 - 3 below 3
-  layer.param = gent;
+  dea_constituent_set_law(&layer, dea_law_find("gent"), (const double[]){100e3, 3}); // I1 - 3 < 3
   layer.pre_stretch[0] = layer.pre_stretch[1] = 2;
   layer.pre_stretch[2] = 0.25;
   assert_int_equal(solve(&layer, held, 0), DEA_E_DOMAIN);
@@ -140,10 +136,8 @@ static void test_law_that_ends(void **state)
 static void test_voltage_beyond_any_equilibrium(void **state)
 {
   (void)state;
-  static const double neo_hookean[DEA_LAW_PARAM_MAX] = {356.8e3};
   struct dea_constituent layer = film();
-  layer.law = dea_law_find("neo-hookean");
-  layer.param = neo_hookean;
+  dea_constituent_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
   assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   static const int held[] = {7, 0};
   struct dea_solid_report report;

@@ -61,10 +61,9 @@ static bool active(const void *self, int region, int ply)
 /* Four fibres on a coarse mesh up to 4 kV; u: [node_count][3], turned back. */
 static struct dea_solid_report run(double angle, double **u, size_t *count)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const struct turned turned = {angle, cos(angle), sin(angle)};
   struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = yeoh,
+                                      .param = {178.4e3, -6e3, 4.2e3},
                                       .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -72,9 +71,9 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
                                      dea_constituent_bonded((const double[]){2.75e9, 0.375})};
   const struct dea_quarter quarter = {2, 2, a_m, b_m, h_m, 4, 2e-3, 100e-6, .fine = 2, .across = 1};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = layer_of,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = layer_of,
                                             .active = active,
                                             .held = held,
                                             .frame = angle != 0 ? frame : NULL,

@@ -51,12 +51,10 @@ struct actuator {
 static struct actuator actuator_create(const struct dea_quarter *mesh, double pre_stretch,
                                        bool relaxed)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static const double plastic[] = {2950e6, 0.38};
-  static double bond[2];
   const double area = pre_stretch * pre_stretch;
   struct dea_constituent layers[3] = {{.law = dea_law_find("yeoh"),
-                                       .param = yeoh,
+                                       .param = {178.4e3, -6e3, 4.2e3},
                                        .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
                                        .kappa_Pa = 4e7,
                                        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -69,12 +67,12 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
   quarter.film_thickness = layers[FILM].thickness_m;
   quarter.membrane = true;
   assert_int_equal(dea_constituent_relax(&layers[FILM]), DEA_OK);
-  assert_int_equal(dea_membrane_bond(&layers[FILM], bond, &layers[BOND]), DEA_OK);
+  assert_int_equal(dea_membrane_bond(&layers[FILM], &layers[BOND]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &it.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = quarter.order_z,
-                                            .layer_count = 3,
-                                            .layers = layers,
-                                            .layer_of = layer_of,
+                                            .constituent_count = 3,
+                                            .constituents = layers,
+                                            .constituent_of = layer_of,
                                             .active = active,
                                             .held = held};
   assert_int_equal(dea_solid_create(ctx, it.grid, &options, &it.solid), DEA_OK);
@@ -217,15 +215,14 @@ static void test_four_fibres_as_built(void **state)
 static void test_law_that_is_refused(void **state)
 {
   (void)state;
-  static const double param[DEA_LAW_PARAM_MAX] = {100e3, 400e3, 0.8, 0.1};
   const struct dea_constituent layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
-                                        .param = param,
+                                        .param = {100e3, 400e3, 0.8, 0.1},
                                         .pre_stretch = {1, 1, 1},
                                         .thickness_m = 1e-4};
   const struct dea_solid_options options = {.order_z = 1,
-                                            .layer_count = 1,
-                                            .layers = &layer,
-                                            .layer_of = layer_of,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
+                                            .constituent_of = layer_of,
                                             .active = active,
                                             .held = held};
   const struct dea_quarter quarter = {2, 1, a_m, b_m, .fine = 1, .membrane = true};

@@ -43,11 +43,10 @@ struct answer {
 /* As built at 3 kV with N fibres on a coarse mesh. */
 static struct answer run(int fibres, int sectors)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static const double plastic[] = {2950e6, 0.38};
   const double pi = acos(-1);
   struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = yeoh,
+                                      .param = {178.4e3, -6e3, 4.2e3},
                                       .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -68,9 +67,9 @@ static struct answer run(int fibres, int sectors)
                                        .size = 0.5 * a_m,
                                        .edge = 0.2 * a_m};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = layer_of,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = layer_of,
                                             .active = active,
                                             .held = held,
                                             .frame = frame,

@@ -92,11 +92,10 @@ struct test_case {
 
 static struct answer solve(const struct test_case *k)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   static const double plastic[] = {2950e6, 0.38};
   const double l = k->pre_stretch, h = 100e-6 / (l * l);
   struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = yeoh,
+                                      .param = {178.4e3, -6e3, 4.2e3},
                                       .pre_stretch = {l, l, 1 / (l * l)},
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -105,9 +104,9 @@ static struct answer solve(const struct test_case *k)
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           k->fibres,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 8e-4};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = sheet_layer,
                                             .active = film_inside,
                                             .held = quarter_held,
                                             .field = k->field,

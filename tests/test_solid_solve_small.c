@@ -64,10 +64,9 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
  * 1/(order + 1)^2 of the element at their edge, much wider than the film is thick. */
 static void check_capacity(int order)
 {
-  static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
   const double V = 100;
   struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = yeoh,
+                                      .param = {178.4e3, -6e3, 4.2e3},
                                       .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                       .kappa_Pa = 4e7,
                                       .permittivity_F_per_m = epsilon,
@@ -86,9 +85,9 @@ static void check_capacity(int order)
                                       .edge = 0.5e-3};
   const struct dea_solid_options options = {.order_z = order,
                                             .field = DEA_SOLID_FIELD_COUPLED,
-                                            .layer_count = 2,
-                                            .layers = layers,
-                                            .layer_of = sheet_layer,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = sheet_layer,
                                             .held = held,
                                             .frame = swapped,
                                             .electrode = faces};

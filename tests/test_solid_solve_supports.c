@@ -102,8 +102,8 @@ static void test_prescribed_in_local_axes(void **state)
   (void)state;
   struct dea_grid *grid = block_grid(ctx, &bar);
   const struct dea_solid_options options = {.order_z = bar.order_z,
-                                            .layer_count = 1,
-                                            .layers = &soft,
+                                            .constituent_count = 1,
+                                            .constituents = &soft,
                                             .held = on_planes_turned,
                                             .frame = turned_end};
   struct dea_solid *solid;

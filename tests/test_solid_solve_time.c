@@ -62,7 +62,7 @@ static void film_create(struct film *film)
 {
   const double p = film->pre_stretch;
   struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                  .param = mu,
+                                  .param = {mu[0]},
                                   .pre_stretch = {p, p, 1 / (p * p)},
                                   .kappa_Pa = 100 * mu[0],
                                   .permittivity_F_per_m = eps,
@@ -73,8 +73,8 @@ static void film_create(struct film *film)
   film->grid = block_grid(ctx, &film->block);
   assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = film->block.order_z,
-                                            .layer_count = 1,
-                                            .layers = &layer,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
                                             .active = everywhere,
                                             .held = film->held,
                                             .self = film};

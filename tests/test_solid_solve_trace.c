@@ -12,7 +12,6 @@
 #include <string.h>
 
 /* Units: mu = eps = 1. */
-static const double neo_hookean[DEA_LAW_PARAM_MAX] = {1};
 static struct dea_grid *grid;
 static struct dea_solid *solid;
 static struct dea_solid_continuation *trace;
@@ -32,16 +31,15 @@ static dea_status try(struct dea_context *with, const struct block *block, const
   static const double mu_1[] = {2, 0};
   struct dea_constituent layer = dea_constituent_bonded(mu_1);
   if (law != NULL) {
-    layer.law = dea_law_find(law);
-    layer.param = neo_hookean;
+    dea_constituent_set_law(&layer, dea_law_find(law), (const double[]){1});
     layer.kappa_Pa = 100;
     layer.permittivity_F_per_m = 1;
   }
   layer.thickness_m = block->size[2];
   assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = block->order_z,
-                                            .layer_count = 1,
-                                            .layers = &layer,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = block};

@@ -85,7 +85,7 @@ static inline void body_create(struct body *body)
 {
   double cuts[33], one[2] = {0, 1}, p = body->pre_stretch;
   struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                  .param = mu,
+                                  .param = {mu[0]},
                                   .pre_stretch = {p, p, 1 / (p * p)},
                                   .kappa_Pa = 100 * mu[0],
                                   .permittivity_F_per_m = eps,
@@ -102,8 +102,8 @@ static inline void body_create(struct body *body)
   const struct dea_ply ply = {body->size[2], 1, 2};
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, body->size[0], &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &layer,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
                                             .active = all_active,
                                             .held = body->held,
                                             .self = body};

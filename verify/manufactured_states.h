@@ -76,7 +76,7 @@ static inline struct dea_constituent layer_of(bool compressible, bool field)
   layer.thickness_m = 1;
   if (!compressible) {
     layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
-                                     .param = yeoh,
+                                     .param = {yeoh[0], yeoh[1], yeoh[2]},
                                      .pre_stretch = {1, 1, 1},
                                      .kappa_Pa = 100,
                                      .thickness_m = 1};
@@ -159,8 +159,8 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
   const struct dea_solid_options options = {
       .order_z = order,
       .field = exact->potential != NULL ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
-      .layer_count = 1,
-      .layers = &exact->layer,
+      .constituent_count = 1,
+      .constituents = &exact->layer,
       .held = held,
       .electrode = electrode,
       .self = exact};

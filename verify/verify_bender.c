@@ -124,7 +124,7 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
   struct dea_solid *solid;
   struct dea_solid_report report;
   struct dea_constituent layer = {.law = dea_law_find("gent"),
-                                  .param = gent,
+                                  .param = {gent[0], gent[1]},
                                   .pre_stretch = {1, 1, 1},
                                   .kappa_Pa = 100,
                                   .permittivity_F_per_m = 1,
@@ -138,8 +138,8 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, plies, 2, NULL, -1, length, &grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = kind,
-                                            .layer_count = 1,
-                                            .layers = &layer,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
                                             .active = upper,
                                             .held = clamp ? clamped : mirrored,
                                             .electrode = electrode};

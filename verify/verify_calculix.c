@@ -60,10 +60,12 @@ static struct answer ours(int elements, double stretch)
   const struct dea_block block = {map_plate,        NULL, cuts, cuts, (size_t)elements,
                                   (size_t)elements, 0};
   const struct dea_ply ply = {half_thickness_m, 2, 2};
-  struct dea_constituent rubber = {
-      .law = dea_law_find("yeoh"), .param = yeoh, .pre_stretch = {1, 1, 1}, .kappa_Pa = 4e7};
+  struct dea_constituent rubber = {.law = dea_law_find("yeoh"),
+                                   .param = {yeoh[0], yeoh[1], yeoh[2]},
+                                   .pre_stretch = {1, 1, 1},
+                                   .kappa_Pa = 4e7};
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
+      .order_z = 2, .constituent_count = 1, .constituents = &rubber, .held = held};
   struct dea_grid *grid;
   struct dea_solid *solid;
   verify_ok(ctx, dea_constituent_relax(&rubber));

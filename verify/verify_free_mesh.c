@@ -154,7 +154,6 @@ static void section(const struct exact *exact, bool small)
 /* ---- the plain disc ---- */
 
 static const double frame_m = 15e-3, a_m = 3.75e-3, H0_m = 100e-6;
-static const double table_1[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3}; // paper Table 1
 
 struct answer {
   double strain, capacitance_F, energy_J;
@@ -181,15 +180,15 @@ static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
 {
   const double h = H0_m / 2.25;
   struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = table_1,
+                                 .param = {178.4e3, -6e3, 4.2e3}, // paper Table 1
                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                  .kappa_Pa = 4e7,
                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
                                  .thickness_m = h};
   verify_ok(ctx, dea_constituent_relax(&film));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &film,
+                                            .constituent_count = 1,
+                                            .constituents = &film,
                                             .active = on_electrode,
                                             .held = disc_held,
                                             .self = &electrode_region};

@@ -55,8 +55,8 @@ static void body_create(struct body *body, struct dea_constituent layer,
   verify_ok(ctx, dea_grid_create(ctx, body->order, &block, 1, &ply, 1, NULL, 0, body->size[0],
                                  &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .layer_count = 1,
-                                            .layers = &layer,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = body};
@@ -172,10 +172,9 @@ static struct body film_create(const struct film *film, int order, double kappa_
                       .across = 1,
                       .order = order,
                       .kappa_s = kappa_s};
-  const struct dea_constituent layer = {.law = dea_law_find(film->law),
-                                        .param = film->param,
-                                        .pre_stretch = {pre, pre, 1 / (pre * pre)},
-                                        .permittivity_F_per_m = film->permittivity};
+  struct dea_constituent layer = {.pre_stretch = {pre, pre, 1 / (pre * pre)},
+                                  .permittivity_F_per_m = film->permittivity};
+  dea_constituent_set_law(&layer, dea_law_find(film->law), film->param);
   body_create(&body, layer, on_planes);
   if (pre > 1) {
     hang_weights(&body);
@@ -392,10 +391,9 @@ static double follow_buckled(struct body *body, const struct dea_continuation_po
 
 static void buckle(size_t count, int order, double h, double tolerance)
 {
-  static const double mu[DEA_LAW_PARAM_MAX] = {1};
   const double pi = acos(-1), critical = 4 * pi * pi / 3 * h * h;
   const struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                        .param = mu,
+                                        .param = {1},
                                         .pre_stretch = {1, 1, 1},
                                         .permittivity_F_per_m = 1};
   struct body body = {.size = {1, 0.1, h}, .count = count, .across = 1, .order = order};

@@ -21,15 +21,15 @@ struct shell {
 /* Solid, surface and load for the grid of the shell. */
 static void shell_fill(struct shell *shell, int (*held)(const void *self, const double X[3]))
 {
-  static const double mu[DEA_LAW_PARAM_MAX] = {1}, origin[3] = {0, 0, 0};
+  static const double origin[3] = {0, 0, 0};
   struct dea_constituent rubber = {.law = dea_law_find("neo-hookean"),
-                                   .param = mu,
+                                   .param = {1},
                                    .pre_stretch = {1, 1, 1},
                                    .kappa_Pa = 100,
                                    .thickness_m = shell->H};
   verify_ok(ctx, dea_constituent_relax(&rubber));
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &rubber, .held = held};
+      .order_z = 2, .constituent_count = 1, .constituents = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
   verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->inside));
   verify_ok(ctx, dea_pressure_create(ctx, shell->inside, origin, &shell->pressure));

@@ -85,7 +85,7 @@ static struct plate plate_create(const struct problem *problem, int order, const
   elastic[0] = problem->modulus;
   const struct dea_constituent layer = dea_constituent_bonded(elastic);
   const struct dea_solid_options options = {
-      .order_z = 2, .layer_count = 1, .layers = &layer, .held = not_held};
+      .order_z = 2, .constituent_count = 1, .constituents = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};
   struct plate plate = {.grid = unit_square(order, count, problem->thickness)};
   struct dea_surface *end;

@@ -14,27 +14,25 @@ static const double incompressible = 0.49;
 static struct dea_constituent stretched(enum dea_part part, const struct dea_material *material,
                                         double pre_stretch)
 {
-  return (struct dea_constituent){
+  struct dea_constituent out = {
       .part = part,
-      .law = material->law,
-      .param = material->param,
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
   };
+  dea_constituent_set_law(&out, material->law, material->param);
+  return out;
 }
 
-/* A part that is bonded free of stress. param: memory for the parameters of its law. */
+/* A part that is bonded free of stress. */
 static struct dea_constituent bonded(enum dea_part part, double young_modulus_Pa,
-                                     double poisson_ratio, double param[2])
+                                     double poisson_ratio)
 {
-  param[0] = young_modulus_Pa;
-  param[1] = poisson_ratio;
+  const double param[] = {young_modulus_Pa, poisson_ratio}, shear_modulus = young_modulus_Pa / 3;
   struct dea_constituent out = dea_constituent_bonded(param);
   out.part = part;
   if (poisson_ratio >= incompressible) {
-    param[0] = young_modulus_Pa / 3;
-    out.law = dea_law_find("neo-hookean");
-    out.kappa_Pa = kappa_share * param[0];
+    dea_constituent_set_law(&out, dea_law_find("neo-hookean"), &shear_modulus);
+    out.kappa_Pa = kappa_share * shear_modulus;
   }
   return out;
 }
@@ -88,13 +86,12 @@ static dea_status make_membrane(struct dea_context *ctx, bool stiff_electrodes,
   struct dea_constituent *film = &constituents[DEA_CONSTITUENT_FILM],
                          *electrode = &constituents[DEA_CONSTITUENT_ELECTRODE];
   struct dea_constituent *under = &constituents[DEA_CONSTITUENT_BOND_ELECTRODE];
-  dea_status status = dea_membrane_bond(film, out->param[DEA_CONSTITUENT_BOND],
-                                        &constituents[DEA_CONSTITUENT_BOND]);
+  dea_status status = dea_membrane_bond(film, &constituents[DEA_CONSTITUENT_BOND]);
   film->relaxed = !stiff_electrodes; // bonded plies wrinkle together, not each by itself
   if (status == DEA_OK && stiff_electrodes) {
-    status = dea_membrane_bond(electrode, out->param[DEA_CONSTITUENT_BOND_ELECTRODE], under);
+    status = dea_membrane_bond(electrode, under);
     // the load comes in below it, and not over its depth as a film's own does
-    out->param[DEA_CONSTITUENT_BOND_ELECTRODE][0] /= 1.5;
+    under->param[0] /= 1.5;
     electrode->thickness_m *= 2; // both
   }
   return status == DEA_OK ? DEA_OK
@@ -113,7 +110,7 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, d, settings, &out->plate));
   struct dea_constituent *constituents = out->constituents;
   for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) { // also what this device has not
-    constituents[i] = dea_constituent_bonded(out->param[i]);
+    constituents[i] = dea_constituent_bonded((const double[]){0, 0});
   }
   double l = d->pre_stretch, slope = d->film.permittivity.slope;
   constituents[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
@@ -126,11 +123,9 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
       stretched(DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
   constituents[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
-  constituents[DEA_CONSTITUENT_GLUE] =
-      bonded(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5, out->param[DEA_CONSTITUENT_GLUE]);
+  constituents[DEA_CONSTITUENT_GLUE] = bonded(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5);
   constituents[DEA_CONSTITUENT_FIBRE] =
-      bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa, d->fibre.poisson_ratio,
-             out->param[DEA_CONSTITUENT_FIBRE]);
+      bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa, d->fibre.poisson_ratio);
   for (int i = 0; i < DEA_CONSTITUENT_BOND; i++) { // bonds come below, free of stress
     bool there = i == DEA_CONSTITUENT_FILM ||
                  (i == DEA_CONSTITUENT_ELECTRODE && film.electrode != NULL) ||

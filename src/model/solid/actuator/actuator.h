@@ -15,13 +15,11 @@ enum {
   DEA_CONSTITUENT_COUNT
 };
 
-/* Stays where it is: constituents lend from it. */
 struct dea_actuator {
   const struct dea_device *device; // lent
   struct dea_model_settings settings;
   struct dea_fibre_disc plate;
   struct dea_constituent constituents[DEA_CONSTITUENT_COUNT];
-  double param[DEA_CONSTITUENT_COUNT][2]; // of the laws of what is bonded, lent to constituents
 };
 
 /* The plate of a device, on the domain and with the mesh that the settings name. DEA_E_UNSUPPORTED

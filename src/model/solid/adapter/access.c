@@ -15,8 +15,8 @@ enum { FACES = 6 };
 
 struct dea_solid_object {
   struct dea_grid *grid;
-  struct dea_part_spec *parts; // [part_count] what the layers' parameters lie in
-  struct dea_constituent *layers;
+  struct dea_constituent *constituents; // [part_count]
+  int (*between)[2];                    // [part_count] channels above and below
   size_t part_count;
   double length_m; // of the mesh: what is near enough
   struct dea_solid *solid;
@@ -112,21 +112,17 @@ static double size_of(const struct dea_grid *grid)
 
 // Parts ------------------------------------------------------------------------------------------
 
-/* part: what the constituent lends its parameters from; without a law it is given those of the
- * compressible one. */
-static dea_status make_layer(struct dea_context *ctx, struct dea_part_spec *part,
-                             struct dea_constituent *out)
+/* Of the compressible law where the part has none. */
+static dea_status make_constituent(struct dea_context *ctx, const struct dea_part_spec *part,
+                                   struct dea_constituent *out)
 {
   double l = part->pre_stretch;
   if (part->law == NULL) {
-    part->param[0] = part->young_modulus_Pa;
-    part->param[1] = part->poisson_ratio;
-    *out = dea_constituent_bonded(part->param);
+    *out = dea_constituent_bonded((const double[]){part->young_modulus_Pa, part->poisson_ratio});
   } else {
-    *out = (struct dea_constituent){.law = part->law,
-                                    .param = part->param,
-                                    .pre_stretch = {l, l, 1 / (l * l)},
+    *out = (struct dea_constituent){.pre_stretch = {l, l, 1 / (l * l)},
                                     .kappa_Pa = part->bulk_modulus_Pa};
+    dea_constituent_set_law(out, part->law, part->param);
   }
   out->permittivity_F_per_m = part->permittivity_F_per_m;
   out->thickness_m = part->electrode_gap_m;
@@ -138,7 +134,7 @@ static dea_status make_layer(struct dea_context *ctx, struct dea_part_spec *part
   return DEA_OK;
 }
 
-static int layer_of(const void *self, int region, int ply)
+static int constituent_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)ply;
@@ -149,33 +145,36 @@ static bool is_active(const void *self, int region, int ply)
 {
   const struct dea_solid_object *object = self;
   (void)ply;
-  return object->parts[region].electrode_gap_m > 0;
+  return object->constituents[region].thickness_m > 0;
 }
 
 static void channels(const void *self, int region, int ply, int *top, int *bottom)
 {
   const struct dea_solid_object *object = self;
-  const struct dea_part_spec *part = &object->parts[region];
   (void)ply;
-  *bottom = part->channel_below;
-  *top = part->channel_above == 0 && part->channel_below == 0 ? 1 : part->channel_above;
+  *top = object->between[region][0];
+  *bottom = object->between[region][1];
 }
 
-/* The highest channel of a part. DEA_E_ARGUMENT for one below 0. */
-static dea_status count_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                                 size_t *count)
+/* Of all parts, and the highest one. */
+static dea_status take_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                                struct dea_solid_object *object)
 {
   enum { CHANNELS_MAX = 1000 };
-  *count = 1;
+  object->channel_count = 1;
   for (size_t i = 0; i < spec->part_count; i++) {
-    const int of[2] = {spec->parts[i].channel_above, spec->parts[i].channel_below};
+    int *of = object->between[i];
+    of[0] = spec->parts[i].channel_above;
+    of[1] = spec->parts[i].channel_below;
     for (int k = 0; k < 2; k++) {
       if (of[k] < 0 || of[k] > CHANNELS_MAX) {
         return dea_fail(ctx, DEA_E_ARGUMENT, "part %zu has the channel %d; 0 to %d are possible", i,
                         of[k], CHANNELS_MAX);
       }
-      *count = (size_t)of[k] > *count ? (size_t)of[k] : *count;
+      object->channel_count =
+          (size_t)of[k] > object->channel_count ? (size_t)of[k] : object->channel_count;
     }
+    of[0] = of[0] == 0 && of[1] == 0 ? 1 : of[0];
   }
   return DEA_OK;
 }
@@ -193,8 +192,8 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_solid_continuation_destroy(ctx, object->path);
     dea_solid_destroy(ctx, object->solid);
     dea_grid_destroy(ctx, object->grid);
-    dea_free(ctx, object->parts);
-    dea_free(ctx, object->layers);
+    dea_free(ctx, object->constituents);
+    dea_free(ctx, object->between);
     dea_free(ctx, object->mode_square);
     dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
@@ -209,20 +208,19 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
                                      : make_grid(ctx, spec, &object->grid));
   object->length_m = size_of(object->grid);
   object->part_count = spec->part_count;
-  object->parts = dea_alloc(ctx, spec->part_count, sizeof *object->parts);
-  object->layers = dea_alloc(ctx, spec->part_count, sizeof *object->layers);
-  if (object->parts == NULL || object->layers == NULL) {
+  object->constituents = dea_alloc(ctx, spec->part_count, sizeof *object->constituents);
+  object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
+  if (object->constituents == NULL || object->between == NULL) {
     return DEA_E_MEMORY;
   }
-  memcpy(object->parts, spec->parts, spec->part_count * sizeof *object->parts);
+  DEA_TRY(ctx, take_channels(ctx, spec, object));
   for (size_t i = 0; i < spec->part_count; i++) {
-    DEA_TRY(ctx, make_layer(ctx, &object->parts[i], &object->layers[i]));
+    DEA_TRY(ctx, make_constituent(ctx, &spec->parts[i], &object->constituents[i]));
   }
-  DEA_TRY(ctx, count_channels(ctx, spec, &object->channel_count));
   const struct dea_solid_options options = {.order_z = spec->order_z,
-                                            .layer_count = object->part_count,
-                                            .layers = object->layers,
-                                            .layer_of = layer_of,
+                                            .constituent_count = object->part_count,
+                                            .constituents = object->constituents,
+                                            .constituent_of = constituent_of,
                                             .active = is_active,
                                             .channels = channels,
                                             .channel_count = object->channel_count,

@@ -13,7 +13,7 @@ struct dea_motions {
   size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
   size_t tip;
   bool has_tip;
-  bool viscous; // a layer has branches
+  bool viscous; // a constituent has branches
   struct dea_branches branches[DEA_CONSTITUENT_COUNT];
 };
 

@@ -8,9 +8,9 @@ dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actua
   bool coupled = actuator->settings.field == DEA_FIELD_COUPLED;
   const struct dea_solid_options options = {
       .order_z = actuator->plate.order_z,
-      .layer_count = DEA_CONSTITUENT_COUNT,
-      .layers = actuator->constituents,
-      .layer_of = dea_actuator_constituent,
+      .constituent_count = DEA_CONSTITUENT_COUNT,
+      .constituents = actuator->constituents,
+      .constituent_of = dea_actuator_constituent,
       .field = coupled ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
       .electrode = dea_actuator_electrode,
       .active = dea_actuator_active,

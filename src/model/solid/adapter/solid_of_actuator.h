@@ -1,4 +1,4 @@
-/* The solid of an actuator, and the viscous branches of its layers. */
+/* The solid of an actuator, and the viscous branches of its constituents. */
 #ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_OF_ACTUATOR_H
 #define DEA_MODEL_SOLID_ADAPTER_SOLID_OF_ACTUATOR_H
 

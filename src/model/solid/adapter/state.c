@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-enum { LAYER_NUMBERS = 8 }; // beside the parameters of the law
+enum { CONSTITUENT_NUMBERS = 8 }; // beside the parameters of the law
 
-static size_t layer_count(const struct dea_solid *s)
+static size_t used_constituents(const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t count = 0;
@@ -16,24 +16,24 @@ static size_t layer_count(const struct dea_solid *s)
   return count;
 }
 
-/* All numbers that the energy of the layers depends on. */
+/* All numbers that the energy of the constituents depends on. */
 static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid *s,
                                  struct dea_state *out)
 {
   double *to = out->numbers + out->number_count;
   size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
-  for (size_t i = 0; i < layer_count(s); i++) {
+  for (size_t i = 0; i < used_constituents(s); i++) {
     const struct dea_constituent *l = &s->problem.constituents[i];
-    const double own[LAYER_NUMBERS] = {
+    const double own[CONSTITUENT_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
     size_t params = l->law->param_count;
-    if (count + LAYER_NUMBERS + params > room) {
-      return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer layers");
+    if (count + CONSTITUENT_NUMBERS + params > room) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer constituents");
     }
     memcpy(to + count, own, sizeof own);
-    memcpy(to + count + LAYER_NUMBERS, l->param, params * sizeof *to);
-    count += LAYER_NUMBERS + params;
+    memcpy(to + count + CONSTITUENT_NUMBERS, l->param, params * sizeof *to);
+    count += CONSTITUENT_NUMBERS + params;
   }
   out->number_count += count;
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "materials", to, count * sizeof *to));

@@ -40,9 +40,9 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
   // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
   double thickness = 0, energy[2] = {0, 0};
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    const struct dea_constituent *layer = dea_solid_constituent(s, e);
+    const struct dea_constituent *constituent = dea_solid_constituent(s, e);
     bool counts = p->active[e] || dea_solid_element(s, e)->type->per_node > 3;
-    thickness = fmax(thickness, counts ? layer->thickness_m : 0);
+    thickness = fmax(thickness, counts ? constituent->thickness_m : 0);
   }
   double step = 1e12 * thickness * thickness, square = s->state.voltage_V * s->state.voltage_V;
   const double squares[2] = {fmax(square - step, 0), square + step};

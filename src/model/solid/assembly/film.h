@@ -11,7 +11,7 @@ struct dea_material;
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
                                  double *capacitance_F);
 
-/* Extremes of the film (elements of layers with a permittivity). */
+/* Extremes of the film (elements of constituents with a permittivity). */
 struct dea_solid_extremes {
   double true_field_V_per_m;  // largest V over the current thickness
   double breakdown_margin;    // smallest; NAN when unknown

@@ -18,8 +18,8 @@ void dea_solid_update_multipliers(struct dea_solid *s)
 {
   size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = dea_solid_constituent(s, i / pressures);
-    s->state.multiplier[i] += layer->kappa_Pa * s->state.theta[i];
+    const struct dea_constituent *constituent = dea_solid_constituent(s, i / pressures);
+    s->state.multiplier[i] += constituent->kappa_Pa * s->state.theta[i];
   }
 }
 
@@ -35,8 +35,8 @@ static void keep_pressures(struct dea_solid *s, double factor)
 {
   size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *layer = dea_solid_constituent(s, i / pressures);
-    s->state.multiplier[i] -= (factor - 1) * layer->kappa_Pa * s->state.theta[i];
+    const struct dea_constituent *constituent = dea_solid_constituent(s, i / pressures);
+    s->state.multiplier[i] -= (factor - 1) * constituent->kappa_Pa * s->state.theta[i];
   }
 }
 

@@ -21,7 +21,7 @@ static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_e
 
 /* ---- memory ---- */
 
-/* Gives the elements of layers with branches their points; returns how many. */
+/* Gives the elements of constituents with branches their points; returns how many. */
 static size_t place_points(const struct dea_solid *s, struct dea_internal_variables *h)
 {
   size_t count = 0;
@@ -104,12 +104,12 @@ void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal
 struct dea_constituent dea_solid_constituent_at(const struct dea_solid *s, size_t e)
 {
   const struct dea_internal_variables *h = s->state.internal_variables;
-  struct dea_constituent layer = *dea_solid_constituent(s, e);
+  struct dea_constituent constituent = *dea_solid_constituent(s, e);
   if (h != NULL && h->first[e] != ELASTIC) {
-    layer.viscous = h->B + 6 * h->first[e];
-    layer.viscous_Pa = h->b_Pa[s->problem.constituent_of[e]];
+    constituent.viscous = h->B + 6 * h->first[e];
+    constituent.viscous_Pa = h->b_Pa[s->problem.constituent_of[e]];
   }
-  return layer;
+  return constituent;
 }
 
 /* B of the points of an element. */

@@ -1,4 +1,4 @@
-/* What the branches of a solid's layers remember, at every Gauss point (docs/theory/time.md).
+/* What the branches of a solid's constituents remember, at every Gauss point (docs/theory/time.md).
  *
  * Every rank keeps all points: a step costs next to nothing beside its tangents. */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
@@ -8,7 +8,7 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/point/viscous.h"
 
-/* Branches of a layer; none: elastic. */
+/* Branches of a constituent; none: elastic. */
 struct dea_branches {
   size_t count;
   struct dea_branch branch[DEA_BRANCHES_MAX];
@@ -16,10 +16,10 @@ struct dea_branches {
 
 struct dea_internal_variables {
   struct dea_arena memory;       // of all arrays
-  struct dea_branches *branches; // [layer_count]
+  struct dea_branches *branches; // [constituent_count]
   size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
-  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [layer_count] of the step
-  double *b_Pa;                                      // [layer_count] of the step
+  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [constituent_count] of the step
+  double *b_Pa;                                      // [constituent_count] of the step
   double *B;                                         // [points][6] of the step
   double (*inverse)[6];                              // [points] C^-1 at the accepted state
   double (*inverse_next)[6];                         // at the end of the step that is tried
@@ -29,8 +29,8 @@ struct dea_internal_variables {
 /* What an element is of, with the step of its branches. */
 struct dea_constituent dea_solid_constituent_at(const struct dea_solid *solid, size_t e);
 
-/* branches: [layer_count of the solid]. The film was held as it is for long: A = C^-1. out: owned
- * by the caller, NULL on failure. */
+/* branches: [constituent_count of the solid]. The film was held as it is for long: A = C^-1. out:
+ * owned by the caller, NULL on failure. */
 dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *solid,
                                          const struct dea_branches *branches,
                                          struct dea_internal_variables **out);

@@ -5,7 +5,7 @@
 
 struct dea_solid_field {
   double scale_V_per_m; // c: a potential is c psi
-  double permittivity;  // of the first dielectric layer
+  double permittivity;  // of the first dielectric constituent
   double *share;        // [nodes] of the voltage, of held potentials
   double *right;        // [nodes]
   Mat L, factor;        // electric stiffness, held potentials taken out
@@ -22,10 +22,10 @@ static bool has_potential(const struct dea_solid *s, size_t e)
   return dea_solid_element(s, e)->type->capacity != NULL;
 }
 
-/* c and permittivity of the first dielectric layer. */
-static void set_scale(const struct dea_solid *s, size_t layer_count, struct dea_solid_field *field)
+/* c and permittivity of the first dielectric constituent. */
+static void set_scale(const struct dea_solid *s, size_t count, struct dea_solid_field *field)
 {
-  for (size_t i = 0; i < layer_count && field->permittivity == 0; i++) {
+  for (size_t i = 0; i < count && field->permittivity == 0; i++) {
     const struct dea_constituent *l = &s->problem.constituents[i];
     if (l->permittivity_F_per_m > 0) {
       field->permittivity = l->permittivity_F_per_m;
@@ -60,7 +60,7 @@ static dea_status hold_potentials(struct dea_context *ctx, struct dea_solid *s,
   return electrodes > 0 && p->field->scale_V_per_m > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_ARGUMENT,
-                        "a coupled field needs a layer with permittivity and electrodes on it");
+                        "a coupled field needs a part with permittivity and electrodes on it");
 }
 
 dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
@@ -76,8 +76,8 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
   p->field->share = dea_arena_alloc(&s->memory, nodes, sizeof(double));
   p->field->right = dea_arena_alloc(&s->memory, nodes, sizeof(double));
   DEA_TRY(ctx, dea_arena_status(&s->memory));
-  set_scale(s, options->layer_count, p->field);
-  for (size_t i = 0; i < options->layer_count; i++) {
+  set_scale(s, options->constituent_count, p->field);
+  for (size_t i = 0; i < options->constituent_count; i++) {
     if (p->constituents[i].permittivity_slope_F_per_m != 0) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
     }

@@ -56,7 +56,7 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
     *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
   }
-  p->constituents = dea_arena_alloc(memory, options->layer_count, sizeof *p->constituents);
+  p->constituents = dea_arena_alloc(memory, options->constituent_count, sizeof *p->constituents);
   p->constituent_of = dea_arena_alloc(memory, elements, sizeof *p->constituent_of);
   p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
   p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
@@ -74,12 +74,13 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   const struct dea_grid *grid = p->grid;
   DEA_TRY(ctx, dea_solid_settings_check(ctx, &s->settings));
   DEA_TRY(ctx, allocate(s, options));
-  p->constituent_count = options->layer_count;
-  memcpy(p->constituents, options->layers, options->layer_count * sizeof *p->constituents);
+  p->constituent_count = options->constituent_count;
+  memcpy(p->constituents, options->constituents,
+         options->constituent_count * sizeof *p->constituents);
   for (size_t e = 0; e < grid->element_count; e++) {
     int region = grid->region[e], ply = grid->ply[e];
     p->constituent_of[e] =
-        options->layer_of != NULL ? options->layer_of(options->self, region, ply) : 0;
+        options->constituent_of != NULL ? options->constituent_of(options->self, region, ply) : 0;
   }
   DEA_TRY(ctx, dea_solid_channels_create(ctx, s, options));
   DEA_TRY(ctx, dea_solid_bodies_create(ctx, s, options));

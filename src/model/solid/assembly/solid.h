@@ -34,11 +34,11 @@ struct dea_solid_body {
 struct dea_solid_options {
   int order_z;
   enum dea_solid_field_kind field;
-  size_t layer_count;
-  const struct dea_constituent *layers; // copied
-  /* Layer of an element (NULL: the first of all), and whether it lies between electrodes (NULL:
-   * none does; with a coupled field: for what fields and extremes report by V/h). */
-  int (*layer_of)(const void *self, int region, int ply);
+  size_t constituent_count;
+  const struct dea_constituent *constituents; // copied
+  /* Constituent of an element (NULL: the first of all), and whether it lies between electrodes
+   * (NULL: none does; with a coupled field: for what fields and extremes report by V/h). */
+  int (*constituent_of)(const void *self, int region, int ply);
   bool (*active)(const void *self, int region, int ply);
   /* Channels (docs/theory/devices.md) at the top and the bottom of an active element, each 0
    * (ground) to channel_count; NULL: the one channel at its top, ground at its bottom. Not for a
@@ -141,9 +141,9 @@ void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double 
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);
 
-/* out = M v with the consistent mass of the layers' densities, [node_count][3] both and not the
- * same memory, what is held included: the forces that accelerations v take, or momenta. All ranks
- * call it and get the whole. */
+/* out = M v with the consistent mass of the constituents' densities, [node_count][3] both and not
+ * the same memory, what is held included: the forces that accelerations v take, or momenta. All
+ * ranks call it and get the whole. */
 dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *solid,
                                 const double *v, double *out);
 

@@ -43,20 +43,20 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
                   e, x[0], x[1], x[2]);
 }
 
-static dea_status check_layers(struct dea_context *ctx, const struct dea_solid *s)
+static dea_status check_constituents(struct dea_context *ctx, const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   struct dea_point point;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    const struct dea_constituent *layer = dea_solid_constituent(s, e);
+    const struct dea_constituent *constituent = dea_solid_constituent(s, e);
     if ((e == 0 || p->constituent_of[e] != p->constituent_of[e - 1]) &&
-        dea_constituent_point(layer, one, one, 1, 0, 0, true, &point) != DEA_OK) {
+        dea_constituent_point(constituent, one, one, 1, 0, 0, true, &point) != DEA_OK) {
       return dea_fail(
           ctx, DEA_E_DOMAIN,
           "the law '%s' ends before the pre-stretch %.4g: take a smaller pre-stretch or "
           "parameters that reach further",
-          layer->law->name, layer->pre_stretch[0]);
+          constituent->law->name, constituent->pre_stretch[0]);
     }
   }
   return DEA_OK;
@@ -229,7 +229,7 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
   }
   dea_free(ctx, strains);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, check_layers(ctx, s));
+  DEA_TRY(ctx, check_constituents(ctx, s));
   if (s->problem.load_count == 0) { // springs and tips may hold what nothing else does
     DEA_TRY(ctx, check_bodies(ctx, s));
     DEA_TRY(ctx, check_supports(ctx, s));

@@ -29,7 +29,7 @@ struct dea_solid_time {
   double step_s, step_before_s;     // of the step that is tried; of the accepted one, 0: a corner
   double *keep, *controls;          // the accepted state, as of a path
   size_t keep_count, control_count; // numbers in them
-  double stiffened;                 // kappa is so many times that of the layers
+  double stiffened;                 // kappa is so many times that of the constituents
   struct dea_solid_energies sums, sums_next;
   double first_J; // stored energy at the start
   double capacitance_F, capacitance_next_F;
@@ -211,9 +211,9 @@ static void follow_stiffness(struct dea_solid_time *t)
   struct dea_solid *s = t->solid;
   double most = 0;
   for (size_t l = 0; l < s->problem.constituent_count && t->history != NULL; l++) {
-    const struct dea_constituent *layer = &s->problem.constituents[l];
-    if (layer->kappa_Pa > 0) {
-      most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(layer));
+    const struct dea_constituent *constituent = &s->problem.constituents[l];
+    if (constituent->kappa_Pa > 0) {
+      most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(constituent));
     }
   }
   double factor = exp2(round(log2(1 + most)));
@@ -371,7 +371,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   return DEA_OK;
 }
 
-/* Share of the stiffness that relaxes within a step, of the layer with most of it. */
+/* Share of the stiffness that relaxes within a step, of the constituent with most of it. */
 static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;

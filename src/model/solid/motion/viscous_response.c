@@ -11,16 +11,16 @@
 
 enum {
   PARTS = 2,
-  LAYERS_MAX = 16
-}; // of K: without branches, and M; then one part a layer with branches
+  CONSTITUENTS_MAX = 16
+}; // of K: without branches, and M; then one part a constituent with branches
 
 struct system {
   struct dea_solid *solid;
   const struct dea_branches *branches;
-  size_t part_count; // PARTS + layers with branches
-  Mat *part;         // K, M, then what each layer's branches add at infinite frequency
-  size_t *layer;     // [part_count] of those
-  Mat A, factor;     // two rows a row of K: real and imaginary part
+  size_t part_count;   // PARTS + constituents with branches
+  Mat *part;           // K, M, then what each constituent's branches add at infinite frequency
+  size_t *constituent; // [part_count] of those
+  Mat A, factor;       // two rows a row of K: real and imaginary part
   Vec right, answer;
 };
 
@@ -32,14 +32,14 @@ static dea_status copy_tangent(struct dea_context *ctx, struct system *y, Mat *o
   return DEA_OK;
 }
 
-/* What the branches of one layer add to K when they are rigid dashpots. */
-static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t layer,
+/* What the branches of one constituent add to K when they are rigid dashpots. */
+static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which,
                                  struct dea_branches *only, Mat *out)
 {
   struct dea_solid *s = y->solid;
   struct dea_internal_variables *history;
   memset(only, 0, s->problem.constituent_count * sizeof *only);
-  only[layer] = y->branches[layer];
+  only[which] = y->branches[which];
   DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &history));
   dea_internal_variables_begin(history, s, 0);
   s->state.internal_variables = history;
@@ -70,14 +70,14 @@ static dea_status make_parts(struct dea_context *ctx, struct system *y, struct d
   y->part_count = PARTS;
   for (size_t l = 0; l < y->solid->problem.constituent_count; l++) {
     if (y->branches[l].count > 0) {
-      y->layer[y->part_count] = l;
+      y->constituent[y->part_count] = l;
       DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
     }
   }
   return DEA_OK;
 }
 
-/* The share of a layer's branches that has not followed, 0 slow to 1 fast. */
+/* The share of a constituent's branches that has not followed, 0 slow to 1 fast. */
 static double complex share_at(const struct dea_branches *b, double w)
 {
   double complex sum = 0;
@@ -97,7 +97,7 @@ static void set_factors(const struct system *y, double w, const struct dea_dampi
   factor[0] = 1 + _Complex_I * (w * damping->stiffness_s);
   factor[1] = -w * w + _Complex_I * (w * damping->mass_per_s);
   for (size_t p = PARTS; p < y->part_count; p++) {
-    factor[p] = share_at(&y->branches[y->layer[p]], w);
+    factor[p] = share_at(&y->branches[y->constituent[p]], w);
   }
 }
 
@@ -224,7 +224,7 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
                            double *imaginary)
 {
   struct dea_solid *s = y->solid;
-  double complex factor[PARTS + LAYERS_MAX];
+  double complex factor[PARTS + CONSTITUENTS_MAX];
   double *out[2] = {real, imaginary};
   set_factors(y, w, damping, factor);
   dea_status status = dea_solid_petsc(ctx, fill_matrix(y, factor, sum), "MatSetValuesBlocked");
@@ -287,18 +287,18 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
                                      size_t count, const size_t *nodes, size_t node_count,
                                      double (*out)[2][3])
 {
-  Mat parts[PARTS + LAYERS_MAX] = {NULL};
-  size_t layers[PARTS + LAYERS_MAX] = {0};
-  struct system y = {.solid = s, .branches = branches, .part = parts, .layer = layers};
-  if (s->problem.field != NULL || s->problem.constituent_count > LAYERS_MAX) {
+  Mat parts[PARTS + CONSTITUENTS_MAX] = {NULL};
+  size_t constituents[PARTS + CONSTITUENTS_MAX] = {0};
+  struct system y = {.solid = s, .branches = branches, .part = parts, .constituent = constituents};
+  if (s->problem.field != NULL || s->problem.constituent_count > CONSTITUENTS_MAX) {
     return dea_fail(
         ctx, DEA_E_UNSUPPORTED,
         "the response to an AC excitation of the voltage needs the field V/h, and at most %d "
-        "layers",
-        LAYERS_MAX);
+        "constituents",
+        CONSTITUENTS_MAX);
   }
   dea_status status = respond(ctx, &y, damping, rad_per_s, count, nodes, node_count, out);
-  for (size_t p = 0; p < PARTS + LAYERS_MAX; p++) {
+  for (size_t p = 0; p < PARTS + CONSTITUENTS_MAX; p++) {
     MatDestroy(&parts[p]);
   }
   MatDestroy(&y.A);

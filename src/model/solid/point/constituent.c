@@ -1,6 +1,7 @@
 #include "model/solid/point/constituent.h"
 
 #include <math.h>
+#include <string.h>
 
 double dea_cofactors(const double F[9], double cof[9])
 {
@@ -109,12 +110,18 @@ double dea_constituent_modulus(const struct dea_constituent *constituent)
   return constituent->law->shear_modulus(constituent->param);
 }
 
+void dea_constituent_set_law(struct dea_constituent *constituent, const struct dea_law *law,
+                             const double *param)
+{
+  constituent->law = law;
+  memcpy(constituent->param, param, law->param_count * sizeof *param);
+}
+
 struct dea_constituent dea_constituent_bonded(const double param[2])
 {
-  return (struct dea_constituent){.part = DEA_PART_FIBRE,
-                                  .law = dea_law_find("compressible-neo-hookean"),
-                                  .param = param,
-                                  .pre_stretch = {1, 1, 1}};
+  struct dea_constituent out = {.part = DEA_PART_FIBRE, .pre_stretch = {1, 1, 1}};
+  dea_constituent_set_law(&out, dea_law_find("compressible-neo-hookean"), param);
+  return out;
 }
 
 dea_status dea_constituent_relax(struct dea_constituent *constituent)

@@ -21,11 +21,11 @@ enum dea_part { DEA_PART_FILM, DEA_PART_ELECTRODE, DEA_PART_GLUE, DEA_PART_FIBRE
 struct dea_constituent {
   enum dea_part part;
   const struct dea_law *law;
-  const double *param;         // of the law, SI, lent
-  double pre_stretch[3];       // diagonal of G, det G = 1
-  double p0_Pa, kappa_s_Pa;    // dea_constituent_relax sets them
-  double kappa_Pa;             // bulk modulus of the projected part, of the element
-  double permittivity_F_per_m; // eps of the flat constituent, 0: no electric energy
+  double param[DEA_LAW_PARAM_MAX]; // of the law, SI
+  double pre_stretch[3];           // diagonal of G, det G = 1
+  double p0_Pa, kappa_s_Pa;        // dea_constituent_relax sets them
+  double kappa_Pa;                 // bulk modulus of the projected part, of the element
+  double permittivity_F_per_m;     // eps of the flat constituent, 0: no electric energy
   /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
   double permittivity_slope_F_per_m;
   double thickness_m;       // h, over which the voltage stands
@@ -37,8 +37,12 @@ struct dea_constituent {
 };
 
 /* A part that is bonded free of stress, of the compressible neo-Hookean law. param: Young's modulus
- * [Pa], Poisson's ratio below 0.5; lent. */
+ * [Pa], Poisson's ratio below 0.5; copied. */
 struct dea_constituent dea_constituent_bonded(const double param[2]);
+
+/* Sets a law and its parameters [law->param_count], which are copied. */
+void dea_constituent_set_law(struct dea_constituent *constituent, const struct dea_law *law,
+                             const double *param);
 
 /* Whether the pressure is not the law's but a multiplier's. */
 static inline bool dea_constituent_takes_pressure(const struct dea_constituent *constituent)

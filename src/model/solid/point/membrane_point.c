@@ -13,8 +13,7 @@ dea_status dea_membrane_check(const struct dea_constituent *constituent)
 /* A load that comes in over the depth of the film in equal parts makes a shear stress that grows
  * linearly to the bonded face: the mean displacement is that of h/3 under all of it, so h/2 is
  * given 3/2 of the film's shear modulus. */
-dea_status dea_membrane_bond(const struct dea_constituent *film, double param[2],
-                             struct dea_constituent *bond)
+dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond)
 {
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   static const double poisson_ratio = 0.49;
@@ -26,9 +25,7 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, double param[2]
   }
   if (status == DEA_OK) {
     double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
-    param[0] = 2 * mu * (1 + poisson_ratio);
-    param[1] = poisson_ratio;
-    *bond = dea_constituent_bonded(param);
+    *bond = dea_constituent_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
   }
   return status;
 }

@@ -16,10 +16,8 @@ dea_status dea_membrane_check(const struct dea_constituent *constituent);
 
 /* What lies between the mid-surface of a film and what is bonded on it, h/2 thick: free of stress
  * at rest, with the shear compliance of the film from there to its bonded face (theory). film:
- * relaxed (dea_constituent_relax). param: memory that the bond
- * lends. Statuses of dea_membrane_check. */
-dea_status dea_membrane_bond(const struct dea_constituent *film, double param[2],
-                             struct dea_constituent *bond);
+ * relaxed (dea_constituent_relax). Statuses of dea_membrane_check. */
+dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond);
 
 /* Energy per volume, first Piola-Kirchhoff stress P[2 i + J] and tangent A[6 (2 i + J) + 2 k + L]
  * by F, and the larger and smaller principal tension: Cauchy stress times current over reference
