@@ -4,6 +4,7 @@
 
 #include "testing.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 static dea_context *ctx;
@@ -290,11 +291,42 @@ static void test_refused(void **state)
   assert_true(count >= 7);
 }
 
+/* Settings are listed, change what a solve does, and are refused where they cannot be. */
+static void test_settings(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.04}, end[3] = {0, 0, size[2]};
+  const double traction[3] = {0, 0, mu};
+  dea_part part = rubber(&mu);
+  dea_solid *solid = box(&part, size, 1, 1, 2);
+  const dea_solid_setting *setting;
+  size_t count = 0;
+  bool found = false;
+  while ((setting = dea_solid_setting_at(ctx, solid, count)) != NULL) {
+    found = found || (strcmp(setting->name, "iterations") == 0 && setting->value == 80);
+    assert_true(setting->value > 0 && strlen(setting->unit) > 0 && strlen(setting->meaning) > 0);
+    count++;
+  }
+  assert_true(found && count > 40);
+  lean(solid, size);
+  good(dea_solid_pull(ctx, solid, end, size, traction));
+  good(dea_solid_set(ctx, solid, "iterations", 1));
+  assert_int_equal(dea_solid_solve(ctx, solid, 0), DEA_E_NOT_CONVERGED);
+  assert_int_equal(dea_solid_set(ctx, solid, "iterations", 2.5), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_set(ctx, solid, "residual", 0), DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_set(ctx, solid, "patience", 1), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "'patience'"));
+  good(dea_solid_set(ctx, solid, "iterations", 80));
+  good(dea_solid_solve(ctx, solid, 0));
+  dea_solid_free(solid);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage), cmocka_unit_test(test_modes),
-      cmocka_unit_test(test_channels), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage),
+      cmocka_unit_test(test_modes),    cmocka_unit_test(test_channels),
+      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

@@ -393,6 +393,21 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
 /* Voltage of a channel that the next solve goes to, beside the one that is given to the solve,
  * which all channels have; at first 0. DEA_E_ARGUMENT: no part is on it. */
 dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V);
+/* A tolerance or limit of the solvers. */
+typedef struct {
+  const char *name;    // "residual"
+  const char *unit;    // what a relative number is relative to: "of the sum of element forces"
+  const char *meaning; // "forces left at an equilibrium"
+  double value;
+} dea_solid_setting;
+
+/* The settings of a solid as they are, by their number; NULL beyond the last. Lent until the next
+ * call of this function. */
+const dea_solid_setting *dea_solid_setting_at(dea_context *ctx, const dea_solid *solid,
+                                              size_t index);
+/* Changes one for the solves to come. DEA_E_ARGUMENT for an unknown name or a value that cannot be:
+ * all are above 0. */
+dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, double value);
 /* Stable equilibrium with these supports, loads and voltage, in steps where they are needed. */
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V);
 /* Charges at the last equilibrium, and what they change by with the voltages, at displacements that

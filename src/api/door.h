@@ -21,6 +21,7 @@ struct dea_context_handle {
   dea_model_info model; // that dea_model_at lends: one a list entry
   dea_study_info study;
   dea_law_info law;
+  dea_solid_setting setting;
   char law_parameters[256];
 };
 

@@ -210,6 +210,25 @@ dea_status dea_solid_find_charges(dea_context *ctx, dea_solid *solid)
   return DEA_OK;
 }
 
+const dea_solid_setting *dea_solid_setting_at(dea_context *ctx, const dea_solid *solid,
+                                              size_t index)
+{
+  const char *text[3];
+  double value;
+  if (!solid->access->setting(solid->object, index, text, &value)) {
+    return NULL;
+  }
+  ctx->setting = (dea_solid_setting){text[0], text[1], text[2], value};
+  return &ctx->setting;
+}
+
+dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, double value)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->set(ctx->inner, solid->object, name, value));
+  return DEA_OK;
+}
+
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));

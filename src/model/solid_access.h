@@ -44,6 +44,12 @@ struct dea_solid_access {
   dea_status (*create)(struct dea_context *ctx, const struct dea_solid_spec *spec,
                        struct dea_solid_object **out);
   void (*destroy)(struct dea_context *ctx, struct dea_solid_object *object);
+  /* Changes a tolerance or limit of the solvers by its name. */
+  dea_status (*set)(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
+                    double value);
+  /* The setting of that number: name, unit and meaning, and its value; false beyond the last. */
+  bool (*setting)(const struct dea_solid_object *object, size_t number, const char *text[3],
+                  double *value);
   /* Holds components (bits 1, 2, 4) of the nodes there; the next solve moves them. displacement_m:
    * NULL frees them. DEA_E_ARGUMENT where there is no node. */
   dea_status (*hold)(struct dea_context *ctx, struct dea_solid_object *object,

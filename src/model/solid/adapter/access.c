@@ -284,6 +284,26 @@ static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
   return found > 0 ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "there is no node in that box");
 }
 
+static dea_status set(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
+                      double value)
+{
+  DEA_TRY(ctx, dea_solid_settings_set(ctx, dea_solid_settings_of(object->solid), name, value));
+  return DEA_OK;
+}
+
+static bool setting(const struct dea_solid_object *object, size_t number, const char *text[3],
+                    double *value)
+{
+  const struct dea_solid_setting *found =
+      dea_solid_settings_at(dea_solid_settings_of(object->solid), number, value);
+  if (found != NULL) {
+    text[0] = found->name;
+    text[1] = found->unit;
+    text[2] = found->meaning;
+  }
+  return found != NULL;
+}
+
 struct selection {
   const struct dea_solid_object *object;
   struct dea_solid_place place;
@@ -483,6 +503,8 @@ extern DEA_MODULE_SYMBOL const struct dea_solid_access dea_solid_access;
 
 const struct dea_solid_access dea_solid_access = {.create = create,
                                                   .destroy = destroy,
+                                                  .set = set,
+                                                  .setting = setting,
                                                   .hold = hold,
                                                   .pull = pull,
                                                   .set_channel = set_channel,

@@ -1,6 +1,22 @@
 #include "model/solid/assembly/settings.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+static const struct member {
+  struct dea_solid_setting about;
+  size_t offset;
+  bool whole; // an int, otherwise a double
+} members[] = {
+#define MEMBER(type, member, value, unit, meaning)                                                 \
+  {{#member, unit, meaning}, offsetof(struct dea_solid_settings, member), (type)0.5 == 0},
+    DEA_SOLID_SETTINGS(MEMBER)
+#undef MEMBER
+};
+
+enum { MEMBERS = sizeof members / sizeof members[0] };
 
 struct dea_solid_settings dea_solid_settings_default(void)
 {
@@ -9,12 +25,48 @@ struct dea_solid_settings dea_solid_settings_default(void)
 #undef DEFAULT
 }
 
-static dea_status check_number(struct dea_context *ctx, const char *name, double value)
+const struct dea_solid_setting *dea_solid_settings_at(const struct dea_solid_settings *settings,
+                                                      size_t number, double *value)
 {
-  return value > 0 && isfinite(value)
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_ARGUMENT, "the setting %s has to be above 0, not %g", name,
-                        value);
+  if (number >= MEMBERS) {
+    return NULL;
+  }
+  const struct member *m = &members[number];
+  const char *at = (const char *)settings + m->offset;
+  int whole;
+  if (m->whole) {
+    memcpy(&whole, at, sizeof whole);
+    *value = whole;
+  } else {
+    memcpy(value, at, sizeof *value);
+  }
+  return &m->about;
+}
+
+dea_status dea_solid_settings_set(struct dea_context *ctx, struct dea_solid_settings *settings,
+                                  const char *name, double value)
+{
+  struct dea_solid_settings next = *settings;
+  size_t i = 0;
+  while (i < MEMBERS && strcmp(members[i].about.name, name) != 0) {
+    i++;
+  }
+  if (i == MEMBERS) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a solid has no setting '%s'", name);
+  }
+  char *at = (char *)&next + members[i].offset;
+  if (!members[i].whole) {
+    memcpy(at, &value, sizeof value);
+  } else if (value >= 1 && value <= INT_MAX && value == floor(value)) {
+    int whole = (int)value;
+    memcpy(at, &whole, sizeof whole);
+  } else {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the setting %s has to be a whole number, not %g", name,
+                    value);
+  }
+  DEA_TRY(ctx, dea_solid_settings_check(ctx, &next));
+  *settings = next;
+  return DEA_OK;
 }
 
 static dea_status check_power(struct dea_context *ctx, const char *name, double value)
@@ -29,10 +81,14 @@ static dea_status check_power(struct dea_context *ctx, const char *name, double 
 dea_status dea_solid_settings_check(struct dea_context *ctx,
                                     const struct dea_solid_settings *settings)
 {
-#define CHECK(type, member, value, unit, meaning)                                                  \
-  DEA_TRY(ctx, check_number(ctx, #member, (double)settings->member));
-  DEA_SOLID_SETTINGS(CHECK)
-#undef CHECK
+  const struct dea_solid_setting *setting;
+  double value;
+  for (size_t i = 0; (setting = dea_solid_settings_at(settings, i, &value)) != NULL; i++) {
+    if (!(value > 0 && isfinite(value))) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "the setting %s has to be above 0, not %g",
+                      setting->name, value);
+    }
+  }
   DEA_TRY(ctx, check_power(ctx, "bulk_stiff", settings->bulk_stiff));
   DEA_TRY(ctx, check_power(ctx, "path_bulk", settings->path_bulk));
   return DEA_OK;

@@ -79,6 +79,16 @@ struct dea_solid_settings {
 
 struct dea_solid_settings dea_solid_settings_default(void);
 
+/* A setting as it is: the one of that number in the list, or NULL beyond; *value: its value. */
+struct dea_solid_setting {
+  const char *name, *unit, *meaning;
+};
+const struct dea_solid_setting *dea_solid_settings_at(const struct dea_solid_settings *settings,
+                                                      size_t number, double *value);
+/* Sets one by its name. DEA_E_ARGUMENT for an unknown name, and as dea_solid_settings_check. */
+dea_status dea_solid_settings_set(struct dea_context *ctx, struct dea_solid_settings *settings,
+                                  const char *name, double value);
+
 /* DEA_E_ARGUMENT for a number that is not above 0, or no power of 2 where it has to be one. */
 dea_status dea_solid_settings_check(struct dea_context *ctx,
                                     const struct dea_solid_settings *settings);

@@ -147,6 +147,11 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   dea_free(ctx, s);
 }
 
+struct dea_solid_settings *dea_solid_settings_of(struct dea_solid *solid)
+{
+  return &solid->settings;
+}
+
 double dea_solid_voltage(const struct dea_solid *solid)
 {
   return solid->state.voltage_V;

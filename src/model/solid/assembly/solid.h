@@ -85,6 +85,10 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
                             const struct dea_solid_options *options, struct dea_solid **out);
 void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *solid);
 
+/* The settings of the solves to come, lent; what is written there has passed
+ * dea_solid_settings_check. */
+struct dea_solid_settings *dea_solid_settings_of(struct dea_solid *solid);
+
 /* Voltage of the last equilibrium. */
 double dea_solid_voltage(const struct dea_solid *solid);
 
