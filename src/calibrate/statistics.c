@@ -232,7 +232,7 @@ static void scale(const struct work *w, const double *S, bool known, struct dea_
   for (size_t a = 0; a < w->k; a++) {
     expected -= S[a * w->k + a];
   }
-  out->reduced_chi2 = expected > 0 && freedom > 0.5 ? w->fit->chi2 / expected : NAN;
+  out->reduced_chi2 = w->rows > w->k && expected > 0 ? w->fit->chi2 / expected : NAN;
   const double excess = out->reduced_chi2 - 1;
   out->widened = known ? excess > 2 * sqrt(2 / fmax(freedom, 1)) : false;
   out->variance = known && !out->widened ? 1 : out->reduced_chi2;

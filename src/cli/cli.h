@@ -52,6 +52,7 @@ struct dea_command {
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
   X(cmd_reduce)                                                                                    \
+  X(cmd_fit)                                                                                       \
   X(cmd_recording)                                                                                 \
   X(cmd_import)                                                                                    \
   X(cmd_examples)                                                                                  \

@@ -1,11 +1,12 @@
 #include "cli/cli.h"
 
+#include "calibrate/fit_file.h"
 #include "lab/import/import.h"
 #include "lab/protocol/protocol.h"
 #include "study/design_file.h"
 
 struct request {
-  bool json, markdown, material, protocol, mapping;
+  bool json, markdown, material, protocol, mapping, fit;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -16,6 +17,7 @@ static int run(struct dea_cli *cli, void *user)
   const struct dea_record *record = request->material   ? &dea_material_file_record
                                     : request->protocol ? &dea_protocol_record
                                     : request->mapping  ? &dea_mapping_record
+                                    : request->fit      ? &dea_fit_record
                                                         : &design.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
@@ -37,6 +39,8 @@ static const struct cli_option options[] = {
      CLI_AT(protocol), .or_before = true},
     {"mapping", 0, CLI_FLAG, NULL, "the keys of a mapping for `dea import` instead",
      CLI_AT(mapping), .or_before = true},
+    {"fit", 0, CLI_FLAG, NULL, "the keys of a fit file for `dea fit` instead", CLI_AT(fit),
+     .or_before = true},
     {0}};
 
 const struct dea_command cmd_schema = {

@@ -28,6 +28,11 @@ struct dea_law_set {
   const struct dea_law *law;         // NULL after an error in law_name
   const struct dea_node *parameters; // section as written; lent
   struct dea_quantity param[DEA_LAW_PARAM_MAX];
+  const struct dea_node *uncertainties;             // section as written, NULL: none; lent
+  struct dea_quantity param_std[DEA_LAW_PARAM_MAX]; // standard uncertainties, NAN: not given
+  /* Of the parameters with an uncertainty, in the law's order: (2,1), (3,1), (3,2), (4,1), ... */
+  struct dea_quantity correlations[DEA_LAW_PARAM_MAX * (DEA_LAW_PARAM_MAX - 1) / 2];
+  size_t correlation_count; // 0: not given
   struct dea_quantity fibre_angle_rad;
   struct dea_stretch_range range;
   struct dea_data_notes notes;
@@ -50,6 +55,7 @@ struct dea_breakdown_set {
 /* One branch of a viscosity: shear modulus as such or as a share of the law's at rest. */
 struct dea_branch_data {
   struct dea_quantity modulus_Pa, ratio, time_s;
+  struct dea_quantity modulus_std_Pa, time_std_s; // standard uncertainties, NAN: not given
 };
 
 struct dea_viscosity_set {

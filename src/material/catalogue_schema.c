@@ -59,6 +59,24 @@ static const struct dea_field law_fields[] = {
      .required = true,
      .doc = "parameters of the law, each with its unit",
      .example = "{c1: 178.4 kPa, c2: -6.0 kPa, c3: 4.2 kPa}"},
+    {.key = "standard_uncertainties",
+     .kind = DEA_FIELD_SECTION,
+     .offset = offsetof(struct dea_law_set, uncertainties),
+     .absent_text = "not given",
+     .doc = "standard uncertainties of parameters, each with its unit",
+     .example = "{c1: 2.1 kPa}"},
+    {.key = "correlations",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_law_set, correlations),
+     .unit = "1",
+     .min = -1,
+     .max = 1,
+     .list_max = DEA_LAW_PARAM_MAX * (DEA_LAW_PARAM_MAX - 1) / 2,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = offsetof(struct dea_law_set, correlation_count),
+     .absent_text = "not given",
+     .doc = "correlations of these in the law's order: 2 with 1, 3 with 1, 3 with 2, ...",
+     .example = "[-0.8]"},
     {.key = "fibre_angle",
      .kind = DEA_FIELD_NUMBER,
      .offset = offsetof(struct dea_law_set, fibre_angle_rad),
@@ -173,6 +191,22 @@ static const struct dea_field branch_fields[] = {
      .required = true,
      .doc = "relaxation time of the branch",
      .example = "0.6074 s"},
+    {.key = "modulus_uncertainty",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_branch_data, modulus_std_Pa),
+     .unit = "Pa",
+     .max = 1e12,
+     .absent_text = "not given",
+     .doc = "standard uncertainty of the modulus",
+     .example = "0.8 kPa"},
+    {.key = "time_uncertainty",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_branch_data, time_std_s),
+     .unit = "s",
+     .max = 1e12,
+     .absent_text = "not given",
+     .doc = "standard uncertainty of the time",
+     .example = "0.05 s"},
 };
 
 static const struct dea_record branch_record = {"branch", "spring and dashpot in series",
@@ -359,9 +393,10 @@ static const char *example_of(const char *unit)
   return strcmp(unit, "Pa") == 0 ? "100 kPa" : strcmp(unit, "radian") == 0 ? "30 degree" : "1.5";
 }
 
-/* Reads the parameters with a table made from those of the law. */
+/* Reads the parameters with a table made from those of the law, or their standard uncertainties. */
 static dea_status read_parameters(const struct dea_reader *reader, const char *path,
-                                  struct dea_law_set *set)
+                                  const struct dea_law_set *set, const struct dea_node *node,
+                                  bool uncertainties, struct dea_quantity *out)
 {
   struct dea_field fields[DEA_LAW_PARAM_MAX];
   memset(fields, 0, sizeof fields);
@@ -371,15 +406,30 @@ static dea_status read_parameters(const struct dea_reader *reader, const char *p
     fields[i].kind = DEA_FIELD_NUMBER;
     fields[i].offset = i * sizeof set->param[0];
     fields[i].unit = param->unit;
-    fields[i].min = param->min;
-    fields[i].max = param->max;
-    fields[i].required = param->required;
-    fields[i].absent_text = "0";
+    fields[i].min = uncertainties ? 0 : param->min;
+    fields[i].max = uncertainties ? 1e12 : param->max;
+    fields[i].required = param->required && !uncertainties;
+    fields[i].absent_text = uncertainties ? "not given" : "0";
     fields[i].doc = param->meaning;
     fields[i].example = example_of(param->unit);
   }
   struct dea_record record = {set->law->name, set->law->long_name, fields, set->law->param_count};
-  return dea_schema_read(reader, &record, set->parameters, path, set->param);
+  return dea_schema_read(reader, &record, node, path, out);
+}
+
+/* Correlations belong to all pairs of the parameters with an uncertainty. */
+static dea_status check_correlations(const struct dea_reader *reader, const struct dea_law_set *set)
+{
+  size_t known = 0;
+  for (size_t i = 0; set->law != NULL && i < set->law->param_count; i++) {
+    known += set->uncertainties != NULL && !isnan(set->param_std[i].si) ? 1U : 0U;
+  }
+  const size_t wanted = known > 0 ? known * (known - 1) / 2 : 0;
+  return set->correlation_count == 0 || set->correlation_count == wanted
+             ? DEA_OK
+             : dea_schema_error(reader, set->correlations[0].location,
+                                "%zu correlations; the %zu parameters with an uncertainty have %zu",
+                                set->correlation_count, known, wanted);
 }
 
 /* Two sets of one name: a design could never choose the second. */
@@ -447,12 +497,18 @@ dea_status dea_material_data_finish(const struct dea_reader *reader, const char 
   for (size_t i = 0; i < data->law_count; i++) {
     struct dea_law_set *set = &data->laws[i];
     DEA_TRY(reader->ctx, find_law(reader, set));
+    char inner[DEA_PATH_SIZE];
+    const char *dot = path[0] != '\0' ? "." : "";
     if (set->law != NULL && set->parameters != NULL) {
-      char inner[DEA_PATH_SIZE];
-      snprintf(inner, sizeof inner, "%s%slaws[%zu].parameters", path, path[0] != '\0' ? "." : "",
-               i);
-      DEA_TRY(reader->ctx, read_parameters(reader, inner, set));
+      snprintf(inner, sizeof inner, "%s%slaws[%zu].parameters", path, dot, i);
+      DEA_TRY(reader->ctx, read_parameters(reader, inner, set, set->parameters, false, set->param));
     }
+    if (set->law != NULL && set->uncertainties != NULL) {
+      snprintf(inner, sizeof inner, "%s%slaws[%zu].standard_uncertainties", path, dot, i);
+      DEA_TRY(reader->ctx,
+              read_parameters(reader, inner, set, set->uncertainties, true, set->param_std));
+    }
+    DEA_TRY(reader->ctx, check_correlations(reader, set));
   }
   return check_sets(reader, data);
 }

@@ -11,9 +11,9 @@ enum { C10, C01, C11, C20, C30, PARAM_COUNT };
 static const struct dea_law_param params[PARAM_COUNT] = {
     [C10] = {"c10", "Pa", -1e12, 1e12, true, "coefficient of I1 - 3; c10 + c01 > 0"},
     [C01] = {"c01", "Pa", -1e12, 1e12, true, "coefficient of I2 - 3; c10 + c01 > 0"},
-    [C11] = {"c11", "Pa", -1e12, 1e12, false, "coefficient of (I1 - 3) (I2 - 3)"},
-    [C20] = {"c20", "Pa", -1e12, 1e12, false, "coefficient of (I1 - 3)^2"},
-    [C30] = {"c30", "Pa", -1e12, 1e12, false, "coefficient of (I1 - 3)^3"},
+    [C11] = {"c11", "Pa", -1e12, 1e12, true, "coefficient of (I1 - 3) (I2 - 3)"},
+    [C20] = {"c20", "Pa", -1e12, 1e12, true, "coefficient of (I1 - 3)^2"},
+    [C30] = {"c30", "Pa", -1e12, 1e12, true, "coefficient of (I1 - 3)^3"},
 };
 
 static dea_status invariants(const double *p, dea_scalar I1, dea_scalar I2, dea_scalar I4,

@@ -40,6 +40,10 @@ static dea_status read_unit(struct reader *r, int w, const char *title, const ch
 {
   char why[DEA_WHY_SIZE] = "";
   struct dea_location location;
+  if (unit[0] == '\0' && strcmp(r->wanted[w].measure.unit, "1") == 0) {
+    r->factor[w] = 1;
+    return DEA_OK;
+  }
   if (unit[0] == '\0') {
     return one_more(r, column, &location)
                ? dea_finding_add(r->ctx, DEA_ERROR, location,
@@ -178,9 +182,12 @@ static dea_status read_row(struct reader *r, const char *line)
     }
   }
   if ((more || field < r->field_count) && one_more(r, column, &location)) {
-    DEA_TRY(r->ctx,
-            dea_finding_add(r->ctx, DEA_ERROR, location, "%s fields than the header, which has %zu",
-                            more ? "more" : "fewer", r->field_count));
+    DEA_TRY(r->ctx, dea_finding_add(
+                        r->ctx, DEA_ERROR, location, "%s fields than the header, which has %zu%s",
+                        more ? "more" : "fewer", r->field_count,
+                        more && r->separator == ','
+                            ? "; where the decimal sign is a comma, columns are parted by ;"
+                            : ""));
   }
   r->out->line[r->out->rows] = r->line;
   r->out->rows += r->errors == before ? 1 : 0;

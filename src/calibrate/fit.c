@@ -1,0 +1,455 @@
+#include "calibrate/fit.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { BLOCKS = 4, AUTO_BRANCHES_MAX = 6 };
+
+struct work {
+  struct dea_context *ctx;
+  struct dea_fit *fit;
+  double from_s, to_s; // that the tests in time span
+  bool timed;
+};
+
+/* ---- the rows ---- */
+
+static struct dea_fit_rows all_rows(const struct dea_fit *fit)
+{
+  return (struct dea_fit_rows){fit->series, fit->series_count, SIZE_MAX, 0, 0, fit->scatter_Pa};
+}
+
+/* Whether all fitted rows have uncertainties; none have: the scatter is found. */
+static dea_status look_at_uncertainties(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  size_t known = 0, rows = 0;
+  double most = 0;
+  const struct dea_fit_series *lacking = NULL;
+  fit->stretch_min = INFINITY;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_series *series = &fit->series[s];
+    for (size_t i = 0; i < series->rows && dea_fit_series_used(series); i++) {
+      const bool is_known = !isnan(series->std_Pa[i]);
+      known += is_known ? 1U : 0U;
+      lacking = is_known ? lacking : series;
+      rows++;
+      most = fmax(most, fabs(series->stress_Pa[i]));
+      fit->stretch_min = fmin(fit->stretch_min, fmin(1, series->stretch[i]));
+      fit->stretch_max = fmax(fit->stretch_max, series->stretch[i]);
+    }
+    if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
+      const double last = series->time_s[series->rows - 1];
+      double first = series->time_s[0];
+      if (series->test->kind.value == DEA_FIT_RELAXATION && series->rows > 1) {
+        first = fmax(0, series->time_s[1] - series->time_s[0]); // after the peak
+      } else {
+        first = last / 30;
+      }
+      w->from_s = w->timed ? fmin(w->from_s, fmax(first, 1e-6 * last)) : fmax(first, 1e-6 * last);
+      w->to_s = w->timed ? fmax(w->to_s, last) : last;
+      w->timed = true;
+    }
+  }
+  if (rows == 0) {
+    return dea_fail(w->ctx, DEA_E_DESIGN, "no test is there to be fitted (use: fit)");
+  }
+  fit->scale_known = known == rows;
+  fit->scatter_Pa = 0.01 * most; // a scale only: what it is follows from the residuals
+  if (known > 0 && known < rows) {
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, lacking->test->name.location,
+                                    "'%.60s' gives no uncertainty while others do: give it one, or "
+                                    "none to any",
+                                    lacking->test->name.text));
+    return dea_fail(w->ctx, DEA_E_DESIGN, "tests with and without uncertainty cannot be weighed");
+  }
+  return DEA_OK;
+}
+
+/* ---- a law of the list ---- */
+
+/* Akaike's criterion with its correction for few rows. A misfit below the known noise is no gain.
+ */
+static double criterion(const struct dea_lsq_fit *fit, size_t free_count, bool scale_known)
+{
+  const double m = (double)fit->rows, k = (double)free_count + 1;
+  const double mean = fit->chi2 / m;
+  return m - k - 1 < 0.5 ? INFINITY
+                         : m * log(fmax(mean, scale_known ? 1 : 1e-300)) + 2 * k +
+                               2 * k * (k + 1) / (m - k - 1);
+}
+
+/* Fits with that many branches; out: freed by the caller after success. */
+static dea_status fit_branches(struct work *w, struct dea_fit_model *model, size_t count,
+                               const struct dea_quantity *times, struct dea_lsq_fit *out)
+{
+  const struct dea_fit_rows rows = all_rows(w->fit);
+  dea_fit_model_branches(model, count, w->from_s, w->to_s, times);
+  return dea_fit_model_solve(w->ctx, model, &rows, out);
+}
+
+/* As many branches as lower the criterion; stops after two that do not. */
+static dea_status find_branches(struct work *w, struct dea_fit_model *model)
+{
+  double best = INFINITY;
+  size_t best_count = 0;
+  for (size_t n = 0; n <= AUTO_BRANCHES_MAX && n <= best_count + 2; n++) {
+    struct dea_fit_model trial = *model;
+    struct dea_lsq_fit fit;
+    dea_status status = fit_branches(w, &trial, n, NULL, &fit);
+    if (status == DEA_E_MEMORY) {
+      return status;
+    }
+    if (status != DEA_OK) {
+      dea_context_clear(w->ctx);
+      continue;
+    }
+    const double value = criterion(&fit, dea_fit_model_free(&trial), w->fit->scale_known);
+    if (value < best - 2 || (n == 0 && isfinite(value))) {
+      best = value;
+      best_count = n;
+    }
+    dea_lsq_free(&fit);
+  }
+  dea_fit_model_branches(model, best_count, w->from_s, w->to_s, NULL);
+  return DEA_OK;
+}
+
+static dea_status choose_branches(struct work *w, struct dea_fit_model *model)
+{
+  const struct dea_fit_file *file = w->fit->file;
+  const char *text = file->branches.text, *end;
+  const double count = dea_text_to_double(text, &end);
+  const bool is_auto = strcmp(text, "auto") == 0, none = strcmp(text, "none") == 0;
+  const bool is_number = *text != '\0' && *end == '\0' && count >= 0 && count <= DEA_BRANCHES_MAX &&
+                         count == floor(count);
+  if (!is_auto && !none && !is_number) {
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file->branches.location,
+                                    "branches: '%.40s' is none of none, auto and a number up to %d",
+                                    text, DEA_BRANCHES_MAX));
+    return dea_fail(w->ctx, DEA_E_DESIGN, "the number of branches is not understood");
+  }
+  if (!w->timed && (is_auto || count > 0 || file->branch_time_count > 0)) {
+    DEA_TRY(w->ctx,
+            dea_finding_add(w->ctx, DEA_ERROR, file->branches.location,
+                            "branches need a test in time: a relaxation, cycles, or a rate"));
+    return dea_fail(w->ctx, DEA_E_DESIGN, "no test tells of viscosity");
+  }
+  if (file->branch_time_count > 0) {
+    dea_fit_model_branches(model, file->branch_time_count, w->from_s, w->to_s, file->branch_s);
+    return DEA_OK;
+  }
+  if (is_auto) {
+    return find_branches(w, model);
+  }
+  dea_fit_model_branches(model, is_number ? (size_t)count : 0, fmax(w->from_s, 1e-9),
+                         fmax(w->to_s, 1e-8), NULL);
+  return DEA_OK;
+}
+
+/* Adds the squares of what a fit without some rows says of them. */
+static dea_status hold_out(struct work *w, const struct dea_fit_model *model, size_t s, size_t from,
+                           size_t to, double *squares, double *shares, size_t *count)
+{
+  const struct dea_fit_series *series = &w->fit->series[s];
+  struct dea_fit_rows rows = all_rows(w->fit);
+  struct dea_arena memory = {.ctx = w->ctx};
+  struct dea_lsq_problem problem;
+  struct dea_lsq_fit fit;
+  rows.without = s;
+  rows.from = from;
+  rows.to = to;
+  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, model, &rows, &fit));
+  double *stress = dea_arena_alloc(&memory, series->rows, sizeof *stress);
+  dea_status status = dea_fit_model_stress(&memory, model, series, &problem);
+  status = status == DEA_OK ? problem.residual(problem.user, fit.p, stress) : status;
+  double most = 0;
+  for (size_t i = 0; i < series->rows; i++) {
+    most = fmax(most, fabs(series->stress_Pa[i]));
+  }
+  for (size_t i = from; i < to && status == DEA_OK; i++) {
+    const double std = isnan(series->std_Pa[i]) ? w->fit->scatter_Pa : series->std_Pa[i];
+    const double off = stress[i] - series->stress_Pa[i];
+    *squares += off * off / (std * std);
+    *shares += off * off / (most * most);
+    ++*count;
+  }
+  dea_arena_free(&memory);
+  dea_lsq_free(&fit);
+  return status;
+}
+
+/* Foretells every fitted test from the others; a single one in blocks of a quarter. */
+static dea_status hold_out_all(struct work *w, const struct dea_fit_model *model,
+                               struct dea_fit_candidate *candidate)
+{
+  size_t used = 0, count = 0;
+  double squares = 0, shares = 0;
+  for (size_t s = 0; s < w->fit->series_count; s++) {
+    used += dea_fit_series_used(&w->fit->series[s]) ? 1U : 0U;
+  }
+  for (size_t s = 0; s < w->fit->series_count; s++) {
+    const size_t rows = w->fit->series[s].rows, blocks = used > 1 ? 1 : BLOCKS;
+    for (size_t b = 0; b < blocks && dea_fit_series_used(&w->fit->series[s]); b++) {
+      DEA_TRY(w->ctx, hold_out(w, model, s, b * rows / blocks, (b + 1) * rows / blocks, &squares,
+                               &shares, &count));
+    }
+  }
+  candidate->held_out = sqrt(squares / (double)count);
+  candidate->held_out_share = sqrt(shares / (double)count);
+  return DEA_OK;
+}
+
+/* One law, its branches and how well it foretells; a failure is kept with its message. */
+static dea_status try_law(struct work *w, const struct dea_label *name, struct dea_fit_model *model,
+                          struct dea_fit_candidate *candidate)
+{
+  struct dea_fit *fit = w->fit;
+  struct dea_lsq_fit found;
+  const struct dea_fit_rows rows = all_rows(fit);
+  *candidate = (struct dea_fit_candidate){.held_out = NAN, .held_out_share = NAN};
+  snprintf(candidate->name, sizeof candidate->name, "%.63s", name->text);
+  DEA_TRY(w->ctx,
+          dea_fit_model_make(w->ctx, fit->file, name, fit->series, fit->series_count, model));
+  DEA_TRY(w->ctx, choose_branches(w, model));
+  candidate->free_count = dea_fit_model_free(model);
+  candidate->branch_count = model->branch_count;
+  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, model, &rows, &found));
+  candidate->chi2 = found.chi2;
+  candidate->aicc = criterion(&found, candidate->free_count, fit->scale_known);
+  dea_lsq_free(&found);
+  return fit->file->law_count > 1 ? hold_out_all(w, model, candidate) : DEA_OK;
+}
+
+static dea_status choose_law(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  bool any = false;
+  for (size_t i = 0; i < fit->file->law_count; i++) {
+    struct dea_fit_candidate *candidate = &fit->candidates[i],
+                             *best = &fit->candidates[fit->chosen];
+    struct dea_fit_model model;
+    dea_progress(w->ctx, "laws", i, fit->file->law_count);
+    fit->candidate_count = i + 1;
+    dea_status status = try_law(w, &fit->file->laws[i], &model, candidate);
+    if (status == DEA_E_MEMORY || status == DEA_E_DESIGN || status == DEA_E_TOOL ||
+        fit->file->law_count == 1) {
+      DEA_TRY(w->ctx, status);
+    }
+    if (status != DEA_OK) {
+      candidate->failed = true;
+      snprintf(candidate->why, sizeof candidate->why, "%.150s", dea_context_message(w->ctx));
+      dea_context_clear(w->ctx);
+      continue;
+    }
+    // of two that foretell as well (5 %) the one with fewer parameters
+    const double limit = any ? best->held_out : INFINITY;
+    const bool simpler = any && candidate->free_count < best->free_count;
+    if (!any || candidate->held_out < (simpler ? 1.05 : 1 / 1.05) * limit) {
+      fit->chosen = i;
+      fit->model = model;
+      any = true;
+    }
+  }
+  return any ? DEA_OK : dea_fail(w->ctx, DEA_E_NOT_CONVERGED, "none of the laws could be fitted");
+}
+
+/* ---- the law that was chosen ---- */
+
+static dea_status find_statistics(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  struct dea_lsq_group groups[DEA_FIT_TESTS_MAX];
+  size_t count = 0, at = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    if (dea_fit_series_used(&fit->series[s])) {
+      groups[count++] = (struct dea_lsq_group){at, fit->series[s].rows};
+      at += fit->series[s].rows;
+    }
+  }
+  DEA_TRY(w->ctx, dea_lsq_statistics_find(w->ctx, &fit->least_squares, groups, count,
+                                          fit->scale_known, &fit->statistics));
+  double squares = 0;
+  for (size_t i = 0; i < at; i++) {
+    squares += fit->least_squares.r[i] * fit->least_squares.r[i];
+  }
+  fit->scatter_Pa *= fit->scale_known ? 1 : sqrt(squares / (double)at);
+  return DEA_OK;
+}
+
+/* Growth of chi2, in units of what one standard uncertainty should give, with p_j moved by it. */
+static dea_status growth(struct work *w, const struct dea_lsq_problem *problem, size_t j, double by,
+                         double unit, double *out)
+{
+  const struct dea_lsq_fit *fit = &w->fit->least_squares;
+  double p[DEA_LSQ_PARAMS_MAX];
+  bool held[DEA_LSQ_PARAMS_MAX];
+  struct dea_lsq_fit moved;
+  memcpy(p, fit->p, fit->params * sizeof *p);
+  memcpy(held, fit->held, fit->params * sizeof *held);
+  p[j] += by;
+  held[j] = true;
+  *out = NAN;
+  dea_status status = dea_lsq_solve(w->ctx, problem, p, held, &moved);
+  if (status == DEA_OK) {
+    *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit);
+    dea_lsq_free(&moved);
+  } else if (status != DEA_E_MEMORY) {
+    dea_context_clear(w->ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+static dea_status profile(struct work *w, const struct dea_lsq_problem *problem, size_t j, bool all)
+{
+  struct dea_fit *fit = w->fit;
+  struct dea_fit_value *value = &fit->values[j];
+  const double std = fit->statistics.std[j], naive = fit->statistics.naive_std[j];
+  const bool logarithmic = fit->model.params[j].logarithmic;
+  if (!(std > 0) || isinf(std)) {
+    return DEA_OK;
+  }
+  const double unit = (std / naive) * (std / naive); // correlated, widened
+  double below, above;
+  DEA_TRY(w->ctx, growth(w, problem, j, -std, unit, &below));
+  DEA_TRY(w->ctx, growth(w, problem, j, std, unit, &above));
+  value->bends = !(fabs(below - 1) < 0.15 && fabs(above - 1) < 0.15);
+  if (value->bends || all) {
+    struct dea_lsq_interval interval;
+    DEA_TRY(w->ctx, dea_lsq_profile(w->ctx, problem, &fit->least_squares, j, 1, unit, 0.7 * std,
+                                    &interval));
+    value->low = logarithmic ? exp(interval.low) : interval.low;
+    value->high = logarithmic ? exp(interval.high) : interval.high;
+  }
+  return DEA_OK;
+}
+
+static dea_status fill_values(struct work *w, bool all_profiles)
+{
+  struct dea_fit *fit = w->fit;
+  const struct dea_fit_rows rows = all_rows(fit);
+  struct dea_lsq_problem problem;
+  DEA_TRY(w->ctx, dea_fit_model_problem(&fit->memory, &fit->model, &rows, &problem));
+  for (size_t j = 0; j < fit->model.count; j++) {
+    const struct dea_fit_param *param = &fit->model.params[j];
+    const double p = fit->least_squares.p[j], std = fit->statistics.std[j];
+    fit->values[j] = (struct dea_fit_value){.value = param->logarithmic ? exp(p) : p,
+                                            .std = param->logarithmic ? exp(p) * std : std,
+                                            .low = NAN,
+                                            .high = NAN,
+                                            .fixed = param->fixed,
+                                            .at_bound = fit->least_squares.at_bound[j]};
+    dea_progress(w->ctx, "profiles", j, fit->model.count);
+    DEA_TRY(w->ctx, profile(w, &problem, j, all_profiles));
+  }
+  return DEA_OK;
+}
+
+/* Stress of a test at the parameters found, and its standard uncertainty. */
+static dea_status fill_curve(struct work *w, const struct dea_fit_series *series,
+                             struct dea_fit_curve *curve)
+{
+  struct dea_fit *fit = w->fit;
+  const size_t n = fit->model.count, m = series->rows;
+  struct dea_lsq_problem problem;
+  curve->series = series;
+  curve->stress_Pa = dea_arena_alloc(&fit->memory, m, sizeof *curve->stress_Pa);
+  curve->std_Pa = dea_arena_alloc(&fit->memory, m, sizeof *curve->std_Pa);
+  double *J = dea_arena_alloc(&fit->memory, m * n, sizeof *J);
+  DEA_TRY(w->ctx, dea_fit_model_stress(&fit->memory, &fit->model, series, &problem));
+  dea_status status = problem.residual(problem.user, fit->least_squares.p, curve->stress_Pa);
+  if (status == DEA_OK) {
+    status = dea_lsq_jacobian(w->ctx, &problem, fit->least_squares.p, J);
+  }
+  if (status == DEA_E_DOMAIN) {
+    return dea_fail(w->ctx, status, "'%.60s' goes beyond the domain of the law that was found",
+                    series->test->name.text);
+  }
+  DEA_TRY(w->ctx, status);
+  double squares = 0;
+  for (size_t i = 0; i < m; i++) {
+    double variance = 0;
+    for (size_t a = 0; a < n; a++) {
+      for (size_t b = 0; b < n; b++) {
+        variance += J[a * m + i] * fit->statistics.covariance[a * n + b] * J[b * m + i];
+      }
+    }
+    curve->std_Pa[i] = sqrt(fmax(0, variance));
+    const double off = curve->stress_Pa[i] - series->stress_Pa[i];
+    squares += off * off;
+    curve->largest = fmax(curve->largest, fabs(off / series->stress_Pa[i]));
+  }
+  curve->rms_Pa = sqrt(squares / (double)m); // NAN without measurements
+  curve->largest = isnan(curve->rms_Pa) ? NAN : curve->largest;
+  return DEA_OK;
+}
+
+static dea_status fill_curves(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  fit->curves = dea_arena_alloc(&fit->memory, fit->series_count, sizeof *fit->curves);
+  DEA_TRY(w->ctx, dea_arena_status(&fit->memory));
+  for (size_t s = 0, g = 0; s < fit->series_count; s++) {
+    DEA_TRY(w->ctx, fill_curve(w, &fit->series[s], &fit->curves[s]));
+    fit->curves[s].lag = fit->curves[s].effective = NAN;
+    if (dea_fit_series_used(&fit->series[s])) {
+      fit->curves[s].lag = fit->statistics.lag[g];
+      fit->curves[s].effective = fit->statistics.effective[g++];
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status run(struct work *w, const struct dea_fit_options *options)
+{
+  struct dea_fit *fit = w->fit;
+  DEA_TRY(w->ctx, look_at_uncertainties(w));
+  DEA_TRY(w->ctx, choose_law(w));
+  const struct dea_fit_rows rows = all_rows(fit);
+  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &fit->model, &rows, &fit->least_squares));
+  const double unit_Pa = fit->scatter_Pa; // that the residuals are in
+  DEA_TRY(w->ctx, find_statistics(w));
+  const double scatter_Pa = fit->scatter_Pa;
+  fit->scatter_Pa = unit_Pa;
+  DEA_TRY(w->ctx, fill_values(w, options->profile));
+  DEA_TRY(w->ctx, fill_curves(w));
+  dea_fit_tell_weak(fit);
+  dea_fit_tell_stability(fit);
+  DEA_TRY(w->ctx, dea_fit_tell_next(w->ctx, fit));
+  fit->scatter_Pa = scatter_Pa;
+  return DEA_OK;
+}
+
+dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
+                       const struct dea_fit_series *series, size_t series_count,
+                       const struct dea_fit_options *options, struct dea_fit **out)
+{
+  *out = NULL;
+  struct dea_fit *fit = dea_alloc(ctx, 1, sizeof *fit);
+  if (fit == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *fit = (struct dea_fit){
+      .file = file, .series = series, .series_count = series_count, .memory = {.ctx = ctx}};
+  struct work w = {.ctx = ctx, .fit = fit};
+  dea_status status = run(&w, options);
+  if (status != DEA_OK) {
+    dea_fit_destroy(ctx, fit);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = fit;
+  return DEA_OK;
+}
+
+void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit)
+{
+  if (fit != NULL) {
+    dea_lsq_statistics_free(&fit->statistics);
+    dea_lsq_free(&fit->least_squares);
+    dea_arena_free(&fit->memory);
+    dea_free(ctx, fit);
+  }
+}

@@ -1,0 +1,360 @@
+#include "calibrate/fit_file.h"
+
+#include "base/file.h"
+#include "result/provenance.h"
+
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define AT(member) offsetof(struct dea_fit_file, member)
+#define TEST_AT(member) offsetof(struct dea_fit_test, member)
+
+const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1] = {"uniaxial",   "planar", "equibiaxial",
+                                                           "relaxation", "cyclic", NULL};
+
+const struct dea_fit_column_type dea_fit_columns[DEA_FIT_COLUMNS] = {
+    [DEA_FIT_TIME] = {"time", "s", "time (s)"},
+    [DEA_FIT_STRETCH] = {"stretch", "1", "stretch"},
+    [DEA_FIT_DISPLACEMENT] = {"displacement", "m", "displacement (mm)"},
+    [DEA_FIT_STRESS] = {"stress", "Pa", "stress (kPa)"},
+    [DEA_FIT_FORCE] = {"force", "N", "force (N)"},
+    [DEA_FIT_STRESS_STD] = {"stress_std", "Pa", "stress std (kPa)"},
+    [DEA_FIT_FORCE_STD] = {"force_std", "N", "force std (N)"},
+};
+
+#define COLUMN_FIELD(column, word, meaning)                                                        \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_LABEL, .offset = (column) * sizeof(struct dea_label),           \
+    .doc = meaning, .example = word, .absent_text = "a column of that name"                        \
+  }
+static const struct dea_field column_fields[] = {
+    COLUMN_FIELD(DEA_FIT_TIME, "time", "time since the strip began to be stretched"),
+    COLUMN_FIELD(DEA_FIT_STRETCH, "stretch", "stretch, length over unstretched length"),
+    COLUMN_FIELD(DEA_FIT_DISPLACEMENT, "displacement", "change of length, with length"),
+    COLUMN_FIELD(DEA_FIT_STRESS, "stress", "nominal stress, force over unstretched section"),
+    COLUMN_FIELD(DEA_FIT_FORCE, "force", "force, with section"),
+    COLUMN_FIELD(DEA_FIT_STRESS_STD, "stress_std", "standard uncertainty of the stress"),
+    COLUMN_FIELD(DEA_FIT_FORCE_STD, "force_std", "standard uncertainty of the force"),
+};
+static const struct dea_record column_record = {
+    "columns", "titles of the columns, without their units", column_fields, COUNT(column_fields)};
+
+static const char *const uses[] = {"fit", "check", "predict", NULL};
+static const char *const no_yes[] = {"no", "yes", NULL};
+
+static const struct dea_field test_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = TEST_AT(name),
+     .required = true,
+     .doc = "name of the test",
+     .example = "tension to 3"},
+    {.key = "file",
+     .kind = DEA_FIELD_LABEL,
+     .offset = TEST_AT(file),
+     .required = true,
+     .doc = "CSV file, counted from the folder of this file",
+     .example = "tension.csv"},
+    {.key = "kind",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = TEST_AT(kind),
+     .required = true,
+     .choices = dea_fit_kind_names,
+     .doc = "kind of test; relaxation and cyclic need times or a rate",
+     .example = "uniaxial"},
+    {.key = "mode",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = TEST_AT(mode),
+     .choices = dea_coupon_mode_names,
+     .default_text = "uniaxial",
+     .doc = "how the piece of a relaxation or cyclic test is held",
+     .example = "uniaxial"},
+    {.key = "use",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = TEST_AT(use),
+     .choices = uses,
+     .default_text = "fit",
+     .doc = "fit: fitted; check: only compared; predict: no stress is needed",
+     .example = "check"},
+    {.key = "columns",
+     .kind = DEA_FIELD_RECORD,
+     .offset = TEST_AT(columns),
+     .record = &column_record,
+     .doc = "titles of the columns where they are others"},
+    {.key = "length",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(length_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 100,
+     .absent_text = "not needed",
+     .doc = "unstretched length between the clamps, with a column of displacements",
+     .example = "80 mm"},
+    {.key = "section",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(section_m2),
+     .unit = "m^2",
+     .above_min = true,
+     .max = 1,
+     .absent_text = "not needed",
+     .doc = "unstretched cross-section, with a column of forces",
+     .example = "22 mm^2"},
+    {.key = "uncertainty",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(relative),
+     .unit = "1",
+     .max = 10,
+     .absent_text = "from the scatter",
+     .doc = "standard uncertainty of each stress, as a share of it",
+     .example = "2 %"},
+    {.key = "uncertainty_absolute",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(absolute_Pa),
+     .unit = "Pa",
+     .max = 1e12,
+     .absent_text = "from the scatter",
+     .doc = "standard uncertainty of each stress; added to the share as squares",
+     .example = "0.5 kPa"},
+    {.key = "rate",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(rate_per_s),
+     .unit = "s^-1",
+     .above_min = true,
+     .max = 1e6,
+     .absent_text = "by the times",
+     .doc = "rate of stretching",
+     .example = "0.25 s^-1"},
+    {.key = "ramp",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(ramp_s),
+     .unit = "s",
+     .above_min = true,
+     .max = 1e9,
+     .absent_text = "by the rate",
+     .doc = "of a relaxation: time in which the stretch is reached",
+     .example = "4 s"},
+    {.key = "stretch",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = TEST_AT(stretch),
+     .unit = "1",
+     .above_min = true,
+     .max = 100,
+     .absent_text = "in the file",
+     .doc = "stretch that is held in a relaxation; of other tests the one that they go to",
+     .example = "3"},
+};
+static const struct dea_record test_record = {"test", "a test of the material", test_fields,
+                                              COUNT(test_fields)};
+
+#define PARAMETER_FIELD(word, meaning, shown, without)                                             \
+  {                                                                                                \
+    .key = #word, .kind = DEA_FIELD_LABEL,                                                         \
+    .offset = offsetof(struct dea_fit_parameter_text, word), .doc = meaning, .example = shown,     \
+    .absent_text = without                                                                         \
+  }
+static const struct dea_field parameter_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct dea_fit_parameter_text, name),
+     .required = true,
+     .doc = "parameter of the law",
+     .example = "c1"},
+    PARAMETER_FIELD(start, "where the search begins", "100 kPa", "found"),
+    PARAMETER_FIELD(low, "lower bound", "1 kPa", "the law's"),
+    PARAMETER_FIELD(high, "upper bound", "1 MPa", "the law's"),
+    PARAMETER_FIELD(prior, "value that was known before", "180 kPa", "none"),
+    PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "20 kPa", "none"),
+    {.key = "fixed",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = offsetof(struct dea_fit_parameter_text, fixed),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc = "whether it keeps its start",
+     .example = "yes"},
+};
+static const struct dea_record parameter_record = {"parameter", "what is known of a parameter",
+                                                   parameter_fields, COUNT(parameter_fields)};
+
+static const struct dea_field fit_fields[] = {
+    {.key = "dea_fit",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(version),
+     .unit = "1",
+     .min = DEA_FIT_VERSION,
+     .max = DEA_FIT_VERSION,
+     .required = true,
+     .doc = "version of the format",
+     .example = "1"},
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(name),
+     .required = true,
+     .doc = "name of the material that is written",
+     .example = "my-silicone"},
+    {.key = "title",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(title),
+     .absent_text = "none",
+     .doc = "what the material is",
+     .example = "silicone film, batch 7"},
+    {.key = "source",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(source),
+     .absent_text = "none",
+     .doc = "where the measurements come from",
+     .example = "our lab, June 2026"},
+    {.key = "material",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(material),
+     .absent_text = "none",
+     .doc = "material of the catalogue whose permittivity, breakdown and density are kept",
+     .example = "elastosil-2030"},
+    {.key = "laws",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(laws),
+     .required = true,
+     .list_min = 1,
+     .list_max = DEA_FIT_LAWS_MAX,
+     .element_size = sizeof(struct dea_label),
+     .count_offset = AT(law_count),
+     .doc =
+         "laws to fit; of several the one that foretells held-out tests best is taken; NAME-N: its "
+         "first N terms",
+     .example = "[neo-hookean, yeoh, ogden-2]"},
+    {.key = "parameters",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(parameters),
+     .record = &parameter_record,
+     .list_max = DEA_LAW_PARAM_MAX,
+     .element_size = sizeof(struct dea_fit_parameter_text),
+     .count_offset = AT(parameter_count),
+     .absent_text = "all free",
+     .doc = "what is known of parameters; those that are not named are free",
+     .example = "[{name: c1, low: 1 kPa}]"},
+    {.key = "branches",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(branches),
+     .default_text = "none",
+     .doc =
+         "viscous branches with free times: none, a number, or auto (as many as the data support)",
+     .example = "auto"},
+    {.key = "branch_times",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(branch_s),
+     .unit = "s",
+     .above_min = true,
+     .max = 1e12,
+     .list_max = DEA_BRANCHES_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(branch_time_count),
+     .absent_text = "free",
+     .doc = "fixed relaxation times, a branch each",
+     .example = "[1 s, 10 s, 100 s]"},
+    {.key = "tests",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(tests),
+     .record = &test_record,
+     .required = true,
+     .list_min = 1,
+     .list_max = DEA_FIT_TESTS_MAX,
+     .element_size = sizeof(struct dea_fit_test),
+     .count_offset = AT(test_count),
+     .doc = "measurements of the material",
+     .example = "[{name: tension, kind: uniaxial, file: tension.csv}]"},
+};
+const struct dea_record dea_fit_record = {
+    "fit file", "measurements of a material and what is fitted", fit_fields, COUNT(fit_fields)};
+
+/* What the table cannot say of a test. */
+static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test *test)
+{
+  bool relaxation = test->kind.value == DEA_FIT_RELAXATION;
+  bool ramp = test->ramp_s.origin != DEA_ABSENT, rate = test->rate_per_s.origin != DEA_ABSENT;
+  if (relaxation && ramp == rate) {
+    return dea_finding_add(ctx, DEA_ERROR, test->kind.location,
+                           "'%.60s': a relaxation needs %s: in which time or at which rate its "
+                           "stretch was reached",
+                           test->name.text, ramp ? "either ramp or rate" : "ramp or rate");
+  }
+  if (relaxation && test->stretch.origin == DEA_ABSENT) {
+    return dea_finding_add(ctx, DEA_ERROR, test->kind.location,
+                           "'%.60s': a relaxation needs the stretch that is held", test->name.text);
+  }
+  if (!relaxation && ramp) {
+    return dea_finding_add(ctx, DEA_ERROR, test->ramp_s.location,
+                           "ramp is of relaxations; '%.60s' may have a rate", test->name.text);
+  }
+  return DEA_OK;
+}
+
+static dea_status check(struct dea_context *ctx, const struct dea_fit_file *fit)
+{
+  for (size_t i = 0; i < fit->test_count; i++) {
+    DEA_TRY(ctx, check_test(ctx, &fit->tests[i]));
+    for (size_t k = 0; k < i && fit->tests[i].name.text[0] != '\0'; k++) {
+      if (strcmp(fit->tests[k].name.text, fit->tests[i].name.text) == 0) {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->tests[i].name.location,
+                                     "the name '%.60s' is taken by the test in line %zu",
+                                     fit->tests[i].name.text, fit->tests[k].name.location.line));
+      }
+    }
+  }
+  if (fit->parameter_count > 0 && fit->law_count > 1) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_ERROR, fit->parameters[0].name.location,
+                            "parameters are those of one law; %zu laws are given", fit->law_count));
+  }
+  if (strlen(fit->name.text) >= DEA_NAME_SIZE || strpbrk(fit->name.text, "/\\ \t:#'\"") != NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->name.location,
+                                 "'%.80s' cannot be the name of a file: letters, digits and -, at "
+                                 "most %d",
+                                 fit->name.text, DEA_NAME_SIZE - 1));
+  }
+  return DEA_OK;
+}
+
+static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,
+                             struct dea_fit_file *fit)
+{
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  dea_sha256_hex(bytes, length, fit->sha256);
+  DEA_TRY(ctx, dea_yaml_parse(ctx, fit->file, bytes, length, &fit->document));
+  struct dea_reader reader = {ctx, fit->document, NULL};
+  DEA_TRY(ctx, dea_schema_read(&reader, &dea_fit_record, dea_yaml_root(fit->document), "", fit));
+  if (dea_finding_count(ctx, DEA_ERROR) == errors) {
+    DEA_TRY(ctx, check(ctx, fit));
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  return found == 0 ? DEA_OK
+                    : dea_fail(ctx, DEA_E_DESIGN, "the fit file '%s' has %zu error%s", fit->file,
+                               found, found > 1 ? "s" : "");
+}
+
+dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out)
+{
+  char *bytes;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  struct dea_fit_file *fit = dea_alloc(ctx, 1, sizeof *fit);
+  dea_status status = fit != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    fit->file = dea_intern(ctx, file);
+    status = fit->file != NULL ? read_bytes(ctx, bytes, length, fit) : DEA_E_MEMORY;
+  }
+  dea_free(ctx, bytes);
+  if (status != DEA_OK) {
+    dea_fit_file_destroy(ctx, fit);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = fit;
+  return DEA_OK;
+}
+
+void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit)
+{
+  if (fit != NULL) {
+    dea_yaml_destroy(ctx, fit->document);
+    dea_free(ctx, fit);
+  }
+}

@@ -1,0 +1,491 @@
+#include "calibrate/fit_model.h"
+
+#include "base/units.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THIN_ROWS = 40, GRID_MAX = 4096 };
+
+// Values of parameters without a unit that a search begins from: exponents, extensibilities,
+// limits.
+static const double grid_values[] = {-6, -2, -0.5, 0.5, 1.3, 2, 3, 5, 8, 14, 25, 50, 100, 250};
+enum { GRID_VALUES = sizeof grid_values / sizeof grid_values[0] };
+
+/* ---- the parameters ---- */
+
+static bool is_modulus(const struct dea_fit_param *param)
+{
+  return strcmp(param->unit, "Pa") == 0;
+}
+
+/* Number at the end of a key: 2 of "alpha2", 0 without. */
+static int term_of(const char *key)
+{
+  size_t n = strlen(key);
+  while (n > 0 && isdigit((unsigned char)key[n - 1])) {
+    n--;
+  }
+  return atoi(key + n);
+}
+
+/* Shear modulus that the largest stress of the used series speaks of. */
+static double guess_modulus(const struct dea_fit_series *series, size_t count)
+{
+  double mu = 0;
+  for (size_t s = 0; s < count; s++) {
+    for (size_t i = 0; i < series[s].rows && dea_fit_series_used(&series[s]); i++) {
+      const double l = series[s].stretch[i];
+      const double strain = fabs(l - 1 / (l * l));
+      mu = strain > 0.02 ? fmax(mu, fabs(series[s].stress_Pa[i]) / strain) : mu;
+    }
+  }
+  return mu > 0 ? mu : 1e5;
+}
+
+static dea_status read_number(struct dea_context *ctx, const struct dea_label *label,
+                              const char *unit, double *out)
+{
+  char why[DEA_WHY_SIZE] = "";
+  const struct dea_measure due = {unit, strcmp(unit, "Pa") == 0 ? "100 kPa" : "1.5"};
+  if (label->text[0] == '\0' || dea_units_read(ctx, label->text, due, out, why)) {
+    return DEA_OK;
+  }
+  if (why[0] == '\0') {
+    return dea_context_status(ctx);
+  }
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s': %s", label->text, why);
+}
+
+static dea_status take_text(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                            struct dea_fit_param *param)
+{
+  double low = NAN, high = NAN;
+  DEA_TRY(ctx, read_number(ctx, &text->start, param->unit, &param->start));
+  DEA_TRY(ctx, read_number(ctx, &text->low, param->unit, &low));
+  DEA_TRY(ctx, read_number(ctx, &text->high, param->unit, &high));
+  DEA_TRY(ctx, read_number(ctx, &text->prior, param->unit, &param->prior));
+  DEA_TRY(ctx, read_number(ctx, &text->prior_std, param->unit, &param->prior_std));
+  param->low = fmax(param->low, isnan(low) ? -INFINITY : low);
+  param->high = fmin(param->high, isnan(high) ? INFINITY : high);
+  param->started = text->start.text[0] != '\0';
+  param->fixed = text->fixed.value == 1;
+  if (!(param->low <= param->high)) {
+    return dea_finding_add(ctx, DEA_ERROR, text->name.location,
+                           "%s: no value lies between its bounds %g and %g", param->name,
+                           param->low, param->high);
+  }
+  if (isnan(param->prior) != isnan(param->prior_std) || param->prior_std <= 0) {
+    return dea_finding_add(ctx, DEA_ERROR, text->name.location,
+                           "%s: a prior is a value with a standard uncertainty above 0 (prior_std)",
+                           param->name);
+  }
+  if (param->fixed && !param->started) {
+    return dea_finding_add(ctx, DEA_ERROR, text->name.location, "%s: what is fixed needs a start",
+                           param->name);
+  }
+  return DEA_OK;
+}
+
+static dea_status take_texts(struct dea_context *ctx, const struct dea_fit_file *file,
+                             struct dea_fit_model *model)
+{
+  for (size_t k = 0; k < file->parameter_count; k++) {
+    const struct dea_fit_parameter_text *text = &file->parameters[k];
+    const char *names[DEA_LAW_PARAM_MAX];
+    size_t j = 0;
+    while (j < model->law_count && strcmp(model->params[j].name, text->name.text) != 0) {
+      names[j] = model->params[j].name;
+      j++;
+    }
+    if (j < model->law_count) {
+      model->params[j].fixed = false;
+      DEA_TRY(ctx, take_text(ctx, text, &model->params[j]));
+      continue;
+    }
+    const char *nearest = dea_nearest_name(text->name.text, names, j);
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, text->name.location,
+                                 "the law %s has no parameter '%.60s'%s%s%s", model->law->name,
+                                 text->name.text, nearest != NULL ? "; did you mean '" : "",
+                                 nearest != NULL ? nearest : "", nearest != NULL ? "'?" : ""));
+  }
+  return DEA_OK;
+}
+
+/* Law of "ogden-2" and the terms wanted, 0: all that are required. */
+static const struct dea_law *find_law(const char *name, int *terms)
+{
+  char stem[DEA_TITLE_SIZE];
+  const struct dea_law *law = dea_law_find(name);
+  *terms = 0;
+  snprintf(stem, sizeof stem, "%s", name);
+  char *dash = strrchr(stem, '-');
+  if (law == NULL && dash != NULL && isdigit((unsigned char)dash[1])) {
+    *terms = atoi(dash + 1);
+    *dash = '\0';
+    law = dea_law_find(stem);
+    for (size_t j = 0; law != NULL && j < law->param_count; j++) {
+      law = term_of(law->params[j].key) == 0 ? NULL : law;
+    }
+  }
+  return law;
+}
+
+static dea_status unknown_law(struct dea_context *ctx, const struct dea_label *name,
+                              const struct dea_law *law)
+{
+  size_t count, named = 0;
+  const char *names[32];
+  const struct dea_law *const *laws = dea_law_all(&count);
+  for (size_t i = 0; i < count && named < 32; i++) {
+    if (!laws[i]->anisotropic && laws[i]->compressible == NULL) {
+      names[named++] = laws[i]->name;
+    }
+  }
+  const char *nearest = dea_nearest_name(name->text, names, named);
+  return law != NULL ? dea_finding_add(ctx, DEA_ERROR, name->location,
+                                       "'%.60s' is no law of a film without a direction, which is "
+                                       "what is fitted",
+                                       name->text)
+                     : dea_finding_add(ctx, DEA_ERROR, name->location,
+                                       "'%.60s' is not a law%s%s%s; dea schema --material and "
+                                       "docs/theory/materials.md list them",
+                                       name->text, nearest != NULL ? "; did you mean '" : "",
+                                       nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file *file,
+                              const struct dea_label *name, const struct dea_fit_series *series,
+                              size_t series_count, struct dea_fit_model *out)
+{
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  int terms;
+  *out = (struct dea_fit_model){.law = find_law(name->text, &terms)};
+  snprintf(out->name, sizeof out->name, "%.63s", name->text);
+  if (out->law == NULL || out->law->anisotropic || out->law->compressible != NULL) {
+    DEA_TRY(ctx, unknown_law(ctx, name, out->law));
+    return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' cannot be fitted", name->text);
+  }
+  const double mu = guess_modulus(series, series_count);
+  out->count = out->law_count = out->law->param_count;
+  for (size_t j = 0; j < out->law_count; j++) {
+    const struct dea_law_param *param = &out->law->params[j];
+    const bool wanted = terms > 0 ? term_of(param->key) <= terms : param->required;
+    const bool modulus = strcmp(param->unit, "Pa") == 0;
+    out->params[j] = (struct dea_fit_param){.unit = param->unit,
+                                            .fixed = !wanted,
+                                            .start = modulus ? 0.5 * mu : 2,
+                                            .low = param->min,
+                                            .high = param->max,
+                                            .scale = modulus ? mu : 1,
+                                            .prior = NAN,
+                                            .prior_std = NAN};
+    out->params[j].start = out->params[j].fixed ? 0 : out->params[j].start;
+    snprintf(out->params[j].name, sizeof out->params[j].name, "%s", param->key);
+  }
+  DEA_TRY(ctx, take_texts(ctx, file, out));
+  return dea_finding_count(ctx, DEA_ERROR) == errors
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", name->text);
+}
+
+void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double from_s, double to_s,
+                            const struct dea_quantity *times)
+{
+  const double scale = model->params[0].scale > 10 ? model->params[0].scale : 1e5;
+  model->branch_count = count;
+  model->count = model->law_count + 2 * count;
+  for (size_t b = 0; b < count; b++) {
+    struct dea_fit_param *modulus = &model->params[model->law_count + 2 * b], *time = modulus + 1;
+    const double share = ((double)b + 0.5) / (double)count;
+    *modulus = (struct dea_fit_param){.unit = "Pa",
+                                      .start = 0.2 * scale,
+                                      .low = 0,
+                                      .high = 1e12,
+                                      .scale = scale,
+                                      .prior = NAN,
+                                      .prior_std = NAN};
+    *time = *modulus;
+    time->unit = "s";
+    time->fixed = times != NULL;
+    time->logarithmic = true;
+    time->started = true;
+    time->scale = 1;
+    time->start = times != NULL ? log(times[b].si) : log(from_s) + share * log(to_s / from_s);
+    time->low = log(from_s) - log(10);
+    time->high = log(to_s) + log(10);
+    snprintf(modulus->name, sizeof modulus->name, "modulus %zu", b + 1);
+    snprintf(time->name, sizeof time->name, "time %zu", b + 1);
+  }
+}
+
+size_t dea_fit_model_free(const struct dea_fit_model *model)
+{
+  size_t count = 0;
+  for (size_t j = 0; j < model->count; j++) {
+    count += model->params[j].fixed ? 0U : 1U;
+  }
+  return count;
+}
+
+void dea_fit_model_material(const struct dea_fit_model *model, const double *p,
+                            struct dea_material *out)
+{
+  *out = (struct dea_material){.law = model->law, .branch_count = model->branch_count};
+  memcpy(out->param, p, model->law_count * sizeof *p);
+  for (size_t b = 0; b < model->branch_count; b++) {
+    out->branches[b].modulus_Pa = p[model->law_count + 2 * b];
+    out->branches[b].time_s = exp(p[model->law_count + 2 * b + 1]);
+  }
+}
+
+/* ---- the residuals ---- */
+
+bool dea_fit_series_used(const struct dea_fit_series *series)
+{
+  return series->test->use.value == DEA_FIT_USED;
+}
+
+struct residuals {
+  const struct dea_fit_model *model;
+  const struct dea_fit_rows *rows;
+  double *stress; // [largest series]
+};
+
+static bool is_left_out(const struct dea_fit_rows *rows, size_t s, size_t i)
+{
+  return s == rows->without && i >= rows->from && i < rows->to;
+}
+
+static dea_status residual(void *user, const double *p, double *r)
+{
+  const struct residuals *w = user;
+  struct dea_material material;
+  size_t n = 0;
+  dea_fit_model_material(w->model, p, &material);
+  for (size_t s = 0; s < w->rows->count; s++) {
+    const struct dea_fit_series *series = &w->rows->series[s];
+    if (!dea_fit_series_used(series)) {
+      continue;
+    }
+    dea_status status = dea_coupon_stress(&material, &series->coupon, w->stress);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (size_t i = 0; i < series->rows; i++) {
+      const double std = isnan(series->std_Pa[i]) ? w->rows->std_Pa : series->std_Pa[i];
+      if (!is_left_out(w->rows, s, i)) {
+        r[n++] = (w->stress[i] - series->stress_Pa[i]) / std;
+      }
+    }
+  }
+  for (size_t j = 0; j < w->model->count; j++) {
+    const struct dea_fit_param *param = &w->model->params[j];
+    if (!isnan(param->prior)) {
+      r[n++] = (p[j] - param->prior) / param->prior_std;
+    }
+  }
+  return DEA_OK;
+}
+
+static void set_bounds(const struct dea_fit_model *model, double *memory,
+                       struct dea_lsq_problem *out)
+{
+  double *low = memory, *high = memory + DEA_LSQ_PARAMS_MAX;
+  double *scale = high + DEA_LSQ_PARAMS_MAX;
+  for (size_t j = 0; j < model->count; j++) {
+    low[j] = model->params[j].low;
+    high[j] = model->params[j].high;
+    scale[j] = model->params[j].scale;
+  }
+  out->params = model->count;
+  out->low = low;
+  out->high = high;
+  out->scale = scale;
+}
+
+dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_model *model,
+                                 const struct dea_fit_rows *rows, struct dea_lsq_problem *out)
+{
+  size_t largest = 0;
+  *out = (struct dea_lsq_problem){.residual = residual};
+  for (size_t s = 0; s < rows->count; s++) {
+    largest = rows->series[s].rows > largest ? rows->series[s].rows : largest;
+    for (size_t i = 0; i < rows->series[s].rows && dea_fit_series_used(&rows->series[s]); i++) {
+      out->rows += is_left_out(rows, s, i) ? 0U : 1U;
+    }
+  }
+  for (size_t j = 0; j < model->count; j++) {
+    out->rows += isnan(model->params[j].prior) ? 0U : 1U;
+  }
+  struct residuals *w = dea_arena_alloc(arena, 1, sizeof *w);
+  double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
+  double *stress = dea_arena_alloc(arena, largest, sizeof *stress);
+  if (arena->failed) {
+    return DEA_E_MEMORY;
+  }
+  *w = (struct residuals){model, rows, stress};
+  set_bounds(model, memory, out);
+  out->user = w;
+  return DEA_OK;
+}
+
+struct stresses {
+  const struct dea_fit_model *model;
+  const struct dea_fit_series *series;
+};
+
+static dea_status stress_of(void *user, const double *p, double *r)
+{
+  const struct stresses *w = user;
+  struct dea_material material;
+  dea_fit_model_material(w->model, p, &material);
+  return dea_coupon_stress(&material, &w->series->coupon, r);
+}
+
+dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_model *model,
+                                const struct dea_fit_series *series, struct dea_lsq_problem *out)
+{
+  *out = (struct dea_lsq_problem){.rows = series->rows, .residual = stress_of};
+  struct stresses *w = dea_arena_alloc(arena, 1, sizeof *w);
+  double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
+  if (arena->failed) {
+    return DEA_E_MEMORY;
+  }
+  *w = (struct stresses){model, series};
+  set_bounds(model, memory, out);
+  out->user = w;
+  return DEA_OK;
+}
+
+/* ---- where to begin ---- */
+
+/* Every n-th row of each series, so that a search over a grid is quick. */
+static dea_status thin(struct dea_arena *arena, const struct dea_fit_rows *rows,
+                       struct dea_fit_series *series)
+{
+  for (size_t s = 0; s < rows->count; s++) {
+    const struct dea_fit_series *whole = &rows->series[s];
+    struct dea_fit_series *few = &series[s];
+    const size_t every = 1 + whole->rows / THIN_ROWS;
+    double *values = dea_arena_alloc(arena, 3 * (whole->rows + 1), sizeof *values);
+    size_t *node = dea_arena_alloc(arena, whole->rows + 1, sizeof *node);
+    if (arena->failed) {
+      return DEA_E_MEMORY;
+    }
+    *few = *whole;
+    few->stretch = values;
+    few->stress_Pa = values + whole->rows;
+    few->std_Pa = values + 2 * whole->rows;
+    few->rows = 0;
+    for (size_t i = 0; i < whole->rows; i++) {
+      if ((i % every == 0 || i + 1 == whole->rows) && !is_left_out(rows, s, i)) {
+        few->stretch[few->rows] = whole->stretch[i];
+        few->stress_Pa[few->rows] = whole->stress_Pa[i];
+        few->std_Pa[few->rows] = whole->std_Pa[i];
+        node[few->rows] = whole->coupon.node_count > 0 ? whole->coupon.node_of_row[i] : 0;
+        few->rows++;
+      }
+    }
+    few->coupon.rows = few->rows;
+    few->coupon.stretch = few->stretch;
+    few->coupon.node_of_row = node;
+  }
+  return DEA_OK;
+}
+
+/* Next combination of grid values of the parameters index[count]; false after the last. */
+static bool next_combination(size_t *at, size_t count)
+{
+  for (size_t k = 0; k < count; k++) {
+    if (++at[k] < GRID_VALUES) {
+      return true;
+    }
+    at[k] = 0;
+  }
+  return false;
+}
+
+/* Terms of one kind ("alpha1", "alpha2") may be exchanged: only rising ones are looked at. */
+static bool is_worth_it(const struct dea_fit_model *model, const size_t *index, const size_t *at,
+                        size_t count)
+{
+  for (size_t k = 0; k < count; k++) {
+    const struct dea_fit_param *param = &model->params[index[k]];
+    const double value = grid_values[at[k]];
+    if (value < param->low || value > param->high) {
+      return false;
+    }
+    if (k > 0 && term_of(param->name) > 1 && at[k] <= at[k - 1]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Best start over the grid into p; it stays as it is when no point has an answer. */
+static dea_status find_start(struct dea_context *ctx, const struct dea_fit_model *model,
+                             const struct dea_lsq_problem *problem, double *p)
+{
+  size_t index[DEA_LSQ_PARAMS_MAX], at[DEA_LSQ_PARAMS_MAX] = {0}, count = 0, tried = 0;
+  bool held[DEA_LSQ_PARAMS_MAX];
+  double best = INFINITY, q[DEA_LSQ_PARAMS_MAX];
+  for (size_t j = 0; j < model->count; j++) {
+    const struct dea_fit_param *param = &model->params[j];
+    held[j] = param->fixed || !is_modulus(param) || param->started;
+    if (!param->fixed && !param->started && !is_modulus(param)) {
+      index[count++] = j;
+    }
+  }
+  memcpy(q, p, model->count * sizeof *q);
+  do {
+    struct dea_lsq_fit fit;
+    if (!is_worth_it(model, index, at, count) || tried++ > GRID_MAX) {
+      continue;
+    }
+    for (size_t k = 0; k < count; k++) {
+      q[index[k]] = grid_values[at[k]];
+    }
+    dea_status status = dea_lsq_solve(ctx, problem, q, held, &fit);
+    if (status == DEA_E_MEMORY) {
+      return status;
+    }
+    if (status != DEA_OK) {
+      dea_context_clear(ctx);
+      continue;
+    }
+    if (fit.chi2 < best) {
+      best = fit.chi2;
+      memcpy(p, fit.p, model->count * sizeof *p);
+    }
+    dea_lsq_free(&fit);
+  } while (next_combination(at, count));
+  return DEA_OK;
+}
+
+dea_status dea_fit_model_solve(struct dea_context *ctx, const struct dea_fit_model *model,
+                               const struct dea_fit_rows *rows, struct dea_lsq_fit *out)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_lsq_problem problem, quick;
+  double p[DEA_LSQ_PARAMS_MAX];
+  bool held[DEA_LSQ_PARAMS_MAX];
+  struct dea_fit_series *few = dea_arena_alloc(&memory, rows->count, sizeof *few);
+  const struct dea_fit_rows few_rows = {few, rows->count, SIZE_MAX, 0, 0, rows->std_Pa};
+  dea_status status = dea_arena_status(&memory);
+  status = status == DEA_OK ? thin(&memory, rows, few) : status;
+  status = status == DEA_OK ? dea_fit_model_problem(&memory, model, &few_rows, &quick) : status;
+  status = status == DEA_OK ? dea_fit_model_problem(&memory, model, rows, &problem) : status;
+  for (size_t j = 0; j < model->count; j++) {
+    p[j] = model->params[j].start;
+    held[j] = model->params[j].fixed;
+  }
+  status = status == DEA_OK ? find_start(ctx, model, &quick, p) : status;
+  status = status == DEA_OK ? dea_lsq_solve(ctx, &problem, p, held, out) : status;
+  dea_arena_free(&memory);
+  return status;
+}

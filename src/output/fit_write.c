@@ -1,0 +1,437 @@
+#define _POSIX_C_SOURCE 200809L // unlink
+#include "base/file.h"
+#include "base/version.h"
+#include "base/write_file.h"
+#include "material/catalogue.h"
+#include "output/csv.h"
+#include "output/fit_files.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- the material ---- */
+
+/* Adds a text as YAML. */
+static void add_quoted(struct dea_text *out, const char *text)
+{
+  dea_text_add(out, "\"");
+  for (const char *c = text; *c != '\0'; c++) {
+    dea_text_add(out, *c == '"' || *c == '\\' ? "\\%c" : *c == '\n' ? " " : "%c", *c);
+  }
+  dea_text_add(out, "\"");
+}
+
+static void add_key(struct dea_text *out, const char *indent, const char *key, const char *text)
+{
+  if (text != NULL && text[0] != '\0') {
+    dea_text_add(out, "%s%s: ", indent, key);
+    add_quoted(out, text);
+    dea_text_add(out, "\n");
+  }
+}
+
+static void add_notes(struct dea_text *out, const char *indent, const struct dea_data_notes *notes)
+{
+  add_key(out, indent, "source", notes->source);
+  add_key(out, indent, "uncertainty", notes->uncertainty);
+  add_key(out, indent, "range", notes->range);
+  add_key(out, indent, "note", notes->note);
+}
+
+/* This fit and its files, with their hashes. */
+static void add_source(struct dea_text *out, const char *indent, const struct dea_fit *fit)
+{
+  struct dea_text source = {.ctx = out->ctx};
+  if (fit->file->source.text[0] != '\0') {
+    dea_text_add(&source, "%s; ", fit->file->source.text);
+  }
+  dea_text_add(&source, "dea %s fit of %s (SHA-256 %s) to", DEA_VERSION,
+               dea_path_name(fit->file->file), fit->file->sha256);
+  const char *separator = " ";
+  for (size_t s = 0; s < fit->series_count; s++) {
+    if (dea_fit_series_used(&fit->series[s])) {
+      dea_text_add(&source, "%s%s (%s)", separator, dea_path_name(fit->series[s].file),
+                   fit->series[s].sha256);
+      separator = ", ";
+    }
+  }
+  add_key(out, indent, "source", dea_text_get(&source));
+  out->failed = out->failed || source.failed;
+  dea_text_free(&source);
+}
+
+static const char *unit_text(const char *unit)
+{
+  return strcmp(unit, "1") == 0 ? "" : unit;
+}
+
+static void add_value(struct dea_text *out, const char *separator, const char *key, double value,
+                      const char *unit)
+{
+  dea_text_add(out, "%s%s: %.10g%s%s", separator, key, value, unit_text(unit)[0] != '\0' ? " " : "",
+               unit_text(unit));
+}
+
+static bool has_std(const struct dea_fit *fit, size_t j)
+{
+  return isfinite(fit->values[j].std) && fit->values[j].std > 0;
+}
+
+static void add_law(struct dea_text *out, const struct dea_fit *fit)
+{
+  const struct dea_fit_model *model = &fit->model;
+  const size_t n = model->count;
+  dea_text_add(out, "laws:\n  - id: fit\n    law: %s\n    parameters: {", model->law->name);
+  for (size_t j = 0; j < model->law_count; j++) {
+    add_value(out, j > 0 ? ", " : "", model->params[j].name, fit->values[j].value,
+              model->params[j].unit);
+  }
+  dea_text_add(out, "}\n");
+  size_t known = 0;
+  for (size_t j = 0; j < model->law_count; j++) {
+    if (has_std(fit, j)) {
+      add_value(out, known++ > 0 ? ", " : "    standard_uncertainties: {", model->params[j].name,
+                fit->values[j].std, model->params[j].unit);
+    }
+  }
+  dea_text_add(out, known > 0 ? "}\n" : "");
+  const char *separator = "    correlations: [";
+  for (size_t j = 0; j < model->law_count; j++) {
+    for (size_t l = 0; l < j; l++) {
+      if (has_std(fit, j) && has_std(fit, l)) {
+        dea_text_add(out, "%s%.6f", separator, fit->statistics.correlation[j * n + l]);
+        separator = ", ";
+      }
+    }
+  }
+  dea_text_add(out, known > 1 ? "]\n" : "");
+  dea_text_add(out, "    stretch_range: [%.6g, %.6g]\n", fit->stretch_min, fit->stretch_max);
+  add_source(out, "    ", fit);
+  struct dea_text note = {.ctx = out->ctx};
+  for (size_t k = 0; k < fit->weak_count; k++) {
+    dea_text_add(&note, "%s%s", k > 0 ? "; " : "", fit->weak[k]);
+  }
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    if (!isnan(fit->stability[mode].unstable_from)) {
+      dea_text_add(&note, "%snot stable in %s tension from the stretch %.3g on",
+                   note.length > 0 ? "; " : "", dea_coupon_mode_names[mode],
+                   fit->stability[mode].unstable_from);
+    }
+  }
+  add_key(out, "    ", "note", dea_text_get(&note));
+  out->failed = out->failed || note.failed;
+  dea_text_free(&note);
+}
+
+static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
+{
+  bool any = false;
+  for (size_t b = 0; b < fit->model.branch_count; b++) {
+    const size_t j = fit->model.law_count + 2 * b;
+    if (fit->values[j].value <= 0) { // a branch that the data do not want
+      continue;
+    }
+    dea_text_add(out, any ? "" : "viscosity:\n  - id: fit\n    branches:\n");
+    any = true;
+    add_value(out, "      - {", "modulus", fit->values[j].value, "Pa");
+    add_value(out, ", ", "time", fit->values[j + 1].value, "s");
+    if (has_std(fit, j)) {
+      add_value(out, ", ", "modulus_uncertainty", fit->values[j].std, "Pa");
+    }
+    if (has_std(fit, j + 1)) {
+      add_value(out, ", ", "time_uncertainty", fit->values[j + 1].std, "s");
+    }
+    dea_text_add(out, "}\n");
+  }
+  if (any) {
+    add_source(out, "    ", fit);
+    dea_text_add(out, "    note: belongs to the law fit\n");
+  }
+}
+
+/* What was not fitted, as the catalogue has it. */
+static void add_rest(struct dea_text *out, const struct dea_material_data *data)
+{
+  if (data->has_density) {
+    dea_text_add(out, "density:\n  value: %.10g kg/m^3\n", data->density.value_kg_per_m3.si);
+    add_notes(out, "  ", &data->density.notes);
+  }
+  dea_text_add(out, data->permittivity_count > 0 ? "permittivity:\n" : "");
+  for (size_t i = 0; i < data->permittivity_count; i++) {
+    const struct dea_permittivity_set *set = &data->permittivity[i];
+    dea_text_add(out, "  - id: %s\n    at_rest: %.10g\n    slope: %.10g\n", set->id.text,
+                 set->at_rest.si, set->slope.si);
+    add_notes(out, "    ", &set->notes);
+  }
+  dea_text_add(out, data->breakdown_count > 0 ? "breakdown:\n" : "");
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    const struct dea_breakdown_set *set = &data->breakdown[i];
+    dea_text_add(out, "  - id: %s\n    at_rest: %.10g V/m\n", set->id.text,
+                 set->at_rest_V_per_m.si);
+    if (!isnan(set->exponent.si)) {
+      dea_text_add(out, "    exponent: %.10g\n", set->exponent.si);
+    }
+    add_notes(out, "    ", &set->notes);
+  }
+  if (data->has_resistivity) {
+    dea_text_add(out, "resistivity:\n  value: %.10g ohm m\n", data->resistivity.value_ohm_m.si);
+    add_notes(out, "  ", &data->resistivity.notes);
+  }
+}
+
+dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
+                                struct dea_text *out)
+{
+  const struct dea_fit_file *file = fit->file;
+  struct dea_catalogue_entry *entry = NULL;
+  if (file->material.text[0] != '\0') {
+    DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
+  }
+  dea_text_add(out,
+               "# Written by dea fit. For dea to find it, DEA_MATERIALS names the folder that this "
+               "file is in.\ndea_material: 1\nname: %s\n",
+               file->name.text);
+  add_key(out, "", "title", file->title.text);
+  dea_text_add(out, "kind: elastomer\n");
+  add_law(out, fit);
+  add_viscosity(out, fit);
+  if (entry != NULL) {
+    add_rest(out, &entry->data);
+  }
+  dea_catalogue_destroy(ctx, entry);
+  return out->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* ---- CSV and JSON ---- */
+
+static const char *const use_names[] = {"fit", "check", "predict"};
+
+static void add_field(struct dea_text *out, double value, double factor)
+{
+  if (isfinite(value)) {
+    dea_text_add(out, ",%.8g", factor * value);
+  } else {
+    dea_text_add(out, ",");
+  }
+}
+
+static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
+{
+  const struct dea_fit_series *series = curve->series;
+  for (size_t i = 0; i < series->rows; i++) {
+    dea_csv_add_name(out, series->test->name.text);
+    dea_text_add(out, ",%s,%zu", use_names[series->test->use.value], series->line[i]);
+    add_field(out, series->time_s != NULL ? series->time_s[i] : NAN, 1);
+    add_field(out, series->stretch[i], 1);
+    add_field(out, series->stress_Pa[i], 1e-3);
+    add_field(out, series->std_Pa[i], 1e-3);
+    add_field(out, curve->stress_Pa[i], 1e-3);
+    add_field(out, curve->std_Pa[i], 1e-3);
+    add_field(out, curve->stress_Pa[i] - series->stress_Pa[i], 1e-3);
+    dea_text_add(out, "\n");
+  }
+}
+
+static json_t *values_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t j = 0; j < fit->model.count; j++) {
+    const struct dea_fit_value *value = &fit->values[j];
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", fit->model.params[j].name);
+    dea_json_put_text(object, "unit", fit->model.params[j].unit);
+    dea_json_put(object, "value", value->value);
+    dea_json_put(object, "standard_uncertainty", value->std);
+    dea_json_put(object, "interval_low", value->low);
+    dea_json_put(object, "interval_high", value->high);
+    json_object_set_new(object, "fixed", json_boolean(value->fixed));
+    json_object_set_new(object, "at_bound", json_boolean(value->at_bound));
+    json_object_set_new(object, "determined", json_boolean(!isinf(value->std)));
+    json_object_set_new(object, "interval_bends", json_boolean(value->bends));
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *correlations_json(const struct dea_fit *fit)
+{
+  json_t *rows = json_array();
+  const size_t n = fit->model.count;
+  for (size_t j = 0; j < n; j++) {
+    json_t *row = json_array();
+    for (size_t l = 0; l < n; l++) {
+      json_array_append_new(row, json_real(fit->statistics.correlation[j * n + l]));
+    }
+    json_array_append_new(rows, row);
+  }
+  return rows;
+}
+
+static json_t *laws_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t i = 0; i < fit->candidate_count; i++) {
+    const struct dea_fit_candidate *candidate = &fit->candidates[i];
+    json_t *object = json_object();
+    dea_json_put_text(object, "law", candidate->name);
+    json_object_set_new(object, "failed", json_boolean(candidate->failed));
+    if (candidate->failed) {
+      dea_json_put_text(object, "why", candidate->why);
+    } else {
+      dea_json_put_count(object, "free_parameters", candidate->free_count);
+      dea_json_put_count(object, "branches", candidate->branch_count);
+      dea_json_put(object, "chi_square", candidate->chi2);
+      dea_json_put(object, "aicc", candidate->aicc);
+      dea_json_put(object, "held_out", candidate->held_out);
+      dea_json_put(object, "held_out_share", candidate->held_out_share);
+    }
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *tests_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_curve *curve = &fit->curves[s];
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", curve->series->test->name.text);
+    dea_json_put_text(object, "use", use_names[curve->series->test->use.value]);
+    dea_json_put_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
+    dea_json_put_text(object, "file", curve->series->file);
+    dea_json_put_text(object, "sha256", curve->series->sha256);
+    dea_json_put_count(object, "rows", curve->series->rows);
+    dea_json_put_count(object, "slack_rows", curve->series->slack);
+    dea_json_put_count(object, "repeated_rows", curve->series->repeated);
+    dea_json_put(object, "neighbour_correlation", curve->lag);
+    dea_json_put(object, "effective_rows", curve->effective);
+    dea_json_put(object, "rms_Pa", curve->rms_Pa);
+    dea_json_put(object, "largest_relative", curve->largest);
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *advice_json(const struct dea_fit *fit)
+{
+  json_t *object = json_object(), *weak = json_array(), *next = json_array(),
+         *stability = json_array();
+  for (size_t k = 0; k < fit->weak_count; k++) {
+    json_array_append_new(weak, json_string(fit->weak[k]));
+  }
+  for (size_t k = 0; k < fit->next_count; k++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, "test", fit->next[k].what);
+    dea_json_put(row, "error_bars_times", fit->next[k].shrink);
+    json_array_append_new(next, row);
+  }
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, "mode", dea_coupon_mode_names[mode]);
+    json_object_set_new(row, "measured", json_boolean(fit->stability[mode].measured));
+    dea_json_put(row, "to_stretch", fit->stability[mode].to);
+    dea_json_put(row, "unstable_from", fit->stability[mode].unstable_from);
+    json_array_append_new(stability, row);
+  }
+  json_object_set_new(object, "weak", weak);
+  json_object_set_new(object, "next_tests", next);
+  json_object_set_new(object, "stability", stability);
+  return object;
+}
+
+json_t *dea_fit_json(struct dea_context *ctx, const struct dea_fit *fit, const char *command)
+{
+  (void)ctx;
+  json_t *root = json_object();
+  json_object_set_new(root, "schema", json_integer(DEA_FIT_JSON_SCHEMA));
+  dea_json_put_text(root, "program", "dea " DEA_VERSION);
+  dea_json_put_text(root, "command", command);
+  dea_json_put_text(root, "file", fit->file->file);
+  dea_json_put_text(root, "sha256", fit->file->sha256);
+  dea_json_put_text(root, "material", fit->file->name.text);
+  dea_json_put_text(root, "law", fit->model.law->name);
+  json_object_set_new(root, "laws", laws_json(fit));
+  json_object_set_new(root, "parameters", values_json(fit));
+  json_object_set_new(root, "correlations", correlations_json(fit));
+  json_object_set_new(root, "uncertainty_given", json_boolean(fit->scale_known));
+  dea_json_put(root, "scatter_Pa", fit->scale_known ? NAN : fit->scatter_Pa);
+  dea_json_put(root, "chi_square", fit->scale_known ? fit->least_squares.chi2 : NAN);
+  dea_json_put(root, "reduced_chi_square", fit->scale_known ? fit->statistics.reduced_chi2 : NAN);
+  json_object_set_new(root, "widened", json_boolean(fit->statistics.widened));
+  dea_json_put_count(root, "rows", fit->least_squares.rows);
+  dea_json_put(root, "effective_rows", fit->statistics.effective_rows);
+  dea_json_put(root, "condition", fit->statistics.condition);
+  json_object_set_new(root, "tests", tests_json(fit));
+  json_object_set_new(root, "advice", advice_json(fit));
+  return root;
+}
+
+/* ---- the folder ---- */
+
+dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
+                          const char *directory, bool force)
+{
+  static const char *const names[] = {"fit.json", "fit.csv", "fit", "fit_time"};
+  static const char *const endings[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
+  for (size_t i = 0; i <= sizeof names / sizeof names[0]; i++) {
+    for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
+      char name[DEA_NAME_SIZE + 16];
+      if (i < sizeof names / sizeof names[0]) {
+        snprintf(name, sizeof name, "%s%s", names[i], endings[e]);
+      } else {
+        snprintf(name, sizeof name, "%.63s.yaml", file->name.text);
+      }
+      char *path = dea_path_join(ctx, directory, name);
+      if (path == NULL) {
+        return DEA_E_MEMORY;
+      }
+      bool there = dea_path_exists(path) && !dea_path_is_folder(path);
+      if (there && force) {
+        unlink(path);
+      }
+      dea_free(ctx, path);
+      if (there && !force) {
+        return dea_fail(ctx, DEA_E_IO,
+                        "%s/%s is there already; choose another folder with -o, or replace what is "
+                        "there with --force",
+                        directory, name);
+      }
+    }
+  }
+  return dea_folder_make(ctx, directory);
+}
+
+static dea_status write_texts(struct dea_context *ctx, const struct dea_fit *fit,
+                              const char *command, const char *directory)
+{
+  struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
+  char name[DEA_NAME_SIZE + 8], *json = NULL;
+  dea_text_add(&csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
+                     "fit std (kPa),residual (kPa)\n");
+  for (size_t s = 0; s < fit->series_count; s++) {
+    add_rows(&csv, &fit->curves[s]);
+  }
+  snprintf(name, sizeof name, "%.63s.yaml", fit->file->name.text);
+  dea_status status = dea_fit_material_add(ctx, fit, &material);
+  status = status == DEA_OK ? dea_text_write(ctx, &material, directory, name) : status;
+  status = status == DEA_OK ? dea_text_write(ctx, &csv, directory, "fit.csv") : status;
+  status = status == DEA_OK ? dea_json_text(ctx, dea_fit_json(ctx, fit, command), &json) : status;
+  status = status == DEA_OK ? dea_text_file_write(ctx, directory, "fit.json", json) : status;
+  dea_free(ctx, json);
+  dea_text_free(&material);
+  dea_text_free(&csv);
+  return status;
+}
+
+dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit, const char *command,
+                         const struct dea_plot_format *format, const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  dea_status status = write_texts(ctx, fit, command, directory);
+  dea_c_locale_leave(before);
+  DEA_TRY(ctx, status);
+  return dea_fit_draw(ctx, fit, format, directory);
+}

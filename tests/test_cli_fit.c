@@ -1,0 +1,144 @@
+#define _GNU_SOURCE
+/* dea fit, as a user runs it: an example, its files, bad data. */
+#include "command.h"
+
+#include <stdbool.h>
+
+static const char fit_file[] = "dea_fit: 1\n"
+                               "name: mine\n"
+                               "laws: [neo-hookean]\n"
+                               "tests:\n"
+                               "  - {name: strip, kind: uniaxial, file: strip.csv}\n";
+
+/* mu = 100 kPa at the stretches 1.1, 1.2, 1.4. */
+static const char good[] =
+    "stretch,stress (kPa)\n1.1,27.355\n1.2,50.556\n1.4,88.980\n1.6,120.938\n";
+
+static void test_fit(void **state)
+{
+  (void)state;
+  static char first[COMMAND_TEXT_MAX];
+  command_write("mine.yaml", fit_file);
+  command_write("strip.csv", good);
+  assert_int_equal(command_run("fit mine.yaml"), 0);
+  assert_contains(command_out, "neo-Hookean");
+  assert_contains(command_out, "written to mine.fit");
+  command_read("mine.fit/fit.csv", first);
+  assert_contains(first, "test,use,line,time (s),stretch,stress (kPa)");
+  assert_contains(first, "strip,fit,2,,1.1,27.355,");
+  command_read("mine.fit/fit.json", first);
+  assert_contains(first, "\"standard_uncertainty\"");
+  command_read("mine.fit/fit.svg", first);
+  assert_contains(first, "<svg");
+  command_read("mine.fit/mine.yaml", first);
+  assert_contains(first, "standard_uncertainties: {mu: ");
+  assert_contains(first, "strip.csv (");
+  // every command takes the material
+  assert_int_equal(command_run("materials mine"), 3);
+  command_before = "env DEA_MATERIALS=mine.fit";
+  assert_int_equal(command_run("materials mine"), 0);
+  assert_contains(command_out, "standard_uncertainties");
+  command_before = "";
+  // nothing is overwritten without --force
+  assert_int_equal(command_run("fit mine.yaml"), 5);
+  assert_contains(command_err, "--force");
+  assert_int_equal(command_run("fit mine.yaml --force --json --profile"), 0);
+  assert_contains(command_out, "\"interval_low\"");
+}
+
+/* Runs on that CSV; the exit code and one message are wanted. */
+static void expect(const char *csv, int code, const char *message)
+{
+  command_write("mine.yaml", fit_file);
+  command_write("strip.csv", csv);
+  int found = command_run("fit mine.yaml --force");
+  if (found != code || strstr(command_err, message) == NULL) {
+    fail_msg("exit code %d, wanted %d with '%s':\n%s", found, code, message, command_err);
+  }
+}
+
+static void test_bad_data(void **state)
+{
+  (void)state;
+  expect("stretch,stress (kPa)\n1.1,27\n1.4,89\n1.2,50\n", 5,
+         "strip.csv:4:1: error: the stretch goes back from 1.4 to 1.2");
+  expect("stretch,stress (kPa)\n1.1,27\n1.1,27\n1.2,50\n1.4,89\n", 0,
+         "warning: 1 of 4 rows repeat the one before and are left out");
+  expect("stretch,stress (kPa)\n1.1,nan\n1.4,89\n", 5, "strip.csv:2:5: error: a row without");
+  expect("stretch,stress (kPa)\n1.1,\n1.4,89\n", 5, "strip.csv:2:5: error: a row without");
+  expect("stretch,stress (kPa)\n1.1,27\n", 5, "1 row with a stretch and a force is no curve");
+  expect("stretch,stress\n1.1,27\n1.4,89\n", 5, "'stress' needs a unit in parentheses");
+  expect("stretch,stress (mm)\n1.1,27\n1.4,89\n", 5, "the unit in 'stress (mm)' does not fit");
+  expect("stretch,stress (kPa)\n0.95,20\n1.1,27\n1.4,89\n", 5,
+         "strip.csv:2:1: error: a stress of 20 kPa at the stretch 0.95, before the strip");
+  expect("stretch,stress (kPa)\n1.1,0\n1.2,0\n1.4,0\n", 5, "all 3 rows are slack");
+  expect("stretch,stress (kPa)\n1,1,27,4\n1,4,89,0\n", 5,
+         "where the decimal sign is a comma, columns are parted by ;");
+  expect("stretch;stress (kPa)\n1,1;27,355\n1,2;50,556\n", 0, "");
+  expect("stretch,load (N)\n1.1,27\n1.4,89\n", 5, "has no column 'stress (kPa)' or 'force (N)'");
+  expect("displacement (mm),stress (kPa)\n1,27\n4,89\n", 5, "give the length of the strip");
+  expect("stretch,force (N)\n1.1,27\n1.4,89\n", 5, "give the section of the strip");
+  expect("stretch,stress (kPa)\n1.05,0\n1.1,0.01\n1.2,50\n1.4,89\n1.6,121\n", 0,
+         "2 of 5 rows, at stretches 1.05 to 1.1, carry no force: the strip is slack there");
+}
+
+static void test_names_and_files(void **state)
+{
+  (void)state;
+  command_write("strip.csv", good);
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
+                             "  - {name: stretch 2.5, kind: uniaxial, file: strip.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 0);
+  assert_contains(command_err,
+                  "'stretch 2.5' is named for the stretch 2.5, but its file ends at 1.6");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hokean]\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 3);
+  assert_contains(command_err, "mine.yaml:3:8: error: 'neo-hokean' is not a law; did you mean");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [yeoh]\nbranches: 2\n"
+                             "parameters: [{name: c4, start: 3 mm}]\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 3);
+  assert_contains(command_err, "the law yeoh has no parameter 'c4'; did you mean");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\nbranches: 2\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 3);
+  assert_contains(command_err, "branches need a test in time");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
+                             "  - {name: hold, kind: relaxation, file: strip.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 3);
+  assert_contains(command_err, "a relaxation needs ramp or rate");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: none.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 5);
+  assert_contains(command_err, "none.csv");
+  assert_int_equal(command_run("fit"), 2);
+}
+
+/* The example of docs/fit.md, and the keys that it lists. */
+static void test_example(void **state)
+{
+  (void)state;
+  static char page[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
+  assert_non_null(file);
+  page[fread(page, 1, sizeof page - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("schema --fit --markdown"), 0);
+  assert_contains(page, command_out);
+  assert_int_equal(command_run("fit @/examples/fit/silicone.yaml -o silicone"), 0);
+  assert_contains(command_out,
+                  "yeoh                        3        0                 0.60 %  <- taken");
+  assert_contains(page, "yeoh                        3        0                 0.60 %  <- taken");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_fit),
+      cmocka_unit_test(test_bad_data),
+      cmocka_unit_test(test_names_and_files),
+      cmocka_unit_test(test_example),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
