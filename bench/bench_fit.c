@@ -45,7 +45,7 @@ static void make_tests(const struct dea_material *material)
                                         .std_Pa = std[t]};
     series[t].coupon =
         (struct dea_coupon){.mode = (enum dea_coupon_mode)t, .rows = ROWS, .stretch = stretch[t]};
-    bench_need(dea_coupon_stress(material, &series[t].coupon, stress[t]), ctx);
+    bench_need(dea_coupon_stress(material, &series[t].coupon, NULL, stress[t]), ctx);
     for (size_t i = 0; i < ROWS; i++) {
       stress[t][i] += 1.73 * std[t][i] * noise(&seed);
     }

@@ -13,8 +13,8 @@ double dea_coupon_across(enum dea_coupon_mode mode, double stretch)
   return mode == DEA_UNIAXIAL ? 1 / sqrt(stretch) : mode == DEA_PLANAR ? 1 : stretch;
 }
 
-static dea_status add_elastic(const struct dea_material *material, const struct dea_coupon *coupon,
-                              double *stress_Pa)
+static dea_status find_elastic(const struct dea_material *material, const struct dea_coupon *coupon,
+                               double *stress_Pa)
 {
   for (size_t i = 0; i < coupon->rows; i++) {
     const double l = coupon->stretch[i];
@@ -28,11 +28,9 @@ static dea_status add_elastic(const struct dea_material *material, const struct 
   return DEA_OK;
 }
 
-/* Adds G (A1 l1 - A3 l3^2/l1), the derivative of G/2 A : C along l3 = 1/(l1 l2), of one branch:
- * C = diag(l1^2, l2^2, l3^2), A = 1 at rest (docs/theory/time.md, section 1). Of A only the entries
- * 1 and 3 are needed; dea_equal_tensor names them p and z. */
-static void add_branch(const struct dea_branch *branch, const struct dea_coupon *s,
-                       double *stress_Pa)
+/* A1 l1 - A3 l3^2/l1, the derivative of A : C/2 along l3 = 1/(l1 l2): C = diag(l1^2, l2^2, l3^2), A
+ * = 1 at rest (docs/theory/time.md, section 1). Of A only the entries 1 and 3 are needed. */
+static void find_share(const struct dea_coupon *s, double time_s, double *share)
 {
   double A1 = 1, A3 = 1, from1 = 1, from3 = 1;
   size_t row = 0;
@@ -44,7 +42,7 @@ static void add_branch(const struct dea_branch *branch, const struct dea_coupon 
     const double h = n > 0 ? s->node_s[n] - s->node_s[n - 1] : 0;
     if (n > 0 && h > 0) {
       if (fabs(h - length) > 1e-9 * length) { // equal steps differ by rounding
-        w = dea_branch_weights(h, branch->time_s);
+        w = dea_branch_weights(h, time_s);
         length = h;
       }
       A1 = w.e * A1 + w.w0 * from1 + w.w1 * to1;
@@ -53,21 +51,37 @@ static void add_branch(const struct dea_branch *branch, const struct dea_coupon 
     from1 = to1;
     from3 = to3;
     for (; row < s->rows && s->node_of_row[row] == n; row++) {
-      stress_Pa[row] += branch->modulus_Pa * (A1 * l1 - A3 / (to3 * l1));
+      share[row] = A1 * l1 - A3 / (to3 * l1);
     }
   }
 }
 
+dea_status dea_coupon_shares_make(struct dea_arena *arena, const struct dea_coupon *coupon,
+                                  size_t branch_count, struct dea_coupon_shares *out)
+{
+  *out = (struct dea_coupon_shares){
+      .share = dea_arena_alloc(arena, branch_count * coupon->rows, sizeof *out->share)};
+  return dea_arena_status(arena);
+}
+
 dea_status dea_coupon_stress(const struct dea_material *material, const struct dea_coupon *coupon,
-                             double *stress_Pa)
+                             struct dea_coupon_shares *shares, double *stress_Pa)
 {
   if (material->law == NULL || material->law->anisotropic) {
     return DEA_E_ARGUMENT;
   }
-  dea_status status = add_elastic(material, coupon, stress_Pa);
-  for (size_t b = 0; b < material->branch_count && status == DEA_OK && coupon->node_count > 0;
-       b++) {
-    add_branch(&material->branches[b], coupon, stress_Pa);
+  const dea_status status = find_elastic(material, coupon, stress_Pa);
+  const bool timed = status == DEA_OK && coupon->node_count > 0;
+  for (size_t b = 0; b < material->branch_count && timed; b++) {
+    const struct dea_branch *branch = &material->branches[b];
+    double *share = shares->share + b * coupon->rows;
+    if (branch->time_s != shares->time_s[b]) {
+      find_share(coupon, branch->time_s, share);
+      shares->time_s[b] = branch->time_s;
+    }
+    for (size_t i = 0; i < coupon->rows; i++) {
+      stress_Pa[i] += branch->modulus_Pa * share[i];
+    }
   }
   return status;
 }

@@ -26,10 +26,21 @@ struct dea_coupon {
 
 /* Second stretch in the plane. */
 double dea_coupon_across(enum dea_coupon_mode mode, double stretch);
-/* Nominal stresses [Pa] at all rows: dW/dl1, of the law and of its branches. DEA_E_DOMAIN beyond
- * the law's domain, DEA_E_ARGUMENT for a law with a direction or a compressible one. */
+/* What branches add to the stress, over their moduli: kept as long as their times stay, since a
+ * search asks for the same ones again and again. */
+struct dea_coupon_shares {
+  double time_s[DEA_BRANCHES_MAX]; // that they belong to, 0: none yet
+  double *share;                   // [branches x rows]
+};
+/* Room for them, in memory of the arena. */
+dea_status dea_coupon_shares_make(struct dea_arena *arena, const struct dea_coupon *coupon,
+                                  size_t branch_count, struct dea_coupon_shares *out);
+
+/* Nominal stresses [Pa] at all rows: dW/dl1, of the law and of its branches. shares: of this coupon
+ * and so many branches; NULL for a material without. DEA_E_DOMAIN beyond the law's domain,
+ * DEA_E_ARGUMENT for a law with a direction or a compressible one. */
 dea_status dea_coupon_stress(const struct dea_material *material, const struct dea_coupon *coupon,
-                             double *stress_Pa);
+                             struct dea_coupon_shares *shares, double *stress_Pa);
 /* Makes the nodes: rest at the time 0, then straight from row to row at time_s[rows] >= 0, which
  * never falls, with steps of at most 1 % of stretch. ramp_s: from then on the stretch is held,
  * which rows before it do not have yet; 0: there is no hold. Memory of the arena. */

@@ -253,7 +253,8 @@ bool dea_fit_series_used(const struct dea_fit_series *series)
 struct residuals {
   const struct dea_fit_model *model;
   const struct dea_fit_rows *rows;
-  double *stress; // [largest series]
+  struct dea_coupon_shares *shares; // [rows->count]
+  double *stress;                   // [largest series]
 };
 
 static bool is_left_out(const struct dea_fit_rows *rows, size_t s, size_t i)
@@ -272,7 +273,7 @@ static dea_status residual(void *user, const double *p, double *r)
     if (!dea_fit_series_used(series)) {
       continue;
     }
-    dea_status status = dea_coupon_stress(&material, &series->coupon, w->stress);
+    dea_status status = dea_coupon_stress(&material, &series->coupon, &w->shares[s], w->stress);
     if (status != DEA_OK) {
       return status;
     }
@@ -325,10 +326,15 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
   struct residuals *w = dea_arena_alloc(arena, 1, sizeof *w);
   double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
   double *stress = dea_arena_alloc(arena, largest, sizeof *stress);
+  struct dea_coupon_shares *shares = dea_arena_alloc(arena, rows->count, sizeof *shares);
+  for (size_t s = 0; s < rows->count && shares != NULL; s++) {
+    DEA_TRY(arena->ctx, dea_coupon_shares_make(arena, &rows->series[s].coupon, model->branch_count,
+                                               &shares[s]));
+  }
   if (arena->failed) {
     return DEA_E_MEMORY;
   }
-  *w = (struct residuals){model, rows, stress};
+  *w = (struct residuals){model, rows, shares, stress};
   set_bounds(model, memory, out);
   out->user = w;
   return DEA_OK;
@@ -337,14 +343,15 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
 struct stresses {
   const struct dea_fit_model *model;
   const struct dea_fit_series *series;
+  struct dea_coupon_shares shares;
 };
 
 static dea_status stress_of(void *user, const double *p, double *r)
 {
-  const struct stresses *w = user;
+  struct stresses *w = user;
   struct dea_material material;
   dea_fit_model_material(w->model, p, &material);
-  return dea_coupon_stress(&material, &w->series->coupon, r);
+  return dea_coupon_stress(&material, &w->series->coupon, &w->shares, r);
 }
 
 dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_model *model,
@@ -356,7 +363,9 @@ dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_mo
   if (arena->failed) {
     return DEA_E_MEMORY;
   }
-  *w = (struct stresses){model, series};
+  *w = (struct stresses){.model = model, .series = series};
+  DEA_TRY(arena->ctx,
+          dea_coupon_shares_make(arena, &series->coupon, model->branch_count, &w->shares));
   set_bounds(model, memory, out);
   out->user = w;
   return DEA_OK;
