@@ -132,6 +132,40 @@ static void test_example(void **state)
   assert_contains(page, "yeoh                        3        0                 0.60 %  <- taken");
 }
 
+/* Holds at the stretches 2, 3 and 5 foretell loading and unloading at 0.05 1/s to 4 % where the
+ * strip is not nearly slack (docs/validation/vhb.md). */
+static void test_vhb(void **state)
+{
+  (void)state;
+  static char rows[COMMAND_TEXT_MAX];
+#define VHB DEA_SOURCE_DIR "/examples/fit/vhb-4910/"
+  command_write("vhb.yaml",
+                "dea_fit: 1\nname: vhb\nlaws: [mooney-rivlin]\nbranches: 3\ntests:\n"
+                "  - {name: two, kind: relaxation, file: " VHB "relaxation-2.csv, stretch: 2, "
+                "ramp: 4.04 s, uncertainty: 1 %}\n"
+                "  - {name: three, kind: relaxation, file: " VHB "relaxation-3.csv, stretch: 3, "
+                "ramp: 8.15 s, uncertainty: 1 %}\n"
+                "  - {name: five, kind: relaxation, file: " VHB "relaxation-5.csv, stretch: 5, "
+                "ramp: 16.15 s, uncertainty: 1 %}\n"
+                "  - {name: cycle, kind: cyclic, use: check, rate: 0.05 s^-1, file: " VHB
+                "cycle-0.05.csv, uncertainty: 5 %}\n");
+  assert_int_equal(command_run("fit vhb.yaml"), 0);
+  command_read("vhb.fit/fit.csv", rows);
+  int cycles = 0, holds = 0;
+  for (char *line = strtok(rows, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+    double measured, law;
+    bool cycle = strncmp(line, "cycle,", 6) == 0;
+    if (sscanf(line, "%*[^,],%*[^,],%*d,%*f,%*f,%lf,%*f,%lf", &measured, &law) == 2 &&
+        measured > 6) {
+      assert_close(law, measured, cycle ? 0.04 : 0.06, 0);
+      cycles += cycle;
+      holds += !cycle;
+    }
+  }
+  assert_int_equal(cycles, 7);
+  assert_int_equal(holds, 24);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -139,6 +173,7 @@ int main(void)
       cmocka_unit_test(test_bad_data),
       cmocka_unit_test(test_names_and_files),
       cmocka_unit_test(test_example),
+      cmocka_unit_test(test_vhb),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }
