@@ -37,7 +37,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # A program that links the static library needs its dependencies too; one that links the shared
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files
 # differently from one distribution to the next.
-set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd cminpack")
+set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd cminpack expat")
 set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_HEAVY_SHARED})
 if(DEA_STATIC)
   set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRARIES})

@@ -2,6 +2,9 @@
 #include "geometry/pieces.h"
 
 #include <math.h>
+#include <stdint.h>
+
+enum { LONG_CONTOUR = 200 }; // pieces
 
 /* How often a ray from x towards +x crosses a part of a piece that goes up or down only, from y0 to
  * y1; right: the side of its circle that it is on, 0 for a line. */
@@ -63,20 +66,21 @@ static void find_start(const struct dea_pieces *all, size_t first, double out[2]
 struct nesting {
   const struct dea_region *region;
   struct dea_pieces all;
-  double *area;   // [contours] not signed
-  size_t *mark;   // [contours] 1 + the contour whose ray met this one last
-  bool *odd;      // [contours] that ray met it an odd number of times
-  size_t *seen;   // [contours] those that were met
-  size_t *parent; // [contours] the contour around it; itself: none
-  bool *hole;     // [contours]
+  struct dea_box_tree boxes; // of contours
+  double *area;              // [contours] not signed
+  size_t *mark;              // [contours] 1 + the contour whose ray met this one last
+  bool *odd;                 // [contours] that ray met it an odd number of times
+  size_t *seen;              // [contours] those that were met
+  size_t *parent;            // [contours] the contour around it; itself: none
+  bool *hole;                // [contours]
 };
 
-static void find_parent(struct nesting *n, size_t c)
+/* The contours that a ray from x crosses into n->seen: once all that it crosses an odd number of
+ * times, and perhaps others. Returns their number. */
+static size_t follow_ray(struct nesting *n, size_t c, const double x[2])
 {
-  double x[2];
-  find_start(&n->all, c > 0 ? n->region->end[c - 1] : 0, x);
   const double ray[4] = {x[0], x[1], INFINITY, x[1]};
-  size_t cursor = 0, piece, seen = 0, depth = 0;
+  size_t cursor = 0, piece, seen = 0;
   while (dea_pieces_next(&n->all, ray, &cursor, &piece)) {
     size_t other = n->all.contour[piece];
     if (other == c || !is_crossed(&n->all.piece[piece], x)) {
@@ -89,6 +93,35 @@ static void find_parent(struct nesting *n, size_t c)
     }
     n->odd[other] = !n->odd[other];
   }
+  return seen;
+}
+
+/* The same by looking at contours whose boxes hold x only; SIZE_MAX when one of them is long, so
+ * that the ray is quicker. */
+static size_t look_around(struct nesting *n, size_t c, const double x[2])
+{
+  const double at[4] = {x[0], x[1], x[0], x[1]};
+  size_t cursor = 0, other, seen = 0;
+  while (dea_box_tree_next(&n->boxes, at, &cursor, &other)) {
+    size_t first = other > 0 ? n->region->end[other - 1] : 0, end = n->region->end[other];
+    if (end - first > LONG_CONTOUR) {
+      return SIZE_MAX;
+    }
+    n->odd[other] = false;
+    for (size_t piece = first; piece < end && other != c; piece++) {
+      n->odd[other] ^= is_crossed(&n->all.piece[piece], x);
+    }
+    n->seen[seen++] = other;
+  }
+  return seen;
+}
+
+static void find_parent(struct nesting *n, size_t c)
+{
+  double x[2];
+  find_start(&n->all, c > 0 ? n->region->end[c - 1] : 0, x);
+  size_t depth = 0, seen = look_around(n, c, x);
+  seen = seen != SIZE_MAX ? seen : follow_ray(n, c, x);
   n->parent[c] = c;
   for (size_t i = 0; i < seen; i++) {
     size_t other = n->seen[i];
@@ -100,6 +133,24 @@ static void find_parent(struct nesting *n, size_t c)
     }
   }
   n->hole[c] = depth % 2 == 1;
+}
+
+static dea_status build_boxes(struct dea_context *ctx, struct nesting *n)
+{
+  size_t count = n->region->contour_count;
+  struct dea_box *boxes = dea_alloc(ctx, count, sizeof *boxes);
+  if (boxes == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t c = 0; c < count; c++) {
+    const struct dea_contour contour = dea_region_contour(n->region, c);
+    boxes[c] = (struct dea_box){{INFINITY, INFINITY, -INFINITY, -INFINITY}, c};
+    dea_contour_grow_box(&contour, boxes[c].side);
+    n->area[c] = fabs(dea_contour_area_m2(&contour));
+  }
+  dea_status status = dea_box_tree_build(ctx, boxes, count, &n->boxes);
+  dea_free(ctx, boxes);
+  return status;
 }
 
 /* Adds contour c of the region to another one: as a hole or an outline, in the sense of it. */
@@ -152,10 +203,7 @@ dea_status dea_region_arrange(struct dea_context *ctx, struct dea_region *region
   n.parent = dea_arena_alloc(arena, count, sizeof *n.parent);
   n.hole = dea_arena_alloc(arena, count, sizeof *n.hole);
   dea_status status = dea_arena_status(arena);
-  for (size_t c = 0; c < count && status == DEA_OK; c++) {
-    const struct dea_contour contour = dea_region_contour(region, c);
-    n.area[c] = fabs(dea_contour_area_m2(&contour));
-  }
+  status = status == DEA_OK ? build_boxes(ctx, &n) : status;
   for (size_t c = 0; c < count && status == DEA_OK; c++) {
     find_parent(&n, c);
     if ((c & 1023) == 0 && dea_interrupted(ctx)) {
@@ -166,6 +214,7 @@ dea_status dea_region_arrange(struct dea_context *ctx, struct dea_region *region
     add_all(&n, &out);
     status = dea_region_status(&out);
   }
+  dea_box_tree_free(ctx, &n.boxes);
   dea_pieces_free(&n.all);
   if (status == DEA_OK) {
     dea_region_free(region);

@@ -1,0 +1,156 @@
+#include "geometry/drawing.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
+                              const struct dea_drawing_settings *settings, struct dea_drawing **out)
+{
+  struct dea_drawing *d = dea_alloc(ctx, 1, sizeof *d);
+  *out = d;
+  if (d == NULL) {
+    return DEA_E_MEMORY;
+  }
+  d->ctx = ctx;
+  d->settings = settings != NULL ? *settings : (struct dea_drawing_settings){0};
+  d->settings.join_m = d->settings.join_m > 0 ? d->settings.join_m : 1e-6;
+  d->settings.flatten_m = d->settings.flatten_m > 0 ? d->settings.flatten_m : 1e-7;
+  if (d->settings.vertices_max == 0) {
+    d->settings.vertices_max = DEA_DRAWING_VERTICES_MAX;
+  }
+  d->file = dea_intern(ctx, file);
+  if (d->file == NULL) {
+    dea_drawing_destroy(d);
+    *out = NULL;
+    return DEA_E_MEMORY;
+  }
+  return DEA_OK;
+}
+
+void dea_drawing_destroy(struct dea_drawing *drawing)
+{
+  if (drawing != NULL) {
+    dea_free(drawing->ctx, drawing->layer);
+    dea_free(drawing->ctx, drawing->path);
+    dea_free(drawing->ctx, drawing->skipped);
+    dea_free(drawing->ctx, drawing->vertex);
+    dea_free(drawing->ctx, drawing);
+  }
+}
+
+dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, const char *format,
+                             ...)
+{
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  const struct dea_location location = {drawing->file, line, 0};
+  DEA_TRY(drawing->ctx, dea_finding_add(drawing->ctx, DEA_ERROR, location, "%s", text));
+  return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
+}
+
+/* Room for one more in an owned array. */
+static dea_status make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
+                            size_t size)
+{
+  if (count < *room) {
+    return DEA_OK;
+  }
+  size_t larger = *room + *room / 2 + 16;
+  void *moved = dea_resize(ctx, *array, larger, size);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *array = moved;
+  *room = larger;
+  return DEA_OK;
+}
+
+dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size_t *layer)
+{
+  struct dea_drawing *d = drawing;
+  for (size_t i = d->layer_count; i-- > 0;) {
+    if (strcmp(d->layer[i], name) == 0) {
+      *layer = i;
+      return DEA_OK;
+    }
+  }
+  if (d->layer_count == DEA_DRAWING_LAYERS_MAX) {
+    return dea_drawing_fault(d, 0, "the drawing has more than %d layers", DEA_DRAWING_LAYERS_MAX);
+  }
+  void *names = d->layer;
+  DEA_TRY(d->ctx, make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
+  d->layer = names;
+  const char *kept = dea_intern(d->ctx, name);
+  if (kept == NULL) {
+    return DEA_E_MEMORY;
+  }
+  d->layer[d->layer_count] = kept;
+  *layer = d->layer_count++;
+  return DEA_OK;
+}
+
+dea_status dea_drawing_add_vertex(struct dea_drawing *drawing, double x_m, double y_m, double bulge,
+                                  size_t line)
+{
+  struct dea_drawing *d = drawing;
+  if (!isfinite(x_m) || !isfinite(y_m) || !isfinite(bulge)) {
+    return dea_drawing_fault(d, line, "a coordinate is no number");
+  }
+  if (d->vertex_count == d->settings.vertices_max) {
+    return dea_drawing_fault(d, line, "the drawing has more than %zu vertices, which is too many",
+                             d->settings.vertices_max);
+  }
+  void *vertices = d->vertex;
+  DEA_TRY(d->ctx,
+          make_room(d->ctx, &vertices, d->vertex_count, &d->vertex_room, sizeof *d->vertex));
+  d->vertex = vertices;
+  d->vertex[d->vertex_count++] = (struct dea_vertex){x_m, y_m, bulge, {d->file, line, 0}};
+  return DEA_OK;
+}
+
+size_t dea_drawing_open_vertices(const struct dea_drawing *drawing)
+{
+  size_t paths = drawing->path_count;
+  return drawing->vertex_count - (paths > 0 ? drawing->path[paths - 1].end : 0);
+}
+
+dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool closed)
+{
+  struct dea_drawing *d = drawing;
+  size_t count = dea_drawing_open_vertices(d);
+  if (count < 2) {
+    d->vertex_count -= count;
+    return DEA_OK;
+  }
+  void *paths = d->path;
+  DEA_TRY(d->ctx, make_room(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
+  d->path = paths;
+  d->path[d->path_count++] = (struct dea_drawing_path){layer, d->vertex_count, closed};
+  return DEA_OK;
+}
+
+dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const char *kind,
+                            size_t line)
+{
+  struct dea_drawing *d = drawing;
+  struct dea_drawing_skipped entry = {"", layer, 1, {d->file, line, 0}};
+  snprintf(entry.kind, sizeof entry.kind, "%s", kind);
+  for (size_t i = 0; i < d->skipped_count; i++) {
+    bool full = d->skipped_count == DEA_DRAWING_LAYERS_MAX && i + 1 == d->skipped_count;
+    if (full || (d->skipped[i].layer == layer && strcmp(d->skipped[i].kind, entry.kind) == 0)) {
+      d->skipped[i].count++;
+      return DEA_OK;
+    }
+  }
+  void *skipped = d->skipped;
+  DEA_TRY(d->ctx,
+          make_room(d->ctx, &skipped, d->skipped_count, &d->skipped_room, sizeof *d->skipped));
+  d->skipped = skipped;
+  d->skipped[d->skipped_count++] = entry;
+  return DEA_OK;
+}
