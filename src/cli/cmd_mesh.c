@@ -1,7 +1,7 @@
 #include "cli/cli.h"
 
 #include "model/solid/actuator/actuator.h"
-#include "output/msh.h"
+#include "model/solid/mesh/msh_write.h"
 
 #include <math.h>
 #include <string.h>

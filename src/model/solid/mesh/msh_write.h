@@ -1,6 +1,6 @@
 /* Meshes for other programs: Gmsh's format 2.2 in ASCII. */
-#ifndef DEA_OUTPUT_MSH_H
-#define DEA_OUTPUT_MSH_H
+#ifndef DEA_MODEL_SOLID_MESH_MSH_WRITE_H
+#define DEA_MODEL_SOLID_MESH_MSH_WRITE_H
 
 #include "model/solid/mesh/fibre_disc.h"
 

@@ -1,4 +1,4 @@
-#include "output/msh.h"
+#include "model/solid/mesh/msh_write.h"
 
 #include "base/write_file.h"
 
