@@ -1,12 +1,13 @@
 #!/bin/sh
 # A file of src/X includes headers of X and of the folders before X only, and so do the rooms of
-# model/solid; one model knows nothing of another. See ARCHITECTURE.md.
+# model/solid; one model knows nothing of another, output nothing of models, and of studies their
+# figures only. See ARCHITECTURE.md.
 set -eu
 cd "$1/src"
 # shellcheck disable=SC2016 # awk's own
 find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
-    n = split("base material waveform geometry design device result calibrate model study output fabricate lab api cli", order, " ")
+    n = split("base material waveform geometry design device result calibrate model study output job fabricate lab api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
     n = split("point element mesh load recovery actuator assembly equilibrium motion adapter", order, " ")
     for (i = 1; i <= n; i++) { room[order[i]] = i } # of model/solid
@@ -22,7 +23,9 @@ find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
       print FILENAME ":" FNR ": \"" header "\" should name its folder"; bad = 1
     } else if (rank[its] > rank[mine]) {
       print FILENAME ":" FNR ": " mine " must not depend on " its; bad = 1
-    } else if (mine == "lab" && its ~ /^(study|output|fabricate)$/ &&
+    } else if (mine == "output" && its ~ /^(model|study)$/ && header != "study/figures.h") {
+      print FILENAME ":" FNR ": output solves nothing; it must not depend on " header; bad = 1
+    } else if (mine == "lab" && its ~ /^(study|output|job|fabricate)$/ &&
                header !~ /^output\/(csv|plot|gnuplot)\.h$|^study\/design_file\.h$/) { # to go down
       print FILENAME ":" FNR ": the library of the bench must not depend on " header; bad = 1
     } else if (mine == "model" && its == "model" && header ~ /^model\/.*\// &&

@@ -2,9 +2,9 @@
 #include "api/door.h"
 
 #include "base/write_file.h"
+#include "job/design_of_run.h"
 #include "output/figure.h"
 #include "output/report/plot_svg.h"
-#include "output/report/section.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/columns.h"
@@ -454,8 +454,7 @@ dea_status dea_result_save(dea_context *ctx, const dea_result *result, const cha
  * with a note. */
 static dea_status read_design(struct dea_context *ctx, struct dea_result_handle *contents)
 {
-  const struct dea_report_run run = {.run = contents->run};
-  dea_status status = dea_report_run_build(ctx, &run, NULL, &contents->design, &contents->device);
+  dea_status status = dea_design_of_run(ctx, contents->run, &contents->design, &contents->device);
   if (status == DEA_OK) {
     contents->inner->design = contents->design;
     contents->inner->device = contents->device;

@@ -1,7 +1,7 @@
 /* dea_run: design -> models -> studies -> result. */
 #include "api/door.h"
 
-#include "output/job.h"
+#include "job/job.h"
 #include "result/provenance.h"
 
 #include <stdio.h>

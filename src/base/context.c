@@ -21,6 +21,7 @@ struct dea_context {
   struct dea_finding *findings;
   size_t finding_count, finding_room;
   size_t errors, errors_kept; // all that were added; those among the findings
+  bool trial;                 // findings are not kept
   char **names;
   size_t name_count, name_room;
   struct kept_object kept[KEPT_MAX];
@@ -205,7 +206,8 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_end(args);
   bool error = severity == DEA_ERROR;
   ctx->errors += error; // also of what is not kept: callers stop when the number has grown
-  if ((error && ctx->errors_kept == DEA_ERRORS_KEPT) || is_known(ctx, severity, location, text)) {
+  if (ctx->trial || (error && ctx->errors_kept == DEA_ERRORS_KEPT) ||
+      is_known(ctx, severity, location, text)) {
     return DEA_OK;
   }
   void *items =
@@ -250,6 +252,18 @@ void dea_finding_clear(struct dea_context *ctx)
     dea_free(ctx, ctx->findings[i].text);
   }
   ctx->finding_count = ctx->errors = ctx->errors_kept = 0;
+}
+
+size_t dea_finding_trial_begin(struct dea_context *ctx)
+{
+  ctx->trial = true;
+  return ctx->errors;
+}
+
+void dea_finding_trial_end(struct dea_context *ctx, size_t errors)
+{
+  ctx->trial = false;
+  ctx->errors = errors;
 }
 
 void dea_context_set_finding_sink(struct dea_context *ctx, dea_finding_fn fn, void *user)

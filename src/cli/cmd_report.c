@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 
 #include "base/write_file.h"
-#include "output/report/report.h"
+#include "job/report.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -51,7 +51,7 @@ static int run(struct dea_cli *cli, void *user)
                                             .measurement = request->measurement};
   dea_status status = path == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
   if (status == DEA_OK) {
-    status = dea_report_write(cli->ctx, request->runs.at, request->runs.count, &chosen, path);
+    status = dea_job_report(cli->ctx, request->runs.at, request->runs.count, &chosen, path);
   }
   if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "the report is %s\n", path);

@@ -4,7 +4,7 @@
 #include "base/yaml.h"
 #include "cli/models.h"
 #include "cli/print_tables.h"
-#include "output/job.h"
+#include "job/job.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"

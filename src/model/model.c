@@ -80,6 +80,14 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
                               : lacks(ctx, type, "indenter");
 }
 
+dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
+                          const struct dea_model *model, double voltage_V, double height_m,
+                          double *force_N)
+{
+  return type->hold != NULL ? type->hold(ctx, model, voltage_V, height_m, force_N)
+                            : lacks(ctx, type, "load line");
+}
+
 dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
                            struct dea_model *model, const struct dea_load_point *at, size_t count,
                            struct dea_load_point *points, struct dea_field_mesh **shapes)

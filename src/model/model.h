@@ -87,6 +87,10 @@ struct dea_model_type {
    * tip of the first call stays. NULL when the model knows no tips. */
   dea_status (*indent)(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_probe *tip, double depth_m, struct dea_load_point *out);
+  /* Force [N] out of the plane that holds the fibre tips at a height [m] at a voltage, whatever was
+   * solved last; NULL when the model has no load line. */
+  dea_status (*hold)(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                     double height_m, double *force_N);
   /* The lowest modes of small motions about the last point solved, `at`: copies of it with the keys
    * of a mode, [count]. shapes: the film's middle surface there with a field a mode; owned by the
    * caller, NULL on failure. NULL when the model has no mass. */
@@ -152,6 +156,9 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out);
+dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
+                          const struct dea_model *model, double voltage_V, double height_m,
+                          double *force_N);
 dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
                            struct dea_model *model, const struct dea_load_point *at, size_t count,
                            struct dea_load_point *points, struct dea_field_mesh **shapes);

@@ -3,7 +3,7 @@
 #include "base/write_file.h"
 #include "output/figure_list.h"
 #include "output/gnuplot.h"
-#include "study/study.h"
+#include "study/figures.h"
 
 #include <string.h>
 
@@ -20,18 +20,7 @@ static const struct dea_figure *const figures[] = {
 const struct dea_figure *dea_figure_get(size_t i)
 {
   size_t count = sizeof figures / sizeof figures[0];
-  if (i < count) {
-    return figures[i];
-  }
-  i -= count;
-  const struct dea_study *const *studies = dea_study_all(&count);
-  for (size_t s = 0; s < count; s++) {
-    if (i < studies[s]->figure_count) {
-      return &studies[s]->figures[i];
-    }
-    i -= studies[s]->figure_count;
-  }
-  return NULL;
+  return i < count ? figures[i] : dea_study_figure(i - count);
 }
 
 size_t dea_figure_names(bool plots, const char *out[DEA_FIGURES_MAX])

@@ -85,6 +85,25 @@ dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *resu
   return DEA_OK;
 }
 
+static bool is_table(const struct dea_result_table *table, const char *model, const char *study,
+                     const char *name)
+{
+  return strcmp(table->model, model) == 0 && strcmp(table->type.study, study) == 0 &&
+         strcmp(table->type.name, name) == 0;
+}
+
+const struct dea_result_table *dea_result_find_table(const struct dea_result *result,
+                                                     const char *model, const char *study,
+                                                     const char *name)
+{
+  for (size_t i = 0; i < result->table_count; i++) {
+    if (is_table(&result->tables[i], model, study, name)) {
+      return &result->tables[i];
+    }
+  }
+  return NULL;
+}
+
 dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
                                 const struct dea_result_table_type *type, const char *model,
                                 size_t width, struct dea_result_table **out)
@@ -94,8 +113,7 @@ dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *resu
   DEA_TRY(ctx, dea_result_table_init(ctx, type, model, width, &table));
   for (size_t i = 0; i < result->table_count; i++) {
     struct dea_result_table *old = &result->tables[i];
-    if (strcmp(old->model, model) == 0 && strcmp(old->type.study, type->study) == 0 &&
-        strcmp(old->type.name, type->name) == 0) {
+    if (is_table(old, model, type->study, type->name)) {
       dea_result_table_free(ctx, old);
       *old = table;
       *out = old;
@@ -253,10 +271,11 @@ bool dea_variant_is(const struct dea_variant *variant, const char *model, const 
 
 size_t dea_result_models(const struct dea_result *result, const char *models[], size_t max)
 {
-  size_t count = 0, curves = result->curve_count;
-  for (size_t i = 0; i < curves + result->variant_count && count < max; i++) {
-    const char *model =
-        i < curves ? result->curves[i].model : result->variants[i - curves].curve.model;
+  size_t count = 0, curves = result->curve_count, variants = result->variant_count;
+  for (size_t i = 0; i < curves + variants + result->table_count && count < max; i++) {
+    const char *model = i < curves              ? result->curves[i].model
+                        : i < curves + variants ? result->variants[i - curves].curve.model
+                                                : result->tables[i - curves - variants].model;
     bool known = false;
     for (size_t m = 0; m < count; m++) {
       known = known || strcmp(models[m], model) == 0;
@@ -373,6 +392,19 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
   result->surfaces = surfaces;
   result->surfaces[result->surface_count++] = record;
   return DEA_OK;
+}
+
+double dea_result_highest_V(const struct dea_result *result)
+{
+  double highest = 0;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    for (size_t k = 0; k < result->curves[i].count; k++) {
+      if (strcmp(result->curves[i].kind, "path") != 0) {
+        highest = fmax(highest, result->curves[i].points[k].voltage_V);
+      }
+    }
+  }
+  return highest;
 }
 
 const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,

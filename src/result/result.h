@@ -114,8 +114,8 @@ dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *
 struct dea_profile dea_profile_of_record(const struct dea_profile_record *record);
 /* Whether a variant is one of that model and study. */
 bool dea_variant_is(const struct dea_variant *variant, const char *model, const char *study);
-/* Models of a result in the order of their first curve or variant; names lent. Returns the number.
- */
+/* Models of a result in the order of their first curve, variant or table; names lent. Returns the
+ * number. */
 size_t dea_result_models(const struct dea_result *result, const char *models[], size_t max);
 /* The curve of that model and kind, a new empty one when there is none; *out as above. */
 dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *result,
@@ -125,6 +125,10 @@ dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *resu
 dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
                                 const struct dea_result_table_type *type, const char *model,
                                 size_t width, struct dea_result_table **out);
+/* Table of that model, study and name, or NULL; lent. */
+const struct dea_result_table *dea_result_find_table(const struct dea_result *result,
+                                                     const char *model, const char *study,
+                                                     const char *name);
 /* Surface of a point after those that are there. Where those of the model would take more memory
  * than surface_bytes_max, every second one goes, and from then on one of two points stays, one of
  * four, ...; the first and the last are always there. Takes the mesh, also when it fails. */
@@ -134,6 +138,8 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
 /* How a curve ended, and for a failure the recorded message as the reason. Returns the status, for
  * DEA_TRY. */
 dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status);
+/* Highest voltage of the curves but paths [V]; 0 for none. */
+double dea_result_highest_V(const struct dea_result *result);
 /* Curve of that model and kind, or NULL; lent. */
 const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,
                                         const char *kind);

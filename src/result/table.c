@@ -27,6 +27,18 @@ const struct dea_cell *dea_result_table_cell(const struct dea_result_table *tabl
   return &table->cells[row * table->stride + column_offset(table, column)];
 }
 
+double dea_result_table_number(const struct dea_result_table *table, size_t row, const char *key,
+                               size_t index)
+{
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    if (strcmp(table->type.columns[c].key, key) == 0 && row < table->row_count &&
+        index < dea_result_table_values(table, c)) {
+      return dea_result_table_cell(table, row, c)[index].number;
+    }
+  }
+  return NAN;
+}
+
 dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_result_table_type *type,
                                  const char *model, size_t width, struct dea_result_table *out)
 {

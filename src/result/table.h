@@ -64,6 +64,10 @@ struct dea_result_table {
 /* First cell of a column in a row; lent. */
 const struct dea_cell *dea_result_table_cell(const struct dea_result_table *table, size_t row,
                                              size_t column);
+/* Number of a column by its key, of a list its value of that index; NAN where the table has none.
+ */
+double dea_result_table_number(const struct dea_result_table *table, size_t row, const char *key,
+                               size_t index);
 /* Values of a row that belong to a column: 1, or the width of lists. */
 size_t dea_result_table_values(const struct dea_result_table *table, size_t column);
 

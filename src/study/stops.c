@@ -3,6 +3,12 @@
 
 #include <stdio.h>
 
+double dea_study_highest_V(const struct dea_result *result)
+{
+  double reached_V = dea_result_highest_V(result);
+  return reached_V > 0 ? reached_V : dea_design_highest_V(result->design);
+}
+
 size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
                        size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX])
 {

@@ -1,6 +1,7 @@
 #include "study/study.h"
 
 #include "base/text.h"
+#include "study/figures.h"
 #include "study/study_list.h"
 
 #include <stdio.h>
@@ -23,6 +24,17 @@ const struct dea_study *const *dea_study_all(size_t *count)
   return studies;
 }
 
+const struct dea_figure *dea_study_figure(size_t i)
+{
+  for (size_t s = 0; s < STUDIES; s++) {
+    if (i < studies[s]->figure_count) {
+      return &studies[s]->figures[i];
+    }
+    i -= studies[s]->figure_count;
+  }
+  return NULL;
+}
+
 static bool is_asked(const struct dea_study *study, const struct dea_design *design)
 {
   if (study->asked != NULL || study->keys == NULL) {
@@ -40,7 +52,7 @@ static bool is_wanted(const struct dea_study *study, const char *const names[], 
       return true;
     }
   }
-  return names == NULL && is_asked(study, design);
+  return names == NULL && !study->by_name_only && is_asked(study, design);
 }
 
 static dea_status unknown_name(struct dea_context *ctx, const char *name)

@@ -14,6 +14,7 @@ struct dea_study {
   /* Whether the design asks for it; NULL: where its section is written, or without keys always. */
   bool (*asked)(const struct dea_design *design);
   const char *needs; // keys of the design without which it cannot run; NULL: none
+  bool by_name_only; // no design asks for it
   bool own_models;   // makes its own: `run` gets none
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
@@ -34,6 +35,8 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
 /* Whether these names can be run for a design, as above. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
+/* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
+double dea_study_highest_V(const struct dea_result *result);
 /* Solves at voltages [count] in their order and adds the points to a curve. DEA_E_INTERRUPTED when
  * the run is ended on the way. */
 dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,

@@ -9,4 +9,6 @@
   X(dea_study_modal)                                                                               \
   X(dea_study_frequency)                                                                           \
   X(dea_study_convergence)                                                                         \
-  X(dea_study_compare_design)
+  X(dea_study_compare_design)                                                                      \
+  X(dea_study_operating_map)                                                                       \
+  X(dea_study_load_line)

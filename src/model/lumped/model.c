@@ -164,6 +164,19 @@ static dea_status path(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status hold(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                       double height_m, double *force_N)
+{
+  if (model->device->fibre_count == 0) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "there are no fibres to hold");
+  }
+  double field = voltage_V / model->lumped.film.thickness_m;
+  dea_status status = dea_lift_force(&model->lumped, &model->lift, field, height_m, force_N);
+  return status == DEA_OK ? status
+                          : dea_fail(ctx, status, "a height of %.4g mm is beyond the film's law",
+                                     1e3 * height_m);
+}
+
 /* The point of a moment: that of its stretch and voltage, and what only time has. */
 static dea_status moment_point(const struct dea_model *model,
                                const struct dea_lumped_moment *moment, struct dea_load_point *out)
@@ -238,6 +251,7 @@ const struct dea_model_type dea_model_lumped = {
     .destroy = destroy,
     .solve = solve,
     .path = path,
+    .hold = hold,
     .begin = begin,
     .advance = advance,
     .accept = accept,

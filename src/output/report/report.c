@@ -117,29 +117,22 @@ static dea_status add_page(struct dea_report *report)
   return report->text.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], size_t count,
-                            const struct dea_report_options *options, const char *path)
+dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run *runs,
+                            size_t count, const struct dea_report_options *options,
+                            const char *path)
 {
-  struct dea_report_run opened[DEA_REPORT_RUNS_MAX] = {{0}};
   struct dea_report report = {.ctx = ctx,
                               .options = options,
-                              .runs = opened,
+                              .runs = runs,
                               .count = count,
                               .level = count > 1 ? 3 : 2,
                               .text = {.ctx = ctx}};
-  if (count == 0 || count > DEA_REPORT_RUNS_MAX) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "a report takes 1 to %d runs, not %zu",
-                    DEA_REPORT_RUNS_MAX, count);
-  }
   struct dea_measured *measured = NULL;
   void *before = dea_c_locale_enter();
   dea_status status = DEA_OK;
-  if (options->measurement != NULL) { // before the runs: its findings are errors
+  if (options->measurement != NULL) {
     status = dea_measured_read(ctx, options->measurement, &measured);
     report.measurement = measured != NULL ? measured->points : NULL;
-  }
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    status = dea_report_run_open(ctx, runs[i], (int)i + 1, &opened[i]);
   }
   if (status == DEA_OK) {
     status = add_page(&report);
@@ -150,8 +143,5 @@ dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], s
   }
   dea_text_free(&report.text);
   dea_measured_destroy(ctx, measured);
-  for (size_t i = 0; i < count; i++) {
-    dea_report_run_close(ctx, &opened[i]);
-  }
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -2,7 +2,7 @@
 #ifndef DEA_OUTPUT_REPORT_REPORT_H
 #define DEA_OUTPUT_REPORT_REPORT_H
 
-#include "base/context.h"
+#include "output/results_h5.h"
 
 enum { DEA_REPORT_RUNS_MAX = 8 };
 
@@ -12,12 +12,24 @@ struct dea_report_options {
   const char *measurement; // set beside the runs: CSV or folder (output/measured.h); NULL: none
 };
 
-/* Reads the runs (folders, or results.h5 files) and writes one page of them as a whole or not at
- * all. What a run does not have is left out; a run whose design cannot be built any more (a
- * material that is gone) has no drawing, and the page says why. path: of the file. DEA_E_ARGUMENT
- * for more than DEA_REPORT_RUNS_MAX runs or none, DEA_E_IO as dea_run_read or dea_measured_read.
- * Findings of the context are those of the last run afterwards: they stand in the page. */
-dea_status dea_report_write(struct dea_context *ctx, const char *const runs[], size_t count,
-                            const struct dea_report_options *options, const char *path);
+/* One of the runs; all lent to the report. design, device: NULL when the file cannot be read any
+ * more. */
+struct dea_report_run {
+  const char *path;           // as given
+  char title[DEA_TITLE_SIZE]; // of the design, or the file's name
+  int number;                 // from 1
+  struct dea_run *run;
+  struct dea_design *design;
+  struct dea_device *device;
+  char *missing; // why there is no device; NULL
+  char **notes;  // [note_count] what the run has said of itself
+  size_t note_count;
+};
+
+/* Writes one page of the runs [count], 1 to DEA_REPORT_RUNS_MAX, as a whole or not at all. What a
+ * run does not have is left out. path: of the file. DEA_E_IO as dea_measured_read. */
+dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run *runs,
+                            size_t count, const struct dea_report_options *options,
+                            const char *path);
 
 #endif

@@ -6,43 +6,17 @@
 #include "output/csv.h"
 #include "output/report/html.h"
 #include "output/report/report.h"
-#include "output/results_h5.h"
-
-/* One of the runs. design, device: NULL when the file cannot be read any more. */
-struct dea_report_run {
-  const char *path;           // as given
-  char title[DEA_TITLE_SIZE]; // of the design, or the file's name
-  int number;                 // from 1
-  struct dea_run *run;
-  struct dea_design *design;
-  struct dea_device *device;
-  char *missing; // why there is no device; NULL
-  char **notes;  // [note_count] what the run has said of itself
-  size_t note_count;
-};
 
 struct dea_report {
   struct dea_context *ctx;
   const struct dea_report_options *options;
-  struct dea_report_run *runs; // [count]
+  const struct dea_report_run *runs; // [count]
   size_t count;
   const struct dea_measurement *measurement; // lent; NULL: none
   struct dea_text text;
   int level;   // of the headings of a run's sections
   int figures; // so far
 };
-
-/* Reads a run, its design, its notes. *out: dea_report_run_close, also after a failure. */
-dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int number,
-                               struct dea_report_run *out);
-/* The run's design once more with an override on top; both owned by the caller, NULL where it
- * failed. */
-dea_status dea_report_run_build(struct dea_context *ctx, const struct dea_report_run *run,
-                                const struct dea_override *more, struct dea_design **design,
-                                struct dea_device **device);
-/* Highest voltage that the run's sweeps have reached [V]; 0 for none. */
-double dea_report_run_voltage(const struct dea_report_run *run);
-void dea_report_run_close(struct dea_context *ctx, struct dea_report_run *run);
 
 /* "<section ...><h2>title</h2>": of a run, or of the page (number 0), with an id made of both. */
 void dea_section_begin(struct dea_report *report, const char *name, int number, const char *title);

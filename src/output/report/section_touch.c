@@ -1,9 +1,7 @@
 /* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2),
- * and the load line of model lumped against a fingertip.
+ * and the load line of model lumped, as study load-line found it, against a fingertip.
  *
  * Reaches are quasi-static; study "frequency" says what is left of a motion at 5 to 10 Hz. */
-#include "model/lumped/lumped.h"
-#include "model/model.h"
 #include "output/report/plot_svg.h"
 #include "output/report/section.h"
 
@@ -11,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LINES = 4, LINE_POINTS = 41 };
+enum { LINES = 4, DRAWN = 5 }; // load lines; one of so many points of each
 
 static const struct threshold {
   const char *what, *source;
@@ -105,60 +103,77 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
 
 // Load line ---------------------------------------------------------------------------------------
 
-/* Model lumped and its rods at a device. */
+/* A line: rows [first, end) of the study's table, of one voltage, rising in height. */
 struct load_line {
-  struct dea_lumped lumped;
-  struct dea_lift lift;
-  double free_m; // height at the highest voltage at which no force is left; NAN
+  const struct dea_result_table *table;
+  size_t first, end;
+  double voltage_V;
 };
 
-static double force_at(const struct load_line *line, double voltage_V, double z)
+static double height_m(const struct load_line *line, size_t row)
 {
-  double force;
-  dea_status status = dea_lift_force(&line->lumped, &line->lift,
-                                     voltage_V / line->lumped.film.thickness_m, z, &force);
-  return status == DEA_OK ? force : NAN;
+  return dea_result_table_number(line->table, row, "height_m", 0);
 }
 
-/* Height [m] at which no force is left at a voltage; NAN when there is no equilibrium. */
-static double free_height(struct dea_context *ctx, const struct dea_device *device,
-                          double voltage_V)
+static double force_N(const struct load_line *line, size_t row)
 {
-  const struct dea_model_type *type = dea_model_find("lumped");
-  struct dea_model *model;
-  struct dea_load_point point = dea_load_point_empty();
-  if (type->create(ctx, device, NULL, &model) != DEA_OK) {
-    return NAN;
+  return dea_result_table_number(line->table, row, "force_N", 0);
+}
+
+/* The line that begins at a row. */
+static struct load_line line_from(const struct dea_result_table *table, size_t first)
+{
+  struct load_line line = {table, first, first + 1,
+                           dea_result_table_number(table, first, "voltage_V", 0)};
+  while (line.end < table->row_count &&
+         dea_result_table_number(table, line.end, "voltage_V", 0) == line.voltage_V) {
+    line.end++;
   }
-  dea_status status = type->solve(ctx, model, voltage_V, &point);
-  type->destroy(ctx, model);
-  dea_context_clear(ctx);
-  dea_finding_clear(ctx);
-  return status == DEA_OK ? point.fibre_tip_z_m : NAN;
+  return line;
+}
+
+/* Force between the points of a line: the cubic through the two on each side (Lagrange). */
+static double force_between(const struct load_line *line, size_t above, double z)
+{
+  enum { NEAR = 4 };
+  size_t from = above > line->first + 2 ? above - 2 : line->first;
+  double force = 0;
+  from = from + NEAR > line->end ? line->end - NEAR : from;
+  for (size_t i = from; i < from + NEAR; i++) {
+    double weight = 1;
+    for (size_t k = from; k < from + NEAR; k++) {
+      weight *= k != i ? (z - height_m(line, k)) / (height_m(line, i) - height_m(line, k)) : 1;
+    }
+    force += weight * force_N(line, i);
+  }
+  return force;
 }
 
 /* Height at which the actuator's force is that of a spring that it pushes; 0 when the spring is
- * stiffer than all of the load line, whose largest F/z goes to *stiffest. */
-static double meet(const struct load_line *line, double voltage_V, double high, double k,
-                   double *stiffest)
+ * stiffer than all of the line, whose largest F/z goes to *stiffest. */
+static double meet(const struct load_line *line, double k, double *stiffest)
 {
-  double low = 0;
+  size_t above = line->first; // the first point beyond which the spring is always the stronger
   *stiffest = 0;
-  for (int i = 1; i <= 200; i++) { // the highest place where the actuator is still the stronger
-    double z = high * i / 200, force = force_at(line, voltage_V, z);
+  for (size_t row = line->first + 1; row < line->end; row++) {
+    double z = height_m(line, row), force = force_N(line, row);
     *stiffest = fmax(*stiffest, force / z);
-    low = force > k * z ? z : low;
+    above = force > k * z ? row + 1 : above;
   }
-  for (int i = 0; i < 60 && low > 0; i++) {
+  if (above == line->first || above >= line->end || line->end - line->first < 4) {
+    return 0;
+  }
+  double low = height_m(line, above - 1), high = height_m(line, above);
+  for (int i = 0; i < 60; i++) {
     double middle = 0.5 * (low + high);
-    *(force_at(line, voltage_V, middle) > k * middle ? &low : &high) = middle;
+    *(force_between(line, above, middle) > k * middle ? &low : &high) = middle;
   }
   return low;
 }
 
-static void add_meeting(struct dea_text *out, const struct load_line *line, double last_V, double k)
+static void add_meeting(struct dea_text *out, const struct load_line *line, double k)
 {
-  double stiffest, z = meet(line, last_V, line->free_m, k, &stiffest);
+  double stiffest, z = meet(line, k, &stiffest);
   dea_text_add(out, "<p>A fingertip taken as a spring of ");
   dea_html_number(out, 1e-3 * k, 3);
   dea_text_add(out, " N/mm (an assumption: real ones stiffen as they are pressed) that touches the "
@@ -173,35 +188,24 @@ static void add_meeting(struct dea_text *out, const struct load_line *line, doub
     dea_text_add(out, "not moved");
   }
   dea_text_add(out, " at ");
-  dea_html_number(out, 1e-3 * last_V, 3);
+  dea_html_number(out, 1e-3 * line->voltage_V, 3);
   dea_text_add(out, " kV. Rods that lie flat begin without force, so that what is stiffer than ");
   dea_html_number(out, 1e-3 * stiffest, 2);
   dea_text_add(out, " N/mm stays where it is; all this by model lumped, whose force is an upper "
                     "bound.</p>");
 }
 
-static dea_status fill_lines(struct dea_report *report, const struct dea_report_run *run,
-                             struct load_line *line, double last_V, struct dea_plot *plot,
-                             double *highest)
+static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel, size_t number,
+                           const struct load_line *line)
 {
-  struct dea_panel *panel = &plot->panels[0];
-  for (int n = 1; n <= LINES; n++) {
-    double voltage_V = last_V * n / LINES;
-    double high = free_height(report->ctx, run->device, voltage_V);
-    line->free_m = high;
-    if (!(high > 0)) {
-      continue;
-    }
-    struct dea_series *series;
-    DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, LINE_POINTS, &series));
-    series->colour = (enum dea_colour)(n - 1);
-    snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * voltage_V);
-    for (int i = 0; i < LINE_POINTS; i++) {
-      double z = high * i / (LINE_POINTS - 1);
-      series->values[i] = 1e6 * z;
-      series->values[LINE_POINTS + i] = 1e3 * (i == 0 ? 0 : force_at(line, voltage_V, z));
-    }
-    *highest = fmax(*highest, high);
+  size_t count = (line->end - line->first + DRAWN - 1) / DRAWN;
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->colour = (enum dea_colour)number;
+  snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * line->voltage_V);
+  for (size_t i = 0; i < count; i++) {
+    series->values[i] = 1e6 * height_m(line, line->first + DRAWN * i);
+    series->values[count + i] = 1e3 * force_N(line, line->first + DRAWN * i);
   }
   return DEA_OK;
 }
@@ -228,28 +232,37 @@ static dea_status add_finger(struct dea_report *report, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* The lines in a plot; *last: that of the highest voltage. */
+static dea_status draw_lines(struct dea_report *report, const struct dea_result_table *table,
+                             struct dea_plot *plot, struct load_line *last)
+{
+  double k = report->options->finger_N_per_m, highest = 0;
+  size_t number = 0;
+  for (size_t row = 0; row < table->row_count && number < LINES; row = last->end) {
+    *last = line_from(table, row);
+    highest = fmax(highest, height_m(last, last->end - 1));
+    DEA_TRY(report->ctx, add_line(report->ctx, &plot->panels[0], number++, last));
+  }
+  return add_finger(report, &plot->panels[0], k, highest);
+}
+
 static dea_status add_load_line(struct dea_report *report, const struct dea_report_run *run)
 {
-  const struct dea_device *device = run->device;
-  double last_V = dea_report_run_voltage(run), k = report->options->finger_N_per_m, highest = 0;
-  if (device == NULL || device->fibre_count == 0 || !(last_V > 0) || !(k > 0) ||
-      dea_result_find(run->run->result, "lumped", "sweep") == NULL) {
+  const struct dea_result_table *table =
+      dea_result_find_table(run->run->result, "lumped", "load-line", "forces");
+  double k = report->options->finger_N_per_m;
+  if (table == NULL || table->row_count == 0 || !(k > 0)) {
     return DEA_OK;
   }
-  struct load_line line = {.lift = dea_lift_create(device)};
-  DEA_TRY(report->ctx, dea_film_create(report->ctx, device, &line.lumped.film));
-  line.lumped.pre_stretch = device->pre_stretch;
-  line.lumped.coverage = device->coverage;
-  line.lumped.electrode_radius_m = device->electrode_radius_m;
+  struct load_line last = line_from(table, 0);
   struct dea_plot *plot;
   DEA_TRY(report->ctx, dea_plot_create(report->ctx, "touch",
                                        "load line of model lumped against a fingertip", &plot));
-  dea_status status = fill_lines(report, run, &line, last_V, plot, &highest);
-  if (status == DEA_OK && highest > 0) {
-    status = add_finger(report, &plot->panels[0], k, highest);
+  dea_status status = draw_lines(report, table, plot, &last);
+  if (status == DEA_OK) {
     dea_text_add(&report->text, "<div class=\"plots\">");
     dea_plot_add_svg(&report->text, plot, ++report->figures);
-    add_meeting(&report->text, &line, last_V, k);
+    add_meeting(&report->text, &last, k);
     dea_text_add(&report->text, "</div>");
   }
   dea_plot_destroy(report->ctx, plot);

@@ -1,6 +1,6 @@
 /* A run from its start to its folder: what `dea run` and dea_run have in common. */
-#ifndef DEA_OUTPUT_JOB_H
-#define DEA_OUTPUT_JOB_H
+#ifndef DEA_JOB_JOB_H
+#define DEA_JOB_JOB_H
 
 #include "output/checkpoint.h"
 #include "result/result.h"

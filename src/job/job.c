@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L // clock_gettime
-#include "output/job.h"
+#include "job/job.h"
 
 #include "output/run_folder.h"
 #include "study/study.h"

@@ -1,74 +1,17 @@
-/* A run as the report reads it: results, design, notes. */
+#include "job/report.h"
+
 #include "base/file.h"
 #include "base/write_file.h"
-#include "output/report/section.h"
-#include "study/design_file.h"
+#include "job/design_of_run.h"
+#include "study/study.h"
 
 #include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { OVERRIDES_MAX = 256, SUMMARY_MAX = 1 << 28 };
+enum { SUMMARY_MAX = 1 << 28 };
 
-/* "key=value" a line -> overrides that lend from text, which is cut. */
-static size_t split_overrides(char *text, struct dea_override *out)
-{
-  size_t count = 0;
-  for (char *line = text; line != NULL && *line != '\0' && count < OVERRIDES_MAX;) {
-    char *end = strchr(line, '\n'), *equals = strchr(line, '=');
-    if (end != NULL) {
-      *end = '\0';
-    }
-    if (equals != NULL && (end == NULL || equals < end)) {
-      *equals = '\0';
-      out[count++] = (struct dea_override){line, equals + 1};
-    }
-    line = end != NULL ? end + 1 : NULL;
-  }
-  return count;
-}
-
-dea_status dea_report_run_build(struct dea_context *ctx, const struct dea_report_run *run,
-                                const struct dea_override *more, struct dea_design **design,
-                                struct dea_device **device)
-{
-  const struct dea_provenance *p = &run->run->result->provenance;
-  struct dea_override overrides[OVERRIDES_MAX + 1];
-  const char *given = p->overrides != NULL ? p->overrides : "";
-  const char *input = p->input != NULL ? p->input : "";
-  *design = NULL;
-  *device = NULL;
-  char *text = dea_copy_text(ctx, given, strlen(given));
-  const char *name = dea_intern(ctx, run->run->design_file);
-  dea_status status = text == NULL || name == NULL ? DEA_E_MEMORY : DEA_OK;
-  size_t count = text != NULL ? split_overrides(text, overrides) : 0;
-  if (more != NULL) { // the last one of a key holds
-    overrides[count++] = *more;
-  }
-  if (status == DEA_OK) {
-    status = dea_design_read_memory(ctx, name, input, strlen(input), overrides, count, design);
-  }
-  if (status == DEA_OK) {
-    status = dea_device_build(ctx, *design, device);
-  }
-  dea_free(ctx, text);
-  return status;
-}
-
-double dea_report_run_voltage(const struct dea_report_run *run)
-{
-  const struct dea_result *result = run->run->result;
-  double highest = 0;
-  for (size_t i = 0; i < result->curve_count; i++) {
-    for (size_t k = 0; k < result->curves[i].count; k++) {
-      if (strcmp(result->curves[i].kind, "path") != 0) {
-        highest = fmax(highest, result->curves[i].points[k].voltage_V);
-      }
-    }
-  }
-  return highest;
-}
+// A run as the report reads it: results, design, notes --------------------------------------------
 
 /* First error found, or the message of the failure; owned by the caller. */
 static char *reason(struct dea_context *ctx)
@@ -146,20 +89,19 @@ static void name_run(struct dea_report_run *out)
   snprintf(out->title, sizeof out->title, "%.*s", (int)sizeof out->title - 1, file);
 }
 
-dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int number,
-                               struct dea_report_run *out)
+/* Reads a run, its design, its notes. */
+static dea_status open_run(struct dea_context *ctx, const char *path, int number,
+                           struct dea_report_run *out)
 {
   *out = (struct dea_report_run){.path = path, .number = number};
   dea_finding_clear(ctx);
   DEA_TRY(ctx, dea_run_read(ctx, path, &out->run));
   name_run(out);
-  dea_status status = dea_report_run_build(ctx, out, NULL, &out->design, &out->device);
+  dea_status status = dea_design_of_run(ctx, out->run, &out->design, &out->device);
   if (status == DEA_E_MEMORY) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   if (status != DEA_OK) {
-    dea_device_destroy(ctx, out->device);
-    out->device = NULL;
     out->missing = reason(ctx);
     dea_context_clear(ctx);
     if (out->missing == NULL) {
@@ -180,7 +122,7 @@ dea_status dea_report_run_open(struct dea_context *ctx, const char *path, int nu
   return DEA_OK;
 }
 
-void dea_report_run_close(struct dea_context *ctx, struct dea_report_run *run)
+static void close_run(struct dea_context *ctx, struct dea_report_run *run)
 {
   for (size_t i = 0; i < run->note_count; i++) {
     dea_free(ctx, run->notes[i]);
@@ -190,4 +132,54 @@ void dea_report_run_close(struct dea_context *ctx, struct dea_report_run *run)
   dea_run_destroy(ctx, run->run);
   dea_device_destroy(ctx, run->device);
   dea_design_destroy(ctx, run->design);
+}
+
+// What the page shows beyond what the run has -----------------------------------------------------
+
+/* Studies of model lumped that a run may have and the page always shows. */
+static dea_status complete(struct dea_context *ctx, const struct dea_report_options *options,
+                           struct dea_result *result)
+{
+  static const char model[] = "lumped", map[] = "operating-map", line[] = "load-line";
+  const char *names[2];
+  size_t count = 0;
+  if (result->device == NULL) {
+    return DEA_OK;
+  }
+  if (dea_result_find_table(result, model, map, "") == NULL) {
+    names[count++] = map;
+  }
+  if (options->finger_N_per_m > 0 && dea_result_find(result, model, "sweep") != NULL &&
+      dea_result_find_table(result, model, line, "forces") == NULL) {
+    names[count++] = line;
+  }
+  if (count > 0) {
+    DEA_TRY(ctx, dea_study_run(ctx, dea_model_find(model), names, count, result));
+  }
+  dea_finding_clear(ctx); // what the model says of itself, the page says too
+  return DEA_OK;
+}
+
+dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], size_t count,
+                          const struct dea_report_options *options, const char *path)
+{
+  struct dea_report_run opened[DEA_REPORT_RUNS_MAX] = {{0}};
+  if (count == 0 || count > DEA_REPORT_RUNS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a report takes 1 to %d runs, not %zu",
+                    DEA_REPORT_RUNS_MAX, count);
+  }
+  void *before = dea_c_locale_enter();
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    status = open_run(ctx, runs[i], (int)i + 1, &opened[i]);
+    status = status == DEA_OK ? complete(ctx, options, opened[i].run->result) : status;
+  }
+  dea_c_locale_leave(before);
+  if (status == DEA_OK) {
+    status = dea_report_write(ctx, opened, count, options, path);
+  }
+  for (size_t i = 0; i < count; i++) {
+    close_run(ctx, &opened[i]);
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -1,0 +1,203 @@
+/* Studies "operating-map" and "load-line": what the report draws of model lumped. */
+#include "design_text.h"
+#include "study/study.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#define VOLTAGES "compute:\n  voltage: {values: [0 kV, 3 kV, 6 kV]}\n"
+
+struct run {
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+};
+
+/* Studies of these names (NULL: those that the design asks for) of a design with overrides. */
+static struct run run(const char *model, const char *const names[], size_t count,
+                      const struct dea_override *overrides, size_t override_count)
+{
+  struct run r;
+  assert_int_equal(
+      read_and_build(ctx, GOOD_DESIGN VOLTAGES, overrides, override_count, &r.design, &r.device),
+      DEA_OK);
+  assert_int_equal(dea_result_create(ctx, r.design, r.device, &r.result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find(model), names, count, r.result), DEA_OK);
+  return r;
+}
+
+static void end(struct run *r)
+{
+  dea_result_destroy(ctx, r->result);
+  dea_device_destroy(ctx, r->device);
+  dea_design_destroy(ctx, r->design);
+}
+
+static const char *const map_only[] = {"operating-map"}, *const path_only[] = {"path"};
+
+static void assert_limit(double found, const struct dea_curve *path, enum dea_event_kind kind,
+                         double end_V)
+{
+  const struct dea_event *event = dea_curve_first_event(path, kind);
+  if (event == NULL || event->point.voltage_V > end_V) {
+    assert_true(isnan(found));
+  } else {
+    assert_close(found, event->point.voltage_V, 1e-6, 0);
+  }
+}
+
+/* A row against the path of a design that is read anew with that row's value. */
+static void assert_row(const char *model, const struct dea_result_table *table, const char *key,
+                       const char *column, size_t row, double end_V)
+{
+  char text[40];
+  const struct dea_override override[2] = {{key, text}, {"compute.path.max_stretch", "6"}};
+  snprintf(text, sizeof text, "%.12g%s", dea_result_table_number(table, row, column, 0),
+           strcmp(column, "film_thickness_m") == 0 ? " m" : "");
+  struct run r = run(model, path_only, 1, override, 2);
+  const struct dea_curve *path = dea_result_find(r.result, model, "path");
+  assert_limit(dea_result_table_number(table, row, "breakdown_V", 0), path, DEA_EVENT_BREAKDOWN,
+               end_V);
+  assert_limit(dea_result_table_number(table, row, "pull_in_V", 0), path, DEA_EVENT_PULL_IN, end_V);
+  if (strcmp(key, "pre_stretch") != 0 || row > 0) { // 1: slack from the start, and no event
+    assert_limit(dea_result_table_number(table, row, "slack_V", 0), path, DEA_EVENT_SLACK, end_V);
+  }
+  end(&r);
+}
+
+static void test_limits_are_those_of_the_paths(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  for (size_t m = 0; m < 2; m++) {
+    struct run r = run(models[m], map_only, 1, NULL, 0);
+    const struct dea_result_table *scale =
+        dea_result_find_table(r.result, models[m], "operating-map", "");
+    const struct dea_result_table *stretch =
+        dea_result_find_table(r.result, models[m], "operating-map", "pre_stretch");
+    const struct dea_result_table *thickness =
+        dea_result_find_table(r.result, models[m], "operating-map", "film_thickness");
+    double end_V = dea_result_table_number(scale, 0, "end_voltage_V", 0);
+    assert_close(dea_result_table_number(scale, 0, "highest_voltage_V", 0), 6e3, 0, 0);
+    assert_close(end_V, 9e3, 1e-15, 0);
+    assert_int_equal(stretch->row_count, 33);
+    assert_close(dea_result_table_number(stretch, 0, "pre_stretch", 0), 1, 0, 0);
+    assert_close(dea_result_table_number(stretch, 32, "pre_stretch", 0), 2.55, 1e-12, 0);
+    for (size_t row = 0; row < 33; row += 16) {
+      assert_row(models[m], stretch, "pre_stretch", "pre_stretch", row, end_V);
+      assert_row(models[m], thickness, "film.thickness", "film_thickness_m", row, end_V);
+    }
+    assert_close(r.design->pre_stretch.si, 1.5, 0, 0); // as it was
+    assert_close(r.design->film.thickness_m.si, 100e-6, 1e-12, 0);
+    end(&r);
+  }
+}
+
+/* Without stiff electrodes the film knows the field only: voltages go as its thickness. */
+static void test_limits_grow_with_the_thickness(void **state)
+{
+  (void)state;
+  struct run r = run("lumped", map_only, 1, NULL, 0);
+  const struct dea_result_table *table =
+      dea_result_find_table(r.result, "lumped", "operating-map", "film_thickness");
+  double field = NAN;
+  size_t compared = 0;
+  for (size_t row = 0; row < table->row_count; row++) {
+    double H = dea_result_table_number(table, row, "film_thickness_m", 0);
+    double V = dea_result_table_number(table, row, "breakdown_V", 0);
+    if (!isnan(V)) {
+      field = isnan(field) ? V / H : field;
+      assert_close(V / H, field, 1e-6, 0);
+      compared++;
+    }
+    assert_true(dea_result_table_number(table, row, "level_V", 1) >
+                    dea_result_table_number(table, row, "level_V", 0) ||
+                isnan(dea_result_table_number(table, row, "level_V", 1)));
+  }
+  assert_true(compared > 10);
+  end(&r);
+}
+
+/* The load lines hold the tips of the free actuator with no force; their work is the difference of
+ * the potential energies of both ends, and none is above the largest force of the sweep. */
+static void test_work_of_the_load_lines(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"sweep", "load-line"};
+  static const struct dea_override quarters = {"compute.voltage",
+                                               "{values: [0 kV, 1.5 kV, 3 kV, 4.5 kV, 6 kV]}"};
+  struct run r = run("lumped", names, 2, &quarters, 1);
+  const struct dea_curve *sweep = dea_result_find(r.result, "lumped", "sweep");
+  const struct dea_result_table *table =
+      dea_result_find_table(r.result, "lumped", "load-line", "forces");
+  size_t row = 0;
+  for (size_t line = 1; line < 5; line++) {
+    const struct dea_load_point *free = &sweep->points[line];
+    double V = free->voltage_V, work = 0, largest = 0, z = 0, F = 0;
+    assert_close(dea_result_table_number(table, row, "height_m", 0), 0, 0, 0);
+    assert_close(dea_result_table_number(table, row, "force_N", 0), 0, 0, 0);
+    for (row++; dea_result_table_number(table, row, "height_m", 0) > 0; row++) {
+      double next = dea_result_table_number(table, row, "height_m", 0);
+      double force = dea_result_table_number(table, row, "force_N", 0);
+      assert_close(dea_result_table_number(table, row, "voltage_V", 0), V, 1e-15, 0);
+      work += 0.5 * (F + force) * (next - z); // trapezoids
+      largest = fmax(largest, force);
+      z = next;
+      F = force;
+    }
+    double flat_J = -0.5 * sweep->points[0].capacitance_F * V * V;
+    assert_close(z, free->fibre_tip_z_m, 1e-6, 0);
+    assert_close(F, 0, 0, 1e-6 * largest);
+    assert_close(largest, free->force_N, 1e-3, 0);
+    assert_close(work, flat_J - free->energy_J, 1e-3, 0);
+  }
+  assert_int_equal(row, table->row_count);
+  end(&r);
+}
+
+/* No design asks for them; a model without load line says so. */
+static void test_by_name_only(void **state)
+{
+  (void)state;
+  static const char *const line_only[] = {"load-line"};
+  struct run r = run("lumped", NULL, 0, NULL, 0);
+  assert_int_equal(r.result->table_count, 0);
+  end(&r);
+  r = run("axisymmetric", line_only, 1, NULL, 0);
+  assert_int_equal(r.result->table_count, 0);
+  assert_non_null(find_finding(ctx, DEA_NOTE, "model axisymmetric knows no load line"));
+  end(&r);
+}
+
+/* What the varied designs are told stays with them. */
+static void test_varied_designs_leave_no_findings(void **state)
+{
+  (void)state;
+  dea_finding_clear(ctx);
+  size_t before = 0, after = 0;
+  static const struct dea_override tight = {"electrodes", "{diameter: 17 mm unstretched}"};
+  struct run r = run("axisymmetric", path_only, 1, &tight, 1);
+  dea_finding_get(ctx, &before);
+  end(&r);
+  r = run("axisymmetric", map_only, 1, &tight, 1); // at a pre-stretch of 1.8 they leave the frame
+  dea_finding_get(ctx, &after);
+  assert_int_equal(after, before);
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
+  const struct dea_result_table *table =
+      dea_result_find_table(r.result, "axisymmetric", "operating-map", "pre_stretch");
+  assert_true(dea_result_table_number(table, 0, "breakdown_V", 0) > 0);
+  assert_true(isnan(dea_result_table_number(table, 32, "breakdown_V", 0)));
+  end(&r);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_limits_are_those_of_the_paths),
+      cmocka_unit_test(test_limits_grow_with_the_thickness),
+      cmocka_unit_test(test_work_of_the_load_lines),
+      cmocka_unit_test(test_by_name_only),
+      cmocka_unit_test(test_varied_designs_leave_no_findings),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
