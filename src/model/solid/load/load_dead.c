@@ -52,20 +52,3 @@ void dea_load_traction(const struct dea_surface *surface, const double traction_
     }
   }
 }
-
-dea_status dea_load_point(struct dea_context *ctx, const struct dea_grid *grid, const double X_m[3],
-                          double within_m, const double force_N[3], double *force)
-{
-  size_t nearest = dea_grid_nearest(grid, X_m);
-  const double *X = grid->X + 3 * nearest;
-  double distance = hypot(hypot(X[0] - X_m[0], X[1] - X_m[1]), X[2] - X_m[2]);
-  if (!(distance <= within_m)) {
-    return dea_fail(ctx, DEA_E_ARGUMENT,
-                    "no node within %.3g mm of the point force at (%.4g, %.4g, %.4g) mm",
-                    1e3 * within_m, 1e3 * X_m[0], 1e3 * X_m[1], 1e3 * X_m[2]);
-  }
-  for (size_t i = 0; i < 3; i++) {
-    force[3 * nearest + i] += force_N[i];
-  }
-  return DEA_OK;
-}

@@ -20,9 +20,6 @@ dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_elemen
  * dea_surface_area. */
 void dea_load_traction(const struct dea_surface *surface, const double traction_Pa[3],
                        double *force);
-/* A force on the node nearest to a place X. DEA_E_ARGUMENT when that is further than within_m. */
-dea_status dea_load_point(struct dea_context *ctx, const struct dea_grid *grid, const double X_m[3],
-                          double within_m, const double force_N[3], double *force);
 
 /* ---- springs toward the reference place ---- */
 
