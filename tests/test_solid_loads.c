@@ -124,6 +124,65 @@ static void test_derivatives(void **state)
   }
 }
 
+/* A bistable table and a line: derivatives between the points and beyond them; the energy is the
+ * integral of the force, and the force goes through the points without new extremes. */
+static void test_spring(void **state)
+{
+  (void)state;
+  enum { POINTS = 6 };
+  static const double at[POINTS] = {-1, -0.3, 0.2, 0.9, 1.5, 3};
+  static const double force[POINTS] = {-2, 0.5, 0.6, -1.5, -0.2, 4};
+  const struct dea_spring_options options[2] = {
+      {.node = 3, .component = 1, .place = 0.05, .count = POINTS, .at = at, .force = force},
+      {.node = 3, .component = 1, .place = 0.05, .unit_m = 0.5, .stiffness = 7}};
+  block_create(1, 1, 0);
+  for (int k = 0; k < 2; k++) {
+    struct dea_spring *spring;
+    double unit = k == 0 ? 1 : 0.5, sum = 0, before = 0;
+    static struct dea_piece piece, start;
+    assert_int_equal(dea_spring_create(ctx, &options[k], &spring), DEA_OK);
+    const struct dea_solid_load load = dea_spring_load(spring);
+    for (double y = -1.7; y < 3.9; y += 0.23) {
+      u[3 * 3 + 1] = unit * (y + 0.05);
+      check_derivatives(&load);
+      assert_int_equal(load.evaluate(load.self, 0, u, DEA_FORCE, &piece), DEA_OK);
+      assert_close(dea_spring_force(spring, y + 0.05), unit * piece.g[1], 1e-12, 1e-12);
+    }
+    u[3 * 3 + 1] = unit * (at[0] + 0.05);
+    assert_int_equal(load.evaluate(load.self, 0, u, DEA_ENERGY, &start), DEA_OK);
+    for (int i = 1; i < POINTS; i++) { // two points of Gauss: exact for cubics
+      double middle = 0.5 * (at[i] + at[i - 1]), half = 0.5 * (at[i] - at[i - 1]);
+      sum += half * (dea_spring_force(spring, middle - half / sqrt(3) + 0.05) +
+                     dea_spring_force(spring, middle + half / sqrt(3) + 0.05));
+      u[3 * 3 + 1] = unit * (at[i] + 0.05);
+      assert_int_equal(load.evaluate(load.self, 0, u, DEA_ENERGY, &piece), DEA_OK);
+      assert_close(piece.energy_J - start.energy_J, sum, 0, 1e-13);
+      double wanted = k == 0 ? force[i] : 7 * at[i];
+      assert_close(dea_spring_force(spring, at[i] + 0.05), wanted, 1e-13, 1e-13);
+      before = dea_spring_force(spring, at[i - 1] + 0.05);
+      for (double share = 0.1; share < 1; share += 0.1) {
+        double value = dea_spring_force(spring, at[i - 1] + 2 * half * share + 0.05);
+        assert_true(value > fmin(before, wanted) - 1e-12 && value < fmax(before, wanted) + 1e-12);
+      }
+    }
+    dea_spring_move(spring, 2);
+    set_parameters(&load);
+    assert_close(dea_spring_force(spring, 2 + at[1]), k == 0 ? force[1] : 7 * at[1], 1e-12, 0);
+    dea_spring_destroy(ctx, spring);
+  }
+  struct dea_spring *spring;
+  struct dea_spring_options wrong = options[0];
+  wrong.at = force;
+  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  wrong = options[1];
+  wrong.component = 3;
+  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  wrong = options[1];
+  wrong.stiffness = -1;
+  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  block_destroy();
+}
+
 static const struct dea_indenter tips[] = {
     {.shape = DEA_INDENTER_SPHERE, .radius_m = 1},
     {.shape = DEA_INDENTER_FLAT, .radius_m = 0.9, .axis = {0.1, 0.2, 1}, .edge_radius_m = 0.4},
@@ -485,6 +544,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_derivatives),
+      cmocka_unit_test(test_spring),
       cmocka_unit_test(test_derivatives_of_contact),
       cmocka_unit_test(test_force_by_place_of_tip),
       cmocka_unit_test(test_weight_and_traction),

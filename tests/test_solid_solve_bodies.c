@@ -446,6 +446,79 @@ static void test_vibrations_of_a_rigid_block(void **state)
   }
 }
 
+/* A rigid block without mass on six springs, one for each component, which carries four masses that
+ * follow it without an element: its vibrations, and how far a force and a moment move it. */
+static void test_springs_and_point_masses(void **state)
+{
+  (void)state;
+  static const double k[6] = {3e3, 5e3, 7e3, 200, 300, 500}, mass = 0.4, a = 0.6, b = 0.5,
+                      none[3] = {0};
+  static const double force[3] = {300, 0, 0}, moment[3] = {0, 0, 100};
+  const double points[18] = {1, 1, 1, 1, 1, 1, 1 + a, 1, 1, 1 - a, 1, 1, 1, 1 + b, 1, 1, 1 - b, 1};
+  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_grid *grid = block_grid(ctx, &bar);
+  struct dea_solid_body body = {.length_m = 2};
+  struct dea_spring *springs[6];
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  double found[6], t[3], w[3];
+  assert_int_equal(dea_grid_add_nodes(ctx, grid, 6, points, &body.node), DEA_OK);
+  int *follows = dea_alloc(ctx, grid->node_count, sizeof *follows);
+  double *masses = dea_alloc(ctx, grid->node_count, sizeof *masses);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    follows[n] = n != body.node && n != body.node + 1;
+    masses[n] = n >= body.node + 2 ? mass / 4 : 0;
+  }
+  const struct dea_solid_options options = {.order_z = bar.order_z,
+                                            .constituent_count = 1,
+                                            .constituents = &layer,
+                                            .held = free_nodes,
+                                            .body_count = 1,
+                                            .bodies = &body,
+                                            .body_of = follows,
+                                            .point_mass_kg = masses};
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  for (int i = 0; i < 6; i++) {
+    const struct dea_spring_options one = {.node = body.node + (size_t)i / 3,
+                                           .component = i % 3,
+                                           .unit_m = i < 3 ? 1 : body.length_m,
+                                           .stiffness = k[i]};
+    assert_int_equal(dea_spring_create(ctx, &one, &springs[i]), DEA_OK);
+    const struct dea_solid_load load = dea_spring_load(springs[i]);
+    assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  }
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  double wanted[6] = {k[0] / mass,
+                      k[1] / mass,
+                      k[2] / mass,
+                      k[3] / (mass * b * b / 2),
+                      k[4] / (mass * a * a / 2),
+                      k[5] / (mass * (a * a + b * b) / 2)};
+  qsort(wanted, 6, sizeof *wanted, by_size);
+  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 6, found, NULL), DEA_OK);
+  for (int i = 0; i < 6; i++) {
+    assert_close(found[i], wanted[i], 1e-9, 0);
+  }
+  dea_solid_body_push(solid, 0, force, moment);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  dea_solid_body_place(solid, 0, t, w);
+  assert_close(t[0], force[0] / k[0], 1e-9, 0);
+  assert_close(w[2], moment[2] / k[5], 1e-9, 0);
+  dea_solid_body_push(solid, 0, none, none);
+  dea_spring_move(springs[0], 0.25);
+  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  dea_solid_body_place(solid, 0, t, w);
+  assert_close(t[0], 0.25, 1e-9, 0);
+  assert_close(w[2], 0, 0, 1e-9);
+  dea_solid_destroy(ctx, solid);
+  for (int i = 0; i < 6; i++) {
+    dea_spring_destroy(ctx, springs[i]);
+  }
+  dea_free(ctx, follows);
+  dea_free(ctx, masses);
+  dea_grid_destroy(ctx, grid);
+}
+
 /* ---- a part that is a million times stiffer ---- */
 
 static int last_third(const double X[3])
@@ -570,6 +643,7 @@ int main(void)
       cmocka_unit_test(test_turned_as_a_whole),
       cmocka_unit_test(test_body_that_only_shifts),
       cmocka_unit_test(test_vibrations_of_a_rigid_block),
+      cmocka_unit_test(test_springs_and_point_masses),
       cmocka_unit_test(test_stiff_part),
       cmocka_unit_test(test_errors),
   };

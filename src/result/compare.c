@@ -26,7 +26,7 @@ static double end_slope(double h0, double h1, double d0, double d1)
   return slope;
 }
 
-static double slope_at(const double *x, const double *y, size_t count, size_t i)
+double dea_interpolate_slope(const double *x, const double *y, size_t count, size_t i)
 {
   if (count == 2) {
     return (y[1] - y[0]) / (x[1] - x[0]);
@@ -72,7 +72,8 @@ double dea_interpolate(const double *x, const double *y, size_t count, double at
     return y[high];
   }
   double h = x[high] - x[low], t = (at - x[low]) / h;
-  double m0 = slope_at(x, y, count, low), m1 = slope_at(x, y, count, high);
+  double m0 = dea_interpolate_slope(x, y, count, low),
+         m1 = dea_interpolate_slope(x, y, count, high);
   double s = 1.0 - t;
   return s * s * (1.0 + 2.0 * t) * y[low] + t * t * (1.0 + 2.0 * s) * y[high] +
          h * t * s * (s * m0 - t * m1);

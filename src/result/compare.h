@@ -56,6 +56,8 @@ void dea_misfit_free(struct dea_misfit *misfit);
 /* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
  * [x[0], x[count-1]]. */
 double dea_interpolate(const double *x, const double *y, size_t count, double at);
+/* Its slope at point i, of at least two. */
+double dea_interpolate_slope(const double *x, const double *y, size_t count, size_t i);
 
 /* Value at `at` of the straight pieces through (x[i], y[i]), x never falling (of two equal ones the
  * later counts); NAN outside. */

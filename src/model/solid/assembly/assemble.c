@@ -352,6 +352,9 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   if (status == DEA_OK) {
     status = add_loads(ctx, s, level, energy);
   }
+  if (status == DEA_OK && level >= DEA_TANGENT) {
+    status = dea_solid_bodies_add_pins(ctx, s, s->work.K);
+  }
   status = dea_solid_agree(ctx, status);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->work.K));

@@ -311,11 +311,28 @@ static dea_status add_block(struct dea_context *ctx, struct dea_solid *s, Mat A,
   return DEA_OK;
 }
 
+/* Stiffness of what is held [N/m]: any above 0 will do. */
+static double pin_stiffness(const struct dea_solid *s)
+{
+  return s->problem.modulus_Pa * s->problem.length_m;
+}
+
+dea_status dea_solid_bodies_add_pins(struct dea_context *ctx, struct dea_solid *s, Mat A)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t i = 3 * p->first_node; i < 3 * p->end_node && p->body_count > 0; i++) {
+    PetscInt row = (PetscInt)i;
+    if (p->held[i] == DEA_FOLLOWS) {
+      DEA_PETSC(ctx, MatSetValue(A, row, row, pin_stiffness(s), ADD_VALUES));
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_solid_bodies_add_geometric(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                           const double *increment, double *g)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double spring = p->modulus_Pa * p->length_m;
   for (size_t k = 0; k < p->body_count; k++) {
     const struct dea_solid_body *b = &p->bodies[k];
     double P[9] = {0}, H[9], block[36] = {0}, r[3];
@@ -338,13 +355,7 @@ dea_status dea_solid_bodies_add_geometric(struct dea_context *ctx, struct dea_so
     for (int i = 0; i < 9 && way != NULL; i++) {
       turn[i / 3] += H[i] / (b->length_m * b->length_m) * way[i % 3];
     }
-    DEA_TRY(ctx, add_block(ctx, s, A, k, block, spring));
-  }
-  for (size_t i = 3 * p->first_node; i < 3 * p->end_node; i++) {
-    PetscInt row = (PetscInt)i;
-    if (p->held[i] == DEA_FOLLOWS) { // it may have no element
-      DEA_PETSC(ctx, MatSetValue(A, row, row, spring, ADD_VALUES));
-    }
+    DEA_TRY(ctx, add_block(ctx, s, A, k, block, pin_stiffness(s)));
   }
   return DEA_OK;
 }

@@ -42,6 +42,8 @@ int dea_solid_bodies_nodes(const struct dea_solid *s, int count, const int *node
 void dea_solid_bodies_join(const struct dea_solid *s, int count, int all, const int *joint,
                            const double *K, double *out);
 
+/* A += a diagonal at the followers, which may have no element. A: not ended. */
+dea_status dea_solid_bodies_add_pins(struct dea_context *ctx, struct dea_solid *s, Mat A);
 /* A += the geometric term of forces g [dofs] on the followers, sum g_n . d^2 u_n/dq^2, and what
  * keeps held rows from being empty. With increment [dofs], not NULL, also g_q += that term times
  * it. A: not ended. */

@@ -30,6 +30,32 @@ dea_status dea_foundation_create(struct dea_context *ctx, const struct dea_surfa
 void dea_foundation_destroy(struct dea_context *ctx, struct dea_foundation *foundation);
 struct dea_solid_load dea_foundation_load(struct dea_foundation *foundation);
 
+/* ---- spring of one component of a node, or of a rigid body, against the outside ---- */
+
+struct dea_spring;
+/* It pulls back by F(x - place), x: the component of the displacement over unit_m. */
+struct dea_spring_options {
+  size_t node;      // of a body: the first of its nodes for its shift, the second for its turn
+  int component;    // 0, 1, 2 along the global axes
+  double unit_m;    // 0: 1 m, so that x is in m, F in N; of a turn length_m: rad, N m
+  double place;     // of x where a linear spring is free, and where a table has its 0
+  double stiffness; // F by x of a linear spring, 0 or more
+  /* A table in place of that: F through these points by a monotone cubic, straight on beyond its
+   * ends. Its energy is the integral, so F may fall, as that of a bistable spring does. Copied. */
+  size_t count;        // 0: linear; 2 or more
+  const double *at;    // [count] rising
+  const double *force; // [count]
+};
+/* out: owned by the caller. DEA_E_ARGUMENT for numbers that cannot be. */
+dea_status dea_spring_create(struct dea_context *ctx, const struct dea_spring_options *options,
+                             struct dea_spring **out);
+void dea_spring_destroy(struct dea_context *ctx, struct dea_spring *spring);
+/* Where the next solve brings `place`. */
+void dea_spring_move(struct dea_spring *spring, double place);
+/* F at x, with the place as it is. */
+double dea_spring_force(const struct dea_spring *spring, double x);
+struct dea_solid_load dea_spring_load(struct dea_spring *spring);
+
 /* ---- pressure that follows the surface ---- */
 
 struct dea_pressure;

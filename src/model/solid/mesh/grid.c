@@ -205,10 +205,9 @@ dea_status dea_grid_create(struct dea_context *ctx, int order, const struct dea_
 dea_status dea_grid_add_nodes(struct dea_context *ctx, struct dea_grid *grid, size_t count,
                               const double *X_m, size_t *first)
 {
-  double *X = dea_resize(ctx, grid->X, grid->node_count + count, 3 * sizeof *X);
-  if (X == NULL) {
-    return DEA_E_MEMORY;
-  }
+  double *X = dea_arena_alloc(&grid->memory, grid->node_count + count, 3 * sizeof *X);
+  DEA_TRY(ctx, dea_arena_status(&grid->memory));
+  memcpy(X, grid->X, 3 * grid->node_count * sizeof *X);
   grid->X = X;
   memcpy(X + 3 * grid->node_count, X_m, 3 * count * sizeof *X);
   *first = grid->node_count;
