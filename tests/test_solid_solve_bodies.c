@@ -4,6 +4,7 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/load/loads.h"
+#include "model/solid/motion/time.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
@@ -519,6 +520,113 @@ static void test_springs_and_point_masses(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+/* ---- large turns in time ---- */
+
+/* Turn R and angular velocity along the axes of the block after a time, by Euler's equations. */
+static void euler(const double J[3], double time_s, double R[9], double O[3])
+{
+  enum { STEPS = 4000 };
+  double h = time_s / STEPS;
+  for (int n = 0; n < STEPS; n++) {
+    double sum[12] = {0}, at[12], k[12] = {0};
+    for (int stage = 0; stage < 4; stage++) {
+      double way = stage == 0 ? 0 : stage == 3 ? h : h / 2, share = stage % 3 == 0 ? 1 : 2;
+      for (int i = 0; i < 12; i++) {
+        at[i] = (i < 9 ? R[i] : O[i - 9]) + way * k[i];
+      }
+      const double *w = at + 9;
+      const double cross[9] = {0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0};
+      for (int i = 0; i < 9; i++) { // R' = R [O x]
+        k[i] = 0;
+        for (int a = 0; a < 3; a++) {
+          k[i] += at[3 * (i / 3) + a] * cross[3 * a + i % 3];
+        }
+      }
+      for (int i = 0; i < 3; i++) {
+        int a = (i + 1) % 3, b = (i + 2) % 3;
+        k[9 + i] = (J[a] - J[b]) / J[i] * w[a] * w[b];
+      }
+      for (int i = 0; i < 12; i++) {
+        sum[i] += share * h / 6 * k[i];
+      }
+    }
+    for (int i = 0; i < 9; i++) {
+      R[i] += sum[i];
+    }
+    for (int i = 0; i < 3; i++) {
+      O[i] += sum[9 + i];
+    }
+  }
+}
+
+/* Largest entry that the turn of a block that tumbles freely is off by, after so many steps. */
+static double tumble(int steps, double radius, double *energy_error)
+{
+  static const double middle[BODIES_MAX][3] = {{1, 0.5, 0.5}}, spin[3] = {0.9, -1.1, 0.8};
+  static const double rho = 700, a = 2, b = 1, h = 1, time_s = 1.5;
+  const double m = rho * a * b * h;
+  const double J[3] = {m * (b * b + h * h) / 12, m * (a * a + h * h) / 12,
+                       m * (a * a + b * b) / 12};
+  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  layer.density_kg_per_m3 = rho;
+  struct bodies it = bodies_create(&bar, &layer, 1, 1, middle, 0, whole_block, free_nodes, NULL);
+  const struct dea_spring_options none = {.node = it.body[0].node};
+  const struct dea_solid_time_options options = {.inertia = true, .spectral_radius = radius};
+  struct dea_spring *spring;
+  struct dea_solid_time *time;
+  assert_int_equal(dea_spring_create(ctx, &none, &spring), DEA_OK);
+  const struct dea_solid_load load = dea_spring_load(spring);
+  assert_int_equal(dea_solid_add_load(ctx, it.solid, &load), DEA_OK);
+  assert_int_equal(dea_solid_time_create(ctx, it.solid, &options, &time), DEA_OK);
+  double *v = dea_solid_velocity(time), L = sqrt(1 + 0.25 + 0.25);
+  for (size_t n = 0; n < it.body[0].node; n++) {
+    for (size_t i = 0; i < 3; i++) {
+      size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      const double *X = it.grid->X + 3 * n;
+      v[3 * n + i] = spin[j] * (X[k] - middle[0][k]) - spin[k] * (X[j] - middle[0][j]);
+    }
+  }
+  for (size_t i = 0; i < 3; i++) {
+    v[3 * it.body[0].node + 3 + i] = L * spin[i];
+  }
+  double first =
+      0.5 * (J[0] * spin[0] * spin[0] + J[1] * spin[1] * spin[1] + J[2] * spin[2] * spin[2]);
+  assert_int_equal(dea_solid_time_jump(ctx, time, 0, &it.report), DEA_OK);
+  assert_int_equal(dea_solid_time_close(ctx, time, NULL), DEA_OK);
+  dea_solid_time_accept(time);
+  for (int i = 0; i < steps; i++) {
+    assert_int_equal(dea_solid_time_step(ctx, time, 0, time_s / steps, &it.report), DEA_OK);
+    assert_int_equal(dea_solid_time_close(ctx, time, NULL), DEA_OK);
+    dea_solid_time_accept(time);
+  }
+  double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, O[3] = {spin[0], spin[1], spin[2]}, S[9], t[3], w[3];
+  euler(J, time_s, R, O);
+  dea_solid_body_place(it.solid, 0, t, w);
+  rotation_of(w, S);
+  double most = 0;
+  for (int i = 0; i < 9; i++) {
+    most = fmax(most, fabs(R[i] - S[i]));
+  }
+  *energy_error = dea_solid_time_energies(time, false).kinetic / first - 1;
+  dea_solid_time_destroy(ctx, time);
+  bodies_destroy(&it);
+  dea_spring_destroy(ctx, spring);
+  return most;
+}
+
+/* Twice the steps, a fourth of the error, with and without damping by the steps. */
+static void test_tumbling_block(void **state)
+{
+  (void)state;
+  static const double radius[2] = {1, 0.6};
+  for (int i = 0; i < 2; i++) {
+    double energy[2];
+    double off[2] = {tumble(20, radius[i], &energy[0]), tumble(40, radius[i], &energy[1])};
+    assert_true(off[1] < 3e-3 && fabs(energy[1]) < 5e-3);
+    assert_close(off[0] / off[1], 4, 0.1, 0);
+  }
+}
+
 /* ---- a part that is a million times stiffer ---- */
 
 static int last_third(const double X[3])
@@ -644,6 +752,7 @@ int main(void)
       cmocka_unit_test(test_body_that_only_shifts),
       cmocka_unit_test(test_vibrations_of_a_rigid_block),
       cmocka_unit_test(test_springs_and_point_masses),
+      cmocka_unit_test(test_tumbling_block),
       cmocka_unit_test(test_stiff_part),
       cmocka_unit_test(test_errors),
   };

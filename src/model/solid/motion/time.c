@@ -2,6 +2,7 @@
 
 #include "model/alpha.h"
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/incompressible.h"
@@ -46,6 +47,43 @@ static dea_status find_forces(struct dea_context *ctx, struct dea_solid_time *t,
   for (size_t i = 0; i < t->count; i++) {
     F[i] = s->work.g[i] + s->found.reaction[i];
   }
+  return DEA_OK;
+}
+
+/* Gives followers of rigid bodies the forces that hold them in their body, which are what their
+ * inertia takes ([count], negative), and takes them from the bodies (docs/theory/bodies.md). */
+static void constrain_forces(struct dea_solid_time *t, const double *taken, double *F)
+{
+  struct dea_solid *s = t->solid;
+  if (s->problem.body_count == 0) {
+    return;
+  }
+  for (size_t i = 0; i < t->count; i++) {
+    t->work[i] = s->problem.held[i] == DEA_FOLLOWS ? taken[i] : 0;
+    F[i] -= t->work[i];
+  }
+  dea_solid_bodies_prepare(s);
+  dea_solid_bodies_collect(s, t->work);
+  for (size_t i = 0; i < t->count; i++) {
+    F[i] += t->work[i];
+  }
+}
+
+/* The same at the end of a step that was tried. */
+static dea_status constrain_at_end(struct dea_context *ctx, struct dea_solid_time *t)
+{
+  struct dea_solid_inertia *inertia = &t->inertia;
+  if (t->solid->problem.body_count == 0 || !t->inertial || !(t->step_s > 0)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < t->count; i++) {
+    inertia->away[i] = t->solid->state.u[i] - inertia->around[i];
+  }
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, t->solid, inertia->away, inertia->force));
+  for (size_t i = 0; i < t->count; i++) {
+    inertia->force[i] = inertia->factor * inertia->force[i] + inertia->constant[i];
+  }
+  constrain_forces(t, inertia->force, t->F_next);
   return DEA_OK;
 }
 
@@ -279,6 +317,8 @@ static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_ti
   s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->a, inertia->force));
+  constrain_forces(t, inertia->force, t->F);
   dea_solid_state_get(s, t->keep); // with its pressures
   return DEA_OK;
 }
@@ -411,6 +451,9 @@ static double step_error(const struct dea_solid_time *t)
 static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
 {
   dea_status status = find_forces(ctx, t, t->F_next);
+  if (status == DEA_OK) {
+    status = constrain_at_end(ctx, t);
+  }
   if (status == DEA_OK) {
     status = find_energies(ctx, t);
   }
