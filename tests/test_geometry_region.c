@@ -191,6 +191,15 @@ static void test_check(void **state)
   add(&region, &dea_shape_rectangle, (double[]){2, 0.5, 2, 1});
   assert_message(dea_region_check(ctx, &region, true), DEA_E_DESIGN, "an edge in common");
   dea_region_free(&region);
+  // around one circle, from either side: they touch where its halves do
+  const struct dea_vertex left[4] = {
+      {.y_m = -1, .bulge = -1}, {.y_m = 1}, {.x_m = -3, .y_m = 2}, {.x_m = -3, .y_m = -2}};
+  const struct dea_vertex right[4] = {
+      {.y_m = 1, .bulge = -1}, {.y_m = -1}, {.x_m = 3, .y_m = -2}, {.x_m = 3, .y_m = 2}};
+  dea_region_add(&region, left, 4);
+  dea_region_add(&region, right, 4);
+  assert_int_equal(dea_region_check(ctx, &region, true), DEA_OK);
+  dea_region_free(&region);
   const struct dea_vertex nothing[2] = {{.x_m = 1}, {.x_m = NAN}};
   dea_region_add(&region, nothing, 2);
   assert_message(dea_region_check(ctx, &region, true), DEA_E_DESIGN, "is no number");

@@ -45,7 +45,8 @@ void dea_region_add_reversed(struct dea_region *region, const struct dea_vertex 
   for (size_t k = 0; k < count && !region->failed; k++) {
     const struct dea_vertex *v = &vertices[count - 1 - k];
     const struct dea_vertex *piece = &vertices[(2 * count - 2 - k) % count];
-    region->vertex[first + k] = (struct dea_vertex){v->x_m, v->y_m, -piece->bulge, piece->location};
+    region->vertex[first + k] =
+        (struct dea_vertex){v->x_m, v->y_m, 0 - piece->bulge, piece->location};
   }
 }
 
@@ -188,7 +189,7 @@ void dea_region_add_moved(struct dea_region *region, const struct dea_region *fr
       dea_motion_apply(motion, (double[2]){v->x_m, v->y_m}, x);
       v->x_m = x[0];
       v->y_m = x[1];
-      v->bulge *= motion->mirrored ? -1 : 1;
+      v->bulge = motion->mirrored ? 0 - v->bulge : v->bulge; // no -0
     }
   }
 }

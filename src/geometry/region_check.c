@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+static const double pi = 3.14159265358979323846;
+
 dea_status dea_region_fault(struct dea_context *ctx, struct dea_location location, double x_m,
                             double y_m, const char *what)
 {
@@ -84,16 +86,31 @@ static const double *find_own_crossing(const struct pair *p)
   return NULL;
 }
 
+/* How far along a piece a point of it lies, as dea_piece_point counts. */
+static double fraction_of(const struct dea_piece *p, const double x[2], double snap)
+{
+  if (apart(p->from, x) <= snap || apart(p->to, x) <= snap) {
+    return apart(p->from, x) <= snap ? 0 : 1;
+  }
+  if (!p->arc) {
+    return apart(p->from, x) / p->length_m;
+  }
+  double along =
+      (atan2(x[1] - p->centre[1], x[0] - p->centre[0]) - p->start) * (p->sweep > 0 ? 1 : -1);
+  return (along - 2 * pi * floor(along / (2 * pi))) / fabs(p->sweep);
+}
+
 /* Whether pieces that meet more than once lie on each other in between. */
 static bool share_an_edge(const struct pair *p)
 {
-  for (int k = 0; k + 1 < p->count; k++) {
-    double middle[2], on_a[2];
-    middle[0] = 0.5 * (p->meet[k][0] + p->meet[k + 1][0]);
-    middle[1] = 0.5 * (p->meet[k][1] + p->meet[k + 1][1]);
-    dea_piece_nearest(p->a, middle, on_a);
-    if (dea_piece_distance_m(p->b, on_a) <= p->snap) {
-      return true;
+  for (int k = 0; k < p->count; k++) {
+    for (int other = 0; other < k; other++) {
+      double middle[2], part = fraction_of(p->a, p->meet[k], p->snap);
+      part = 0.5 * (part + fraction_of(p->a, p->meet[other], p->snap));
+      dea_piece_point(p->a, part, middle);
+      if (dea_piece_distance_m(p->b, middle) <= p->snap) {
+        return true;
+      }
     }
   }
   return false;
