@@ -251,6 +251,59 @@ static void test_channels(void **state)
   assert_non_null(strstr(dea_error_message(ctx), "part 0 has the channel -1"));
 }
 
+/* Two squares of a .msh file, side by side, of the same material as two parts in two plies: pulled
+ * along x they are one bar. */
+static void test_msh(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, stretch = 1.3, thickness[2] = {1e-4, 2e-4};
+  const dea_part soft = rubber(&mu), same = rubber(&mu);
+  const dea_part *parts[] = {&soft, &same};
+  const size_t through[2] = {2, 1};
+  const dea_fill fills[] = {{0, NULL, 0}, {1, "film", 0}, {1, "electrode", 1}};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  dea_solid *bar;
+  options.parts = parts;
+  options.part_count = 2;
+  options.msh_file = DEA_SOURCE_DIR "/tests/fuzz/seeds/msh/two-squares-41.msh";
+  options.ply_count = 2;
+  options.ply_thickness_m = thickness;
+  options.ply_elements = through;
+  options.fills = fills;
+  options.fill_count = 3;
+  good(dea_solid_new(ctx, &options, &bar));
+  const double size[3] = {2e-3, 1e-3, 3e-4}, low[3] = {2e-3, 0, 0};
+  const double move[3] = {(stretch - 1) * size[0], 0, 0};
+  lean(bar, size);
+  good(dea_solid_hold_curve(ctx, bar, "left", NULL, NULL, 1, nothing));
+  good(dea_solid_hold(ctx, bar, low, size, 1, move));
+  good(dea_solid_solve(ctx, bar, 0));
+  const double *reaction = array(bar, "reaction_N")->data;
+  const dea_array *points = array(bar, "points_m");
+  assert_int_equal(points->shape[0], 15 * 7);
+  double force = 0;
+  for (size_t i = 0; i < points->shape[0]; i++) {
+    force += points->data[3 * i] > 1.9e-3 ? reaction[3 * i] : 0;
+  }
+  assert_close(force, mu * size[1] * size[2] * (stretch - 1 / (stretch * stretch)), 1e-6, 0);
+  assert_int_equal(dea_solid_hold_curve(ctx, bar, "right", NULL, NULL, 1, nothing), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "no physical curve 'right'"));
+  dea_solid_free(bar);
+  dea_fill wrong = {1, "elektrode", 1};
+  options.fills = &wrong;
+  options.fill_count = 1;
+  assert_int_equal(dea_solid_new(ctx, &options, &bar), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "no physical surface 'elektrode'"));
+  wrong = (dea_fill){2, "film", 0};
+  assert_int_equal(dea_solid_new(ctx, &options, &bar), DEA_E_ARGUMENT);
+  options.msh_file = DEA_SOURCE_DIR "/README.md";
+  assert_int_equal(dea_solid_new(ctx, &options, &bar), DEA_E_DESIGN);
+  assert_non_null(strstr(dea_error_message(ctx), "README.md:1: this is no .msh file"));
+  options.ply_count = 0;
+  assert_int_equal(dea_solid_new(ctx, &options, &bar), DEA_E_ARGUMENT);
+  assert_null(bar);
+}
+
 static void test_refused(void **state)
 {
   (void)state;
@@ -324,9 +377,10 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_modes),    cmocka_unit_test(test_channels),
-      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),    cmocka_unit_test(test_voltage),
+      cmocka_unit_test(test_modes),   cmocka_unit_test(test_channels),
+      cmocka_unit_test(test_msh),     cmocka_unit_test(test_settings),
+      cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

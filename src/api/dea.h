@@ -365,6 +365,13 @@ typedef struct {
   int channel_above, channel_below;
 } dea_part;
 
+/* A part in a ply of a plane mesh: where it is in a group, a physical surface. */
+typedef struct {
+  size_t ply;        // 0: the lowest
+  const char *group; // NULL: everywhere
+  size_t part;
+} dea_fill;
+
 typedef struct {
   size_t size;        // set by DEA_SOLID_OPTIONS_INIT
   int order, order_z; // of the elements, 1 to 3; 0: 2
@@ -377,6 +384,16 @@ typedef struct {
   const int *part_of;           // [cell_count]; NULL: all of part 0
   const dea_part *const *parts; // [part_count]
   size_t part_count;
+  /* Or a plane mesh of quadrilaterals of first or second order from a file of Gmsh (.msh, ASCII,
+   * 2.2 or 4.1), extruded through plies from z = 0 up. Heights are the same everywhere: where a ply
+   * has no part there is a gap. `order` is that of the file. */
+  const char *msh_file;
+  double msh_unit_m; // length of a unit of the file; 0: 1e-3
+  size_t ply_count;
+  const double *ply_thickness_m; // [ply_count]
+  const size_t *ply_elements;    // [ply_count] elements through it; NULL: 1
+  size_t fill_count;
+  const dea_fill *fills; // [fill_count], later ones over earlier ones
 } dea_solid_options;
 
 /* Copies all. DEA_E_UNSUPPORTED where the 3D engine is not installed. */
@@ -386,6 +403,11 @@ void dea_solid_free(dea_solid *solid);
  * displacement that the next solve goes to; NULL frees them. DEA_E_ARGUMENT: no node is there. */
 dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m[3],
                           const double high_m[3], int components, const double displacement_m[3]);
+/* The same of the nodes on, above and below a curve: a physical curve of the .msh file. low_m and
+ * high_m: only those there; both NULL: all. DEA_E_ARGUMENT: there is no such curve or node. */
+dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *curve,
+                                const double low_m[3], const double high_m[3], int components,
+                                const double displacement_m[3]);
 /* Adds a force per reference area on the faces of elements whose middles are there; an outer face
  * of the solid is a box without thickness. */
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
@@ -446,7 +468,8 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
   }
 #define DEA_SOLID_OPTIONS_INIT                                                                     \
   {                                                                                                \
-    sizeof(dea_solid_options), 0, 0, {0, 0, 0}, {0, 0, 0}, 0, NULL, 0, NULL, NULL, NULL, 0         \
+    sizeof(dea_solid_options), 0, 0, {0, 0, 0}, {0, 0, 0}, 0, NULL, 0, NULL, NULL, NULL, 0, NULL,  \
+        0, 0, NULL, NULL, 0, NULL                                                                  \
   }
 #define DEA_RUN_OPTIONS_INIT                                                                       \
   {                                                                                                \

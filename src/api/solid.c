@@ -99,11 +99,39 @@ static dea_status take_part(dea_context *ctx, const dea_part *given, size_t numb
   return DEA_OK;
 }
 
+/* A plane mesh through plies. ones, fills: [ply_count], [fill_count], of the caller. */
+static dea_status take_plies(dea_context *ctx, const dea_solid_options *o, size_t *ones,
+                             struct dea_fill_spec *fills, struct dea_solid_spec *out)
+{
+  if (o->ply_count == 0 || o->ply_thickness_m == NULL || o->fill_count == 0 || o->fills == NULL) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                    "a plane mesh needs plies, and fills that say which part is where");
+  }
+  for (size_t i = 0; i < o->ply_count; i++) {
+    ones[i] = o->ply_elements != NULL ? o->ply_elements[i] : 1;
+    if (!(o->ply_thickness_m[i] > 0) || ones[i] == 0 || ones[i] > 1000) {
+      return dea_fail(ctx->inner, DEA_E_ARGUMENT, "ply %zu of %g m and %zu elements", i,
+                      o->ply_thickness_m[i], ones[i]);
+    }
+  }
+  for (size_t i = 0; i < o->fill_count; i++) {
+    fills[i] = (struct dea_fill_spec){o->fills[i].ply, o->fills[i].group, o->fills[i].part};
+  }
+  out->msh_file = o->msh_file;
+  out->msh_unit_m = o->msh_unit_m > 0 ? o->msh_unit_m : 1e-3;
+  out->ply_count = o->ply_count;
+  out->ply_thickness_m = o->ply_thickness_m;
+  out->ply_elements = ones;
+  out->fill_count = o->fill_count;
+  out->fills = fills;
+  return DEA_OK;
+}
+
 /* What the module is asked for; parts: [part_count], of the caller. */
 static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
                                struct dea_part_spec *parts, struct dea_solid_spec *out)
 {
-  bool box = o->elements[0] > 0 && o->elements[1] > 0 && o->elements[2] > 0;
+  bool box = o->msh_file == NULL && o->elements[0] > 0 && o->elements[1] > 0 && o->elements[2] > 0;
   *out = (struct dea_solid_spec){.order = o->order > 0 ? o->order : 2,
                                  .order_z = o->order_z > 0 ? o->order_z : 2,
                                  .part_count = o->part_count,
@@ -115,10 +143,11 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box of %g x %g x %g m", o->box_m[0], o->box_m[1],
                     o->box_m[2]);
   }
-  if (!box && (o->point_count == 0 || o->cell_count == 0 || o->points_m == NULL ||
-               o->cells == NULL || o->point_count > 100000000)) {
+  if (!box && o->msh_file == NULL &&
+      (o->point_count == 0 || o->cell_count == 0 || o->points_m == NULL || o->cells == NULL ||
+       o->point_count > 100000000)) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT,
-                    "a mesh is a box with elements, or points and cells");
+                    "a mesh is a box with elements, points and cells, or a .msh file with plies");
   }
   if (box) {
     memcpy(out->box_m, o->box_m, sizeof out->box_m);
@@ -148,10 +177,17 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   struct dea_solid_spec spec;
   dea_solid *solid = dea_alloc(inner, 1, sizeof *solid);
   struct dea_part_spec *parts = dea_alloc(inner, all.part_count, sizeof *parts);
-  dea_status status = solid != NULL && parts != NULL ? DEA_OK : DEA_E_MEMORY;
-  status = status == DEA_OK ? take_options(ctx, &all, parts, &spec) : status;
+  struct dea_fill_spec *fills = dea_alloc(inner, all.fill_count, sizeof *fills);
+  size_t *ply_elements = dea_alloc(inner, all.ply_count, sizeof *ply_elements);
+  bool enough = solid != NULL && parts != NULL && fills != NULL && ply_elements != NULL;
+  dea_status status = enough ? take_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
+  if (status == DEA_OK && all.msh_file != NULL) {
+    status = take_plies(ctx, &all, ply_elements, fills, &spec);
+  }
   status = status == DEA_OK ? dea_solid_access_open(inner, &solid->access) : status;
   status = status == DEA_OK ? solid->access->create(inner, &spec, &solid->object) : status;
+  dea_free(inner, ply_elements);
+  dea_free(inner, fills);
   dea_free(inner, parts);
   if (status != DEA_OK) {
     dea_free(inner, solid);
@@ -181,9 +217,23 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], int components, const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner,
-          solid->access->hold(ctx->inner, solid->object, (struct dea_solid_place){low_m, high_m},
-                              components, displacement_m));
+  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
+                                          (struct dea_solid_place){low_m, high_m, NULL}, components,
+                                          displacement_m));
+  return DEA_OK;
+}
+
+dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *curve,
+                                const double low_m[3], const double high_m[3], int components,
+                                const double displacement_m[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  if ((low_m == NULL) != (high_m == NULL)) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box has two corners");
+  }
+  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
+                                          (struct dea_solid_place){low_m, high_m, curve},
+                                          components, displacement_m));
   return DEA_OK;
 }
 
@@ -191,8 +241,9 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], const double traction_Pa[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->pull(ctx->inner, solid->object,
-                                          (struct dea_solid_place){low_m, high_m}, traction_Pa));
+  DEA_TRY(ctx->inner,
+          solid->access->pull(ctx->inner, solid->object,
+                              (struct dea_solid_place){low_m, high_m, NULL}, traction_Pa));
   return DEA_OK;
 }
 

@@ -19,7 +19,15 @@ struct dea_part_spec {
   int channel_above, channel_below; // with a gap; both 0: channel 1 above ground
 };
 
-/* A mesh: a box of plies from the origin, or nodes and elements. All lent. */
+/* A part in a ply, where the plane mesh is in a group (NULL: everywhere). */
+struct dea_fill_spec {
+  size_t ply;
+  const char *group;
+  size_t part;
+};
+
+/* A mesh: a box of plies from the origin, nodes and elements, or a plane mesh of a .msh file
+ * through plies from z = 0 on. All lent. */
 struct dea_solid_spec {
   int order, order_z;
   double box_m[3];
@@ -29,6 +37,13 @@ struct dea_solid_spec {
   size_t cell_count;
   const int *cells;   // [cell_count][(order + 1)^2 (order_z + 1)]
   const int *part_of; // [cell_count]; NULL: all of part 0
+  const char *msh_file;
+  double msh_unit_m; // length of a unit of that file
+  size_t ply_count;
+  const double *ply_thickness_m; // [ply_count]
+  const size_t *ply_elements;    // [ply_count] through it
+  size_t fill_count;
+  const struct dea_fill_spec *fills; // [fill_count], later ones over earlier ones
   size_t part_count;
   const struct dea_part_spec *parts;
 };
@@ -37,7 +52,8 @@ struct dea_solid_object;
 
 /* Where nodes or the middles of faces are looked for: low_m <= X <= high_m, with a little more. */
 struct dea_solid_place {
-  const double *low_m, *high_m; // [3]
+  const double *low_m, *high_m; // [3], NULL: everywhere
+  const char *curve;            // of the .msh file, nodes above and on it only; NULL: all
 };
 
 struct dea_solid_access {
@@ -51,7 +67,8 @@ struct dea_solid_access {
   bool (*setting)(const struct dea_solid_object *object, size_t number, const char *text[3],
                   double *value);
   /* Holds components (bits 1, 2, 4) of the nodes there; the next solve moves them. displacement_m:
-   * NULL frees them. DEA_E_ARGUMENT where there is no node. */
+   * NULL frees them. DEA_E_ARGUMENT where there is no node, or no
+   * such curve. */
   dea_status (*hold)(struct dea_context *ctx, struct dea_solid_object *object,
                      struct dea_solid_place place, int components, const double *displacement_m);
   /* Adds a dead load per reference area on the faces whose middles are there. */

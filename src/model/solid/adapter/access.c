@@ -7,13 +7,16 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/load/loads.h"
+#include "model/solid/mesh/msh_read.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum { FACES = 6 };
 
 struct dea_solid_object {
+  struct dea_plane_mesh *plane; // of a .msh file, otherwise NULL
   struct dea_grid *grid;
   struct dea_constituent *constituents; // [part_count]
   int (*between)[2];                    // [part_count] channels above and below
@@ -96,6 +99,87 @@ static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec
   DEA_TRY(ctx, dea_grid_allocate(ctx, spec->order, spec->order_z, spec->point_count,
                                  spec->cell_count, out));
   return fill_grid(ctx, spec, *out);
+}
+
+/* Parts of a plane mesh through plies: [region_count][ply_count], -1 where there is none. */
+struct filling {
+  int *part;
+  size_t ply_count;
+};
+
+static dea_status fill_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                             const struct dea_plane_mesh *mesh, struct filling *out)
+{
+  out->ply_count = spec->ply_count;
+  out->part = dea_alloc(ctx, mesh->region_count * spec->ply_count, sizeof *out->part);
+  if (out->part == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memset(out->part, -1, mesh->region_count * spec->ply_count * sizeof *out->part);
+  for (size_t i = 0; i < spec->fill_count; i++) {
+    const struct dea_fill_spec *fill = &spec->fills[i];
+    size_t group = fill->group != NULL ? dea_plane_mesh_group(mesh, fill->group) : 0;
+    if (group >= mesh->group_count) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "'%s' has no physical surface '%.60s'", spec->msh_file,
+                      fill->group);
+    }
+    if (fill->ply >= spec->ply_count || fill->part >= spec->part_count) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "part %zu of %zu in ply %zu of %zu", fill->part,
+                      spec->part_count, fill->ply, spec->ply_count);
+    }
+    for (size_t r = 0; r < mesh->region_count; r++) {
+      if (fill->group == NULL || mesh->within[r * mesh->group_count + group] != 0) {
+        out->part[r * spec->ply_count + fill->ply] = (int)fill->part;
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static bool is_filled(const void *self, int region, int ply)
+{
+  const struct filling *filling = self;
+  return filling->part[(size_t)region * filling->ply_count + (size_t)ply] >= 0;
+}
+
+static dea_status extrude(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                          const struct dea_plane_mesh *mesh, const struct filling *filling,
+                          struct dea_grid **out)
+{
+  struct dea_ply *plies = dea_alloc(ctx, spec->ply_count, sizeof *plies);
+  if (plies == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < spec->ply_count; i++) {
+    plies[i] = (struct dea_ply){spec->ply_thickness_m[i], spec->ply_elements[i], spec->order_z};
+  }
+  const struct dea_stack stack = {
+      .plies = plies, .count = spec->ply_count, .present = is_filled, .self = filling};
+  dea_status status = dea_grid_extrude(ctx, mesh, &stack, out);
+  dea_free(ctx, plies);
+  DEA_TRY(ctx, status);
+  struct dea_grid *grid = *out;
+  if (grid->element_count == 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no ply of '%s' has a part", spec->msh_file);
+  }
+  for (size_t e = 0; e < grid->element_count; e++) { // as with cells, a region is a part
+    grid->region[e] =
+        filling->part[(size_t)grid->region[e] * filling->ply_count + (size_t)grid->ply[e]];
+  }
+  return DEA_OK;
+}
+
+static dea_status make_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                             struct dea_plane_mesh **plane, struct dea_grid **out)
+{
+  struct filling filling = {0};
+  DEA_TRY(ctx, dea_msh_read(ctx, spec->msh_file, spec->msh_unit_m, plane));
+  dea_status status = fill_plies(ctx, spec, *plane, &filling);
+  if (status == DEA_OK) {
+    status = extrude(ctx, spec, *plane, &filling, out);
+  }
+  dea_free(ctx, filling.part);
+  return status;
 }
 
 static double size_of(const struct dea_grid *grid)
@@ -194,6 +278,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_grid_destroy(ctx, object->grid);
     dea_free(ctx, object->constituents);
     dea_free(ctx, object->between);
+    dea_plane_mesh_destroy(ctx, object->plane);
     dea_free(ctx, object->mode_square);
     dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
@@ -204,8 +289,9 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
 static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
                        struct dea_solid_object *object)
 {
-  DEA_TRY(ctx, spec->elements[0] > 0 ? make_box(ctx, spec, &object->grid)
-                                     : make_grid(ctx, spec, &object->grid));
+  DEA_TRY(ctx, spec->msh_file != NULL  ? make_plies(ctx, spec, &object->plane, &object->grid)
+               : spec->elements[0] > 0 ? make_box(ctx, spec, &object->grid)
+                                       : make_grid(ctx, spec, &object->grid));
   object->length_m = size_of(object->grid);
   object->part_count = spec->part_count;
   object->constituents = dea_alloc(ctx, spec->part_count, sizeof *object->constituents);
@@ -255,7 +341,7 @@ static bool is_there(const struct dea_solid_object *object, struct dea_solid_pla
 {
   double near = 1e-6 * object->length_m;
   bool inside = true;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3 && place.low_m != NULL; i++) {
     inside = inside && X[i] >= place.low_m[i] - near && X[i] <= place.high_m[i] + near;
   }
   return inside;
@@ -268,19 +354,44 @@ static void end_path(struct dea_context *ctx, struct dea_solid_object *object)
   object->path = NULL;
 }
 
+/* Whether each node of the plane mesh is on a curve [node_count]; owned by the caller. */
+static dea_status mark_curve(struct dea_context *ctx, const struct dea_plane_mesh *plane,
+                             const char *name, bool **out)
+{
+  size_t curve = plane != NULL ? dea_plane_mesh_curve(plane, name) : SIZE_MAX;
+  *out = NULL;
+  if (plane == NULL || curve >= plane->curve_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh has no physical curve '%.60s'", name);
+  }
+  *out = dea_alloc(ctx, plane->node_count, sizeof **out);
+  size_t per = (size_t)plane->order + 1;
+  for (size_t i = 0; i < plane->edge_count * per && *out != NULL; i++) {
+    (*out)[plane->edges[i]] |= (size_t)plane->edge_curve[i / per] == curve;
+  }
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
 static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
                        struct dea_solid_place place, int components, const double *displacement_m)
 {
+  const struct dea_grid *grid = object->grid;
+  bool *on = NULL;
   size_t found = 0;
   end_path(ctx, object);
-  for (size_t n = 0; n < object->grid->node_count; n++) {
-    if (is_there(object, place, object->grid->X + 3 * n)) {
-      DEA_TRY(ctx, displacement_m != NULL
-                       ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)
-                       : dea_solid_release(ctx, object->solid, n, components));
+  if (place.curve != NULL) {
+    DEA_TRY(ctx, mark_curve(ctx, object->plane, place.curve, &on));
+  }
+  dea_status status = DEA_OK;
+  for (size_t n = 0; n < grid->node_count && status == DEA_OK; n++) {
+    if ((on == NULL || on[grid->column[n]]) && is_there(object, place, grid->X + 3 * n)) {
+      status = displacement_m != NULL
+                   ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)
+                   : dea_solid_release(ctx, object->solid, n, components);
       found++;
     }
   }
+  dea_free(ctx, on);
+  DEA_TRY(ctx, status);
   return found > 0 ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "there is no node in that box");
 }
 

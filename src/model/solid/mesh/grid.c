@@ -41,6 +41,7 @@ static void place_level(const struct dea_plane_mesh *m, size_t levels, size_t le
 {
   for (size_t n = 0; n < m->node_count; n++) {
     double *X = grid->X + 3 * (n * levels + level);
+    grid->column[n * levels + level] = (int)n;
     X[0] = m->x[2 * n];
     X[1] = m->x[2 * n + 1];
     X[2] = z;
@@ -118,6 +119,7 @@ static dea_status compact(struct dea_context *ctx, struct dea_grid *grid)
   for (size_t n = 0; n < grid->node_count; n++) {
     if (number[n] != 0) {
       memmove(grid->X + 3 * count, grid->X + 3 * n, 3 * sizeof(double));
+      grid->column[count] = grid->column[n];
       number[n] = (int)count++;
     }
   }
@@ -152,6 +154,7 @@ dea_status dea_grid_allocate(struct dea_context *ctx, int order, int order_z, si
   grid->node_count = node_count;
   grid->element_count = element_count;
   grid->X = dea_arena_alloc(memory, node_count, 3 * sizeof *grid->X);
+  grid->column = dea_arena_alloc(memory, node_count, sizeof *grid->column);
   grid->nodes = dea_arena_alloc(memory, element_count, DEA_HEX_NODES_MAX * sizeof *grid->nodes);
   grid->region = dea_arena_alloc(memory, element_count, sizeof *grid->region);
   grid->ply = dea_arena_alloc(memory, element_count, sizeof *grid->ply);

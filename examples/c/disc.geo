@@ -1,0 +1,33 @@
+// A quarter of a film in a round frame, with electrodes in its middle, in mm:
+//   gmsh -2 disc.geo -o disc.msh
+electrode = 3.75;
+frame = 15;
+Point(1) = {0, 0, 0};
+Point(2) = {electrode, 0, 0};
+Point(3) = {0, electrode, 0};
+Point(4) = {frame, 0, 0};
+Point(5) = {0, frame, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 4};
+Line(3) = {1, 3};
+Line(4) = {3, 5};
+Circle(5) = {2, 1, 3};
+Circle(6) = {4, 1, 5};
+Curve Loop(1) = {1, 5, -3};
+Curve Loop(2) = {2, 6, -4, -5};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Surface("film") = {1, 2};
+Physical Surface("electrode") = {1};
+Physical Curve("mirror_y") = {1, 2};
+Physical Curve("mirror_x") = {3, 4};
+Physical Curve("frame") = {6};
+Field[1] = Distance;
+Field[1].CurvesList = {5};
+Field[2] = MathEval;
+Field[2].F = "0.5 + 0.3 * F1";
+Background Field = 2;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MeshSizeFromPoints = 0;
+Mesh.RecombineAll = 1;
+Mesh.ElementOrder = 2;
