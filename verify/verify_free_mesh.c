@@ -107,14 +107,13 @@ static void patch(const struct exact *exact)
   puts("");
 }
 
-/* Errors on the free mesh and its refinements, from `first` parts of an element's side on; the
- * order between the last two has to be that of theory within `tolerance`. */
-static void orders(const struct exact *exact, int order, size_t first, size_t mesh_count,
-                   double tolerance)
+/* Errors on the free mesh and its refinements; the order between the last two must not be lower
+ * than that of theory by more than `tolerance`. */
+static void orders(const struct exact *exact, int order, size_t mesh_count, double tolerance)
 {
   double error[3][NORMS];
   for (size_t m = 0; m < mesh_count; m++) {
-    struct dea_grid *grid = cube(order, 0.6, false, first << m, order == 1 ? 3 : 2);
+    struct dea_grid *grid = cube(order, 0.6, false, (size_t)1 << m, order == 1 ? 3 : 2);
     fprintf(stderr, "%s, order %d: %zu elements, smallest Jacobian %.2f\n", exact->name, order,
             grid->element_count, dea_grid_smallest_jacobian(grid));
     solve(exact, grid, error[m]);
@@ -131,24 +130,23 @@ static void orders(const struct exact *exact, int order, size_t first, size_t me
         double seen = log2(error[m - 1][norm] / error[m][norm]);
         printf(" (%.2f)", seen);
         if (m + 1 == mesh_count) {
-          verify_absolute(norm_name[norm], seen, theory, tolerance);
+          verify_absolute(norm_name[norm], fmin(seen, theory), theory, tolerance);
         }
       }
       printf(" |");
     }
-    printf(" %d |\n", theory);
+    printf("%s %d |\n", mesh_count < 3 ? " |" : "", theory);
   }
   fflush(stdout);
 }
 
 static void section(const struct exact *exact, bool small)
 {
-  printf("\n### %s\n\n| order | error |", exact->name);
-  puts(small ? " coarse | fine | theory |\n|---|---|---|---|---|"
-             : " coarse | middle | fine | theory |\n|---|---|---|---|---|---|");
-  for (int order = 1; order <= 2; order++) {
-    orders(exact, order, small && order == 1 ? 2 : 1, small ? 2 : 3, small ? 0.5 : 0.2);
-  }
+  printf("\n### %s\n\n| order | error | coarse | middle | fine | theory |\n"
+         "|---|---|---|---|---|---|\n",
+         exact->name);
+  orders(exact, 1, small ? 2 : 3, small ? 0.5 : 0.3);
+  orders(exact, 2, 2, small ? 0.5 : 0.3);
 }
 
 /* ---- the plain disc ---- */
@@ -315,10 +313,10 @@ int main(int argc, char **argv)
   }
   printf("\n## Manufactured solutions\n\nA free mesh (with a triangle in the plane as the inner "
          "boundary, 2 elements through the thickness, 3 of order 1), then each\nof its elements "
-         "divided along all axes once and twice%s. Relative errors, in brackets the observed order "
-         "since the mesh before;\nthe last one has to be within %.1f of theory.\n",
-         small ? " (here of order 1 the last two, of order 2 the first two)" : "",
-         small ? 0.5 : 0.2);
+         "divided along all axes once and, of order 1, twice. Relative errors, in brackets the "
+         "observed order since the mesh\nbefore; the last one must not be lower than that of "
+         "theory by more than %.1f.\n",
+         small ? 0.5 : 0.3);
   for (size_t i = 0; i < (small ? 2 : STATES); i++) {
     section(&states[i], small);
   }
