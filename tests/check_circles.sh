@@ -1,6 +1,7 @@
 #!/bin/sh
-# No circle of files: a file A depends on B when its object uses a symbol that B defines. Every loop
-# of such ties is printed with its symbols. Usage: check_circles.sh SOURCE_DIR BUILD_DIR
+# No circle of files, and no symbol with two homes: a file A depends on B when its object uses a
+# symbol that B defines. Every loop of such ties is printed with its symbols. Usage:
+# check_circles.sh SOURCE_DIR BUILD_DIR
 set -eu
 source=$(cd "$1" && pwd)
 cd "$2"
@@ -19,10 +20,14 @@ xargs nm -A -g <"$list" | awk '
     sub(/.*\.dir\//, "", file); sub(/\.o$/, "", file)
     type = $(NF - 1); name = $NF
     if (type == "U") { users[++uses] = file; used[uses] = name }
-    else if (type !~ /[wWvV]/) { home[name] = file; near[folder(file), name] = file; own[file, name] = 1 }
+    else if (type !~ /[wWvV]/) {
+      if (name in home && home[name] != file) {
+        print name " is defined in " home[name] " and in " file
+        bad = 1
+      }
+      home[name] = file; own[file, name] = 1
+    }
   }
-  # the module of the engine and the library may have a name each: the nearer one is meant
-  function folder(path, parts) { split(path, parts, "/"); return parts[1] }
   function visit(a, k, n, to, list) { # Tarjan, strongly connected
     number[a] = low[a] = ++count; stack[++top] = a; on[a] = 1
     n = split(next_of[a], list, " ")
@@ -41,7 +46,7 @@ xargs nm -A -g <"$list" | awk '
     for (i = 1; i <= uses; i++) {
       a = users[i]
       if (used[i] in home && !((a, used[i]) in own)) {
-        b = (folder(a), used[i]) in near ? near[folder(a), used[i]] : home[used[i]]
+        b = home[used[i]]
         edges++
         if (!((a, b) in ties)) { next_of[a] = next_of[a] " " b }
         ties[a, b] = ties[a, b] " " used[i]

@@ -80,7 +80,7 @@ static void disc_destroy(struct disc *disc)
 static double disc_strain(struct disc *disc, double voltage_V)
 {
   struct dea_solid_report report;
-  assert_int_equal(dea_solid_solve(ctx, disc->solid, voltage_V, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, disc->solid, voltage_V, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   assert_true(report.residual < 1e-8 && report.theta_max < 1e-6);
   return dea_solid_displacement(disc->solid)[3 * disc->edge] / a_m;
@@ -194,7 +194,7 @@ static void test_four_fibres_as_built(void **state)
   size_t between = node_near(grid, a_m * sqrt(0.5), a_m * sqrt(0.5), 0);
   const double *u = dea_solid_displacement(solid);
   for (int kV = 0; kV <= 6; kV++) {
-    assert_int_equal(dea_solid_solve(ctx, solid, 1e3 * kV, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 1e3 * kV, &report), DEA_OK);
     assert_int_equal(report.unstable_modes, 0);
     if (kV == 5) {
       assert_between(hypot(u[3 * between], u[3 * between + 1]), prototype_edge_5kV_m, 5e-3);
@@ -251,7 +251,7 @@ static void test_cantilever_under_end_shear(void **state)
         dea_solid_force(solid)[3 * n + 2] = 4 * (done + 0.1) / (double)loaded;
       }
     }
-    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
     for (int k = 0; k < 3; k++) {
       if (fabs(done + 0.1 - part[k]) < 1e-9) {
         assert_close(dea_solid_displacement(solid)[3 * tip + 2], wanted[k], 1e-2, 0);
@@ -274,7 +274,7 @@ static void make_solid(struct dea_context *failing)
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);
   if (status == DEA_OK) {
-    status = dea_solid_solve(failing, solid, 0, &report);
+    status = dea_load_steps_solve(failing, solid, 0, &report);
   }
   failing_check(failing, status);
   dea_solid_destroy(failing, solid);

@@ -69,7 +69,7 @@ static void compress(double strain)
       assert_int_equal(dea_solid_prescribe(ctx, solid, n, 7, to), DEA_OK);
     }
   }
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
 }
 
 static double middle_z(void)
@@ -95,7 +95,8 @@ static void test_strip_buckles_at_eulers_strain(void **state)
   assert_int_equal(report.unstable_modes, 0);
   compress(above);
   assert_int_equal(report.unstable_modes, 1);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_VOLUME, 1, &value, NULL), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 1, &value, NULL),
+                   DEA_OK);
   assert_true(value < 0);
   for (int i = 0; i < 8; i++) {
     double middle = 0.5 * (below + above);
@@ -172,7 +173,8 @@ static void test_modes_of_a_clamped_strip(void **state)
   compress(0);
   double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
   assert_non_null(vector);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector),
+                   DEA_OK);
   for (int k = 1; k < COUNT; k++) {
     assert_true(value[k] >= value[k - 1]);
   }
@@ -183,7 +185,7 @@ static void test_modes_of_a_clamped_strip(void **state)
     assert_true(!clamped(NULL, X) || vector[3 * n + 2] == 0);
     assert_true(vector[3 * n + 2] >= 0);
   }
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_VOLUME, 0, value, NULL),
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 0, value, NULL),
                    DEA_E_ARGUMENT);
   dea_free(ctx, vector);
   destroy();
@@ -241,8 +243,9 @@ static void test_modes_of_a_square_plate(void **state)
   solid = block_solid(ctx, grid, plate.order_z, &layer, clamped_around);
   double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
   assert_non_null(vector);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector),
+                   DEA_OK);
   assert_close(value[0], D * 35.99 * 35.99, 3e-2, 0);
   assert_close(value[1], D * 73.41 * 73.41, 3e-2, 0);
   assert_close(value[2], value[1], 1e-7, 0);
@@ -259,7 +262,7 @@ static void test_modes_of_a_square_plate(void **state)
     }
   }
   free(volume);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_VOLUME, 2, value, NULL), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 2, value, NULL), DEA_OK);
   assert_close(value[1], D * 73.41 * 73.41, 3e-2, 0);
   dea_free(ctx, vector);
   destroy();

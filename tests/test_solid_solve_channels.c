@@ -98,7 +98,7 @@ static void solve_at(struct strip *it, double voltage_V, double first_V, double 
   double *own = dea_solid_own_voltages(it->solid);
   own[1] = first_V;
   own[2] = second_V;
-  assert_int_equal(dea_solid_solve(ctx, it->solid, voltage_V, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, it->solid, voltage_V, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
 }
 
@@ -124,7 +124,7 @@ static void test_shares_and_own_voltages(void **state)
   struct strip one = strip_create(true, 0, NULL), two = strip_create(true, 2, NULL);
   struct strip shared = strip_create(true, 2, half), own = strip_create(true, 2, half);
   struct dea_solid_report report;
-  assert_int_equal(dea_solid_solve(ctx, one.solid, 4e3, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, one.solid, 4e3, &report), DEA_OK);
   solve_at(&two, 4e3, 0, 0);
   assert_same_displacements(&one, &two);
   solve_at(&shared, 4e3, 0, 0);
@@ -287,7 +287,7 @@ static void solve_stack(size_t films, double thickness_m, double voltage_V, doub
                    DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   for (int step = 0; step <= 4; step++) {
-    assert_int_equal(dea_solid_solve(ctx, solid, 0.25 * step * voltage_V, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0.25 * step * voltage_V, &report), DEA_OK);
   }
   const double top[3] = {length_m, length_m, 0};
   *width_m = length_m + dea_solid_displacement(solid)[3 * dea_grid_nearest(grid, top) + 1];

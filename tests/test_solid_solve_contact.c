@@ -112,7 +112,7 @@ static void test_hertz(void **state)
   const struct dea_solid_load load = dea_contact_load(contact);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
   dea_contact_move(contact, (const double[3]){0, 0, side + radius - d});
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   double force[3], hertz = 4.0 / 3 * E / (1 - nu * nu) * sqrt(radius) * pow(d, 1.5);
   dea_contact_force(contact, dea_solid_displacement(solid), force);
   assert_close(4 * force[2], hertz * layer_factor(d, side, nu), 1e-2, 0);
@@ -172,14 +172,14 @@ static void test_flat_punch_on_film(void **state)
   for (int i = 0; i < 4; i++) {
     double d = 25e-6 * i;
     dea_contact_move(contact, (const double[3]){0, 0, 0.5 * film_h - d});
-    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
     dea_contact_force(contact, dea_solid_displacement(solid), force[i]);
     energy[i] = report.energy_J;
     assert_close(4 * force[i][2], 2 * pi * tension * d / log(frame_m / punch_m), 5e-3, 1e-12);
   }
   assert_close(force[2][2], (energy[3] - energy[1]) / 50e-6, 1e-3, 0);
   dea_contact_move(contact, (const double[3]){0, 0, film_h});
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   dea_contact_force(contact, dea_solid_displacement(solid), force[0]);
   assert_close(force[0][2], 0, 0, 0);
   dea_solid_destroy(ctx, solid);

@@ -98,7 +98,7 @@ static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, 
 
 static void solve(struct body *body, double voltage_V)
 {
-  assert_int_equal(dea_solid_solve(ctx, body->solid, voltage_V, &body->report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, body->solid, voltage_V, &body->report), DEA_OK);
   assert_true(body->report.residual < 1e-8 && body->report.theta_max < 1e-6);
 }
 
@@ -377,7 +377,7 @@ static void make_solid(struct dea_context *failing)
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);
   if (status == DEA_OK) {
-    status = dea_solid_solve(failing, solid, 100, &report);
+    status = dea_load_steps_solve(failing, solid, 100, &report);
   }
   failing_check(failing, status);
   dea_solid_destroy(failing, solid);

@@ -54,7 +54,7 @@ static dea_status solve(const struct dea_constituent *layer, const int *bits, do
     assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, 1e-2, &grid), DEA_OK);
   }
   DEA_TRY(ctx, dea_solid_create(ctx, grid, &options, &solid));
-  return dea_solid_solve(ctx, solid, voltage_V, &report);
+  return dea_load_steps_solve(ctx, solid, voltage_V, &report);
 }
 
 static void clear(void)
@@ -145,7 +145,7 @@ static void test_voltage_beyond_any_equilibrium(void **state)
   double *u = dea_solid_displacement(solid);
   double before = u[3 * (grid->node_count - 1)];
   assert_true(before > 0);
-  assert_int_equal(dea_solid_solve(ctx, solid, 400e3, &report), DEA_E_NOT_CONVERGED);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 400e3, &report), DEA_E_NOT_CONVERGED);
   assert_true(u[3 * (grid->node_count - 1)] >= before); // as far as it got
   clear();
 }

@@ -94,7 +94,7 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
     dea_solid_force(solid)[3 * n + 2] = hypot(X[0], X[1]) < 1e-9 ? 1e-5 : 0;
   }
   for (int kV = 0; kV <= 4; kV += 2) {
-    assert_int_equal(dea_solid_solve(ctx, solid, 1e3 * kV, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 1e3 * kV, &report), DEA_OK);
   }
   *u = dea_alloc(ctx, grid->node_count, 3 * sizeof(double));
   assert_non_null(*u);

@@ -98,7 +98,7 @@ static void test_slab_on_a_foundation(void **state)
   const struct dea_solid_load load = dea_foundation_load(springs);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
   dea_load_traction(top, traction, dea_solid_force(solid));
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   double down = top_displacement(0);
   assert_close(down, traction[2] / stiffness[2], 1e-8, 0);
@@ -127,7 +127,7 @@ static void test_hanging_block(void **state)
   slab_create(&soft, hangs);
   assert_int_equal(dea_load_gravity(grid, &elements, density, NULL, g, dea_solid_force(solid)),
                    DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   for (int i = 0; i < 1000; i++) { // midpoint rule
     way -= 2.0 / 1000 * (stretch(1000 * 60 * 2.0 * (i + 0.5) / 1000) - 1);
   }
@@ -153,7 +153,7 @@ static void test_pressure_all_around(void **state)
     const struct dea_solid_load load = dea_pressure_load(pressure[i]);
     assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
   }
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   double l = 1;
   for (int i = 0; i < 50; i++) { // Newton
     double f = 1e5 * (l * l - 1) + 6e5 * log(l) + p * l * l * l;

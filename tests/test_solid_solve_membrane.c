@@ -88,7 +88,7 @@ static void actuator_destroy(struct actuator *it)
 /* Solves; asserts that the state is stable. */
 static void solve(struct actuator *it, double voltage_V)
 {
-  assert_int_equal(dea_solid_solve(ctx, it->solid, voltage_V, &it->report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, it->solid, voltage_V, &it->report), DEA_OK);
   assert_int_equal(it->report.unstable_modes, 0);
   assert_true(it->report.residual < 1e-8 && it->report.theta_max < 1e-6);
 }
@@ -177,8 +177,8 @@ static void test_slack_film(void **state)
   const struct dea_material material = test_yeoh();
   struct dea_solid_extremes extremes;
   dea_solid_accept_unstable(stiff.solid, true); // else it goes on to a buckled state
-  assert_int_equal(dea_solid_solve(ctx, stiff.solid, 0, &stiff.report), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, stiff.solid, 1e3, &stiff.report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, stiff.solid, 0, &stiff.report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, stiff.solid, 1e3, &stiff.report), DEA_OK);
   assert_true(stiff.report.unstable_modes > 10);
   for (int kV = 0; kV <= 4; kV += 2) {
     solve(&slack, 1e3 * kV);

@@ -80,8 +80,8 @@ static struct answer run(int fibres, int sectors)
   assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_fibre_disc_create(ctx, &plate, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, 3e3, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &rest), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 3e3, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   const double *u = dea_solid_displacement(solid);
   double half = pi / fibres;

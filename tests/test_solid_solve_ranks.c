@@ -126,7 +126,7 @@ static struct answer solve(const struct test_case *k)
     dea_solid_accept_unstable(solid, k->stay);
   }
   for (int kV = 0; kV <= k->highest_kV && status == DEA_OK; kV++) {
-    status = dea_solid_solve(ctx, solid, 1e3 * kV, &report);
+    status = dea_load_steps_solve(ctx, solid, 1e3 * kV, &report);
   }
   answer.status = (int)status;
   answer.modes = report.unstable_modes;

@@ -135,8 +135,8 @@ static void test_path_from_rest_goes_down(void **state)
   }
   dea_solid_continuation_destroy(ctx, trace);
   double z = centre_z();
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
   assert_close(centre_z(), z, 1e-5, 0);
   destroy();
 }
@@ -162,11 +162,11 @@ static void test_other_arm_ends_at_a_limit_point(void **state)
     double r = hypot(grid->X[3 * n], grid->X[3 * n + 1]) / 3.75e-3;
     push[3 * n + 2] = r < 1 ? 4.5e-4 * (1 - r * r) * (1 - r * r) : 0;
   }
-  assert_int_equal(dea_solid_solve(ctx, solid, 500, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 500, &report), DEA_OK);
   assert_int_equal(dea_solid_push(ctx, solid, push, above, NULL, &report, &found), DEA_OK);
   assert_false(found); // one state only, and the solid is still there
   assert_true(centre_z() < 0);
-  assert_int_equal(dea_solid_solve(ctx, solid, 1000, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 1000, &report), DEA_OK);
   assert_int_equal(dea_solid_push(ctx, solid, push, above, NULL, &report, &found), DEA_OK);
   assert_true(found);
   assert_true(centre_z() > 5e-5);
@@ -187,7 +187,7 @@ static void test_other_arm_ends_at_a_limit_point(void **state)
   }
   dea_solid_continuation_destroy(ctx, trace);
   // from there a solve leaves for one of the two stable arms
-  assert_int_equal(dea_solid_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, point.voltage_V, &report), DEA_OK);
   assert_true(report.snapped);
   assert_int_equal(report.unstable_modes, 0);
   dea_free(ctx, push);

@@ -99,8 +99,8 @@ static void check_capacity(int order)
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &rest), DEA_OK);
-  assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &rest), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   double found;
   assert_int_equal(dea_solid_capacitance(ctx, solid, &found), DEA_OK);
@@ -111,10 +111,10 @@ static void check_capacity(int order)
   // a start that no element can be evaluated at is refused, and leaves the solid fit for others
   double *u = dea_solid_displacement(solid) + 3 * (grid->node_count / 2), z = u[2];
   u[2] = 1;
-  assert_int_not_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+  assert_int_not_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
   u[2] = z;
   struct dea_solid_report again;
-  assert_int_equal(dea_solid_solve(ctx, solid, V, &again), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, V, &again), DEA_OK);
   assert_close(rest.energy_J - again.energy_J, 0.5 * found * V * V, 1e-3, 0);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);

@@ -67,7 +67,7 @@ static void test_bar_is_pulled_and_pushed(void **state)
   struct dea_solid_report report;
   for (size_t i = 0; i < 4; i++) {
     pull_end(solid, grid, length * (stretch[i] - 1));
-    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
     assert_close(report.way, 1, 0, 0);
     assert_close(reaction(solid, grid), stress(stretch[i]), 1e-8, 1e-8 * mu);
     assert_true(report.iterations <= 12);
@@ -116,7 +116,7 @@ static void test_prescribed_in_local_axes(void **state)
                          DEA_OK);
       }
     }
-    assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
     assert_close(reaction(solid, grid), stress(1 + 0.5 * step / length), 1e-8, 0);
     for (size_t n = 0; n < grid->node_count; n++) {
       const double *u = dea_solid_displacement(solid) + 3 * n;
@@ -135,7 +135,7 @@ static void test_release_and_dead_load(void **state)
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
   struct dea_solid_report report;
   pull_end(solid, grid, 1);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   double *pulled = calloc(3 * grid->node_count, sizeof *pulled);
   assert_non_null(pulled);
   memcpy(pulled, dea_solid_displacement(solid), 3 * grid->node_count * sizeof *pulled);
@@ -145,12 +145,12 @@ static void test_release_and_dead_load(void **state)
       assert_int_equal(dea_solid_release(ctx, solid, n, 1), DEA_OK);
     }
   }
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   for (size_t i = 0; i < 3 * grid->node_count; i++) {
     assert_close(dea_solid_displacement(solid)[i], pulled[i], 0, 1e-7);
   }
   memset(dea_solid_force(solid), 0, 3 * grid->node_count * sizeof(double));
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   for (size_t i = 0; i < 3 * grid->node_count; i++) {
     assert_close(dea_solid_displacement(solid)[i], 0, 0, 1e-7);
   }
@@ -168,7 +168,7 @@ static void test_way_that_ends(void **state)
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, along);
   struct dea_solid_report report;
   pull_end(solid, grid, -1.5 * length);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_E_NOT_CONVERGED);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_E_NOT_CONVERGED);
   assert_true(report.way > 0.3 && report.way < 2 / 3.0);
   size_t end = 0;
   while (!at_end(grid, end)) {
@@ -178,7 +178,7 @@ static void test_way_that_ends(void **state)
   assert_close(way, -1.5 * length * report.way, 1e-9, 0);
   // and it goes on from there
   pull_end(solid, grid, way);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_close(reaction(solid, grid), stress(1 + way / length), 1e-7, 0);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);

@@ -84,7 +84,7 @@ static void film_create(struct film *film)
   if (film->held == on_planes) {
     hang_weights(film);
   }
-  assert_int_equal(dea_solid_solve(ctx, film->solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, film->solid, 0, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   assert_int_equal(dea_solid_time_create(ctx, film->solid, &steps, &film->time), DEA_OK);
   for (size_t n = 0; n < film->grid->node_count; n++) {
@@ -160,7 +160,7 @@ static void test_held_film_stays(void **state)
     if (voltage_V > 0) { // held: the branches start anew from there
       const struct dea_solid_time_options steps = {&film.branches, false, 1};
       dea_solid_time_destroy(ctx, film.time);
-      assert_int_equal(dea_solid_solve(ctx, film.solid, voltage_V, &report), DEA_OK);
+      assert_int_equal(dea_load_steps_solve(ctx, film.solid, voltage_V, &report), DEA_OK);
       assert_int_equal(dea_solid_time_create(ctx, film.solid, &steps, &film.time), DEA_OK);
     }
     before = strain_of(&film);

@@ -140,7 +140,7 @@ static void test_a_path_ends_without_voltage(void **state)
   struct dea_continuation_point point;
   dea_status status = DEA_OK;
   create(&film, "neo-hookean", on_planes);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0.5 * film.size[2], &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0.5 * film.size[2], &report), DEA_OK);
   start(0.6 * film.size[2], -0.1, 0, 1);
   for (int i = 0; i < 60 && status == DEA_OK; i++) {
     status = dea_solid_continuation_step(ctx, trace, &point);
@@ -150,7 +150,7 @@ static void test_a_path_ends_without_voltage(void **state)
   assert_close(1 + displacement_at(1, 1, 0, 0), 1, 0, 1e-3);
   dea_context_clear(ctx);
   // the solid is at the last point, and solves go on from there
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_close(displacement_at(1, 1, 0, 0), 0, 0, 1e-9);
   destroy();
 }
@@ -268,7 +268,7 @@ static void trace_it(struct dea_context *failing)
   trace = NULL;
   dea_status status = try(failing, &film, "neo-hookean", on_planes);
   if (status == DEA_OK) {
-    status = dea_solid_solve(failing, solid, 0.65 * film.size[2], &report);
+    status = dea_load_steps_solve(failing, solid, 0.65 * film.size[2], &report);
   }
   if (status == DEA_OK) {
     status = dea_solid_continuation_create(failing, solid, 0.7 * film.size[2], &options, &trace);

@@ -91,8 +91,8 @@ static void modes_out_of_plane(struct dea_solid *solid, const struct dea_grid *g
   double square[ALL], *vector = calloc(3 * ALL * grid->node_count, sizeof *vector);
   int count = 0;
   assert_non_null(vector);
-  if (dea_solid_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, ALL, square, vector) != DEA_OK) {
+  if (dea_load_steps_solve(ctx, solid, 0, &report) != DEA_OK ||
+      dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, ALL, square, vector) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   for (size_t k = 0; k < ALL && count < MODES; k++) {
@@ -138,8 +138,8 @@ static void lowest(const struct dea_constituent *layer, const struct block *bloc
   struct dea_grid *grid = block_grid(ctx, block);
   struct dea_solid *solid = block_solid(ctx, grid, block->order_z, layer, all_around);
   struct dea_solid_report report;
-  if (dea_solid_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL) != DEA_OK) {
+  if (dea_load_steps_solve(ctx, solid, 0, &report) != DEA_OK ||
+      dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   dea_solid_destroy(ctx, solid);
@@ -191,16 +191,17 @@ static void test_voltage_takes_tension_away(void **state)
   double rest[1], square[UNSTABLE_MAX], sigma = pre_stress(&gent, 2);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   dea_solid_accept_unstable(solid, true);
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, rest, NULL), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, rest, NULL), DEA_OK);
   for (int i = 0; i < 2; i++) {
     double left = i == 0 ? 0.3 : -0.2,
            V = h * sqrt((1 - left) * sigma / layer.permittivity_F_per_m);
-    assert_int_equal(dea_solid_solve(ctx, solid, V, &report), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
     int unstable = report.unstable_modes;
     assert_true(left > 0 ? unstable == 0 : unstable >= OUT_OF_PLANE && unstable < UNSTABLE_MAX);
     size_t count = left > 0 ? 1 : (size_t)unstable;
-    assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL), DEA_OK);
+    assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL),
+                     DEA_OK);
     double nearest = INFINITY;
     for (size_t k = 0; k < count; k++) {
       assert_true(left > 0 || square[k] < 0);
@@ -250,9 +251,11 @@ static void test_what_is_refused(void **state)
   layer.density_kg_per_m3 = 0;
   struct dea_solid *solid = block_solid(ctx, grid, 1, &layer, all_around);
   struct dea_solid_report report;
-  assert_int_equal(dea_solid_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, square, NULL), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 0, square, NULL), DEA_E_ARGUMENT);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, square, NULL),
+                   DEA_E_ARGUMENT);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 0, square, NULL),
+                   DEA_E_ARGUMENT);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }

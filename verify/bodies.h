@@ -113,7 +113,7 @@ static inline void body_create(struct body *body)
   if (body->held == on_planes) {
     hang_weights(body);
   }
-  verify_ok(ctx, dea_solid_solve(ctx, body->solid, 0, &report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, body->solid, 0, &report));
   verify_ok(ctx, dea_solid_time_create(ctx, body->solid, &steps, &body->time));
 }
 

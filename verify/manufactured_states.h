@@ -167,7 +167,7 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   prepare(exact, grid, solid);
   for (int i = 0; i < (exact->pressure != NULL ? 3 : 1); i++) { // multipliers beyond the tolerance
-    verify_ok(ctx, dea_solid_solve(ctx, solid, 1, &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1, &report));
   }
   verify_absolute("unstable modes", report.unstable_modes, 0, 0);
   double *phi = calloc(grid->node_count, sizeof *phi);

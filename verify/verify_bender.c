@@ -144,9 +144,9 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
                                             .held = clamp ? clamped : mirrored,
                                             .electrode = electrode};
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
-  verify_ok(ctx, dea_solid_solve(ctx, solid, 0, &report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, solid, 0, &report));
   for (int i = 0; i < FIELDS; i++) {
-    verify_ok(ctx, dea_solid_solve(ctx, solid, field[i], &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, solid, field[i], &report));
     verify_absolute("unstable modes", report.unstable_modes, 0, 0);
     angle[i] = rotation(grid, dea_solid_displacement(solid), across);
   }

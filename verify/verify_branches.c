@@ -170,7 +170,7 @@ static void path_of_other(const char *refinement)
   struct dea_continuation_point point = {0}, limit;
   struct dea_solid_report report;
   solid_create(refinement);
-  verify_ok(ctx, dea_solid_solve(ctx, solid, 1200, &report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1200, &report));
   push_over(450e-6);
   row(refinement, "other arm, start", 1200, centre_mm(), "0");
   struct dea_solid_continuation *trace = trace_to(0);

@@ -46,7 +46,7 @@ static double pulled(struct dea_grid *grid, struct dea_solid *solid, double pull
   for (size_t n = 0; n < grid->node_count; n++) { // everything along: a start without steep edges
     u[3 * n] += (pull_m - last) * grid->X[3 * n] / half_length_m;
   }
-  verify_ok(ctx, dea_solid_solve(ctx, solid, 0, &report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, solid, 0, &report));
   return report.energy_J;
 }
 

@@ -131,7 +131,7 @@ static void cone_destroy(struct cone *it)
 
 static void solve(struct cone *it, double kV)
 {
-  verify_ok(ctx, dea_solid_solve(ctx, it->solid, 1e3 * kV, &it->report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, it->solid, 1e3 * kV, &it->report));
 }
 
 /* Force that holds the hub at a place. */

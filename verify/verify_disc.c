@@ -71,7 +71,7 @@ static double strain(struct disc *disc, double from_V, double to_V, int *modes)
   for (int i = 1; i <= steps; i++) {
     struct dea_solid_report report;
     double voltage_V = from_V + (to_V - from_V) * i / steps;
-    verify_ok(ctx, dea_solid_solve(ctx, disc->solid, voltage_V, &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, disc->solid, voltage_V, &report));
     *modes += report.unstable_modes;
   }
   for (size_t n = 0; n < disc->grid->node_count; n++) {
@@ -113,7 +113,7 @@ static void row(const char *name, double a_m, double H0_m, size_t fine, double e
   int modes;
   strain(&disc, 0, 0, &modes);
   struct dea_solid_report rest;
-  verify_ok(ctx, dea_solid_solve(ctx, disc.solid, 0, &rest));
+  verify_ok(ctx, dea_load_steps_solve(ctx, disc.solid, 0, &rest));
   int all = rest.unstable_modes;
   printf("| %s | %zu |", name, disc.grid->node_count);
   for (int kV = 1; kV <= 7; kV += 2) {
@@ -142,7 +142,7 @@ static void to_11_kV(const char *name, size_t fine, double edge_m)
   struct dea_solid_report rest;
   double largest = 0;
   int all, modes;
-  verify_ok(ctx, dea_solid_solve(ctx, disc.solid, 0, &rest));
+  verify_ok(ctx, dea_load_steps_solve(ctx, disc.solid, 0, &rest));
   all = rest.unstable_modes;
   for (int kV = 1; kV <= 11; kV++) {
     double value = strain(&disc, 1e3 * (kV - 1), 1e3 * kV, &modes);

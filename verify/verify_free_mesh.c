@@ -195,7 +195,7 @@ static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
   struct answer answer = {.nodes = grid->node_count};
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   for (int kV = 0; kV <= 5; kV++) {
-    verify_ok(ctx, dea_solid_solve(ctx, solid, 1e3 * kV, &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1e3 * kV, &report));
   }
   verify_absolute("unstable modes", report.unstable_modes, 0, 0);
   size_t node = dea_grid_nearest(grid, (const double[3]){a_m, 0, 0});

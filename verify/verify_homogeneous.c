@@ -160,7 +160,7 @@ static void hang_weights(struct body *body)
         }
       }
     }
-    verify_ok(ctx, dea_solid_solve(ctx, body->solid, 0, &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, body->solid, 0, &report));
   }
 }
 

@@ -50,7 +50,7 @@ static dea_status inflate(struct shell *shell, double p, int *modes)
 {
   struct dea_solid_report report;
   dea_pressure_set(shell->pressure, p * shell->H);
-  dea_status status = dea_solid_solve(ctx, shell->solid, 0, &report);
+  dea_status status = dea_load_steps_solve(ctx, shell->solid, 0, &report);
   *modes = report.unstable_modes;
   return status;
 }

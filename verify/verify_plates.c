@@ -141,7 +141,7 @@ static void plate_solve(struct plate *plate, double share, struct effort *effort
   for (size_t i = 0; i < 3 * plate->grid->node_count; i++) {
     dea_solid_force(plate->solid)[i] = share * plate->force[i];
   }
-  verify_ok(ctx, dea_solid_solve(ctx, plate->solid, 0, &report));
+  verify_ok(ctx, dea_load_steps_solve(ctx, plate->solid, 0, &report));
   effort->modes = report.unstable_modes > effort->modes ? report.unstable_modes : effort->modes;
   effort->steps++;
   effort->iterations += report.iterations;

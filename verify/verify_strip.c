@@ -172,7 +172,7 @@ static struct answer solve(double h_m, bool membrane, int halvings)
                                             .self = &strip};
   verify_ok(ctx, dea_solid_create(ctx, strip.grid, &options, &strip.solid));
   for (int i = 0; i <= STEPS; i++) {
-    verify_ok(ctx, dea_solid_solve(ctx, strip.solid, strip.voltage_V * i / STEPS, &report));
+    verify_ok(ctx, dea_load_steps_solve(ctx, strip.solid, strip.voltage_V * i / STEPS, &report));
     verify_absolute("unstable modes", report.unstable_modes, 0, 0);
   }
   struct answer answer = {displacement_at(&strip, beam_m, 0.5 * h_m)[2],

@@ -92,8 +92,8 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   verify_ok(ctx, dea_constituent_relax(&layer));
   verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &ply, 1, NULL, 0, film->size[0], &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
-  verify_ok(ctx, dea_solid_solve(ctx, solid, voltage_V, &report));
-  verify_ok(ctx, dea_solid_modes(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));
+  verify_ok(ctx, dea_load_steps_solve(ctx, solid, voltage_V, &report));
+  verify_ok(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
   return sqrt(square) / (2 * pi);

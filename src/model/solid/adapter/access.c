@@ -501,7 +501,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_solid_object *object
 {
   end_path(ctx, object);
   forget_charges(ctx, object);
-  DEA_TRY(ctx, dea_solid_solve(ctx, object->solid, voltage_V, &object->report));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, object->solid, voltage_V, &object->report));
   return DEA_OK;
 }
 
@@ -515,7 +515,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object
   double *shape = dea_alloc(ctx, count * dofs, sizeof *shape);
   dea_status status = square != NULL && shape != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    status = dea_solid_modes(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape);
+    status = dea_solid_modes_lowest(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape);
   }
   if (status != DEA_OK) {
     dea_free(ctx, square);

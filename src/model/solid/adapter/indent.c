@@ -104,7 +104,7 @@ dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while pressing");
     }
     dea_contact_move(indent->contact, place_m);
-    DEA_TRY(ctx, dea_solid_solve(ctx, solid, voltage_V, report));
+    DEA_TRY(ctx, dea_load_steps_solve(ctx, solid, voltage_V, report));
     indent->depth_m = next;
     step = fmin(growth * step, largest_step_m);
   } while (indent->depth_m != depth_m);

@@ -134,7 +134,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_solid_of_actuator(ctx, &model->actuator, model->grid, &model->solid));
   find_nodes(model);
   DEA_TRY(ctx, add_weight(ctx, model));
-  DEA_TRY(ctx, dea_solid_solve(ctx, model->solid, 0, &model->report));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
   model->rest_energy_J = model->report.energy_J;
   DEA_TRY(ctx, say_sag(ctx, model));
   return DEA_OK;
@@ -329,7 +329,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                       1e-3 * voltage_V);
     }
     double next = i == steps ? voltage_V : from + way * i / steps;
-    dea_status status = dea_solid_solve(ctx, model->solid, next, &model->report);
+    dea_status status = dea_load_steps_solve(ctx, model->solid, next, &model->report);
     if (status != DEA_OK) {
       return stopped(ctx, model, next, status);
     }

@@ -107,7 +107,7 @@ static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *
 {
   size_t dofs = 3 * m->grid->node_count;
   double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
-  DEA_TRY(ctx, dea_solid_modes(ctx, m->solid, DEA_MODES_BY_MASS, count, square, vector));
+  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, m->solid, DEA_MODES_BY_MASS, count, square, vector));
   DEA_TRY(ctx, fill_points(ctx, m, at, count, square, vector, work, points));
   DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, ply, shapes));
   dea_status status = DEA_OK;
@@ -176,7 +176,7 @@ static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions
   if (damping->ratio == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_solid_modes(ctx, m->solid, DEA_MODES_BY_MASS, 1, &square, NULL));
+  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, m->solid, DEA_MODES_BY_MASS, 1, &square, NULL));
   if (!(square > 0)) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
                     "the equilibrium that the voltage oscillates about is unstable");

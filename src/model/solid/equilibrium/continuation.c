@@ -573,7 +573,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   double values[DEA_MODES_MAX];
   double *vectors = dea_alloc(ctx, count * dofs, sizeof *vectors);
   DEA_TRY(ctx, dea_solid_agree(ctx, vectors != NULL ? DEA_OK : DEA_E_MEMORY));
-  dea_status status = dea_solid_modes(ctx, s, DEA_MODES_BY_VOLUME, count, values, vectors);
+  dea_status status = dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_VOLUME, count, values, vectors);
   *value = values[b->mode];
   memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);
   dea_free(ctx, vectors);

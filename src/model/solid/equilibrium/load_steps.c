@@ -339,8 +339,8 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
   }
 }
 
-dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                           struct dea_solid_report *report)
+dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                struct dea_solid_report *report)
 {
   struct dea_load_steps *path = &s->work.load_steps;
   *report = (struct dea_solid_report){0};

@@ -9,8 +9,8 @@
  * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
  * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
  * report->way of the way. */
-dea_status dea_solid_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                           struct dea_solid_report *report);
+dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
+                                struct dea_solid_report *report);
 
 /* From an unstable equilibrium down along its most unstable mode v to a stable one, at the same
  * voltage and loads. side: 1 along v, -1 against it, 0 where the energy is lower (along v when that

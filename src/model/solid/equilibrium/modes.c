@@ -270,8 +270,9 @@ static void release(struct eigen *f)
   f->solid->found.factor_fits = f->solid->found.predicted_fits = false;
 }
 
-dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *s,
-                           enum dea_mode_metric metric, size_t count, double *value, double *vector)
+dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
+                                  enum dea_mode_metric metric, size_t count, double *value,
+                                  double *vector)
 {
   struct eigen f = {.solid = s};
   int negative = 0;

@@ -19,9 +19,9 @@ enum dea_mode_metric { DEA_MODES_BY_VOLUME, DEA_MODES_BY_MASS };
  * none is missing is counted by the inertia of K - sigma B. DEA_E_ARGUMENT for a count of 0 or
  * above DEA_MODES_MAX, or without mass; DEA_E_NOT_CONVERGED when they cannot be had, among that
  * when there are fewer or more than DEA_MODES_MAX are unstable. */
-dea_status dea_solid_modes(struct dea_context *ctx, struct dea_solid *solid,
-                           enum dea_mode_metric metric, size_t count, double *value,
-                           double *vector);
+dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *solid,
+                                  enum dea_mode_metric metric, size_t count, double *value,
+                                  double *vector);
 /* How many modes have a lambda below that. */
 dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *solid,
                                  enum dea_mode_metric metric, double value, size_t *count);

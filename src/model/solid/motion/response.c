@@ -133,7 +133,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   DEA_TRY(ctx, make_room(ctx, s, count, r));
   DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, force));
   if (count > 0) { // K stays there for the rest
-    DEA_TRY(ctx, dea_solid_modes(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));
+    DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));
   }
   for (size_t k = 0; k < count; k++) {
     for (size_t i = 0; i < r->dofs; i++) {

@@ -285,7 +285,7 @@ static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, 
   struct dea_solid *s = t->solid;
   follow_stiffness(t);
   s->state.inertia = t->inertial ? &t->inertia : NULL;
-  dea_status status = dea_solid_solve(ctx, s, voltage_V, report);
+  dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
   s->state.inertia = NULL;
   if (status != DEA_OK) {
     return_to_accepted(t);
