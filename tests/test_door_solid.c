@@ -304,6 +304,75 @@ static void test_msh(void **state)
   assert_null(bar);
 }
 
+/* A block whose top is a rigid plate: moved like nodes that are held, brought there by the force
+ * that this takes, and turned by it when it may turn. */
+static void test_body(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.02}, move[3] = {2e-3, 0, 1e-3};
+  const double low[3] = {0, 0, size[2]}, bottom[3] = {size[0], size[1], 0};
+  dea_part part = rubber(&mu);
+  const dea_part *parts[] = {&part};
+  dea_body plate = DEA_BODY_INIT;
+  memcpy(plate.low_m, low, sizeof low);
+  memcpy(plate.high_m, size, sizeof size);
+  plate.centre_m[0] = plate.centre_m[1] = 0.005;
+  plate.centre_m[2] = size[2];
+  const dea_body *bodies[] = {&plate};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  memcpy(options.box_m, size, sizeof size);
+  options.elements[0] = options.elements[1] = options.elements[2] = 2;
+  options.parts = parts;
+  options.part_count = 1;
+  dea_solid *held, *moved;
+  good(dea_solid_new(ctx, &options, &held));
+  options.bodies = bodies;
+  options.body_count = 1;
+  good(dea_solid_new(ctx, &options, &moved));
+  good(dea_solid_hold(ctx, held, nothing, bottom, 7, nothing));
+  good(dea_solid_hold(ctx, held, low, size, 7, move));
+  good(dea_solid_hold(ctx, moved, nothing, bottom, 7, nothing));
+  good(dea_solid_hold_body(ctx, moved, 0, 63, move, NULL));
+  good(dea_solid_solve(ctx, held, 0));
+  good(dea_solid_solve(ctx, moved, 0));
+  assert_close(number(moved, "energy_J"), number(held, "energy_J"), 1e-9, 0);
+  double force[3] = {0, 0, 0};
+  const dea_array *points = array(held, "points_m");
+  size_t count = points->shape[0];
+  for (size_t n = 0; n < count; n++) {
+    bool top = array(held, "points_m")->data[3 * n + 2] > 0.99 * size[2];
+    for (size_t i = 0; i < 3 && top; i++) {
+      force[i] += array(held, "reaction_N")->data[3 * n + i];
+    }
+  }
+  assert_int_equal(array(moved, "points_m")->shape[0], count + 2);
+  for (int i = 0; i < 3; i++) {
+    assert_close(array(moved, "body_force_N")->data[i], force[i], 0, 1e-8 * force[0]);
+    assert_close(array(moved, "body_shift_m")->data[i], move[i], 0, 1e-12);
+  }
+  assert_true(fabs(array(moved, "body_moment_N_m")->data[1]) > 1e-3 * force[0] * size[2]);
+  good(dea_solid_hold_body(ctx, moved, 0, 7, NULL, NULL)); // free to shift, pushed
+  good(dea_solid_push_body(ctx, moved, 0, force, nothing));
+  good(dea_solid_solve(ctx, moved, 0));
+  for (int i = 0; i < 3; i++) {
+    assert_close(array(moved, "body_shift_m")->data[i], move[i], 0, 1e-8 * size[2]);
+    assert_close(array(moved, "body_turn_rad")->data[i], 0, 0, 0);
+  }
+  good(dea_solid_hold_body(ctx, moved, 0, 63, NULL, NULL)); // and to turn
+  good(dea_solid_solve(ctx, moved, 0));
+  assert_true(array(moved, "body_turn_rad")->data[1] > 0.05); // a beam that is pushed sideways
+  assert_close(array(moved, "body_moment_N_m")->data[1], 0, 0, 1e-9 * force[0] * size[2]);
+  assert_int_equal(dea_solid_hold_body(ctx, moved, 1, 1, move, NULL), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "no body 1: 1 of them"));
+  assert_int_equal(dea_solid_push_body(ctx, held, 0, force, nothing), DEA_E_ARGUMENT);
+  dea_solid_free(held);
+  dea_solid_free(moved);
+  plate.low_m[2] = plate.high_m[2] = 1; // nothing is there
+  dea_solid *none;
+  assert_int_equal(dea_solid_new(ctx, &options, &none), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "no node for body 0"));
+}
+
 static void test_refused(void **state)
 {
   (void)state;
@@ -377,10 +446,9 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),    cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_modes),   cmocka_unit_test(test_channels),
-      cmocka_unit_test(test_msh),     cmocka_unit_test(test_settings),
-      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage), cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_channels), cmocka_unit_test(test_msh),     cmocka_unit_test(test_body),
+      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

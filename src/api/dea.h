@@ -372,6 +372,15 @@ typedef struct {
   size_t part;
 } dea_fill;
 
+/* Nodes that move as one, by a shift and a rotation vector (docs/theory/bodies.md). */
+typedef struct {
+  size_t size;                // set by DEA_BODY_INIT
+  double low_m[3], high_m[3]; // its nodes: those with low <= X <= high; both 0: everywhere
+  const char *curve;          // of these only nodes on, above and below a physical curve of the
+                              // .msh file; NULL: all
+  double centre_m[3];         // X_0: what it turns about, and where its shift is told
+} dea_body;
+
 typedef struct {
   size_t size;        // set by DEA_SOLID_OPTIONS_INIT
   int order, order_z; // of the elements, 1 to 3; 0: 2
@@ -394,6 +403,10 @@ typedef struct {
   const size_t *ply_elements;    // [ply_count] elements through it; NULL: 1
   size_t fill_count;
   const dea_fill *fills; // [fill_count], later ones over earlier ones
+  /* Rigid bodies, at first free. They bring two points each, behind those of the mesh. A node of
+   * several is of the last one. */
+  size_t body_count;
+  const dea_body *const *bodies; // [body_count]
 } dea_solid_options;
 
 /* Copies all. DEA_E_UNSUPPORTED where the 3D engine is not installed. */
@@ -408,6 +421,15 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
 dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *curve,
                                 const double low_m[3], const double high_m[3], int components,
                                 const double displacement_m[3]);
+/* Holds components of a body (1, 2, 4: shift along x, y, z; 8, 16, 32: of the rotation vector, or
+ * sums of them) at a shift and a rotation vector that the next solve goes to; both NULL frees them.
+ */
+dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, int components,
+                               const double shift_m[3], const double turn_rad[3]);
+/* A dead force at the centre of a body, and a moment (while turns are small), for the solves to
+ * come; in place of what was there. */
+dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
+                               const double force_N[3], const double moment_N_m[3]);
 /* Adds a force per reference area on the faces of elements whose middles are there; an outer face
  * of the solid is a box without thickness. */
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
@@ -447,9 +469,10 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
 /* The next point of the path: numbers load, arc, voltage_V, unstable_modes. */
 dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid);
 /* points_m, displacement_m, reaction_N, force_N [points][3], mode_Hz [modes] (negative: unstable),
- * mode_shape [modes][points][3], and those of dea_solid_find_charges. *out: lent until the next
- * call of this function; its numbers until the next solve, step or modes. DEA_E_ARGUMENT for
- * another name. */
+ * mode_shape [modes][points][3], of bodies body_shift_m, body_turn_rad, and what holds them,
+ * body_force_N, body_moment_N_m [bodies][3], and those of dea_solid_find_charges. *out: lent until
+ * the next call of this function; its numbers until the next solve, step or modes. DEA_E_ARGUMENT
+ * for another name. */
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out);
 /* voltage_V, energy_J, unstable_modes, iterations, load, arc. */
@@ -466,10 +489,17 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
   {                                                                                                \
     sizeof(dea_part), NULL, 0, 0, NULL, 0, 0, 0, 0, 0, 0, 0, 0                                     \
   }
+#define DEA_BODY_INIT                                                                              \
+  {                                                                                                \
+    sizeof(dea_body), {0, 0, 0}, {0, 0, 0}, NULL,                                                  \
+    {                                                                                              \
+      0, 0, 0                                                                                      \
+    }                                                                                              \
+  }
 #define DEA_SOLID_OPTIONS_INIT                                                                     \
   {                                                                                                \
     sizeof(dea_solid_options), 0, 0, {0, 0, 0}, {0, 0, 0}, 0, NULL, 0, NULL, NULL, NULL, 0, NULL,  \
-        0, 0, NULL, NULL, 0, NULL                                                                  \
+        0, 0, NULL, NULL, 0, NULL, 0, NULL                                                         \
   }
 #define DEA_RUN_OPTIONS_INIT                                                                       \
   {                                                                                                \

@@ -165,6 +165,26 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
   return DEA_OK;
 }
 
+/* bodies: [body_count] places and copies that those lend from, of the caller. */
+static void take_bodies(const dea_solid_options *o, dea_body *copies, struct dea_body_spec *bodies,
+                        struct dea_solid_spec *out)
+{
+  static const dea_body all = DEA_BODY_INIT;
+  for (size_t i = 0; i < o->body_count; i++) {
+    size_t size = o->bodies[i]->size;
+    copies[i] = all;
+    memcpy(&copies[i], o->bodies[i], size < sizeof all ? size : sizeof all);
+    bool everywhere = memcmp(copies[i].low_m, copies[i].high_m, sizeof all.low_m) == 0 &&
+                      memcmp(copies[i].low_m, all.low_m, sizeof all.low_m) == 0;
+    bodies[i] = (struct dea_body_spec){.low_m = everywhere ? NULL : copies[i].low_m,
+                                       .high_m = everywhere ? NULL : copies[i].high_m,
+                                       .curve = copies[i].curve};
+    memcpy(bodies[i].centre_m, copies[i].centre_m, sizeof bodies[i].centre_m);
+  }
+  out->body_count = o->body_count;
+  out->bodies = bodies;
+}
+
 dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea_solid **out)
 {
   struct dea_context *inner = door_begin(ctx);
@@ -179,13 +199,21 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   struct dea_part_spec *parts = dea_alloc(inner, all.part_count, sizeof *parts);
   struct dea_fill_spec *fills = dea_alloc(inner, all.fill_count, sizeof *fills);
   size_t *ply_elements = dea_alloc(inner, all.ply_count, sizeof *ply_elements);
-  bool enough = solid != NULL && parts != NULL && fills != NULL && ply_elements != NULL;
+  dea_body *copies = dea_alloc(inner, all.body_count, sizeof *copies);
+  struct dea_body_spec *bodies = dea_alloc(inner, all.body_count, sizeof *bodies);
+  bool enough = solid != NULL && parts != NULL && fills != NULL && ply_elements != NULL &&
+                copies != NULL && bodies != NULL;
   dea_status status = enough ? take_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    take_bodies(&all, copies, bodies, &spec);
+  }
   if (status == DEA_OK && all.msh_file != NULL) {
     status = take_plies(ctx, &all, ply_elements, fills, &spec);
   }
   status = status == DEA_OK ? dea_solid_access_open(inner, &solid->access) : status;
   status = status == DEA_OK ? solid->access->create(inner, &spec, &solid->object) : status;
+  dea_free(inner, bodies);
+  dea_free(inner, copies);
   dea_free(inner, ply_elements);
   dea_free(inner, fills);
   dea_free(inner, parts);
@@ -234,6 +262,24 @@ dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *
   DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
                                           (struct dea_solid_place){low_m, high_m, curve},
                                           components, displacement_m));
+  return DEA_OK;
+}
+
+dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, int components,
+                               const double shift_m[3], const double turn_rad[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner,
+          solid->access->hold_body(ctx->inner, solid->object, body, components, shift_m, turn_rad));
+  return DEA_OK;
+}
+
+dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
+                               const double force_N[3], const double moment_N_m[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner,
+          solid->access->push_body(ctx->inner, solid->object, body, force_N, moment_N_m));
   return DEA_OK;
 }
 
@@ -312,9 +358,11 @@ dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out)
 {
-  static const char *const known[] = {
-      "points_m",  "displacement_m", "reaction_N",         "force_N",      "mode_Hz", "mode_shape",
-      "channel_V", "charge_C",       "capacitance_held_F", "capacitance_F"};
+  static const char *const known[] = {"points_m",      "displacement_m", "reaction_N",
+                                      "force_N",       "mode_Hz",        "mode_shape",
+                                      "channel_V",     "charge_C",       "capacitance_held_F",
+                                      "capacitance_F", "body_shift_m",   "body_turn_rad",
+                                      "body_force_N",  "body_moment_N_m"};
   const char *unit = "";
   size_t shape[3] = {0, 0, 0};
   *out = NULL;

@@ -46,6 +46,15 @@ struct dea_solid_spec {
   const struct dea_fill_spec *fills; // [fill_count], later ones over earlier ones
   size_t part_count;
   const struct dea_part_spec *parts;
+  size_t body_count;
+  const struct dea_body_spec *bodies;
+};
+
+/* Nodes that move as one. */
+struct dea_body_spec {
+  const double *low_m, *high_m; // [3], NULL: everywhere
+  const char *curve;            // of the .msh file, NULL: all
+  double centre_m[3];
 };
 
 struct dea_solid_object;
@@ -71,6 +80,12 @@ struct dea_solid_access {
    * such curve. */
   dea_status (*hold)(struct dea_context *ctx, struct dea_solid_object *object,
                      struct dea_solid_place place, int components, const double *displacement_m);
+  /* Holds components (bits 1 to 32) of a body at a shift and a turn, or frees them (NULL, NULL);
+   * its dead force and moment. DEA_E_ARGUMENT where there is no such body. */
+  dea_status (*hold_body)(struct dea_context *ctx, struct dea_solid_object *object, size_t body,
+                          int components, const double *shift_m, const double *turn_rad);
+  dea_status (*push_body)(struct dea_context *ctx, struct dea_solid_object *object, size_t body,
+                          const double force_N[3], const double moment_N_m[3]);
   /* Adds a dead load per reference area on the faces whose middles are there. */
   dea_status (*pull)(struct dea_context *ctx, struct dea_solid_object *object,
                      struct dea_solid_place place, const double traction_Pa[3]);

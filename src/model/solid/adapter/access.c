@@ -21,7 +21,8 @@ struct dea_solid_object {
   struct dea_constituent *constituents; // [part_count]
   int (*between)[2];                    // [part_count] channels above and below
   size_t part_count;
-  double length_m; // of the mesh: what is near enough
+  double length_m;        // of the mesh: what is near enough
+  size_t mesh_node_count; // without those of bodies
   struct dea_solid *solid;
   struct dea_solid_report report;
   struct dea_solid_continuation *path;
@@ -30,6 +31,8 @@ struct dea_solid_object {
   double *mode_square, *mode_shape;
   size_t channel_count; // ground not counted
   double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
+  size_t body_count;
+  double *body_told; // [4][body_count][3] shift, turn, force, moment
 };
 
 // Mesh -------------------------------------------------------------------------------------------
@@ -194,6 +197,72 @@ static double size_of(const struct dea_grid *grid)
   return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
 }
 
+// Places, bodies ---------------------------------------------------------------------------------
+
+static bool is_there(const struct dea_solid_object *object, struct dea_solid_place place,
+                     const double X[3])
+{
+  double near = 1e-6 * object->length_m;
+  bool inside = true;
+  for (int i = 0; i < 3 && place.low_m != NULL; i++) {
+    inside = inside && X[i] >= place.low_m[i] - near && X[i] <= place.high_m[i] + near;
+  }
+  return inside;
+}
+
+/* Whether each node of the plane mesh is on a curve [node_count]; owned by the caller. */
+static dea_status mark_curve(struct dea_context *ctx, const struct dea_plane_mesh *plane,
+                             const char *name, bool **out)
+{
+  size_t curve = plane != NULL ? dea_plane_mesh_curve(plane, name) : SIZE_MAX;
+  *out = NULL;
+  if (plane == NULL || curve >= plane->curve_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh has no physical curve '%.60s'", name);
+  }
+  *out = dea_alloc(ctx, plane->node_count, sizeof **out);
+  size_t per = (size_t)plane->order + 1;
+  for (size_t i = 0; i < plane->edge_count * per && *out != NULL; i++) {
+    (*out)[plane->edges[i]] |= (size_t)plane->edge_curve[i / per] == curve;
+  }
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+/* Two nodes for each body behind those of the mesh. follows: [nodes of the mesh], of the caller. */
+static dea_status mark_body(struct dea_context *ctx, const struct dea_body_spec *body, int number,
+                            const struct dea_solid_object *object, int *follows)
+{
+  const struct dea_solid_place place = {body->low_m, body->high_m, body->curve};
+  bool *on = NULL;
+  size_t found = 0;
+  if (body->curve != NULL) {
+    DEA_TRY(ctx, mark_curve(ctx, object->plane, body->curve, &on));
+  }
+  for (size_t n = 0; n < object->mesh_node_count; n++) {
+    if ((on == NULL || on[object->grid->column[n]]) &&
+        is_there(object, place, object->grid->X + 3 * n)) {
+      follows[n] = number;
+      found++;
+    }
+  }
+  dea_free(ctx, on);
+  return found > 0 ? DEA_OK
+                   : dea_fail(ctx, DEA_E_ARGUMENT, "there is no node for body %d", number - 1);
+}
+
+/* bodies: [body_count], follows: [all nodes], of the caller. */
+static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                             struct dea_solid_object *object, struct dea_solid_body *bodies,
+                             int *follows)
+{
+  for (size_t k = 0; k < spec->body_count; k++) {
+    const double *X = spec->bodies[k].centre_m;
+    const double twice[6] = {X[0], X[1], X[2], X[0], X[1], X[2]};
+    DEA_TRY(ctx, mark_body(ctx, &spec->bodies[k], (int)k + 1, object, follows));
+    DEA_TRY(ctx, dea_grid_add_nodes(ctx, object->grid, 2, twice, &bodies[k].node));
+  }
+  return DEA_OK;
+}
+
 // Parts ------------------------------------------------------------------------------------------
 
 /* Of the compressible law where the part has none. */
@@ -282,8 +351,32 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->mode_square);
     dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
+    dea_free(ctx, object->body_told);
     dea_free(ctx, object);
   }
+}
+
+/* With the bodies of the spec, whose memory is of the caller. */
+static dea_status make_solid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                             struct dea_solid_object *object, struct dea_solid_body *bodies,
+                             int *follows)
+{
+  DEA_TRY(ctx, add_bodies(ctx, spec, object, bodies, follows));
+  const struct dea_solid_options options = {.order_z = spec->order_z,
+                                            .constituent_count = object->part_count,
+                                            .constituents = object->constituents,
+                                            .constituent_of = constituent_of,
+                                            .active = is_active,
+                                            .channels = channels,
+                                            .channel_count = object->channel_count,
+                                            .held = nothing_held,
+                                            .body_count = spec->body_count,
+                                            .bodies = bodies,
+                                            .body_of = spec->body_count > 0 ? follows : NULL,
+                                            .self = object};
+  DEA_TRY(ctx, dea_solid_start(ctx));
+  DEA_TRY(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
+  return DEA_OK;
 }
 
 static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
@@ -293,6 +386,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
                : spec->elements[0] > 0 ? make_box(ctx, spec, &object->grid)
                                        : make_grid(ctx, spec, &object->grid));
   object->length_m = size_of(object->grid);
+  object->mesh_node_count = object->grid->node_count;
   object->part_count = spec->part_count;
   object->constituents = dea_alloc(ctx, spec->part_count, sizeof *object->constituents);
   object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
@@ -303,18 +397,16 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   for (size_t i = 0; i < spec->part_count; i++) {
     DEA_TRY(ctx, make_constituent(ctx, &spec->parts[i], &object->constituents[i]));
   }
-  const struct dea_solid_options options = {.order_z = spec->order_z,
-                                            .constituent_count = object->part_count,
-                                            .constituents = object->constituents,
-                                            .constituent_of = constituent_of,
-                                            .active = is_active,
-                                            .channels = channels,
-                                            .channel_count = object->channel_count,
-                                            .held = nothing_held,
-                                            .self = object};
-  DEA_TRY(ctx, dea_solid_start(ctx));
-  DEA_TRY(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
-  return DEA_OK;
+  object->body_count = spec->body_count;
+  object->body_told = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));
+  struct dea_solid_body *bodies = dea_alloc(ctx, spec->body_count, sizeof *bodies);
+  int *follows = dea_alloc(ctx, object->mesh_node_count + 2 * spec->body_count, sizeof *follows);
+  dea_status status = object->body_told != NULL && bodies != NULL && follows != NULL
+                          ? make_solid(ctx, spec, object, bodies, follows)
+                          : DEA_E_MEMORY;
+  dea_free(ctx, bodies);
+  dea_free(ctx, follows);
+  return status;
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_solid_spec *spec,
@@ -336,39 +428,11 @@ static dea_status create(struct dea_context *ctx, const struct dea_solid_spec *s
 
 // Supports and loads -----------------------------------------------------------------------------
 
-static bool is_there(const struct dea_solid_object *object, struct dea_solid_place place,
-                     const double X[3])
-{
-  double near = 1e-6 * object->length_m;
-  bool inside = true;
-  for (int i = 0; i < 3 && place.low_m != NULL; i++) {
-    inside = inside && X[i] >= place.low_m[i] - near && X[i] <= place.high_m[i] + near;
-  }
-  return inside;
-}
-
 /* A path moves the solid alone; whatever else is done with it ends the path. */
 static void end_path(struct dea_context *ctx, struct dea_solid_object *object)
 {
   dea_solid_continuation_destroy(ctx, object->path);
   object->path = NULL;
-}
-
-/* Whether each node of the plane mesh is on a curve [node_count]; owned by the caller. */
-static dea_status mark_curve(struct dea_context *ctx, const struct dea_plane_mesh *plane,
-                             const char *name, bool **out)
-{
-  size_t curve = plane != NULL ? dea_plane_mesh_curve(plane, name) : SIZE_MAX;
-  *out = NULL;
-  if (plane == NULL || curve >= plane->curve_count) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh has no physical curve '%.60s'", name);
-  }
-  *out = dea_alloc(ctx, plane->node_count, sizeof **out);
-  size_t per = (size_t)plane->order + 1;
-  for (size_t i = 0; i < plane->edge_count * per && *out != NULL; i++) {
-    (*out)[plane->edges[i]] |= (size_t)plane->edge_curve[i / per] == curve;
-  }
-  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
 static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
@@ -382,7 +446,7 @@ static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
     DEA_TRY(ctx, mark_curve(ctx, object->plane, place.curve, &on));
   }
   dea_status status = DEA_OK;
-  for (size_t n = 0; n < grid->node_count && status == DEA_OK; n++) {
+  for (size_t n = 0; n < object->mesh_node_count && status == DEA_OK; n++) {
     if ((on == NULL || on[grid->column[n]]) && is_there(object, place, grid->X + 3 * n)) {
       status = displacement_m != NULL
                    ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)
@@ -393,6 +457,53 @@ static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
   dea_free(ctx, on);
   DEA_TRY(ctx, status);
   return found > 0 ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "there is no node in that box");
+}
+
+static dea_status check_body(struct dea_context *ctx, const struct dea_solid_object *object,
+                             size_t body)
+{
+  return body < object->body_count
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_ARGUMENT, "there is no body %zu: %zu of them", body,
+                        object->body_count);
+}
+
+static dea_status hold_body(struct dea_context *ctx, struct dea_solid_object *object, size_t body,
+                            int components, const double *shift_m, const double *turn_rad)
+{
+  static const double nothing[3] = {0, 0, 0};
+  end_path(ctx, object);
+  DEA_TRY(ctx, check_body(ctx, object, body));
+  if (shift_m == NULL && turn_rad == NULL) {
+    DEA_TRY(ctx, dea_solid_body_release(ctx, object->solid, body, components));
+  } else {
+    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, object->solid, body, components,
+                                          shift_m != NULL ? shift_m : nothing,
+                                          turn_rad != NULL ? turn_rad : nothing));
+  }
+  return DEA_OK;
+}
+
+static dea_status push_body(struct dea_context *ctx, struct dea_solid_object *object, size_t body,
+                            const double force_N[3], const double moment_N_m[3])
+{
+  end_path(ctx, object);
+  DEA_TRY(ctx, check_body(ctx, object, body));
+  dea_solid_body_push(object->solid, body, force_N, moment_N_m);
+  return DEA_OK;
+}
+
+/* Where the bodies are and what holds them. */
+static const double *tell_bodies(struct dea_solid_object *object)
+{
+  size_t count = object->body_count;
+  double *told = object->body_told;
+  for (size_t k = 0; k < count; k++) {
+    dea_solid_body_place(object->solid, k, told + 3 * k, told + 3 * (count + k));
+    dea_solid_body_reaction(object->solid, k, told + 3 * (2 * count + k),
+                            told + 3 * (3 * count + k));
+  }
+  return count > 0 ? told : NULL;
 }
 
 static dea_status set(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
@@ -561,7 +672,8 @@ static const double *array(struct dea_solid_object *object, const char *name, co
                            size_t shape[3])
 {
   size_t n = object->grid->node_count, c = object->channel_count + 1;
-  const double *charges = object->charges;
+  const double *charges = object->charges, *told = tell_bodies(object);
+  size_t b = object->body_count;
   const struct {
     const char *name, *unit;
     const double *data;
@@ -573,6 +685,10 @@ static const double *array(struct dea_solid_object *object, const char *name, co
       {"force_N", "N", dea_solid_force(object->solid), {n, 3}},
       {"mode_Hz", "Hz", object->mode_square, {object->mode_count, 0}},
       {"mode_shape", "kg^-1/2", object->mode_shape, {object->mode_count, n, 3}},
+      {"body_shift_m", "m", told, {b, 3}},
+      {"body_turn_rad", "rad", told != NULL ? told + 3 * b : NULL, {b, 3}},
+      {"body_force_N", "N", told != NULL ? told + 6 * b : NULL, {b, 3}},
+      {"body_moment_N_m", "N m", told != NULL ? told + 9 * b : NULL, {b, 3}},
       {"channel_V", "V", charges, {c, 0}},
       {"charge_C", "C", charges != NULL ? charges + c : NULL, {c, 0}},
       {"capacitance_held_F", "F", charges != NULL ? charges + 2 * c : NULL, {c, c}},
@@ -617,6 +733,8 @@ const struct dea_solid_access dea_solid_access = {.create = create,
                                                   .set = set,
                                                   .setting = setting,
                                                   .hold = hold,
+                                                  .hold_body = hold_body,
+                                                  .push_body = push_body,
                                                   .pull = pull,
                                                   .set_channel = set_channel,
                                                   .solve = solve,
