@@ -241,6 +241,36 @@ static void test_settings(void **state)
   settings = NULL;
 }
 
+static bool after_two(void *user)
+{
+  int *asked = user;
+  return ++*asked > 2;
+}
+
+/* An interruption is heard in the middle of a solve, which leaves the solid at its equilibrium. */
+static void test_interrupted(void **state)
+{
+  (void)state;
+  const struct dea_constituent layer = film();
+  static const int held[] = {7, 7};
+  struct dea_solid_report report;
+  int asked = 0;
+  assert_int_equal(solve(&layer, held, 0), DEA_OK);
+  dea_context_set_interrupt_fn(ctx, after_two, &asked);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 5e3, &report), DEA_E_INTERRUPTED);
+  expect("interrupted on the way to an equilibrium");
+  assert_int_equal(asked, 3); // and not asked on
+  assert_true(dea_solid_voltage(solid) == 0);
+  const double *u = dea_solid_displacement(solid);
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    assert_close(u[i], 0, 0, 1e-12);
+  }
+  dea_context_set_interrupt_fn(ctx, NULL, NULL);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, 5e3, &report), DEA_OK);
+  assert_true(dea_solid_voltage(solid) == 5e3);
+  clear();
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -249,6 +279,7 @@ int main(void)
       cmocka_unit_test(test_law_that_ends),
       cmocka_unit_test(test_voltage_beyond_any_equilibrium),
       cmocka_unit_test(test_settings),
+      cmocka_unit_test(test_interrupted),
       cmocka_unit_test(test_memory_that_runs_out),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);

@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     for (size_t i = 0; !bad && i < points->shape[0]; i++) {
       const double *X = points->data + 3 * i;
       if (hypot(X[0] - radius, X[1]) < 1e-6 * radius && fabs(X[2] - 0.5 * thickness) < 1e-9) {
-        bad = dea_solid_array(ctx, disc, "displacement_m", &moved);
+        bad = dea_solid_array(ctx, disc, "displacement_m", &moved) != DEA_OK;
         strain = bad ? NAN : moved->data[3 * i] / radius;
         break;
       }

@@ -88,6 +88,13 @@ bool dea_solid_any(bool here)
   return flag != 0;
 }
 
+dea_status dea_solid_heed_interruption(struct dea_context *ctx)
+{
+  return dea_solid_any(dea_interrupted(ctx))
+             ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to an equilibrium")
+             : DEA_OK;
+}
+
 dea_status dea_solid_agree(struct dea_context *ctx, dea_status status)
 {
   enum { TEXT = 256 };

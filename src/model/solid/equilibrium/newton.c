@@ -292,6 +292,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double 
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
   for (int i = 0; i < o->iterations; i++) {
     bool done = false;
+    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     if (i == o->iterations_free) {
       d.strict = true;
       d.chord = s->found.predicted_fits = false;
