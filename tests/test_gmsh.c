@@ -19,23 +19,28 @@ static bool has_gmsh(void)
 
 /* A disc with a hole, an electrode, and strips across, two of one shape; they end beyond the film,
  * where they are film no more. */
-static const double film_vertex[][3] = {
-    {-15e-3, 0, 1}, {15e-3, 0, 1}, {-10e-3, 9e-3, -1}, {-8e-3, 9e-3, -1}};
-static const size_t film_end[] = {2, 4};
-static const double electrode_vertex[][3] = {{-3.75e-3, 0, 1}, {3.75e-3, 0, 1}};
-static const size_t circle_end[] = {2};
-static const double strip_vertex[][3] = {
-    {3e-3, -.25e-3, 0},   {17e-3, -.25e-3, 0}, {17e-3, .25e-3, 0}, {3e-3, .25e-3, 0},
-    {-17e-3, -.25e-3, 0}, {-3e-3, -.25e-3, 0}, {-3e-3, .25e-3, 0}, {-17e-3, .25e-3, 0}};
-static const size_t strip_end[] = {4, 8};
-static const double quarter_vertex[][3] = {{0, -15e-3, 0.41421356237309503}, {15e-3, 0, 0}};
+static const struct dea_vertex film_vertex[] = {{.x_m = -15e-3, .bulge = 1},
+                                                {.x_m = 15e-3, .bulge = 1}};
+static const struct dea_vertex hole_vertex[] = {{.x_m = -10e-3, .y_m = 9e-3, .bulge = -1},
+                                                {.x_m = -8e-3, .y_m = 9e-3, .bulge = -1}};
+static const struct dea_contour film_contours[] = {{film_vertex, 2, true}, {hole_vertex, 2, true}};
+static const struct dea_vertex electrode_vertex[] = {{.x_m = -3.75e-3, .bulge = 1},
+                                                     {.x_m = 3.75e-3, .bulge = 1}};
+static const struct dea_contour electrode = {electrode_vertex, 2, true};
+static const struct dea_vertex strip_vertex[] = {
+    {.x_m = 3e-3, .y_m = -.25e-3}, {.x_m = 17e-3, .y_m = -.25e-3},  {.x_m = 17e-3, .y_m = .25e-3},
+    {.x_m = 3e-3, .y_m = .25e-3},  {.x_m = -17e-3, .y_m = -.25e-3}, {.x_m = -3e-3, .y_m = -.25e-3},
+    {.x_m = -3e-3, .y_m = .25e-3}, {.x_m = -17e-3, .y_m = .25e-3}};
+static const struct dea_contour strip_contours[] = {{strip_vertex, 4, true},
+                                                    {strip_vertex + 4, 4, true}};
+static const struct dea_vertex quarter_vertex[] = {{.y_m = -15e-3, .bulge = 0.41421356237309503},
+                                                   {.x_m = 15e-3}};
+static const struct dea_contour quarter_contour = {quarter_vertex, 2, false};
 
-static const struct dea_gmsh_shape shapes[] = {
-    {"film", {film_vertex, film_end, 2, false}, 0},
-    {"electrode", {electrode_vertex, circle_end, 1, false}, 2e-4},
-    {"strips", {strip_vertex, strip_end, 2, false}, 2e-4}};
-static const struct dea_gmsh_curve quarter = {
-    "quarter", {quarter_vertex, circle_end, 1, true}, 5e-4};
+static const struct dea_gmsh_shape shapes[] = {{"film", film_contours, 2, 0},
+                                               {"electrode", &electrode, 1, 2e-4},
+                                               {"strips", strip_contours, 2, 2e-4}};
+static const struct dea_gmsh_shape quarter = {"quarter", &quarter_contour, 1, 5e-4};
 
 static const struct dea_gmsh_plan plan = {.shapes = shapes,
                                           .shape_count = 3,

@@ -63,7 +63,7 @@ static struct dea_surface *side_create(enum dea_face side)
 /* Exact derivatives of each piece, K symmetric. */
 static void check_derivatives(const struct dea_solid_load *load)
 {
-  static struct dea_piece at, up, down;
+  static struct dea_load_piece at, up, down;
   double d = 1e-6, largest_g = 0, largest_K = 0;
   bool any = false;
   for (size_t p = 0; p < load->piece_count; p++) {
@@ -139,7 +139,7 @@ static void test_spring(void **state)
   for (int k = 0; k < 2; k++) {
     struct dea_spring *spring;
     double unit = k == 0 ? 1 : 0.5, sum = 0, before = 0;
-    static struct dea_piece piece, start;
+    static struct dea_load_piece piece, start;
     assert_int_equal(dea_spring_create(ctx, &options[k], &spring), DEA_OK);
     const struct dea_solid_load load = dea_spring_load(spring);
     for (double y = -1.7; y < 3.9; y += 0.23) {
@@ -221,7 +221,7 @@ static void test_derivatives_of_contact(void **state)
 static void test_force_by_place_of_tip(void **state)
 {
   (void)state;
-  static struct dea_piece piece;
+  static struct dea_load_piece piece;
   block_create(2, 2, 0.1);
   struct dea_surface *surface = side_create(DEA_FACE_TOP);
   const struct dea_contact_options options = {
@@ -361,7 +361,7 @@ static void test_pressure_all_around(void **state)
 {
   (void)state;
   static const double origin[3] = {5, -3, 2};
-  static struct dea_piece piece;
+  static struct dea_load_piece piece;
   for (int order = 1; order <= 3; order++) {
     block_create(order, order < 3 ? order : 2, 0.1);
     double *force = calloc(3 * grid->node_count, sizeof *force), sum[6], energy = 0, largest = 0;
@@ -401,7 +401,7 @@ static void test_pressure_does_not_know_its_origin(void **state)
 {
   (void)state;
   static const double origin[2][3] = {{0, 0, 0}, {5, -3, 2}};
-  static struct dea_piece piece;
+  static struct dea_load_piece piece;
   block_create(2, 2, 0.1);
   double *force[2];
   struct dea_surface *top = side_create(DEA_FACE_TOP);

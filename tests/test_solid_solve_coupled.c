@@ -261,7 +261,7 @@ static int swapped_held(const void *self, const double X[3])
 
 /* Spring of 1 N/m between a node and the ground, upwards. */
 static dea_status spring(const void *self, size_t piece, const double *u, enum dea_eval_order level,
-                         struct dea_piece *out)
+                         struct dea_load_piece *out)
 {
   const size_t *node = self;
   double way = u[3 * *node + 2];

@@ -47,7 +47,7 @@ static bool faces(const void *self, const double X[3], double *share)
 
 /* Spring of 1 N/m at the first node. */
 static dea_status spring(const void *self, size_t piece, const double *u, enum dea_eval_order level,
-                         struct dea_piece *out)
+                         struct dea_load_piece *out)
 {
   (void)self;
   (void)piece;

@@ -13,13 +13,14 @@
 /* The unit square; a circle or a triangle in it is the boundary of another region. */
 static struct dea_plane_mesh *square(int order, double size, bool curved)
 {
-  static const double outline[][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  static const double circle[][3] = {{0.15, 0.45, 1}, {0.75, 0.45, 1}};
-  static const double triangle[][3] = {{0.25, 0.2, 0}, {0.8, 0.45, 0}, {0.3, 0.75, 0}};
-  static const size_t four = 4, three = 3, two = 2;
-  const struct dea_gmsh_shape shapes[] = {
-      {"square", {outline, &four, 1, false}, 0},
-      {"inner", {curved ? circle : triangle, curved ? &two : &three, 1, false}, 0}};
+  static const struct dea_vertex outline[] = {
+      {0, 0, 0, {0}}, {1, 0, 0, {0}}, {1, 1, 0, {0}}, {0, 1, 0, {0}}};
+  static const struct dea_vertex circle[] = {{0.15, 0.45, 1, {0}}, {0.75, 0.45, 1, {0}}};
+  static const struct dea_vertex triangle[] = {
+      {0.25, 0.2, 0, {0}}, {0.8, 0.45, 0, {0}}, {0.3, 0.75, 0, {0}}};
+  const struct dea_contour outer = {outline, 4, true};
+  const struct dea_contour inner = {curved ? circle : triangle, curved ? 2 : 3, true};
+  const struct dea_gmsh_shape shapes[] = {{"square", &outer, 1, 0}, {"inner", &inner, 1, 0}};
   const struct dea_gmsh_plan plan = {
       .shapes = shapes, .shape_count = 2, .order = order, .size_m = size};
   struct dea_plane_mesh *mesh;
@@ -220,13 +221,14 @@ static struct answer by_blocks(size_t fine, double edge)
 static struct answer by_free_mesh(double size, double edge)
 {
   static const double quarter = 0.41421356237309505; // tan(pi/8)
-  const double film[][3] = {{0, 0, 0}, {frame_m, 0, quarter}, {0, frame_m, 0}};
-  const double electrode_edge[][3] = {{0, 0, 0}, {a_m, 0, quarter}, {0, a_m, 0}};
-  const double arc[][3] = {{a_m, 0, quarter}, {0, a_m, 0}};
-  const size_t three = 3, two = 2;
-  const struct dea_gmsh_shape shapes[] = {{"film", {film, &three, 1, false}, 0},
-                                          {"electrode", {electrode_edge, &three, 1, false}, 0}};
-  const struct dea_gmsh_curve edge_curve = {"edge", {arc, &two, 1, true}, edge};
+  const struct dea_vertex film[] = {
+      {0, 0, 0, {0}}, {frame_m, 0, quarter, {0}}, {0, frame_m, 0, {0}}};
+  const struct dea_vertex disc[] = {{0, 0, 0, {0}}, {a_m, 0, quarter, {0}}, {0, a_m, 0, {0}}};
+  const struct dea_contour contours[] = {
+      {film, 3, true}, {disc, 3, true}, {disc + 1, 2, false}}; // the last one: the arc alone
+  const struct dea_gmsh_shape shapes[] = {{"film", &contours[0], 1, 0},
+                                          {"electrode", &contours[1], 1, 0}};
+  const struct dea_gmsh_shape edge_curve = {"edge", &contours[2], 1, edge};
   const struct dea_gmsh_plan plan = {.shapes = shapes,
                                      .shape_count = 2,
                                      .curves = &edge_curve,

@@ -27,7 +27,7 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
     dea_run_folder_clear(ctx, job->folder);
   }
   DEA_TRY(ctx, dea_checkpoint_create(ctx, job->folder, &job->keep));
-  result->keeper = dea_checkpoint_get_sink(job->keep);
+  result->checkpoint = dea_checkpoint_get_sink(job->keep);
   return DEA_OK;
 }
 

@@ -14,7 +14,7 @@
 struct dea_keep {
   char *directory; // owned
   bool refused;
-  struct dea_checkpoint_sink keeper;
+  struct dea_checkpoint_sink sink;
 };
 
 // Names ------------------------------------------------------------------------------------------
@@ -214,7 +214,7 @@ dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
     *out = NULL;
     return DEA_E_MEMORY;
   }
-  (*out)->keeper = (struct dea_checkpoint_sink){
+  (*out)->sink = (struct dea_checkpoint_sink){
       .user = *out, .restore = restore, .refuse = refuse, .point = keep_point};
   return DEA_OK;
 }
@@ -234,7 +234,7 @@ bool dea_checkpoint_refused(const struct dea_keep *keep)
 
 const struct dea_checkpoint_sink *dea_checkpoint_get_sink(const struct dea_keep *keep)
 {
-  return &keep->keeper;
+  return &keep->sink;
 }
 
 // Going on ---------------------------------------------------------------------------------------

@@ -81,7 +81,7 @@ struct dea_result {
   struct dea_result_table *tables; // [table_count] that studies made of what is above
   size_t table_count;
   double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
-  const struct dea_checkpoint_sink *keeper; // lent, NULL for none
+  const struct dea_checkpoint_sink *checkpoint; // lent, NULL for none
   struct dea_provenance provenance;
 };
 

@@ -67,7 +67,7 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
                              struct dea_model *model, const struct dea_result *result,
                              const struct dea_curve *curve)
 {
-  const struct dea_checkpoint_sink *sink = result->keeper;
+  const struct dea_checkpoint_sink *sink = result->checkpoint;
   struct dea_field_mesh *fields = NULL;
   struct dea_state state = {0};
   dea_status status = DEA_OK;
@@ -123,7 +123,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
   DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
-  return result->keeper != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
+  return result->checkpoint != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
 }
 
 /* What a curve says of itself until its sweep has come to an end: it is kept on the way. */
@@ -145,8 +145,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   snprintf(what, sizeof what, "%s sweep", type->name);
   open_curve(curve);
   dea_status status = DEA_OK;
-  if (result->keeper != NULL && type->load != NULL && curve->count > 0) {
-    status = restore(ctx, type, model, result->keeper);
+  if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
+    status = restore(ctx, type, model, result->checkpoint);
   }
   for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
     status = sweep_point(ctx, type, model, design->compute.voltages_V[i], result, curve);

@@ -262,7 +262,7 @@ static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, dou
 static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum dea_eval_order level,
                             double *energy)
 {
-  struct dea_piece *piece = s->work.piece;
+  struct dea_load_piece *piece = s->work.piece;
   for (size_t i = 0; i < s->problem.load_count; i++) {
     size_t from, to;
     dea_solid_share(s->problem.loads[i].piece_count, &from, &to);

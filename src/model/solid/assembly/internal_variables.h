@@ -35,10 +35,10 @@ dea_status dea_internal_variables_create(struct dea_context *ctx, const struct d
                                          const struct dea_branches *branches,
                                          struct dea_internal_variables **out);
 void dea_internal_variables_destroy(struct dea_context *ctx,
-                                    struct dea_internal_variables *history);
+                                    struct dea_internal_variables *variables);
 
 /* Sets B and b for a step from the last accepted state; step_s 0: the step that takes no time. */
-void dea_internal_variables_begin(struct dea_internal_variables *history,
+void dea_internal_variables_begin(struct dea_internal_variables *variables,
                                   const struct dea_solid *solid, double step_s);
 
 /* Energies of the branches, of the grid [J]. */
@@ -48,11 +48,11 @@ struct dea_solid_branch_energies {
 
 /* At the solid's displacements as the end of the step that has begun. */
 dea_status dea_internal_variables_close(struct dea_context *ctx,
-                                        struct dea_internal_variables *history,
+                                        struct dea_internal_variables *variables,
                                         const struct dea_solid *solid,
                                         struct dea_solid_branch_energies *out);
 /* The state that was closed is the accepted one. */
-void dea_internal_variables_accept(struct dea_internal_variables *history,
+void dea_internal_variables_accept(struct dea_internal_variables *variables,
                                    const struct dea_solid *solid);
 
 #endif

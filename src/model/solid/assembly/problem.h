@@ -107,7 +107,7 @@ struct dea_solid_work {
   double (*body_slope)[27];           // [body_count] by dea_solid_bodies_prepare
   double squares;                     // sum of squared element forces in an assembly [N^2]
   struct dea_element_result *element; // of one element in an assembly
-  struct dea_piece *piece;            // of one piece of a load in it
+  struct dea_load_piece *piece;       // of one piece of a load in it
   Mat K;                              // tangent, by dea_solid_assemble
   Mat factor;                         // LDL^T of K, by dea_solid_factorise
   Vec right;                          // of K's rows

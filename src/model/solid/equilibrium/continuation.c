@@ -701,8 +701,8 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
 /* ---- the other branch ---- */
 
 /* Onto the branch at a distance along the critical mode. */
-static dea_status leave_along(struct dea_context *ctx, struct dea_solid_continuation *t,
-                              double distance)
+static dea_status switch_along(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               double distance)
 {
   int iterations;
   DEA_TRY(ctx, return_to(ctx, t, &t->critical));
@@ -732,7 +732,7 @@ dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_sol
   dea_status status = DEA_OK;
   for (int i = 0; i < t->s->settings.branch_attempts; i++, distance /= 2) {
     dea_context_clear(ctx);
-    status = leave_along(ctx, t, side < 0 ? -distance : distance);
+    status = switch_along(ctx, t, side < 0 ? -distance : distance);
     if (!dea_solid_may_shorten(status)) {
       break;
     }

@@ -272,8 +272,8 @@ void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
 
 /* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
  * unstable modes. */
-static dea_status leave_unstable(struct dea_context *ctx, struct dea_solid *s,
-                                 struct dea_solid_report *report)
+static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid *s,
+                                      struct dea_solid_report *report)
 {
   dea_status status = descend_from(ctx, s, 0, report);
   if (dea_solid_may_shorten(status)) {
@@ -304,7 +304,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
     status = dea_solid_equilibrate(ctx, s, report);
   }
   if (status == DEA_OK && report->unstable_modes > 0 && !s->settings.accept_unstable) {
-    status = leave_unstable(ctx, s, report);
+    status = descend_if_possible(ctx, s, report);
   }
   if (status != DEA_OK) {
     dea_solid_state_set(s, path->keep);

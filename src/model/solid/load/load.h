@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 enum { DEA_PIECE_NODES_MAX = 16, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
-struct dea_piece {
+struct dea_load_piece {
   int node_count;
   int nodes[DEA_PIECE_NODES_MAX];
   double energy_J;
@@ -24,7 +24,7 @@ struct dea_solid_load {
    * there is nothing. Each by itself, in any order. DEA_E_DOMAIN where the energy is not defined.
    */
   dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_eval_order level,
-                         struct dea_piece *out);
+                         struct dea_load_piece *out);
 
   /* Numbers by which the load stands, such as its size or the place of a tip. A solve leads them
    * from now to goal, by itself in steps; both are lent, and 0 of them is fine. */

@@ -83,7 +83,7 @@ static double gap_at(const struct dea_contact *c, size_t face, int point, const 
 }
 
 static dea_status evaluate(const void *self, size_t piece, const double *u,
-                           enum dea_eval_order level, struct dea_piece *out)
+                           enum dea_eval_order level, struct dea_load_piece *out)
 {
   const struct dea_contact *c = self;
   int points = c->shape.points, dofs = 3 * points;

@@ -44,7 +44,7 @@ void dea_foundation_destroy(struct dea_context *ctx, struct dea_foundation *foun
 }
 
 static dea_status evaluate(const void *self, size_t piece, const double *u,
-                           enum dea_eval_order level, struct dea_piece *out)
+                           enum dea_eval_order level, struct dea_load_piece *out)
 {
   const struct dea_foundation *f = self;
   const struct dea_face_shape *s = &f->shape;

@@ -83,7 +83,7 @@ static void add_tangent(const struct dea_face_shape *s, int q, double f, const s
 }
 
 static dea_status evaluate(const void *self, size_t piece, const double *u,
-                           enum dea_eval_order level, struct dea_piece *out)
+                           enum dea_eval_order level, struct dea_load_piece *out)
 {
   const struct dea_pressure *p = self;
   const struct dea_face_shape *s = &p->shape;

@@ -124,7 +124,7 @@ double dea_spring_force(const struct dea_spring *spring, double x)
 }
 
 static dea_status evaluate(const void *self, size_t piece, const double *u,
-                           enum dea_eval_order level, struct dea_piece *out)
+                           enum dea_eval_order level, struct dea_load_piece *out)
 {
   const struct dea_spring *s = self;
   double value[3];

@@ -24,123 +24,27 @@ static const double pi = 3.14159265358979323846;
 static const double mm = 1e3, unit_m = 1e-3; // of the script
 static const double near = 1e-6;             // of the mesh's size: a node on a contour
 
-// Contours
+// Shapes
 // -----------------------------------------------------------------------------------------
 
-/* From one vertex to the next: a line, or an arc of `angle` (signed) about a centre. */
-struct piece {
-  double from[2], to[2], centre[2], radius, start, angle; // angle 0: a line
-};
-
-static size_t first_of(const struct dea_gmsh_contours *c, size_t contour)
-{
-  return contour > 0 ? c->end[contour - 1] : 0;
-}
-
-static size_t piece_count(const struct dea_gmsh_contours *c, size_t contour)
-{
-  size_t vertices = c->end[contour] - first_of(c, contour);
-  return c->open && vertices > 0 ? vertices - 1 : vertices;
-}
-
-static struct piece piece_at(const struct dea_gmsh_contours *c, size_t contour, size_t i)
-{
-  size_t first = first_of(c, contour), count = c->end[contour] - first;
-  const double *a = c->vertex[first + i], *b = c->vertex[first + (i + 1) % count];
-  double dx = b[0] - a[0], dy = b[1] - a[1], bulge = a[2], chord = hypot(dx, dy);
-  struct piece piece = {.from = {a[0], a[1]}, .to = {b[0], b[1]}};
-  if (bulge != 0) {
-    double up = (1 - bulge * bulge) / (4 * bulge);
-    piece.centre[0] = 0.5 * (a[0] + b[0]) - up * dy;
-    piece.centre[1] = 0.5 * (a[1] + b[1]) + up * dx;
-    piece.radius = 0.25 * chord * (fabs(bulge) + 1 / fabs(bulge));
-    piece.start = atan2(a[1] - piece.centre[1], a[0] - piece.centre[0]);
-    piece.angle = 4 * atan(bulge);
-  }
-  return piece;
-}
-
-static double piece_length(const struct piece *p)
-{
-  return p->angle != 0 ? p->radius * fabs(p->angle)
-                       : hypot(p->to[0] - p->from[0], p->to[1] - p->from[1]);
-}
-
-static void piece_point(const struct piece *p, double share, double x[2])
-{
-  if (p->angle != 0) {
-    x[0] = p->centre[0] + p->radius * cos(p->start + share * p->angle);
-    x[1] = p->centre[1] + p->radius * sin(p->start + share * p->angle);
-  } else {
-    x[0] = p->from[0] + share * (p->to[0] - p->from[0]);
-    x[1] = p->from[1] + share * (p->to[1] - p->from[1]);
-  }
-}
-
-/* Angle from the start of an arc to a direction, along the arc, 0 to 2 pi. */
-static double along_arc(const struct piece *p, const double x[2])
-{
-  double angle = atan2(x[1] - p->centre[1], x[0] - p->centre[0]) - p->start;
-  angle = p->angle < 0 ? -angle : angle;
-  return angle - 2 * pi * floor(angle / (2 * pi));
-}
-
-static double piece_distance(const struct piece *p, const double x[2])
-{
-  double ends =
-      fmin(hypot(x[0] - p->from[0], x[1] - p->from[1]), hypot(x[0] - p->to[0], x[1] - p->to[1]));
-  if (p->angle != 0) {
-    double radial = fabs(hypot(x[0] - p->centre[0], x[1] - p->centre[1]) - p->radius);
-    return along_arc(p, x) <= fabs(p->angle) ? fmin(radial, ends) : ends;
-  }
-  double dx = p->to[0] - p->from[0], dy = p->to[1] - p->from[1], length = hypot(dx, dy);
-  double s = ((x[0] - p->from[0]) * dx + (x[1] - p->from[1]) * dy) / (length * length);
-  double off = fabs((x[0] - p->from[0]) * dy - (x[1] - p->from[1]) * dx) / length;
-  return s >= 0 && s <= 1 ? off : ends;
-}
-
-/* Turns of a piece as it is seen from a point, in radian. */
-static double piece_turn(const struct piece *p, const double x[2])
-{
-  double a[2] = {p->from[0] - x[0], p->from[1] - x[1]}, b[2] = {p->to[0] - x[0], p->to[1] - x[1]};
-  double turn = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-  if (p->angle == 0) {
-    return turn;
-  }
-  // between chord and arc it is seen the other way round
-  double side = (p->to[0] - p->from[0]) * (x[1] - p->from[1]) -
-                (p->to[1] - p->from[1]) * (x[0] - p->from[0]); // > 0: left of the chord
-  bool in_circle = hypot(x[0] - p->centre[0], x[1] - p->centre[1]) < p->radius;
-  if (p->angle > 0 && in_circle && side < 0) {
-    return turn + 2 * pi;
-  }
-  if (p->angle < 0 && in_circle && side > 0) {
-    return turn - 2 * pi;
-  }
-  return turn;
-}
-
-static bool is_inside(const struct dea_gmsh_contours *c, const double x[2])
+static bool is_inside(const struct dea_gmsh_shape *shape, const double x[2])
 {
   bool inside = false;
-  for (size_t k = 0; k < c->count; k++) {
-    double turns = 0;
-    for (size_t i = 0; i < piece_count(c, k); i++) {
-      const struct piece piece = piece_at(c, k, i);
-      turns += piece_turn(&piece, x);
-    }
-    inside = inside != (fabs(turns) > pi);
+  for (size_t k = 0; k < shape->count; k++) {
+    inside = inside != dea_contour_inside(&shape->contours[k], x[0], x[1]);
   }
   return inside;
 }
 
-static double distance_to(const struct dea_gmsh_contours *c, const double x[2])
+static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
 {
   double least = INFINITY;
-  for (size_t k = 0; k < c->count; k++) {
-    for (size_t i = 0; i < piece_count(c, k); i++) {
-      const struct piece piece = piece_at(c, k, i);
-      least = fmin(least, piece_distance(&piece, x));
+  for (size_t k = 0; k < shape->count; k++) {
+    for (size_t i = 0; i < dea_contour_pieces(&shape->contours[k]); i++) {
+      const struct dea_piece piece = dea_contour_piece(&shape->contours[k], i);
+      double near_x[2];
+      dea_piece_nearest(&piece, x, near_x);
+      least = fmin(least, hypot(x[0] - near_x[0], x[1] - near_x[1]));
     }
   }
   return least;
@@ -189,19 +93,19 @@ static void write_point(struct dea_text *out, struct numbers *last, const double
 
 /* The curves of a piece, from the last point written to the point `to` (0: one that is made). An
  * arc is written in parts of at most a quarter: OpenCASCADE takes the shorter way. */
-static void write_piece(struct dea_text *out, struct numbers *last, const struct piece *piece,
+static void write_piece(struct dea_text *out, struct numbers *last, const struct dea_piece *piece,
                         size_t to)
 {
-  int parts = piece->angle != 0 ? (int)ceil(fabs(piece->angle) / (0.5 * pi) - 1e-9) : 1;
+  int parts = piece->arc ? (int)ceil(fabs(piece->sweep) / (0.5 * pi) - 1e-9) : 1;
   size_t from = last->point, centre = 0;
-  if (piece->angle != 0) {
+  if (piece->arc) {
     write_point(out, last, piece->centre);
     centre = last->point;
   }
   for (int k = 1; k <= parts; k++) {
     double x[2];
     size_t next = k == parts && to != 0 ? to : last->point + 1;
-    piece_point(piece, (double)k / parts, x);
+    dea_piece_point(piece, (double)k / parts, x);
     if (next == last->point + 1) {
       write_point(out, last, k == parts ? piece->to : x);
     }
@@ -216,14 +120,14 @@ static void write_piece(struct dea_text *out, struct numbers *last, const struct
 
 /* A contour as a surface. */
 static void write_contour(struct dea_text *out, struct numbers *last,
-                          const struct dea_gmsh_contours *c, size_t contour)
+                          const struct dea_contour *contour)
 {
-  size_t count = piece_count(c, contour), curve = last->curve + 1, first;
-  const struct piece start = piece_at(c, contour, 0);
+  size_t count = dea_contour_pieces(contour), curve = last->curve + 1, first;
+  const struct dea_piece start = dea_contour_piece(contour, 0);
   write_point(out, last, start.from);
   first = last->point;
   for (size_t i = 0; i < count; i++) {
-    const struct piece piece = piece_at(c, contour, i);
+    const struct dea_piece piece = dea_contour_piece(contour, i);
     write_piece(out, last, &piece, i + 1 == count ? first : 0);
   }
   last->surface++;
@@ -234,27 +138,23 @@ static void write_contour(struct dea_text *out, struct numbers *last,
 /* A field of sizes that grow from `fine` at the contours; its number is twice `source`. Distances
  * are those to points half a fine element apart. */
 static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                        const struct dea_gmsh_contours *c, double fine, size_t source,
-                        const struct way *way)
+                        const struct dea_gmsh_shape *shape, size_t source, const struct way *way)
 {
-  double step = 0.5 * fine, scale = mm * way->size;
+  double fine = shape->edge_size_m, step = 0.5 * fine, scale = mm * way->size;
   double growth = plan->growth > 0 ? plan->growth : 0.4;
   double length = 0;
-  for (size_t k = 0; k < c->count; k++) {
-    for (size_t i = 0; i < piece_count(c, k); i++) {
-      const struct piece piece = piece_at(c, k, i);
-      length += piece_length(&piece);
-    }
+  for (size_t k = 0; k < shape->count; k++) {
+    length += dea_contour_length_m(&shape->contours[k]);
   }
   step = fmax(step, length / SAMPLES_MAX);
   dea_text_add(out, "p = newp;\nn = 0;\n");
-  for (size_t k = 0; k < c->count; k++) {
-    for (size_t i = 0; i < piece_count(c, k); i++) {
-      const struct piece piece = piece_at(c, k, i);
-      int parts = (int)ceil(piece_length(&piece) / step) + 1;
+  for (size_t k = 0; k < shape->count; k++) {
+    for (size_t i = 0; i < dea_contour_pieces(&shape->contours[k]); i++) {
+      const struct dea_piece piece = dea_contour_piece(&shape->contours[k], i);
+      int parts = (int)ceil(piece.length_m / step) + 1;
       for (int j = 0; j <= parts; j++) {
         double x[2];
-        piece_point(&piece, (double)j / parts, x);
+        dea_piece_point(&piece, (double)j / parts, x);
         dea_text_add(out, "Point(p + n) = {%.17g, %.17g, 0}; n++;\n", mm * x[0], mm * x[1]);
       }
     }
@@ -275,14 +175,12 @@ static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
   size_t sources = 0;
   for (size_t i = 0; i < plan->shape_count; i++) {
     if (plan->shapes[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->shapes[i].contours, plan->shapes[i].edge_size_m, ++sources,
-                  way);
+      write_field(out, plan, &plan->shapes[i], ++sources, way);
     }
   }
   for (size_t i = 0; i < plan->curve_count; i++) {
     if (plan->curves[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->curves[i].contours, plan->curves[i].edge_size_m, ++sources,
-                  way);
+      write_field(out, plan, &plan->curves[i], ++sources, way);
     }
   }
   if (sources > 0) {
@@ -302,8 +200,8 @@ static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
   void *locale = dea_c_locale_enter();
   write_settings(out, plan, way);
   for (size_t i = 0; i < plan->shape_count; i++) {
-    for (size_t k = 0; k < plan->shapes[i].contours.count; k++) {
-      write_contour(out, &last, &plan->shapes[i].contours, k);
+    for (size_t k = 0; k < plan->shapes[i].count; k++) {
+      write_contour(out, &last, &plan->shapes[i].contours[k]);
     }
   }
   if (last.surface > 1) {
@@ -461,7 +359,7 @@ static dea_status take_elements(struct dea_context *ctx, const struct dea_gmsh_p
     double x[2];
     middle_of(mesh, e, x);
     for (size_t i = 0; i < plan->shape_count; i++) {
-      within[i] = is_inside(&plan->shapes[i].contours, x);
+      within[i] = is_inside(&plan->shapes[i], x);
       inside = inside || within[i] != 0;
     }
     if (inside) {
@@ -488,11 +386,11 @@ static dea_status take_elements(struct dea_context *ctx, const struct dea_gmsh_p
   return DEA_OK;
 }
 
-/* The contours of a curve, by its number: those of the shapes come first. */
-static const struct dea_gmsh_contours *contours_of(const struct dea_gmsh_plan *plan, size_t curve)
+/* A curve, by its number: those of the shapes come first. */
+static const struct dea_gmsh_shape *curve_of(const struct dea_gmsh_plan *plan, size_t curve)
 {
-  return curve < plan->shape_count ? &plan->shapes[curve].contours
-                                   : &plan->curves[curve - plan->shape_count].contours;
+  return curve < plan->shape_count ? &plan->shapes[curve]
+                                   : &plan->curves[curve - plan->shape_count];
 }
 
 /* Sides of elements that lie on a contour. before: as gmsh made them; number: as above. */
@@ -511,7 +409,7 @@ static dea_status take_edges(struct dea_context *ctx, const struct dea_gmsh_plan
       bool on = true;
       for (size_t n = 0; n < per && on; n++) {
         int node = number[before[i * per + n]] - 1;
-        on = node >= 0 && distance_to(contours_of(plan, k), mesh->x + 2 * node) < close;
+        on = node >= 0 && distance_to(curve_of(plan, k), mesh->x + 2 * node) < close;
       }
       if (on) {
         for (size_t n = 0; n < per; n++) {
@@ -591,10 +489,10 @@ static dea_status check_plan(struct dea_context *ctx, const struct dea_gmsh_plan
   bool good = plan->shape_count > 0 && (plan->order == 1 || plan->order == 2) && plan->size_m > 0 &&
               plan->size_m < INFINITY;
   for (size_t i = 0; i < plan->shape_count; i++) {
-    const struct dea_gmsh_contours *c = &plan->shapes[i].contours;
-    good = good && !c->open && c->count > 0 && plan->shapes[i].edge_size_m < INFINITY;
-    for (size_t k = 0; k < c->count; k++) {
-      good = good && piece_count(c, k) >= 2;
+    const struct dea_gmsh_shape *shape = &plan->shapes[i];
+    good = good && shape->count > 0 && shape->edge_size_m < INFINITY;
+    for (size_t k = 0; k < shape->count; k++) {
+      good = good && shape->contours[k].closed && dea_contour_pieces(&shape->contours[k]) >= 2;
     }
   }
   return good ? DEA_OK

@@ -2,36 +2,22 @@
 #ifndef DEA_MODEL_SOLID_MESH_GMSH_H
 #define DEA_MODEL_SOLID_MESH_GMSH_H
 
+#include "geometry/contour.h"
 #include "model/solid/mesh/plane_mesh.h"
 
-/* Contours as those of a DXF file: a vertex is x [m], y [m] and the bulge towards the next one, the
- * tangent of a quarter of the arc's angle; > 0: counter-clockwise, 0: straight. */
-struct dea_gmsh_contours {
-  const double (*vertex)[3]; // of all contours, one after the other
-  const size_t *end;         // [count] number of the vertex after a contour's last
-  size_t count;
-  bool open; // the last vertex of a contour does not go on to its first
-};
-
 /* What the mesh is made of: its contours are sides of elements. A point is inside when it is in an
- * odd number of contours. */
+ * odd number of contours. Or a curve: a part of shapes' contours with a name of its own. */
 struct dea_gmsh_shape {
   const char *name; // of the group of its elements, and of the named curve along its contours
-  struct dea_gmsh_contours contours; // closed, each without crossing itself
-  double edge_size_m;                // of elements at the contours; 0: as elsewhere
-};
-
-/* A part of shapes' contours with a name of its own. */
-struct dea_gmsh_curve {
-  const char *name;
-  struct dea_gmsh_contours contours;
-  double edge_size_m;
+  const struct dea_contour *contours; // [count], none crosses itself; closed, but those of curves
+  size_t count;
+  double edge_size_m; // of elements at the contours; 0: as elsewhere
 };
 
 struct dea_gmsh_plan {
   const struct dea_gmsh_shape *shapes; // [shape_count], which may overlap
   size_t shape_count;
-  const struct dea_gmsh_curve *curves; // [curve_count]
+  const struct dea_gmsh_shape *curves; // [curve_count]
   size_t curve_count;
   int order;           // of the elements, 1 or 2
   double size_m;       // of elements, up to which they grow away from fine edges

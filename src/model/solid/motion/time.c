@@ -15,7 +15,7 @@
 struct dea_solid_time {
   struct dea_arena memory; // of all arrays but keep and controls
   struct dea_solid *solid;
-  struct dea_internal_variables *history;
+  struct dea_internal_variables *variables;
   struct dea_solid_inertia inertia;
   bool inertial, stay;    // stay: of the solid before
   bool open;              // a step has been tried, the solid is not at the accepted state
@@ -98,7 +98,7 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, s, &capacitance);
   }
-  s->state.internal_variables = t->history;
+  s->state.internal_variables = t->variables;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
   }
@@ -136,9 +136,9 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
   struct dea_solid *s = t->solid;
   DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(t)));
   if (options->branches != NULL) {
-    DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->history));
-    dea_internal_variables_begin(t->history, s, 0);
-    s->state.internal_variables = t->history;
+    DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->variables));
+    dea_internal_variables_begin(t->variables, s, 0);
+    s->state.internal_variables = t->variables;
   }
   if (t->inertial) {
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, s->state.u, t->work)); // from here on it cannot fail
@@ -202,7 +202,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   t->solid->state.inertia = NULL;
   t->solid->settings.accept_unstable = t->stay;
   dea_solid_scale_bulk_modulus(t->solid, 1 / t->stiffened);
-  dea_internal_variables_destroy(ctx, t->history);
+  dea_internal_variables_destroy(ctx, t->variables);
   dea_arena_free(&t->memory);
   dea_free(ctx, t->keep);
   dea_free(ctx, t->controls);
@@ -248,10 +248,10 @@ static void follow_stiffness(struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   double most = 0;
-  for (size_t l = 0; l < s->problem.constituent_count && t->history != NULL; l++) {
+  for (size_t l = 0; l < s->problem.constituent_count && t->variables != NULL; l++) {
     const struct dea_constituent *constituent = &s->problem.constituents[l];
     if (constituent->kappa_Pa > 0) {
-      most = fmax(most, t->history->b_Pa[l] / dea_constituent_modulus(constituent));
+      most = fmax(most, t->variables->b_Pa[l] / dea_constituent_modulus(constituent));
     }
   }
   double factor = exp2(round(log2(1 + most)));
@@ -329,8 +329,8 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
   struct dea_solid *s = t->solid;
   double h = step_s;
   DEA_TRY(ctx, save_accepted(ctx, t));
-  if (t->history != NULL) {
-    dea_internal_variables_begin(t->history, s, h);
+  if (t->variables != NULL) {
+    dea_internal_variables_begin(t->variables, s, h);
   }
   if (t->start) {
     DEA_TRY(ctx, find_acceleration(ctx, t, h, report));
@@ -390,8 +390,8 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   struct dea_solid_energies *sums = &t->sums_next;
   double stored = 0, work = 0;
   *sums = t->sums;
-  if (t->history != NULL) {
-    DEA_TRY(ctx, dea_internal_variables_close(ctx, t->history, s, &branches));
+  if (t->variables != NULL) {
+    DEA_TRY(ctx, dea_internal_variables_close(ctx, t->variables, s, &branches));
   }
   DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F));
   const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
@@ -415,8 +415,8 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
 static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;
-  for (size_t l = 0; l < t->solid->problem.constituent_count && t->history != NULL; l++) {
-    const struct dea_branches *branches = &t->history->branches[l];
+  for (size_t l = 0; l < t->solid->problem.constituent_count && t->variables != NULL; l++) {
+    const struct dea_branches *branches = &t->variables->branches[l];
     double sum = 0, all = dea_constituent_modulus(&t->solid->problem.constituents[l]);
     for (size_t i = 0; i < branches->count; i++) {
       sum -= branches->branch[i].modulus_Pa * expm1(-t->step_s / branches->branch[i].time_s);
@@ -488,8 +488,8 @@ static void swap_arrays(double **a, double **b)
 
 void dea_solid_time_accept(struct dea_solid_time *t)
 {
-  if (t->history != NULL) {
-    dea_internal_variables_accept(t->history, t->solid);
+  if (t->variables != NULL) {
+    dea_internal_variables_accept(t->variables, t->solid);
   }
   swap_arrays(&t->F, &t->F_next);
   swap_arrays(&t->v, &t->v_next);
@@ -512,8 +512,8 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
   DEA_TRY(ctx, save_accepted(ctx, t));
   t->step_s = 0;
   t->start_next = t->inertial;
-  if (t->history != NULL) {
-    dea_internal_variables_begin(t->history, s, 0);
+  if (t->variables != NULL) {
+    dea_internal_variables_begin(t->variables, s, 0);
   }
   if (t->inertial) {
     memcpy(t->v_next, t->v, t->count * sizeof *t->v);

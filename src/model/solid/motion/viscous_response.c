@@ -37,15 +37,15 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
                                  struct dea_branches *only, Mat *out)
 {
   struct dea_solid *s = y->solid;
-  struct dea_internal_variables *history;
+  struct dea_internal_variables *variables;
   memset(only, 0, s->problem.constituent_count * sizeof *only);
   only[which] = y->branches[which];
-  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &history));
-  dea_internal_variables_begin(history, s, 0);
-  s->state.internal_variables = history;
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &variables));
+  dea_internal_variables_begin(variables, s, 0);
+  s->state.internal_variables = variables;
   dea_status status = copy_tangent(ctx, y, out);
   s->state.internal_variables = NULL;
-  dea_internal_variables_destroy(ctx, history);
+  dea_internal_variables_destroy(ctx, variables);
   DEA_TRY(ctx, status);
   DEA_PETSC(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN));
   return DEA_OK;
