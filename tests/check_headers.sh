@@ -1,5 +1,6 @@
 #!/bin/sh
-# Each header compiles alone as strict C17, and the public one as its users compile it.
+# Each header compiles alone as strict C17, no two define a struct of one name, and the public one
+# compiles as its users compile it.
 set -eu
 source=$1 build=$2
 flags="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla -Werror"
@@ -16,6 +17,12 @@ for header in $(cd "$source/src" && find . -name '*.h' | sed 's|^\./||'); do
     bad=1
   }
 done
+# One name, one struct; the public header is a world of its own.
+twice=$(cd "$source/src" && find . -name '*.h' ! -path ./api/dea.h -exec grep -hoE '^(struct|enum|union) [a-z_0-9]+ \{' {} + | sort | uniq -d)
+if [ -n "$twice" ]; then
+  echo "defined in two headers: $twice"
+  bad=1
+fi
 # The public one, as users compile it: alone and twice in a file, in C and in C++; and without macros, for
 # wrappers that read the declarations between its marks.
 flags="-Wall -Wextra -Wpedantic -Werror -fsyntax-only -I$source/src/api"

@@ -22,7 +22,7 @@ static char *format_text(struct dea_document *document, const char *format, va_l
 
 static void add_cell(struct dea_document *document, const char *format, va_list args)
 {
-  struct dea_block *block = &document->block[document->count - 1];
+  struct dea_document_block *block = &document->block[document->count - 1];
   char *text = format_text(document, format, args);
   if (text != NULL) {
     block->cell[block->cells++] = text;
@@ -45,7 +45,7 @@ void dea_document_add(struct dea_document *document, enum dea_block_kind kind, c
     document->block = bigger;
     document->room = room;
   }
-  document->block[document->count++] = (struct dea_block){.kind = kind};
+  document->block[document->count++] = (struct dea_document_block){.kind = kind};
   va_list args;
   va_start(args, format);
   add_cell(document, format, args);
@@ -92,7 +92,7 @@ static const char style[] =
     "ol{padding-left:2.4em}li{margin:.5em 0}svg{width:100%;height:auto}"
     "@media print{body{margin:0;max-width:none}h2{break-after:avoid}tr,li{break-inside:avoid}}";
 
-static void add_row(struct dea_text *out, const struct dea_block *block, const char *tag)
+static void add_row(struct dea_text *out, const struct dea_document_block *block, const char *tag)
 {
   dea_text_add(out, "<tr>");
   for (size_t c = 0; c < block->cells; c++) {
@@ -110,7 +110,7 @@ static void add_element(struct dea_text *out, const char *begin, const char *tex
   dea_text_add(out, "%s\n", end);
 }
 
-static void add_block(struct dea_text *out, const struct dea_block *block)
+static void add_block(struct dea_text *out, const struct dea_document_block *block)
 {
   const char *text = block->cells > 0 ? block->cell[0] : "";
   switch (block->kind) {
@@ -157,7 +157,7 @@ void dea_document_html(const struct dea_document *document, const char *drawing,
   dea_xml_add(out, document->count > 0 ? document->block[0].cell[0] : "");
   dea_text_add(out, "</title>\n<style>%s</style>\n</head>\n<body>\n", style);
   for (size_t i = 0; i < document->count; i++) {
-    const struct dea_block *block = &document->block[i];
+    const struct dea_document_block *block = &document->block[i];
     const char *wanted = enclosure(block->kind);
     bool new_table = block->kind == DEA_BLOCK_HEAD;
     if (open[0] != '\0' && (wanted != open || new_table)) {

@@ -18,7 +18,7 @@ enum dea_block_kind {
   DEA_BLOCK_ROW,
 };
 
-struct dea_block {
+struct dea_document_block {
   enum dea_block_kind kind;
   char *cell[DEA_CELLS_MAX]; // text; rows of tables have several; owned
   size_t cells;
@@ -27,7 +27,7 @@ struct dea_block {
 
 struct dea_document {
   struct dea_context *ctx;
-  struct dea_block *block; // owned
+  struct dea_document_block *block; // owned
   size_t count, room;
   bool failed; // memory was short; stays set, as in struct dea_text
 };

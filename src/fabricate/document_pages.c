@@ -13,7 +13,7 @@ struct writer {
   const struct dea_paper *paper;
   double y; // of the next line's upper edge
   int page, step;
-  const struct dea_block *head; // of the table
+  const struct dea_document_block *head; // of the table
 };
 
 /* The part of a text that fits on one line: its length, and where the next one starts. */
@@ -119,7 +119,7 @@ static void rule(struct writer *w, double thickness, unsigned colour)
   w->paper->type->stroke(w->paper->canvas, thickness, colour, 0);
 }
 
-static double row_height(const struct writer *w, const struct dea_block *row, bool bold)
+static double row_height(const struct writer *w, const struct dea_document_block *row, bool bold)
 {
   int lines = 1;
   for (size_t c = 0; c < row->cells; c++) {
@@ -130,7 +130,7 @@ static double row_height(const struct writer *w, const struct dea_block *row, bo
   return lines * small_size * leading + 2.4;
 }
 
-static void draw_row(struct writer *w, const struct dea_block *row, bool bold)
+static void draw_row(struct writer *w, const struct dea_document_block *row, bool bold)
 {
   double x = left, tall = row_height(w, row, bold);
   for (size_t c = 0; c < row->cells && c < w->head->cells; c++) {
@@ -142,7 +142,7 @@ static void draw_row(struct writer *w, const struct dea_block *row, bool bold)
   rule(w, bold ? 0.25 : 0.13, bold ? INK : RULE);
 }
 
-static void write_row(struct writer *w, const struct dea_block *row, bool is_head)
+static void write_row(struct writer *w, const struct dea_document_block *row, bool is_head)
 {
   if (is_head) {
     w->head = row;
@@ -173,7 +173,7 @@ void dea_document_pages(const struct dea_paper *paper, const struct dea_document
 {
   struct writer w = {.paper = paper, .y = height - top, .page = 1};
   for (size_t i = 0; i < document->count; i++) {
-    const struct dea_block *block = &document->block[i];
+    const struct dea_document_block *block = &document->block[i];
     const char *text = block->cells > 0 ? block->cell[0] : "";
     switch (block->kind) {
     case DEA_BLOCK_TITLE:

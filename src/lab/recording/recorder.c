@@ -14,7 +14,7 @@ enum { GROUP_NAME_SIZE = DEA_CHANNEL_NAME_SIZE + 24 };
 static const char cannot_write[] = "cannot write";
 
 struct recorded_channel {
-  struct dea_series values, time; // the second only with interval 0
+  struct dea_recorded_series values, time; // the second only with interval 0
   bool timed;
   double last_s;
 };
@@ -27,7 +27,7 @@ struct dea_recorder {
   hid_t file;
   struct recorded_channel channels[DEA_CHANNELS_MAX];
   size_t channel_count;
-  struct dea_series frame_time, frames, cycles;
+  struct dea_recorded_series frame_time, frames, cycles;
   double last_frame_s;
   char output[DEA_OUTPUT_SIZE]; // what is known of it at the end
   double flush_s, flushed_s;    // longest time between flushes, time of the last one
@@ -299,7 +299,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
                                 const struct dea_recorder_options *options,
                                 struct dea_recorder **out)
 {
-  const struct dea_series none = {.set = H5I_INVALID_HID};
+  const struct dea_recorded_series none = {.set = H5I_INVALID_HID};
   struct dea_recorder *recorder = *out = dea_alloc(ctx, 1, sizeof *recorder);
   if (recorder == NULL) {
     return DEA_E_MEMORY;

@@ -31,9 +31,9 @@ void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, 
 }
 
 void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
-                     struct dea_series *series)
+                     struct dea_recorded_series *series)
 {
-  *series = (struct dea_series){.set = H5I_INVALID_HID, .width = width, .room = room};
+  *series = (struct dea_recorded_series){.set = H5I_INVALID_HID, .width = width, .room = room};
   if (h->status != DEA_OK) {
     return;
   }
@@ -51,11 +51,11 @@ void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, 
   }
 }
 
-void dea_series_close(struct dea_context *ctx, struct dea_series *series)
+void dea_series_close(struct dea_context *ctx, struct dea_recorded_series *series)
 {
   dea_h5_close(series->set);
   dea_free(ctx, series->rows);
-  *series = (struct dea_series){.set = H5I_INVALID_HID};
+  *series = (struct dea_recorded_series){.set = H5I_INVALID_HID};
 }
 
 /* The rows [first, first + count) of a dataset. */
@@ -71,7 +71,7 @@ static hid_t rows_of(hid_t set, size_t width, hsize_t first, size_t count)
 }
 
 /* Writes what waits. */
-static void store(struct h5 *h, struct dea_series *series)
+static void store(struct h5 *h, struct dea_recorded_series *series)
 {
   if (h->status != DEA_OK || series->used == 0) {
     return;
@@ -91,7 +91,8 @@ static void store(struct h5 *h, struct dea_series *series)
   dea_h5_close(memory);
 }
 
-void dea_series_add(struct h5 *h, struct dea_series *series, const double *rows, size_t count)
+void dea_series_add(struct h5 *h, struct dea_recorded_series *series, const double *rows,
+                    size_t count)
 {
   while (count > 0 && h->status == DEA_OK) {
     // up to the end of a chunk, so that every full one is written once and in one piece
@@ -108,7 +109,7 @@ void dea_series_add(struct h5 *h, struct dea_series *series, const double *rows,
   }
 }
 
-void dea_series_flush(struct h5 *h, struct dea_series *series)
+void dea_series_flush(struct h5 *h, struct dea_recorded_series *series)
 {
   store(h, series);
   if (h->status == DEA_OK && H5Dflush(series->set) < 0) {

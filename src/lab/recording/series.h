@@ -8,7 +8,7 @@
 
 /* Rows wait in memory until there is a chunk of them or a flush; then they go straight to their
  * place in the file, never through a cache of HDF5, so that a flush writes only what is new. */
-struct dea_series {
+struct dea_recorded_series {
   hid_t set;
   size_t width;   // numbers in a row
   size_t room;    // rows of a chunk, and of the buffer
@@ -22,12 +22,13 @@ void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, 
                      const char *unit, const char *meaning);
 /* Opens it for writing. series: to be closed by the caller, also after a failure. */
 void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
-                     struct dea_series *series);
-void dea_series_close(struct dea_context *ctx, struct dea_series *series);
+                     struct dea_recorded_series *series);
+void dea_series_close(struct dea_context *ctx, struct dea_recorded_series *series);
 /* Appends rows: [count][width]. */
-void dea_series_add(struct h5 *h, struct dea_series *series, const double *rows, size_t count);
+void dea_series_add(struct h5 *h, struct dea_recorded_series *series, const double *rows,
+                    size_t count);
 /* Everything appended is in the file after it, and found by a reader. */
-void dea_series_flush(struct h5 *h, struct dea_series *series);
+void dea_series_flush(struct h5 *h, struct dea_recorded_series *series);
 
 /* Reads all rows whose bytes the file really has, of numbers of any kind. *rows: [*count][width],
  * owned by the caller, NULL for none. *cut: whether rows are missing that the dataset counts. A

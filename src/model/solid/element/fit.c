@@ -25,7 +25,7 @@ static void fit_line(int order, int degree, double fit[DEA_FIT_LINE_MAX][DEA_FIT
   }
 }
 
-void dea_fit_create(int order, int order_z, struct dea_fit *out)
+void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out)
 {
   out->n = order + 1;
   out->nz = order_z + 1;
@@ -37,7 +37,7 @@ void dea_fit_create(int order, int order_z, struct dea_fit *out)
   }
 }
 
-void dea_fit_node(const struct dea_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
+void dea_fit_node(const struct dea_gauss_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
                   double out[DEA_FIT_VALUES])
 {
   int i = node % fit->n, j = node / fit->n % fit->n, k = node / (fit->n * fit->n);
@@ -54,7 +54,7 @@ void dea_fit_node(const struct dea_fit *fit, int node, double (*at)[DEA_FIT_VALU
   }
 }
 
-void dea_recovered_set(const struct dea_fit *fit, double (*at)[DEA_FIT_VALUES],
+void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
                        struct dea_recovered *out)
 {
   out->plane_nodes = fit->n * fit->n;

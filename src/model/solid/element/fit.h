@@ -13,19 +13,19 @@ enum {
  * degree below the displacements; through the thickness too, but at least linear, since a plate
  * that bends has stresses linear in z. Along each axis the value at node i is the sum over the
  * Gauss points q of fit[i][q] times theirs. */
-struct dea_fit {
+struct dea_gauss_fit {
   int n, nz; // nodes, and Gauss points, along the axes; nz 1: flat
   double plane[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX], z[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX];
 };
 
 /* order_z: 0 for a flat element. */
-void dea_fit_create(int order, int order_z, struct dea_fit *out);
+void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out);
 /* Values at a node from those at the Gauss points, [gauss][DEA_FIT_VALUES]. Both are numbered first
  * axis fastest. */
-void dea_fit_node(const struct dea_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
+void dea_fit_node(const struct dea_gauss_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
                   double out[DEA_FIT_VALUES]);
 /* Numbers of nodes, and F, stress, energy and field of all of them. */
-void dea_recovered_set(const struct dea_fit *fit, double (*at)[DEA_FIT_VALUES],
+void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
                        struct dea_recovered *out);
 
 #endif

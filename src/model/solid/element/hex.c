@@ -648,7 +648,7 @@ static dea_status recover_point(const struct dea_constituent *constituent,
 }
 
 /* P through the thickness of the element, at the plane nodes; along the plane as the stress. */
-static void membrane_force(const struct dea_hex_shape *s, const struct dea_fit *fit,
+static void membrane_force(const struct dea_hex_shape *s, const struct dea_gauss_fit *fit,
                            double thickness_m, double (*P)[9], struct dea_recovered *out)
 {
   double x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
@@ -678,7 +678,7 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX], values[DEA_HEX_GAUSS_MAX][DEA_FIT_VALUES];
   double P[DEA_HEX_GAUSS_MAX][9];
-  struct dea_fit fit;
+  struct dea_gauss_fit fit;
   double thin_V_per_m =
       !coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
   out->volume_m3 = out->volume_error = 0;

@@ -311,7 +311,7 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   const struct dea_constituent *constituent = in->constituent;
   double values[DEA_FLAT_NODES_MAX][DEA_FIT_VALUES], P[DEA_FLAT_NODES_MAX][6], F[6];
   double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
-  struct dea_fit fit;
+  struct dea_gauss_fit fit;
   out->volume_m3 = out->volume_error = 0;
   for (int q = 0; q < shape->gauss; q++) {
     double area = columns_at(shape, q, in->X, in->u, F);
