@@ -144,6 +144,18 @@ void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *se
 /* Numbers that predict fills. */
 size_t dea_element_predicted_count(const struct dea_element *e);
 
+/* mass [nodes][nodes] += kilograms N_a N_b, of the bases at a point. */
+static inline void dea_element_add_mass(int nodes, double kilograms, const double *value,
+                                        double *mass)
+{
+  for (int a = 0; a < nodes; a++) {
+    double share = kilograms * value[a];
+    for (int b = 0; b < nodes; b++) {
+      mass[a * nodes + b] += share * value[b];
+    }
+  }
+}
+
 /* Forces g3 [nodes][3] and, unless NULL, tangent K3 of what has no potential, as [nodes][4] with
  * zeros. In place (g4 = g3, K4 = K3) where there is room. */
 static inline void dea_element_spread(int nodes, const double *g3, const double *K3, double *g4,

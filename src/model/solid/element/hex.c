@@ -422,9 +422,7 @@ dea_status dea_hex_mass(const struct dea_element *element,
   memset(mass, 0, (size_t)(s->nodes * s->nodes) * sizeof *mass);
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
     double kilograms = constituent->density_kg_per_m3 * points[q].weight;
-    for (int ab = 0; ab < s->nodes * s->nodes; ab++) {
-      mass[ab] += kilograms * s->value[q][ab / s->nodes] * s->value[q][ab % s->nodes];
-    }
+    dea_element_add_mass(s->nodes, kilograms, s->value[q], mass);
   }
   return status;
 }

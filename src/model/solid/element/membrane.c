@@ -244,9 +244,7 @@ static dea_status mass(const struct dea_element *element, const struct dea_const
     if (!(area > 0)) {
       return DEA_E_DOMAIN;
     }
-    for (int ab = 0; ab < s->nodes * s->nodes; ab++) {
-      out[ab] += kilograms * s->value[q][ab / s->nodes] * s->value[q][ab % s->nodes];
-    }
+    dea_element_add_mass(s->nodes, kilograms, s->value[q], out);
   }
   return DEA_OK;
 }
