@@ -99,8 +99,10 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
 static void keep_row(struct rows *rows)
 {
   for (; rows->blank > 0; rows->blank--, rows->count++) {
-    for (size_t k = 0; k < rows->table->column_count; k++) {
-      rows->table->columns[k].values[rows->count] = NAN;
+    for (size_t i = 0; i < rows->dialect->count; i++) {
+      if (rows->column[i] != NONE) {
+        rows->table->columns[rows->column[i]].values[rows->count] = NAN;
+      }
     }
   }
   for (size_t i = 0; i < rows->dialect->count; i++) {
@@ -236,8 +238,10 @@ static dea_status read_lines(struct rows *rows, struct dea_slice text)
       }
     }
   }
-  for (size_t k = 0; k < rows->table->column_count; k++) {
-    rows->table->columns[k].count = rows->count;
+  for (size_t i = 0; i < rows->dialect->count; i++) { // a table may have those of other sections
+    if (rows->column[i] != NONE) {
+      rows->table->columns[rows->column[i]].count = rows->count;
+    }
   }
   if (rows->errors == 0) {
     DEA_TRY(rows->ctx, refuse_thousands(rows));
