@@ -30,6 +30,36 @@ bool dea_path_is_folder(const char *path)
   return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
+dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name)
+{
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  bool there = dea_path_exists(path);
+  dea_free(ctx, path);
+  return !there ? DEA_OK
+                : dea_fail(ctx, DEA_E_IO,
+                           "%s/%s is there already; choose another folder with -o, or replace "
+                           "what is there with --force",
+                           directory, name);
+}
+
+dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
+                             bool force)
+{
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  bool there = dea_path_exists(path) && !dea_path_is_folder(path);
+  if (there && force) {
+    unlink(path);
+  }
+  dea_free(ctx, path);
+  return there && !force ? dea_path_refuse(ctx, directory, name) : DEA_OK;
+}
+
 static dea_status folder_make_one(struct dea_context *ctx, const char *directory)
 {
   if (mkdir(directory, 0777) == 0 || (errno == EEXIST && dea_path_is_folder(directory))) {

@@ -11,6 +11,11 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory);
 /* True when something of that name exists. */
 bool dea_path_exists(const char *path);
 bool dea_path_is_folder(const char *path);
+/* DEA_E_IO, which says how to go on, where something of that name is in the folder. */
+dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name);
+/* The same of a file, which `force` removes instead; a folder of that name stays. */
+dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
+                             bool force);
 
 /* Writes a file as a whole: the bytes go to a hidden file beside it, which then takes the name, so
  * that no interruption leaves half a file. Replaces an existing file. */

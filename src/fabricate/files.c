@@ -75,17 +75,7 @@ struct location {
 static dea_status refuse_existing(void *user, const char *name)
 {
   const struct location *location = user;
-  char *path = dea_path_join(location->ctx, location->directory, name);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
-  bool there = dea_path_exists(path);
-  dea_free(location->ctx, path);
-  return !there ? DEA_OK
-                : dea_fail(location->ctx, DEA_E_IO,
-                           "%s/%s is there already; choose another folder with -o, or replace "
-                           "what is there with --force",
-                           location->directory, name);
+  return dea_path_refuse(location->ctx, location->directory, name);
 }
 
 /* Removes the sheets of a part that an older design had and this one has not: they would be taken

@@ -1,15 +1,14 @@
-#define _POSIX_C_SOURCE 200809L // unlink
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "material/catalogue.h"
 #include "output/csv.h"
 #include "output/fit_files.h"
+#include "output/gnuplot.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- the material ---- */
 
@@ -374,32 +373,11 @@ json_t *dea_fit_json(struct dea_context *ctx, const struct dea_fit *fit, const c
 dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
                           const char *directory, bool force)
 {
-  static const char *const names[] = {"fit.json", "fit.csv", "fit", "fit_time"};
-  static const char *const endings[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
-  for (size_t i = 0; i <= sizeof names / sizeof names[0]; i++) {
-    for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
-      char name[DEA_NAME_SIZE + 16];
-      if (i < sizeof names / sizeof names[0]) {
-        snprintf(name, sizeof name, "%s%s", names[i], endings[e]);
-      } else {
-        snprintf(name, sizeof name, "%.63s.yaml", file->name.text);
-      }
-      char *path = dea_path_join(ctx, directory, name);
-      if (path == NULL) {
-        return DEA_E_MEMORY;
-      }
-      bool there = dea_path_exists(path) && !dea_path_is_folder(path);
-      if (there && force) {
-        unlink(path);
-      }
-      dea_free(ctx, path);
-      if (there && !force) {
-        return dea_fail(ctx, DEA_E_IO,
-                        "%s/%s is there already; choose another folder with -o, or replace what is "
-                        "there with --force",
-                        directory, name);
-      }
-    }
+  char material[DEA_NAME_SIZE + 8];
+  snprintf(material, sizeof material, "%.63s.yaml", file->name.text);
+  const char *const names[] = {"fit.json", "fit.csv", "fit", "fit_time", material};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, names[i], force));
   }
   return dea_folder_make(ctx, directory);
 }

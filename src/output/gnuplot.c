@@ -157,3 +157,15 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
   dea_free(ctx, drawing);
   return status;
 }
+
+dea_status dea_gnuplot_make_way(struct dea_context *ctx, const char *directory, const char *name,
+                                bool force)
+{
+  static const char *const endings[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
+  for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+    char file[128];
+    snprintf(file, sizeof file, "%.119s%s", name, endings[i]);
+    DEA_TRY(ctx, dea_path_make_way(ctx, directory, file, force));
+  }
+  return DEA_OK;
+}

@@ -19,33 +19,17 @@ static const struct dea_export *const exports[] = {
 };
 enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
 
-/* Fails where something of that name is in the folder. */
-static dea_status refuse(struct dea_context *ctx, const char *directory, const char *name)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
-  bool there = dea_path_exists(path);
-  dea_free(ctx, path);
-  return !there ? DEA_OK
-                : dea_fail(ctx, DEA_E_IO,
-                           "%s/%s is there already; choose another folder with -o, or replace "
-                           "what is there with --force",
-                           directory, name);
-}
-
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force)
 {
   // Also a user's own file of such a name would be lost.
   for (size_t i = EXPORT_COUNT; i-- > 0 && !force;) {
     if (exports[i]->file != NULL) {
-      DEA_TRY(ctx, refuse(ctx, directory, exports[i]->file));
+      DEA_TRY(ctx, dea_path_refuse(ctx, directory, exports[i]->file));
     }
   }
   if (!force) {
-    DEA_TRY(ctx, refuse(ctx, directory, DEA_FIGURE_FOLDER));
-    DEA_TRY(ctx, refuse(ctx, directory, DEA_FIELD_FOLDER));
+    DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIGURE_FOLDER));
+    DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIELD_FOLDER));
   }
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   if (access(directory, W_OK) != 0) {

@@ -2,10 +2,10 @@
 
 #include "base/version.h"
 #include "base/write_file.h"
+#include "output/gnuplot.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /* "NAME_UNIT", the number under it. */
 static void put_kind(json_t *object, const char *name, enum dea_reduced_kind kind, double value)
@@ -190,27 +190,8 @@ dea_status dea_reduction_folder(struct dea_context *ctx, const char *directory, 
                                       "cycles.csv",     "discharges.csv",  "profiles.csv",
                                       "history.csv",    "profiles",        "history",
                                       "history_force",  "amplitude",       "cycles"};
-  static const char *const endings[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
-      char name[64];
-      snprintf(name, sizeof name, "%s%s", names[i], endings[e]);
-      char *path = dea_path_join(ctx, directory, name);
-      if (path == NULL) {
-        return DEA_E_MEMORY;
-      }
-      bool there = dea_path_exists(path) && !dea_path_is_folder(path);
-      if (there && force) {
-        unlink(path);
-      }
-      dea_free(ctx, path);
-      if (there && !force) {
-        return dea_fail(ctx, DEA_E_IO,
-                        "%s/%s is there already; choose another folder with -o, or replace what "
-                        "is there with --force",
-                        directory, name);
-      }
-    }
+    DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, names[i], force));
   }
   return dea_folder_make(ctx, directory);
 }
