@@ -244,7 +244,7 @@ static void check_fibres(const struct drawn *d, bool svg)
   if (d->kerf == 0) {
     assert_close(cut_area(opening), fibre_opening_area(d), 0, 1e-3);
     double centre[2];
-    dea_layout_place(&workshop->layout[part_index("fibres")], 0, centre);
+    dea_sheet_place(&workshop->layout[part_index("fibres")], 0, centre);
     for (int i = 0; i < opening->count; i++) {
       const double *v = cut_vertex[opening->first + i];
       nearest = fmin(nearest, hypot(v[0] - 1e3 * centre[0], v[1] - 1e3 * centre[1]));
@@ -351,7 +351,7 @@ static void read_marks(const char *part, const char *layer, double out[3][2])
   double centre[2];
   int found = 0;
   read_part(part, false);
-  dea_layout_place(&workshop->layout[part_index(part)], 0, centre);
+  dea_sheet_place(&workshop->layout[part_index(part)], 0, centre);
   double mark = 1e3 * workshop->plan.mark_m, scale = 1 / device->pre_stretch;
   for (int i = 0; i < cut_count && found < 3; i++) {
     const struct cut_shape *s = &cut_shape[i];
@@ -416,14 +416,14 @@ static void test_copies_keep_apart(void **state)
                                       {"fabrication.sheet.gap", "4 mm"}};
   assert_int_equal(workshop_make(GOOD_DESIGN, sets, 3), DEA_OK);
   for (size_t i = 0; i < workshop->count; i++) {
-    const struct dea_layout *layout = &workshop->layout[i];
+    const struct dea_sheet_layout *layout = &workshop->layout[i];
     double box[4];
     dea_part_box(&workshop->part[i], box);
     double half = box[2] + (workshop->part[i].paper ? 0 : 0.1e-3), a[2], b[2];
     assert_int_equal(layout->count, workshop->part[i].paper ? 1 : 7);
     for (int p = 0; p < layout->count; p++) {
-      dea_layout_place(layout, p, a);
-      dea_layout_place(&workshop->layout[part_index("film")], p, b);
+      dea_sheet_place(layout, p, a);
+      dea_sheet_place(&workshop->layout[part_index("film")], p, b);
       if (strcmp(workshop->part[i].name, "stencil-bottom") == 0) { // it meets the film from below
         assert_close(a[0], layout->width_m - b[0], 0, 1e-12);
         assert_close(a[1], b[1], 0, 1e-12);
@@ -434,7 +434,7 @@ static void test_copies_keep_apart(void **state)
       assert_true(a[0] - half >= 5e-3 - 1e-9 && a[0] + half <= layout->width_m - 5e-3 + 1e-9);
       assert_true(a[1] - half >= 5e-3 - 1e-9 && a[1] + half <= layout->height_m - 5e-3 + 1e-9);
       for (int q = 0; q < p; q++) {
-        dea_layout_place(layout, q, b);
+        dea_sheet_place(layout, q, b);
         double apart = fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1])) - 2 * half;
         assert_true(apart >= 4e-3 - 1e-9);
       }

@@ -178,7 +178,7 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
   }
   dea_status status = fill(ctx, design, device);
   if (status != DEA_OK) {
-    dea_free(ctx, device);
+    dea_device_destroy(ctx, device);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   *out = device;
@@ -187,5 +187,8 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
 
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device)
 {
-  dea_free(ctx, device);
+  if (device != NULL) {
+    dea_layout_destroy(ctx, device->layout);
+    dea_free(ctx, device);
+  }
 }

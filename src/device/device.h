@@ -6,8 +6,12 @@
 #define DEA_DEVICE_DEVICE_H
 
 #include "design/design.h"
+#include "device/layout.h"
 
 struct dea_device {
+  struct dea_layout *layout; // owned; NULL of a device that was filled by hand
+  bool general; // its parts are those of the layout; all that follows but gravity is 0 then
+
   struct dea_material film;
   struct dea_material electrode;       // name "" when the design names none
   double film_thickness_unstretched_m; // H0

@@ -95,7 +95,7 @@ static void begin_entity(struct file *file, const char *type, unsigned own, unsi
 
 /* ---- what stands before the drawing ---- */
 
-static void write_header(struct file *file, const struct dea_layout *sheet, unsigned handles)
+static void write_header(struct file *file, const struct dea_sheet_layout *sheet, unsigned handles)
 {
   group(file, 999, "libdea " DEA_VERSION);
   begin_section(file, "HEADER");
@@ -149,7 +149,7 @@ static void end_table(struct file *file)
   group(file, 0, "ENDTAB");
 }
 
-static void write_viewport(struct file *file, const struct dea_layout *sheet)
+static void write_viewport(struct file *file, const struct dea_sheet_layout *sheet)
 {
   begin_table(file, "VPORT", VIEWPORTS, 1);
   begin_entry(file, "VPORT", VIEWPORT, VIEWPORTS, "AcDbViewportTableRecord", "*Active");
@@ -230,7 +230,7 @@ static void write_block_records(struct file *file)
   end_table(file);
 }
 
-static void write_tables(struct file *file, const struct dea_layout *sheet)
+static void write_tables(struct file *file, const struct dea_sheet_layout *sheet)
 {
   begin_section(file, "TABLES");
   write_viewport(file, sheet);
@@ -374,7 +374,7 @@ static dea_status write_copy(struct file *file, const struct dea_workshop *works
 static dea_status write_entities(struct file *file, const struct dea_workshop *workshop,
                                  size_t index)
 {
-  const struct dea_layout *layout = &workshop->layout[index];
+  const struct dea_sheet_layout *layout = &workshop->layout[index];
   const struct dea_part *part = &workshop->part[index];
   const struct dea_part_contour edge = {DEA_LAYER_NOTE, true, false, 0, 4};
   const struct dea_vertex corners[4] = {{.x_m = 0, .y_m = 0},
@@ -392,7 +392,7 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
   dea_text_free(&words);
   for (int copy = 0; copy < layout->count && status == DEA_OK; copy++) {
     double at[2];
-    dea_layout_place(layout, copy, at);
+    dea_sheet_place(layout, copy, at);
     status = write_copy(file, workshop, part, at);
   }
   group(file, 0, "ENDSEC");

@@ -19,7 +19,7 @@ void dea_sheet_labels(const struct dea_workshop *workshop, size_t index, struct 
   }
 }
 
-double dea_sheet_labels_height(const struct dea_layout *layout)
+double dea_sheet_labels_height(const struct dea_sheet_layout *layout)
 {
   return fmin(2.5e-3, layout->width_m / 130);
 }

@@ -8,7 +8,7 @@
 /* "frdea-4.yaml: Frame of the pre-stretch; seen from ...; 2 copies, ...". */
 void dea_sheet_labels(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
 /* Height of letters with which it fits beside the sheet [m]. */
-double dea_sheet_labels_height(const struct dea_layout *layout);
+double dea_sheet_labels_height(const struct dea_sheet_layout *layout);
 
 /* Next letter of UTF-8 text, 0 at its end: control characters become spaces, what is not UTF-8
  * becomes U+FFFD. */

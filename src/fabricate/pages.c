@@ -133,7 +133,7 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
 static void draw_sheet_page(const struct dea_paper *paper, const struct dea_workshop *w,
                             size_t index)
 {
-  const struct dea_layout *layout = &w->layout[index];
+  const struct dea_sheet_layout *layout = &w->layout[index];
   char words[320];
   snprintf(words, sizeof words,
            "%.80s: %s; %d copies on their sheet, finished parts without kerf; 1:1",
@@ -141,7 +141,7 @@ static void draw_sheet_page(const struct dea_paper *paper, const struct dea_work
   dea_dimensions_fit(paper, 5, 1.6, 2.3, false, 0x6a6a6a, 1e3 * layout->width_m - 10, words);
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];
-    dea_layout_place(layout, copy, at);
+    dea_sheet_place(layout, copy, at);
     draw_part(paper, &w->part[index], 1e3 * at[0], 1e3 * at[1]);
   }
 }
@@ -157,7 +157,7 @@ void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *wo
     draw_part_page(paper, workshop, &workshop->part[i], size);
   }
   for (size_t i = 0; i < workshop->count; i++) {
-    const struct dea_layout *layout = &workshop->layout[i];
+    const struct dea_sheet_layout *layout = &workshop->layout[i];
     bool readable = fmax(layout->width_m, layout->height_m) <= 5; // 14400 pt, what readers take
     if (layout->count > 1 && readable) {
       paper->type->page(paper->canvas, 1e3 * layout->width_m, 1e3 * layout->height_m);

@@ -80,7 +80,7 @@ static dea_status write_layer(struct dea_text *out, const struct dea_workshop *w
       DEA_LAYER_LIST(LAYER_ROW)
 #undef LAYER_ROW
   };
-  const struct dea_layout *layout = &workshop->layout[index];
+  const struct dea_sheet_layout *layout = &workshop->layout[index];
   const struct dea_part *part = &workshop->part[index];
   dea_text_add(out,
                "  <g id=\"%s\" inkscape:groupmode=\"layer\" inkscape:label=\"%s\" "
@@ -88,7 +88,7 @@ static dea_status write_layer(struct dea_text *out, const struct dea_workshop *w
                rows[layer].name, rows[layer].name, rows[layer].colour, rows[layer].meaning);
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];
-    dea_layout_place(layout, copy, at);
+    dea_sheet_place(layout, copy, at);
     DEA_TRY(part->ctx, write_copy(out, workshop, part, layer, at, layout->height_m));
   }
   dea_text_add(out, "  </g>\n");
@@ -97,7 +97,7 @@ static dea_status write_layer(struct dea_text *out, const struct dea_workshop *w
 
 dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
 {
-  const struct dea_layout *layout = &workshop->layout[index];
+  const struct dea_sheet_layout *layout = &workshop->layout[index];
   const struct dea_part *part = &workshop->part[index];
   struct dea_text words = {.ctx = part->ctx};
   double width = mm(layout->width_m), height = mm(layout->height_m);

@@ -28,10 +28,10 @@ static double half_size(const struct dea_workshop *w, enum dea_film_state state,
 }
 
 /* Paper is as large as it has to be. */
-static struct dea_layout paper_layout(double half, double margin)
+static struct dea_sheet_layout paper_layout(double half, double margin)
 {
   double side = 2 * (half + margin);
-  return (struct dea_layout){side, side, {0.5 * side, 0.5 * side}, side, 1, 1, false};
+  return (struct dea_sheet_layout){side, side, {0.5 * side, 0.5 * side}, side, 1, 1, false};
 }
 
 static double whole(double number)
@@ -40,7 +40,7 @@ static double whole(double number)
 }
 
 static dea_status sheet_layout(struct dea_context *ctx, const struct dea_workshop *w,
-                               const struct dea_part *part, struct dea_layout *out)
+                               const struct dea_part *part, struct dea_sheet_layout *out)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   double margin = f->sheet.margin_m.si, gap = f->sheet.gap_m.si;
@@ -48,7 +48,7 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
   double across = f->sheet.width_m.si, up = f->sheet.height_m.si;
   double columns = fmax(0, whole((across - 2 * margin + gap) / pitch));
   double rows = fmax(0, whole((up - 2 * margin + gap) / pitch));
-  *out = (struct dea_layout){
+  *out = (struct dea_sheet_layout){
       .width_m = across,
       .height_m = up,
       .first_m = {part->mirrored ? across - margin - half : margin + half, up - margin - half},
@@ -72,7 +72,7 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
                          1e3 * across, 1e3 * up, part->name, 2e3 * half, 1e3 * margin);
 }
 
-void dea_layout_place(const struct dea_layout *layout, int copy, double out_m[2])
+void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2])
 {
   double aside = copy % layout->columns * layout->pitch_m;
   out_m[0] = layout->first_m[0] + (layout->mirrored ? -aside : aside);

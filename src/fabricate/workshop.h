@@ -11,7 +11,7 @@ enum { DEA_WORKSHOP_PARTS_MAX = 8 };
 /* Copies of a part on its sheet: rows from the upper left corner. All parts of the unstretched film
  * have the same places, and all of the stretched one; on a sheet that is seen from the other side
  * they are mirrored as a whole, from the upper right corner. */
-struct dea_layout {
+struct dea_sheet_layout {
   double width_m, height_m; // of the sheet; origin at its lower left corner
   double first_m[2];        // centre of the first copy
   double pitch_m;           // from one to the next, sideways and downwards
@@ -22,7 +22,7 @@ struct dea_layout {
 struct dea_workshop {
   struct dea_fab_geometry plan;
   struct dea_part part[DEA_WORKSHOP_PARTS_MAX]; // in the order of the work
-  struct dea_layout layout[DEA_WORKSHOP_PARTS_MAX];
+  struct dea_sheet_layout layout[DEA_WORKSHOP_PARTS_MAX];
   size_t count;
 };
 
@@ -33,7 +33,7 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
 void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop);
 
 /* Centre of a copy on its sheet. */
-void dea_layout_place(const struct dea_layout *layout, int copy, double out_m[2]);
+void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2]);
 /* Tool path of contour i: the kerf's half outside of outer edges and inside of holes; what is only
  * marked stays as it is. out: [*count], owned by the caller. */
 dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,

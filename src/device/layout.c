@@ -1,0 +1,190 @@
+#include "device/layout.h"
+
+#include <math.h>
+#include <string.h>
+
+dea_status dea_layout_create(struct dea_context *ctx, struct dea_layout **out)
+{
+  struct dea_layout *layout = dea_alloc(ctx, 1, sizeof *layout);
+  *out = NULL;
+  if (layout == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *layout = (struct dea_layout){.ctx = ctx, .memory = {.ctx = ctx}};
+  layout->channels = dea_arena_alloc(&layout->memory, 1, sizeof *layout->channels);
+  if (layout->memory.failed) {
+    dea_layout_destroy(ctx, layout);
+    return DEA_E_MEMORY;
+  }
+  layout->channels[0].name = "ground";
+  layout->channel_count = 1;
+  *out = layout;
+  return DEA_OK;
+}
+
+void dea_layout_destroy(struct dea_context *ctx, struct dea_layout *layout)
+{
+  if (layout != NULL) {
+    for (size_t i = 0; i < layout->region_count; i++) {
+      dea_region_free(&layout->regions[i].region);
+    }
+    dea_arena_free(&layout->memory);
+    dea_free(ctx, layout);
+  }
+}
+
+#define FIND_BY_NAME(items, count)                                                                 \
+  for (size_t i = 0; i < (count); i++) {                                                           \
+    if (strcmp((items)[i].name, name) == 0) {                                                      \
+      return i;                                                                                    \
+    }                                                                                              \
+  }                                                                                                \
+  return DEA_LAYOUT_NONE
+
+size_t dea_layout_find_region(const struct dea_layout *layout, const char *name)
+{
+  FIND_BY_NAME(layout->regions, layout->region_count);
+}
+
+size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name)
+{
+  FIND_BY_NAME(layout->plies, layout->ply_count);
+}
+
+size_t dea_layout_find_body(const struct dea_layout *layout, const char *name)
+{
+  FIND_BY_NAME(layout->bodies, layout->body_count);
+}
+
+size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name)
+{
+  FIND_BY_NAME(layout->channels, layout->channel_count);
+}
+
+/* Whether an electrode lies on that face of a ply, its own or its neighbour's in the list. */
+static bool lies_on(const struct dea_layout_electrode *electrode, size_t ply, bool top)
+{
+  return (electrode->ply == ply && electrode->top == top) ||
+         (top && electrode->ply == ply + 1 && !electrode->top) ||
+         (!top && electrode->ply + 1 == ply && electrode->top);
+}
+
+bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply)
+{
+  for (size_t a = 0; a < layout->electrode_count; a++) {
+    for (size_t b = 0; b < layout->electrode_count; b++) {
+      const struct dea_layout_electrode *above = &layout->electrodes[a];
+      const struct dea_layout_electrode *below = &layout->electrodes[b];
+      if (lies_on(above, ply, true) && lies_on(below, ply, false) &&
+          above->channel != below->channel) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void dea_layout_box_m(const struct dea_layout *layout, double out[4])
+{
+  out[0] = out[1] = INFINITY;
+  out[2] = out[3] = -INFINITY;
+  for (size_t i = 0; i < layout->ply_count; i++) {
+    double box[4];
+    dea_region_box_m(&layout->regions[layout->plies[i].region].region, box);
+    for (int k = 0; k < 2; k++) {
+      out[k] = fmin(out[k], box[k]);
+      out[2 + k] = fmax(out[2 + k], box[2 + k]);
+    }
+  }
+}
+
+// Symmetry ---------------------------------------------------------------------------------------
+
+/* Regions with the number of what makes them differ from others. */
+struct labelled {
+  const struct dea_region **region;
+  int *label;
+  size_t count;
+};
+
+static void add(struct labelled *out, const struct dea_layout *layout, size_t region, int label)
+{
+  out->region[out->count] = &layout->regions[region].region;
+  out->label[out->count++] = label;
+}
+
+/* Parts of one kind share labels from `first` on: the number of the first part that is like it but
+ * for the region. */
+#define LIKE_ONES(items, count, same)                                                              \
+  for (size_t i = 0; i < (count); i++) {                                                           \
+    size_t j = 0;                                                                                  \
+    while (j < i && !(same)) {                                                                     \
+      j++;                                                                                         \
+    }                                                                                              \
+    add(out, layout, (items)[i].region, first + (int)j);                                           \
+  }                                                                                                \
+  first += (int)(count)
+
+static void label_all(const struct dea_layout *layout, struct labelled *out)
+{
+  const struct dea_layout_electrode *e = layout->electrodes;
+  const struct dea_layout_support *s = layout->supports;
+  const struct dea_layout_body *b = layout->bodies;
+  const struct dea_layout_pressure *p = layout->pressures;
+  int first = 1;
+  for (size_t i = 0; i < layout->ply_count; i++) { // two plies are never one another's image
+    add(out, layout, layout->plies[i].region, first++);
+  }
+  LIKE_ONES(e, layout->electrode_count,
+            e[j].ply == e[i].ply && e[j].top == e[i].top && e[j].channel == e[i].channel);
+  LIKE_ONES(s, layout->support_count,
+            s[j].edge == s[i].edge && s[j].components == s[i].components &&
+                s[j].hinged == s[i].hinged &&
+                memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0);
+  for (size_t i = 0; i < layout->support_count; i++) {
+    if (s[i].within != DEA_LAYOUT_NONE) {
+      add(out, layout, s[i].within, first + (int)i);
+    }
+  }
+  first += (int)layout->support_count;
+  LIKE_ONES(b, layout->body_count, false);
+  LIKE_ONES(p, layout->pressure_count,
+            p[j].ply == p[i].ply && p[j].top == p[i].top && p[j].pressure_Pa == p[i].pressure_Pa);
+}
+
+/* Of what a symmetry has, what a film with two axes of pre-stretch keeps: half a turn, and mirrors
+ * along these axes. */
+static void keep_axes(struct dea_symmetry *symmetry, double angle_rad)
+{
+  const double quarter = 0.5 * acos(-1.0);
+  bool all = symmetry->order == 0;
+  double off = symmetry->mirrors > 0 ? (angle_rad - symmetry->mirror_rad) / symmetry->step_rad : 0;
+  bool mirrored = all || (symmetry->mirrors > 0 && fabs(off - round(off)) < 1e-6);
+  double axis = fmod(fmod(angle_rad, quarter) + quarter, quarter);
+  bool half_turn = symmetry->order % 2 == 0;
+  symmetry->order = half_turn ? 2 : 1;
+  symmetry->mirrors = mirrored ? symmetry->order : 0;
+  symmetry->mirror_rad = half_turn ? axis : fmod(angle_rad + 2 * quarter, 2 * quarter);
+  symmetry->step_rad = half_turn ? quarter : 2 * quarter;
+}
+
+dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *layout)
+{
+  size_t most = layout->ply_count + layout->electrode_count + 2 * layout->support_count +
+                layout->body_count + layout->pressure_count;
+  struct dea_arena arena = {.ctx = ctx};
+  struct labelled all = {.region = dea_arena_alloc(&arena, most + 1, sizeof *all.region),
+                         .label = dea_arena_alloc(&arena, most + 1, sizeof *all.label)};
+  dea_status status = dea_arena_status(&arena);
+  if (status == DEA_OK) {
+    label_all(layout, &all);
+    status = dea_symmetry_find(ctx, all.region, all.label, all.count, 0, &layout->symmetry);
+  }
+  for (size_t i = 0; i < layout->ply_count && status == DEA_OK; i++) {
+    if (layout->plies[i].pre_stretch[0] != layout->plies[i].pre_stretch[1]) {
+      keep_axes(&layout->symmetry, layout->plies[i].angle_rad);
+    }
+  }
+  dea_arena_free(&arena);
+  return status;
+}

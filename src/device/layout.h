@@ -1,0 +1,153 @@
+/* The layout of a device: what lies where (docs/theory/devices.md). It is what is drawn, meshed,
+ * and cut, whatever made it: one of the generators (generator.h).
+ *
+ * All lengths are lengths of the flat film as it is stretched when parts are bonded to it; z goes
+ * up through the plies. A layout is constant once made. */
+#ifndef DEA_DEVICE_LAYOUT_H
+#define DEA_DEVICE_LAYOUT_H
+
+#include "base/arena.h"
+#include "geometry/region.h"
+#include "geometry/symmetry.h"
+#include "material/material.h"
+
+#include <stdint.h>
+
+#define DEA_LAYOUT_NONE SIZE_MAX // in place of a number of a part
+
+enum { DEA_LAYOUT_CHANNELS_MAX = 64 }; // ground counted
+
+/* A named part of the plane. */
+struct dea_layout_region {
+  const char *name;
+  struct dea_region region; // with its holes, arcs exact
+  struct dea_location location;
+};
+
+/* A sheet of one material in a region. In the list from bottom to top; where the one below it in
+ * the list is not there, it lies on what is there. */
+struct dea_layout_ply {
+  const char *name;
+  struct dea_material material;
+  size_t region;
+  double thickness_m;             // in the flat state
+  double thickness_unstretched_m; // thickness_m times both pre-stretches
+  double pre_stretch[2];          // from free of stress to the flat state, along its own two axes
+  double angle_rad;               // of the first of them from the x axis
+  size_t elements;                // through the thickness; 0: what the model takes
+  struct dea_location location;
+};
+
+/* Without thickness and stiffness, on a face of a ply; a ply that lies there feels it too. */
+struct dea_layout_electrode {
+  const char *name;
+  size_t region, ply;
+  bool top;       // the face
+  size_t channel; // 0: ground
+  struct dea_location location;
+};
+
+/* Its voltage: ratio times the voltage of the sweep, and one of its own. */
+struct dea_layout_channel {
+  const char *name; // of 0: "ground"
+  double ratio, own_V;
+  struct dea_location location;
+};
+
+/* Nodes of all plies that are held at a shift. */
+struct dea_layout_support {
+  size_t region;  // in it, its boundary counts
+  bool edge;      // only on the region's boundary
+  size_t within;  // only what is in this region too; DEA_LAYOUT_NONE: no such limit
+  int components; // bits 1, 2, 4: along x, y, z
+  bool hinged;    // only the nodes at the bottom: the edge may turn
+  double move_m[3];
+  struct dea_location location;
+};
+
+/* All that lies in a region moves as one. Components: bits 1, 2, 4 shift, 8, 16, 32 turn. */
+struct dea_layout_body {
+  const char *name;
+  size_t region;
+  int free;  // components that may move
+  int moved; // components that are held at the next two instead
+  double shift_m[3], turn_rad[3];
+  double mass_kg; // beside that of its plies, at the centroid of the region
+  double force_N[3], moment_N_m[3];
+  struct dea_location location;
+};
+
+/* Pulls back a component of a body against the outside. */
+struct dea_layout_spring {
+  size_t body;
+  int component;            // 0 to 2: shift along x, y, z; 3 to 5: turn about them
+  double free_at;           // place [m or rad] at which it has no force
+  double stiffness;         // [N/m or N m/rad] of a linear one
+  size_t count;             // 0: linear; points of a table of force against place, from free_at on
+  const double *at, *force; // [count], at rising; force that pulls back
+  struct dea_location location;
+};
+
+/* Pressure that follows a face of a ply, > 0 into the ply. */
+struct dea_layout_pressure {
+  size_t region, ply;
+  bool top;
+  double pressure_Pa;
+  struct dea_location location;
+};
+
+enum dea_layout_monitor_kind {
+  DEA_MONITOR_POINT,  // of a ply's middle surface
+  DEA_MONITOR_LINE,   // two points: their distance
+  DEA_MONITOR_REGION, // of a ply's middle surface
+  DEA_MONITOR_BODY,
+};
+
+/* What results are reported of. */
+struct dea_layout_monitor {
+  const char *name;
+  enum dea_layout_monitor_kind kind;
+  double at_m[2][2]; // a point, or the two of a line
+  size_t ply;        // of these and of a region
+  size_t region, body;
+  struct dea_location location;
+};
+
+struct dea_layout {
+  struct dea_context *ctx;
+  struct dea_arena memory; // of all but the contours of regions
+  struct dea_layout_region *regions;
+  struct dea_layout_ply *plies; // from bottom to top
+  struct dea_layout_electrode *electrodes;
+  struct dea_layout_channel *channels; // [0]: ground
+  struct dea_layout_support *supports;
+  struct dea_layout_body *bodies;
+  struct dea_layout_spring *springs;
+  struct dea_layout_pressure *pressures;
+  struct dea_layout_monitor *monitors;
+  size_t region_count, ply_count, electrode_count, channel_count, support_count, body_count;
+  size_t spring_count, pressure_count, monitor_count;
+  double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight
+  struct dea_symmetry symmetry; // of all of it
+};
+
+/* Whether a ply is between electrodes of two channels somewhere. */
+bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply);
+/* Number of a region, ply, body, or channel of that name; DEA_LAYOUT_NONE. */
+size_t dea_layout_find_region(const struct dea_layout *layout, const char *name);
+size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name);
+size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
+size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
+/* {x min, y min, x max, y max} of all plies. */
+void dea_layout_box_m(const struct dea_layout *layout, double out[4]);
+/* Mirrors and rotations that plies, electrodes with their channels, supports, bodies, and pressures
+ * share, into `symmetry`; a generator calls it last. DEA_E_MEMORY. */
+dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *layout);
+
+/* An empty one with ground for its only channel. The lists are made by the generator in `memory`.
+ * out: owned by the caller. */
+dea_status dea_layout_create(struct dea_context *ctx, struct dea_layout **out);
+/* NULL is fine. */
+void dea_layout_destroy(struct dea_context *ctx, struct dea_layout *layout);
+
+#endif
