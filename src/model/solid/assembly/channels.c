@@ -22,31 +22,30 @@ dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *
   if (options->channels != NULL && options->field == DEA_SOLID_FIELD_COUPLED) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field has one channel");
   }
+  p->between = dea_arena_alloc(&s->memory, elements, sizeof *p->between);
   p->active = dea_arena_alloc(&s->memory, elements, sizeof *p->active);
   p->share = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof *p->share);
   s->state.own_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
   s->state.own_goal_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
-  if (options->channels != NULL) {
-    p->between = dea_arena_alloc(&s->memory, elements, sizeof *p->between);
-  }
   DEA_TRY(ctx, dea_arena_status(&s->memory));
   for (size_t k = 1; k <= p->channel_count; k++) {
     p->share[k] = options->share != NULL ? options->share[k - 1] : 1;
   }
   for (size_t e = 0; e < elements; e++) {
-    int region = p->grid->region[e], ply = p->grid->ply[e];
-    p->active[e] = options->active != NULL && options->active(options->self, region, ply);
-    if (p->active[e] && p->between != NULL) {
-      int *at = p->between[e];
-      options->channels(options->self, region, ply, &at[0], &at[1]);
-      for (int i = 0; i < 2; i++) {
-        if (at[i] < 0 || (size_t)at[i] > p->channel_count) {
-          return dea_fail(ctx, DEA_E_ARGUMENT, "there is no channel %d: %zu of them", at[i],
-                          p->channel_count);
-        }
+    int region = p->grid->region[e], ply = p->grid->ply[e], *at = p->between[e];
+    if (options->active != NULL && options->active(options->self, region, ply)) {
+      at[0] = 1;
+      if (options->channels != NULL) {
+        options->channels(options->self, region, ply, &at[0], &at[1]);
       }
-      p->active[e] = at[0] != at[1];
     }
+    for (int i = 0; i < 2; i++) {
+      if (at[i] < 0 || (size_t)at[i] > p->channel_count) {
+        return dea_fail(ctx, DEA_E_ARGUMENT, "there is no channel %d: %zu of them", at[i],
+                        p->channel_count);
+      }
+    }
+    p->active[e] = at[0] != at[1];
   }
   return DEA_OK;
 }
@@ -115,8 +114,7 @@ static dea_status add_own(struct dea_solid *s, double *charge_C, double *capacit
     if (status != DEA_OK) {
       return status;
     }
-    size_t top = p->between != NULL ? (size_t)p->between[e][0] : 1;
-    size_t bottom = p->between != NULL ? (size_t)p->between[e][1] : 0;
+    size_t top = (size_t)p->between[e][0], bottom = (size_t)p->between[e][1];
     if (charge_C != NULL) {
       double charge = C * dea_solid_voltage_across(s, e, s->state.voltage_V);
       charge_C[top] += charge;

@@ -34,8 +34,8 @@ struct dea_solid_problem {
   struct dea_constituent *constituents; // [constituent_count]; their kappa: incompressible.h
   size_t constituent_count;
   int *constituent_of;  // [elements] place in constituents
-  bool *active;         // [elements] whether it lies between electrodes of two channels
-  int (*between)[2];    // [elements] channels at its top and bottom; NULL: 1 and 0
+  int (*between)[2];    // [elements] channels at its top and bottom; 0, 0 without electrodes
+  bool *active;         // [elements] whether these are two, with a voltage in between
   size_t channel_count; // ground not counted
   double *share;        // [channel_count + 1] of the voltage that a channel gets; [0]: 0
   double *spring; // [dofs] M of docs/theory/membrane.md by dea_solid_create_springs; NULL: none
@@ -175,11 +175,7 @@ static inline bool dea_solid_has_own_voltages(const struct dea_solid *s)
 static inline double dea_solid_voltage_across(const struct dea_solid *s, size_t e, double voltage_V)
 {
   const struct dea_solid_problem *p = &s->problem;
-  if (!p->active[e]) {
-    return 0;
-  }
-  int top = p->between != NULL ? p->between[e][0] : 1;
-  int bottom = p->between != NULL ? p->between[e][1] : 0;
+  int top = p->between[e][0], bottom = p->between[e][1];
   return (p->share[top] - p->share[bottom]) * voltage_V + s->state.own_V[top] -
          s->state.own_V[bottom];
 }
