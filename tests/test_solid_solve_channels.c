@@ -3,12 +3,14 @@
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/motion/response.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 #include "message_fixture.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double h_m = 44e-6, length_m = 4e-3;
@@ -20,7 +22,8 @@ static struct dea_constituent film_of(double thickness_m)
                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                  .kappa_Pa = 4e7,
                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                 .thickness_m = thickness_m};
+                                 .thickness_m = thickness_m,
+                                 .density_kg_per_m3 = 1080};
   assert_int_equal(dea_constituent_relax(&film), DEA_OK);
   return film;
 }
@@ -328,6 +331,43 @@ static void unknown_channel(const void *self, int region, int ply, int *top, int
   *bottom = 0;
 }
 
+/* The static response to an AC excitation of the whole, where channels are at voltages of their
+ * own, against equilibria on both sides. */
+static void test_response_about_own_voltages(void **state)
+{
+  (void)state;
+  static const double V[2] = {3e3, 1.5e3}, step_V = 20;
+  static const struct dea_damping none;
+  struct strip strip = strip_create(true, 2, (const double[]){1, 0.5});
+  size_t count = 3 * strip.grid->node_count;
+  double *slope = calloc(count, sizeof *slope), most = 0, off = 0;
+  assert_non_null(slope);
+  for (int side = -1; side <= 1; side += 2) {
+    solve_at(&strip, side * step_V, V[0], V[1]);
+    for (size_t i = 0; i < count; i++) {
+      slope[i] += side * dea_solid_displacement(strip.solid)[i] / (2 * step_V);
+    }
+  }
+  solve_at(&strip, 0, V[0], V[1]);
+  struct dea_solid_response *response;
+  assert_int_equal(dea_solid_response_create(ctx, strip.solid, 1, &response), DEA_OK);
+  for (size_t n = 0; n < strip.grid->node_count; n++) {
+    double real[3], imaginary[3];
+    dea_solid_response_at(response, n, 0, &none, real, imaginary);
+    for (size_t i = 0; i < 3; i++) {
+      most = fmax(most, fabs(slope[3 * n + i]));
+      off = fmax(off, fabs(real[i] - slope[3 * n + i]));
+      assert_true(imaginary[i] == 0);
+    }
+  }
+  print_message("up to %.6g nm/V, off by %.2e of it\n", 1e9 * most, off / most);
+  assert_true(most > 1e-10);
+  assert_true(off < 1e-5 * most);
+  dea_solid_response_destroy(ctx, response);
+  free(slope);
+  strip_destroy(&strip);
+}
+
 static bool no_electrode(const void *self, const double X[3], double *share)
 {
   (void)self;
@@ -370,6 +410,7 @@ int main(void)
       cmocka_unit_test(test_charges_follow_voltages),
       cmocka_unit_test(test_force_and_charge),
       cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_response_about_own_voltages),
       cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);

@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Step of a field, for derivatives: forces are quadratic in it, energies linear in its square. */
-static const double field_step_V_per_m = 1e6;
+/* Steps for derivatives: of a field, whose square energies are linear in; of a voltage over the
+ * largest one across an element, forces are quadratic in it. */
+static const double field_step_V_per_m = 1e6, part_of_voltage = 5e-4;
 
 /* ---- creation ---- */
 
@@ -141,22 +142,33 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, doubl
 
 /* ---- how it follows the voltages ---- */
 
-/* force: -dg/dV_k, of the voltage of a channel [dofs]. */
-static dea_status channel_force(struct dea_context *ctx, struct dea_solid *s, size_t channel,
-                                double step_V, double *force)
+static double largest_voltage(const struct dea_solid *s)
 {
-  double energy, *own = &s->state.own_V[channel], there = *own;
+  double most = 0;
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) {
+    most = fmax(most, fabs(dea_solid_voltage_across(s, e, s->state.voltage_V)));
+  }
+  return most;
+}
+
+/* -dg/dV; g is quadratic in all voltages, so that its derivative is 0 where they are. */
+dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, size_t channel,
+                                   double *force)
+{
+  double energy, step_V = part_of_voltage * largest_voltage(s), there = s->state.own_V[channel];
   dea_status status = DEA_OK;
   memset(force, 0, s->problem.dofs * sizeof *force);
-  for (int side = -1; side <= 1 && status == DEA_OK; side += 2) {
-    *own = there + side * step_V;
-    status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy);
+  for (int side = -1; side <= 1 && step_V > 0 && status == DEA_OK; side += 2) {
+    double whole_V = s->state.voltage_V + (channel == 0 ? side * step_V : 0);
+    s->state.own_V[channel] = there + (channel > 0 ? side * step_V : 0);
+    status = dea_solid_assemble(ctx, s, whole_V, DEA_FORCE, &energy);
     for (size_t i = 0; i < s->problem.dofs; i++) {
       force[i] -= side * s->work.g[i] / (2 * step_V);
     }
   }
-  *own = there;
+  s->state.own_V[channel] = there;
   DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   return DEA_OK;
 }
 
@@ -180,14 +192,8 @@ static dea_status add_motion(struct dea_context *ctx, struct dea_solid *s, doubl
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t count = p->channel_count + 1;
-  double thickness = 0;
-  for (size_t e = 0; e < p->grid->element_count; e++) {
-    thickness =
-        p->active[e] ? fmax(thickness, dea_solid_constituent(s, e)->thickness_m) : thickness;
-  }
-  for (size_t k = 1; k < count && thickness > 0; k++) {
-    DEA_TRY(ctx,
-            channel_force(ctx, s, k, field_step_V_per_m * thickness, forces + (k - 1) * p->dofs));
+  for (size_t k = 1; k < count; k++) {
+    DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, k, forces + (k - 1) * p->dofs));
   }
   DEA_TRY(ctx, factorise_stable(ctx, s));
   for (size_t l = 1; l < count; l++) {

@@ -25,4 +25,10 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, d
 dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *solid, bool held,
                                   double *capacitance_F);
 
+/* Force on the unknowns [dofs] per volt of a channel, or for 0 of the voltage of the whole, which
+ * all channels share: at the equilibrium, at displacements that are held, without the parts of
+ * supports. Not for a coupled field. */
+dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *solid, size_t channel,
+                                   double *force);
+
 #endif

@@ -1,6 +1,6 @@
 #include "model/solid/motion/response.h"
 
-#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/equilibrium/modes.h"
 
@@ -13,9 +13,8 @@
 /* Modes that there are at least, where there are so many: what is far below the first one still has
  * its damping from them. */
 enum { MODES_LEAST = 8, DOUBLINGS = 12 };
-enum { TERMS = 5 };                    // of the series
-static const double beyond = 2;        // modes up to so many times the highest frequency
-static const double part_of_V2 = 1e-3; // step of V^2, which forces are linear in
+enum { TERMS = 5 };             // of the series
+static const double beyond = 2; // modes up to so many times the highest frequency
 
 struct dea_solid_response {
   struct dea_arena memory; // of all arrays
@@ -31,25 +30,6 @@ void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_respon
     dea_arena_free(&r->memory);
     dea_free(ctx, r);
   }
-}
-
-/* -dg/dV = -2 V dg/d(V^2). */
-dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s, double *force)
-{
-  double energy, square = s->state.voltage_V * s->state.voltage_V, step = part_of_V2 * square;
-  memset(force, 0, s->problem.dofs * sizeof *force);
-  if (dea_solid_has_own_voltages(s)) { // forces are then not linear in V^2
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "the response to an AC excitation needs channels that share one voltage");
-  }
-  for (int side = -1; side <= 1 && step > 0; side += 2) {
-    DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(square + side * step), DEA_FORCE, &energy));
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      force[i] -= side * s->state.voltage_V / step * s->work.g[i];
-    }
-  }
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
-  return DEA_OK;
 }
 
 /* Takes the modes out of v: v -= phi (phi . Mv); work: [dofs]. */
@@ -131,7 +111,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   size_t count;
   DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
   DEA_TRY(ctx, make_room(ctx, s, count, r));
-  DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, force));
+  DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, 0, force));
   if (count > 0) { // K stays there for the rest
     DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));
   }

@@ -39,10 +39,6 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
                                      size_t count, const size_t *nodes, size_t node_count,
                                      double (*out)[2][3]);
 
-/* Force on the unknowns [dofs] per volt at the equilibrium and fixed displacements, without what is
- * held. */
-dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *solid, double *force);
-
 /* Modes that it has. */
 size_t dea_solid_response_modes(const struct dea_solid_response *response);
 

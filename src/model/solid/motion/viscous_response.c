@@ -1,5 +1,6 @@
 /* Response of a solid with branches to an AC excitation of the voltage: its stiffness is complex
  * and depends on the frequency, so that the system is solved at each (docs/theory/vibration.md). */
+#include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/internal_variables.h"
 #include "model/solid/assembly/mass.h"
@@ -259,7 +260,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   struct dea_branches *only = dea_alloc(ctx, p->constituent_count, sizeof *only);
   dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? check_stable(ctx, s) : status;
-  status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, memory) : status;
+  status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, 0, memory) : status;
   status = status == DEA_OK ? make_parts(ctx, y, only) : status;
   status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
   status = status == DEA_OK ? set_right(ctx, y, memory) : status;
