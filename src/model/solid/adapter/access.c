@@ -672,8 +672,9 @@ static const double *array(struct dea_solid_object *object, const char *name, co
                            size_t shape[3])
 {
   size_t n = object->grid->node_count, c = object->channel_count + 1;
-  const double *charges = object->charges, *told = tell_bodies(object);
   size_t b = object->body_count;
+  const double *charges = object->charges;
+  const double *told = strncmp(name, "body_", strlen("body_")) == 0 ? tell_bodies(object) : NULL;
   const struct {
     const char *name, *unit;
     const double *data;
