@@ -83,8 +83,7 @@ dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
                        const struct dea_fit_options *options, struct dea_fit **out);
 void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit);
 
-// Parts (fit_tell.c)
-// -------------------------------------------------------------------------------
+// Parts (fit_tell.c) ------------------------------------------------------------------------------
 
 /* The weak combinations in words, where the law ends to be stable, and the next test. */
 void dea_fit_tell_weak(struct dea_fit *fit);

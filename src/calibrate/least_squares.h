@@ -50,8 +50,7 @@ dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *
                          const double *start, const bool *held, struct dea_lsq_fit *out);
 void dea_lsq_free(struct dea_lsq_fit *fit);
 
-// Statistics
-// ---------------------------------------------------------------------------------------
+// Statistics --------------------------------------------------------------------------------------
 
 /* Rows in the order in which they were measured: those of one test. What is in no group (priors) is
  * taken as independent. */

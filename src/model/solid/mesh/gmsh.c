@@ -24,8 +24,7 @@ static const double pi = 3.14159265358979323846;
 static const double mm = 1e3, unit_m = 1e-3; // of the script
 static const double near = 1e-6;             // of the mesh's size: a node on a contour
 
-// Shapes
-// -----------------------------------------------------------------------------------------
+// Shapes ------------------------------------------------------------------------------------------
 
 static bool is_inside(const struct dea_gmsh_shape *shape, const double x[2])
 {
@@ -50,8 +49,7 @@ static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
   return least;
 }
 
-// The script
-// -----------------------------------------------------------------------------------------
+// The script --------------------------------------------------------------------------------------
 
 /* Ways to quadrilaterals, each for where the one before it leaves triangles or bad elements. Tried
  * with Gmsh 4.8.4: blossom is best where it works; its full-quad form leaves slivers here and
@@ -214,8 +212,7 @@ static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
   dea_c_locale_leave(locale);
 }
 
-// The program
-// ----------------------------------------------------------------------------------------
+// The program -------------------------------------------------------------------------------------
 
 static dea_status explain(struct dea_context *ctx, enum dea_program_end end, int number,
                           double limit_s, const char *said)
@@ -334,8 +331,7 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
   return status;
 }
 
-// Shapes of the elements
-// -----------------------------------------------------------------------------
+// Shapes of the elements --------------------------------------------------------------------------
 
 static void middle_of(const struct dea_plane_mesh *mesh, size_t e, double out[2])
 {

@@ -71,8 +71,7 @@ struct reader {
   struct list nodes, elements, physicals, members;
 };
 
-// Faults, lists, words
-// -----------------------------------------------------------------------------
+// Faults, lists, words ----------------------------------------------------------------------------
 
 static dea_status fault(struct reader *r, size_t line, const char *format, ...) DEA_PRINTF(3, 4);
 
@@ -186,8 +185,7 @@ static dea_status skip_numbers(struct reader *r, size_t count)
   return DEA_OK;
 }
 
-// Sections of the file
-// -----------------------------------------------------------------------------
+// Sections of the file ----------------------------------------------------------------------------
 
 static dea_status read_format(struct reader *r)
 {
@@ -478,8 +476,7 @@ static dea_status read_sections(struct reader *r)
   return DEA_OK;
 }
 
-// From what was read to a mesh
-// ---------------------------------------------------------------------
+// From what was read to a mesh --------------------------------------------------------------------
 
 static int compare_nodes(const void *a, const void *b)
 {
