@@ -36,6 +36,7 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
                                           .elements = &p->elements,
                                           .kind = p->kind,
                                           .constituents = p->constituents,
+                                          .bulk_factor = s->state.bulk_factor,
                                           .constituent = p->constituent_of,
                                           .active = p->active,
                                           .u = s->state.u,

@@ -18,16 +18,13 @@ void dea_solid_update_multipliers(struct dea_solid *s)
 {
   size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *constituent = dea_solid_constituent(s, i / pressures);
-    s->state.multiplier[i] += constituent->kappa_Pa * s->state.theta[i];
+    s->state.multiplier[i] += dea_solid_bulk_modulus(s, i / pressures) * s->state.theta[i];
   }
 }
 
 void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
 {
-  for (size_t k = 0; k < s->problem.constituent_count; k++) {
-    s->problem.constituents[k].kappa_Pa *= factor;
-  }
+  s->state.bulk_factor *= factor;
 }
 
 /* p + kappa theta stays what it is when kappa becomes factor times as large. */
@@ -35,8 +32,8 @@ static void keep_pressures(struct dea_solid *s, double factor)
 {
   size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    const struct dea_constituent *constituent = dea_solid_constituent(s, i / pressures);
-    s->state.multiplier[i] -= (factor - 1) * constituent->kappa_Pa * s->state.theta[i];
+    double kappa_Pa = dea_solid_bulk_modulus(s, i / pressures);
+    s->state.multiplier[i] -= (factor - 1) * kappa_Pa * s->state.theta[i];
   }
 }
 

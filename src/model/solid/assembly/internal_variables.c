@@ -105,6 +105,7 @@ struct dea_constituent dea_solid_constituent_at(const struct dea_solid *s, size_
 {
   const struct dea_internal_variables *h = s->state.internal_variables;
   struct dea_constituent constituent = *dea_solid_constituent(s, e);
+  constituent.kappa_Pa = dea_solid_bulk_modulus(s, e);
   if (h != NULL && h->first[e] != ELASTIC) {
     constituent.viscous = h->B + 6 * h->first[e];
     constituent.viscous_Pa = h->b_Pa[s->problem.constituent_of[e]];

@@ -26,7 +26,7 @@ struct dea_internal_variables {
   double (*A)[DEA_BRANCHES_MAX][6];                  // [points] at the accepted state
 };
 
-/* What an element is of, with the step of its branches. */
+/* What an element is of, with its kappa and the step of its branches. */
 struct dea_constituent dea_solid_constituent_at(const struct dea_solid *solid, size_t e);
 
 /* branches: [constituent_count of the solid]. The film was held as it is for long: A = C^-1. out:

@@ -20,7 +20,7 @@ struct dea_solid_inertia;
 enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED, DEA_FOLLOWS };
 
 /* What is solved: mesh, constituents, supports, loads. Filled by dea_solid_create (the function is
- * named where it is another) and constant from then on, but for what is said of kappa, held, loads.
+ * named where it is another) and constant for the solvers; callers change supports and loads.
  *
  * Unknowns of the whole [dofs]: displacements [nodes][3], then, of a coupled field, psi [nodes]. In
  * K they stand node by node, per_node to each. */
@@ -29,9 +29,9 @@ struct dea_solid_problem {
   int per_node;                // unknowns of a node: 3, or 4 with a potential
   size_t dofs;                 // per_node * nodes
 
-  struct dea_element_set elements;      // all kinds at the orders of the grid
-  enum dea_element_kind *kind;          // [elements] by dea_solid_set_kinds
-  struct dea_constituent *constituents; // [constituent_count]; their kappa: incompressible.h
+  struct dea_element_set elements;            // all kinds at the orders of the grid
+  enum dea_element_kind *kind;                // [elements] by dea_solid_set_kinds
+  const struct dea_constituent *constituents; // [constituent_count]
   size_t constituent_count;
   int *constituent_of;  // [elements] place in constituents
   int (*between)[2];    // [elements] channels at its top and bottom; 0, 0 without electrodes
@@ -73,6 +73,8 @@ struct dea_solid_state {
   double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
   double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
                       // dea_solid_predict writes over it
+  double bulk_factor; // kappa is so many times that of the constituents, a power of 2; at first
+                      // 1, by dea_solid_scale_bulk_modulus and steps in time
   double *force;      // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
   double *force_goal; // [dofs] those that the next solve goes to, by the caller
   double *u_goal;     // [nodes][3] of prescribed (local) components [m], by dea_solid_prescribe
@@ -159,6 +161,12 @@ static inline const struct dea_constituent *dea_solid_constituent(const struct d
                                                                   size_t e)
 {
   return &s->problem.constituents[s->problem.constituent_of[e]];
+}
+
+/* kappa of an element as it is [Pa]. */
+static inline double dea_solid_bulk_modulus(const struct dea_solid *s, size_t e)
+{
+  return s->state.bulk_factor * dea_solid_constituent(s, e)->kappa_Pa;
 }
 
 /* Whether a channel has a voltage beside its share. */

@@ -56,7 +56,13 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
     *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
   }
-  p->constituents = dea_arena_alloc(memory, options->constituent_count, sizeof *p->constituents);
+  struct dea_constituent *constituents =
+      dea_arena_alloc(memory, options->constituent_count, sizeof *constituents);
+  if (constituents != NULL) {
+    memcpy(constituents, options->constituents, options->constituent_count * sizeof *constituents);
+  }
+  p->constituents = constituents;
+  p->constituent_count = options->constituent_count;
   p->constituent_of = dea_arena_alloc(memory, elements, sizeof *p->constituent_of);
   p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
   p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
@@ -74,9 +80,6 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   const struct dea_grid *grid = p->grid;
   DEA_TRY(ctx, dea_solid_settings_check(ctx, &s->settings));
   DEA_TRY(ctx, allocate(s, options));
-  p->constituent_count = options->constituent_count;
-  memcpy(p->constituents, options->constituents,
-         options->constituent_count * sizeof *p->constituents);
   for (size_t e = 0; e < grid->element_count; e++) {
     int region = grid->region[e], ply = grid->ply[e];
     p->constituent_of[e] =
@@ -111,6 +114,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   struct dea_solid_problem *p = &s->problem;
   s->memory.ctx = ctx;
   s->settings = options->settings != NULL ? *options->settings : dea_solid_settings_default();
+  s->state.bulk_factor = 1;
   p->grid = grid;
   p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   p->dofs = (size_t)p->per_node * grid->node_count;

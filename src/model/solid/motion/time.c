@@ -30,7 +30,6 @@ struct dea_solid_time {
   double step_s, step_before_s;     // of the step that is tried; of the accepted one, 0: a corner
   double *keep, *controls;          // the accepted state, as of a path
   size_t keep_count, control_count; // numbers in them
-  double stiffened;                 // kappa is so many times that of the constituents
   struct dea_solid_energies sums, sums_next;
   double first_J; // stored energy at the start
   double capacitance_F, capacitance_next_F;
@@ -167,7 +166,6 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   t->inertial = options->inertia;
   t->alpha = dea_alpha_of(options->spectral_radius);
   t->count = 3 * solid->problem.grid->node_count;
-  t->stiffened = 1;
   t->stay = solid->settings.accept_unstable;
   solid->settings.accept_unstable = t->stay || t->inertial; // inertia decides where a film goes
   dea_status status = start_time(ctx, t, options);
@@ -201,7 +199,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   t->solid->state.internal_variables = NULL;
   t->solid->state.inertia = NULL;
   t->solid->settings.accept_unstable = t->stay;
-  dea_solid_scale_bulk_modulus(t->solid, 1 / t->stiffened);
+  t->solid->state.bulk_factor = 1;
   dea_internal_variables_destroy(ctx, t->variables);
   dea_arena_free(&t->memory);
   dea_free(ctx, t->keep);
@@ -255,9 +253,8 @@ static void follow_stiffness(struct dea_solid_time *t)
     }
   }
   double factor = exp2(round(log2(1 + most)));
-  if (factor != t->stiffened) {
-    dea_solid_scale_bulk_modulus(s, factor / t->stiffened);
-    t->stiffened = factor;
+  if (factor != s->state.bulk_factor) {
+    s->state.bulk_factor = factor;
     s->found.factor_fits = false;
   }
 }

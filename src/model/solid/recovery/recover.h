@@ -14,14 +14,16 @@
 #include "model/solid/mesh/grid.h"
 #include "result/field_mesh.h"
 
-/* A solid at an equilibrium. u: [nodes][3]; multiplier: [elements][elements->pressures]; kind,
- * constituent, active: [elements]; across_V: [elements] voltage from bottom to top, 0 without
- * electrodes; potential_V: [nodes], used by kinds with a potential. */
+/* A solid at an equilibrium. bulk_factor: kappa is so many times that of the constituents; u:
+ * [nodes][3]; multiplier: [elements][elements->pressures]; kind, constituent, active: [elements];
+ * across_V: [elements] voltage from bottom to top, 0 without electrodes; potential_V: [nodes], used
+ * by kinds with a potential. */
 struct dea_recover_input {
   const struct dea_grid *grid;
   const struct dea_element_set *elements;
   const enum dea_element_kind *kind;
   const struct dea_constituent *constituents;
+  double bulk_factor;
   const int *constituent;
   const bool *active;
   const double *u, *multiplier, *across_V, *potential_V;

@@ -93,8 +93,10 @@ dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
     memcpy(u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *u);
     potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
+  struct dea_constituent constituent = in->constituents[in->constituent[e]];
+  constituent.kappa_Pa *= in->bulk_factor;
   const struct dea_element_input at = {
-      .constituent = &in->constituents[in->constituent[e]],
+      .constituent = &constituent,
       .X = X,
       .u = u,
       .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
