@@ -1,7 +1,7 @@
 /* Room that a figure leaves for what stands beside its panel. */
 #define _GNU_SOURCE // mkdtemp
-#include "output/plot.h"
 #include "own_folder.h"
+#include "plot/plot.h"
 #include "testing.h"
 
 #include <string.h>

@@ -4,11 +4,11 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "job/report.h"
-#include "output/plot.h"
 #include "output/report/axis.h"
 #include "output/report/html.h"
 #include "output/results_h5.h"
 #include "output/run_folder.h"
+#include "plot/plot.h"
 
 #include <ctype.h>
 

@@ -1,7 +1,5 @@
 #include "base/csv_line.h"
 
-#include "base/text.h"
-
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -113,4 +111,14 @@ char *dea_csv_line(char **text, size_t *line)
   }
   *text = NULL;
   return NULL;
+}
+
+void dea_csv_add_name(struct dea_text *text, const char *name)
+{
+  bool quoted = strpbrk(name, ",\"\n") != NULL;
+  dea_text_add(text, "%s", quoted ? "\"" : "");
+  for (const char *c = name; *c != '\0'; c++) {
+    dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
+  }
+  dea_text_add(text, "%s", quoted ? "\"" : "");
 }

@@ -2,8 +2,7 @@
 #ifndef DEA_BASE_CSV_LINE_H
 #define DEA_BASE_CSV_LINE_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "base/text.h"
 
 enum { DEA_CSV_FIELD_MAX = 200 }; // bytes of a field; more of it is not looked at
 
@@ -23,5 +22,7 @@ void dea_csv_split_title(const char *title, char *name, char *unit);
 /* Number of a whole field, NAN for an empty one; a decimal comma where the separator is none. text
  * may change. false when it is no finite number. */
 bool dea_csv_number(char separator, char *text, double *value);
+/* A name as one field: in quotes where it has a comma or quotes of its own. */
+void dea_csv_add_name(struct dea_text *text, const char *name);
 
 #endif

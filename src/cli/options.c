@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 
 #include "base/file.h"
-#include "output/plot.h"
+#include "plot/plot.h"
 #include "study/design_file.h"
 
 #include <getopt.h>

@@ -5,7 +5,7 @@
 
 #include "base/json.h"
 #include "output/measured.h"
-#include "output/plot.h"
+#include "plot/plot.h"
 #include "result/compare_history.h"
 #include "result/compare_profile.h"
 

@@ -1,7 +1,7 @@
 /* The figures of several curves beside one reference (see compare_set.h). */
 #include "base/write_file.h"
 #include "output/compare_set.h"
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 #include "result/figure.h"
 
 #include <math.h>
@@ -171,10 +171,10 @@ static dea_status fill_quantity(struct dea_set_figures *f, int column, struct de
   DEA_TRY(f->ctx, m != NULL ? add_measured(f->ctx, panel, m, column, false)
                             : add_reference(f->ctx, panel, set, column));
   dea_figure_label(&dea_point_columns[column], panel->y_label, sizeof panel->y_label);
-  dea_figure_voltage_axis(panel);
-  dea_figure_even_tics(panel, 7);
+  dea_panel_voltage_axis(panel);
+  dea_panel_even_tics(panel, 7);
   set_range(panel);
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 
@@ -298,7 +298,7 @@ static dea_status fill_profile(struct dea_set_figures *f, const struct dea_measu
   snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic z} at %.4g kV (\302\265m)",
            1e-3 * m->voltage_V);
   set_key_above(f, panel);
-  dea_figure_even_tics(panel, 7);
+  dea_panel_even_tics(panel, 7);
   set_range(panel);
   return DEA_OK;
 }
@@ -364,10 +364,10 @@ static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m,
   dea_panel_mark(low, false, 0.0, "");
   dea_figure_label(&dea_point_columns[m->column], top->y_label, sizeof top->y_label);
   snprintf(low->y_label, sizeof low->y_label, "Difference");
-  dea_figure_voltage_axis(top);
-  dea_figure_voltage_axis(low);
-  dea_figure_even_tics(top, 7);
-  dea_figure_even_tics(low, 3);
+  dea_panel_voltage_axis(top);
+  dea_panel_voltage_axis(low);
+  dea_panel_even_tics(top, 7);
+  dea_panel_even_tics(low, 3);
   return DEA_OK;
 }
 
@@ -512,7 +512,7 @@ static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_colu
     panel->x_max = span[1];
     snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
     dea_figure_label(&dea_point_columns[of_point], panel->y_label, sizeof panel->y_label);
-    dea_figure_even_tics(panel, 5);
+    dea_panel_even_tics(panel, 5);
     set_range(panel);
     set_key_above(f, panel);
   }

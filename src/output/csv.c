@@ -101,16 +101,6 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   return status;
 }
 
-void dea_csv_add_name(struct dea_text *text, const char *name)
-{
-  bool quoted = strpbrk(name, ",\"\n") != NULL;
-  dea_text_add(text, "%s", quoted ? "\"" : "");
-  for (const char *c = name; *c != '\0'; c++) {
-    dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
-  }
-  dea_text_add(text, "%s", quoted ? "\"" : "");
-}
-
 /* Header of a table of profiles; first: what stands before the voltage. */
 static void add_profile_header(struct dea_text *text, const char *first)
 {

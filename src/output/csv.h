@@ -2,11 +2,9 @@
 #ifndef DEA_OUTPUT_CSV_H
 #define DEA_OUTPUT_CSV_H
 
-#include "base/text.h"
+#include "base/csv_line.h"
 #include "result/result.h"
 
-/* A name as one field: in quotes where it has a comma or quotes of its own. */
-void dea_csv_add_name(struct dea_text *text, const char *name);
 /* "V (kV)": the header of a column, without unit when that is 1. */
 void dea_column_title(const struct dea_column *column, char *out, size_t size);
 

@@ -2,7 +2,7 @@
 
 #include "base/write_file.h"
 #include "output/figure_list.h"
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 #include "study/figures.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef DEA_OUTPUT_FIGURE_H
 #define DEA_OUTPUT_FIGURE_H
 
-#include "output/plot.h"
+#include "plot/plot.h"
 #include "result/figure.h"
 
 /* The i-th of all figures, those of the list and then those of the studies; NULL beyond the last.

@@ -1,6 +1,6 @@
 /* The deformed film over the voltages of the sweep, as an animated GIF. */
-#include "output/script.h"
 #include "output/view3d.h"
+#include "plot/script.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -78,10 +78,10 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
              factor < 1e5 ? "mm" : "\302\265m");
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Radial strain of the electrode (%%)");
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, dea_point_column_find("electrode_stretch"),
                                      100.0, -1.0, false));
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 

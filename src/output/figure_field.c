@@ -99,7 +99,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   snprintf(panel->y_label, sizeof panel->y_label, "True field {/:Italic E} (V/\302\265m)");
   panel->y_min = 0.0;
   panel->key = "at graph 0.03, 0.66 top left";
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   return dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor, 0.0,
                                false);
 }

@@ -10,10 +10,10 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   int column = dea_point_column_find("force_N");
   DEA_TRY(ctx, dea_figure_add_models(ctx, panel, result, column, false));
   snprintf(panel->y_label, sizeof panel->y_label, "Out-of-plane force {/:Italic F} (mN)");
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor,
                                      0.0, false));
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 

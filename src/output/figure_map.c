@@ -1,6 +1,6 @@
 /* Displacement out of the plane over the whole disc, as colours. */
-#include "output/script.h"
 #include "output/view3d.h"
+#include "plot/script.h"
 
 enum { PIECES = 3000 };
 

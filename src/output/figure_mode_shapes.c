@@ -1,7 +1,7 @@
 /* Shapes of the lowest modes: motion out of the plane over the whole disc, one map each. */
 #include "base/write_file.h"
-#include "output/script.h"
 #include "output/view3d.h"
+#include "plot/script.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -88,8 +88,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   if (shown > 0) {
     set_labels(plot, &records[0]);
     DEA_TRY(ctx, add_directions(ctx, &plot->panels[1], &records[0]));
-    dea_figure_even_tics(&plot->panels[0], 7);
-    dea_figure_even_tics(&plot->panels[1], 7);
+    dea_panel_even_tics(&plot->panels[0], 7);
+    dea_panel_even_tics(&plot->panels[1], 7);
   }
   return DEA_OK;
 }

@@ -70,7 +70,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Place across the film (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");
-  dea_figure_even_tics(panel, 7);
+  dea_panel_even_tics(panel, 7);
   panel->key = "above horizontal maxrows 3 samplen 1.5 width key_width";
   return DEA_OK;
 }

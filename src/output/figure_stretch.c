@@ -12,9 +12,9 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, dea_point_column_find("electrode_stretch"),
                                      1.0, 0.0, true));
   snprintf(panel->y_label, sizeof panel->y_label, "Electrode stretch {/:Italic \316\273}_a");
-  dea_figure_voltage_axis(panel);
-  dea_figure_even_tics(panel, 7);
-  dea_figure_place_key(panel);
+  dea_panel_voltage_axis(panel);
+  dea_panel_even_tics(panel, 7);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 

@@ -1,6 +1,6 @@
 /* The deformed film in space, coloured by its displacement. */
-#include "output/script.h"
 #include "output/view3d.h"
+#include "plot/script.h"
 
 #include <stdio.h>
 

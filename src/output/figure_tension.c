@@ -40,12 +40,12 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     return DEA_OK;
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Smallest principal tension (N/m)");
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   DEA_TRY(ctx, add_zero(ctx, panel));
   DEA_TRY(ctx,
           dea_figure_add_events(ctx, panel, result, dea_point_column_find("min_tension_N_per_m"),
                                 1.0, 0.0, false));
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 

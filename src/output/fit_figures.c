@@ -1,6 +1,6 @@
 /* Figures of a fit: measurements with the law and its band, residuals below. */
 #include "output/fit_files.h"
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 #include "result/figure.h"
 
 #include <math.h>
@@ -117,7 +117,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
     panel->logarithmic_x = time;
     panel->key = number > 4 ? keys[(number + 1) / 2] : time ? "top right" : "top left";
     limit(&plot->panels[0], panel);
-    dea_figure_even_tics(panel, p == 0 ? 7 : 4);
+    dea_panel_even_tics(panel, p == 0 ? 7 : 4);
     snprintf(panel->x_label, sizeof panel->x_label,
              time ? "Time {/:Italic t} (s)" : "Stretch {/:Italic \316\273}");
     snprintf(panel->y_label, sizeof panel->y_label,

@@ -4,7 +4,7 @@
 
 #include "base/json.h"
 #include "calibrate/fit.h"
-#include "output/plot.h"
+#include "plot/plot.h"
 
 enum { DEA_FIT_JSON_SCHEMA = 1 };
 

@@ -4,7 +4,7 @@
 #include "material/catalogue.h"
 #include "output/csv.h"
 #include "output/fit_files.h"
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 
 #include <math.h>
 #include <stdio.h>

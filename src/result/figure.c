@@ -95,21 +95,6 @@ dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *pane
   return DEA_OK;
 }
 
-void dea_figure_voltage_axis(struct dea_panel *panel)
-{
-  double largest = 0.0;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count; i++) {
-      bool counts = isfinite(series->values[series->count + i]);
-      largest = counts ? fmax(largest, series->values[i]) : largest;
-    }
-  }
-  panel->x_min = 0.0;
-  panel->x_max = largest > 0.0 ? largest : NAN;
-  snprintf(panel->x_label, sizeof panel->x_label, "Voltage {/:Italic V} (kV)");
-}
-
 /* What is drawn: factor * (member + shift). */
 struct quantity {
   int column;
@@ -164,33 +149,6 @@ dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *pane
   DEA_TRY(ctx, add_events_of(ctx, panel, result, DEA_EVENT_SNAP_BACK, &q, whole_path));
   DEA_TRY(ctx, add_events_of(ctx, panel, result, DEA_EVENT_SLACK, &q, whole_path));
   return add_events_of(ctx, panel, result, DEA_EVENT_BREAKDOWN, &q, whole_path);
-}
-
-void dea_figure_even_tics(struct dea_panel *panel, int most)
-{
-  static const double nice[] = {1.0, 2.0, 5.0, 10.0};
-  static const char *const formats[] = {"%.0f", "%.1f", "%.2f", "%.3f", "%.4f"};
-  double low = INFINITY, high = -INFINITY;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count && !series->right; i++) {
-      double y = series->values[series->count + i];
-      low = isfinite(y) ? fmin(low, y) : low;
-      high = isfinite(y) ? fmax(high, y) : high;
-    }
-  }
-  if (!(high > low)) {
-    return;
-  }
-  double least = (high - low) / most, power = pow(10.0, floor(log10(least)));
-  for (size_t i = 0; i < sizeof nice / sizeof nice[0]; i++) {
-    if (nice[i] * power >= 0.999 * least) {
-      panel->y_step = nice[i] * power;
-      break;
-    }
-  }
-  int decimals = (int)-floor(log10(panel->y_step) + 1e-9);
-  panel->y_format = decimals > 4 ? NULL : formats[decimals > 0 ? decimals : 0];
 }
 
 /* Display unit with its proper signs: "um" -> "µm". */

@@ -3,7 +3,7 @@
 #ifndef DEA_RESULT_FIGURE_H
 #define DEA_RESULT_FIGURE_H
 
-#include "result/plot.h"
+#include "plot/plot.h"
 #include "result/result.h"
 
 struct dea_figure_options; // output/figure.h
@@ -41,19 +41,12 @@ dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *pane
  * x, y, which lies on a curve that is there. */
 dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel,
                                 enum dea_series_style style, const char *title, double x, double y);
-/* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
-void dea_figure_voltage_axis(struct dea_panel *panel);
 /* Marks the events of all paths on their curves, with a key entry a kind. column, factor, shift: as
  * in dea_figure_add. whole_path: also those beyond the voltage axis as it is and on unstable
  * branches. */
 dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
                                  const struct dea_result *result, int column, double factor,
                                  double shift, bool whole_path);
-/* At most about `most` tics on the left axis, all with the same number of decimals. */
-void dea_figure_even_tics(struct dea_panel *panel, int most);
-/* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
- * called when all series are there. */
-void dea_figure_place_key(struct dea_panel *panel);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
 

@@ -364,7 +364,7 @@ static dea_status build_designs(struct dea_context *ctx, const struct dea_result
   DEA_TRY(ctx, add_shown(ctx, last, list, count, stretch, 100, -1));
   snprintf(last->y_label, DEA_LABEL_SIZE, "Electrode strain (%%)");
   for (size_t p = 0; p < plot->panel_count; p++) {
-    dea_figure_voltage_axis(&panels[p]);
+    dea_panel_voltage_axis(&panels[p]);
   }
   panels[0].x_max = last->x_max; // all designs have a strain, and the panels share the axis
   if (panels[0].series_count > 0) {
@@ -382,7 +382,7 @@ static dea_status build_design_tips(struct dea_context *ctx, const struct dea_re
   int column = dea_point_column_find("fibre_tip_z_m");
   DEA_TRY(ctx, add_shown(ctx, panel, list, count, column, 1e6, 0));
   snprintf(panel->y_label, DEA_LABEL_SIZE, "Fibre tip {/:Italic z} (\302\265m)");
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   if (panel->series_count > 0) {
     DEA_TRY(ctx, add_key(ctx, panel, list, count, false));
   }
@@ -437,7 +437,7 @@ static dea_status build_design_profiles(struct dea_context *ctx, const struct de
   for (size_t p = 0; p < plot->panel_count; p++) {
     snprintf(plot->panels[p].x_label, DEA_LABEL_SIZE,
              "Radius in the stretched flat film {/:Italic R} (mm)");
-    dea_figure_even_tics(&plot->panels[p], 7);
+    dea_panel_even_tics(&plot->panels[p], 7);
   }
   if (count > 0) {
     DEA_TRY(ctx, add_key(ctx, &plot->panels[0], list, count, true));

@@ -291,8 +291,8 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
                                 &look));
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
-  dea_figure_voltage_axis(panel);
-  dea_figure_place_key(panel);
+  dea_panel_voltage_axis(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 
@@ -334,7 +334,7 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Depth of the tip (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
   return DEA_OK;
 }
 

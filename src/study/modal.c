@@ -129,7 +129,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     }
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Frequency {/:Italic f} (Hz)");
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   panel->y_min = 0;
   panel->key = "above horizontal maxrows 1 samplen 1.5";
   return DEA_OK;

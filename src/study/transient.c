@@ -624,7 +624,7 @@ static void set_time_axis(struct dea_panel *panel)
     panel->x_max = fmax(panel->x_max, series->values[series->count - 1]);
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-  dea_figure_place_key(panel);
+  dea_panel_place_key(panel);
 }
 
 /* Many cycles lie close to each other. */

@@ -1,7 +1,7 @@
 #include "lab/recording/table.h"
 
+#include "base/csv_line.h"
 #include "base/write_file.h"
-#include "output/csv.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,8 +1,7 @@
 /* The figures of a reduction (dea_reduction_draw). */
 #include "lab/reduce/output.h"
 
-#include "output/gnuplot.h"
-#include "result/figure.h"
+#include "plot/gnuplot.h"
 
 #include <stdio.h>
 
@@ -133,8 +132,8 @@ static void time_axis(const struct dea_history_table *table, struct dea_panel *p
   panel->x_max = table->rows > 1 ? table->time_s[table->rows - 1] : 1.0;
   snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
   begin_at_zero(panel);
-  dea_figure_even_tics(panel, 6);
-  dea_figure_place_key(panel);
+  dea_panel_even_tics(panel, 6);
+  dea_panel_place_key(panel);
 }
 
 /* Voltage above what is measured: displacements, or force. */
@@ -234,7 +233,7 @@ static dea_status build_amplitude(const struct drawing *d, struct dea_plot *plot
     plot->second_height = 0.7;
   }
   for (size_t p = 0; p < plot->panel_count; p++) {
-    dea_figure_voltage_axis(&plot->panels[p]);
+    dea_panel_voltage_axis(&plot->panels[p]);
     if (d->reduction->level_count > 0 && d->reduction->levels[0].voltage_V < -50.0) {
       plot->panels[p].x_min = NAN;
     } else {
@@ -242,8 +241,8 @@ static dea_status build_amplitude(const struct drawing *d, struct dea_plot *plot
     }
     begin_at_zero(&plot->panels[p]);
     plot->panels[p].x_max *= 1.03; // room for the last sign
-    dea_figure_even_tics(&plot->panels[p], 7);
-    dea_figure_place_key(&plot->panels[p]);
+    dea_panel_even_tics(&plot->panels[p], 7);
+    dea_panel_place_key(&plot->panels[p]);
   }
   return DEA_OK;
 }
@@ -300,7 +299,7 @@ static dea_status build_cycles(const struct drawing *d, struct dea_plot *plot)
            kind == DEA_REDUCED_FORCE    ? "Force {/:Italic F} (mN)"
            : kind == DEA_REDUCED_CENTRE ? "Displacement of the centre {/:Italic z} (\302\265m)"
                                         : "Displacement {/:Italic z} (\302\265m)");
-  dea_figure_even_tics(panel, 7);
+  dea_panel_even_tics(panel, 7);
   return DEA_OK;
 }
 

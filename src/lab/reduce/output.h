@@ -5,7 +5,7 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "lab/reduce/reduce.h"
-#include "output/plot.h"
+#include "plot/plot.h"
 
 enum { DEA_REDUCTION_SCHEMA = 1, DEA_HISTORY_ROWS_MAX = 20000 };
 

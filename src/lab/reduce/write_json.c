@@ -2,7 +2,7 @@
 
 #include "base/version.h"
 #include "base/write_file.h"
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -13,7 +13,7 @@ void dea_html_element(struct dea_text *out, const char *tag, const char *text);
 void dea_html_number(struct dea_text *out, double value, int digits);
 /* The same as a cell of a table. */
 void dea_html_cell(struct dea_text *out, double value, int digits);
-/* Label in gnuplot's enhanced text (output/plot.h): as the inside of an SVG text element with
+/* Label in gnuplot's enhanced text (plot/plot.h): as the inside of an SVG text element with
  * italics, sub- and superscripts, as text without markup, or as the inside of a JSON string. */
 enum dea_label_form { DEA_LABEL_SVG, DEA_LABEL_PLAIN, DEA_LABEL_JSON };
 void dea_html_label(struct dea_text *out, const char *label, enum dea_label_form form);

@@ -1,9 +1,9 @@
-/* A figure (output/plot.h) as SVG within a page: colours by class, so that light, dark and print
+/* A figure (plot/plot.h) as SVG within a page: colours by class, so that light, dark and print
  * each have theirs. */
 #ifndef DEA_OUTPUT_REPORT_PLOT_SVG_H
 #define DEA_OUTPUT_REPORT_PLOT_SVG_H
 
-#include "result/plot.h"
+#include "plot/plot.h"
 
 /* Adds a <figure> with the plot, its caption and its numbers for the page's script; number: of the
  * figure on the page, for its ids. Nothing for a plot that shows nothing. */

@@ -83,7 +83,7 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
   }
   snprintf(panel->y_label, sizeof panel->y_label, "%s", what->label);
   DEA_TRY(report->ctx, add_measured(report, what, panel));
-  dea_figure_voltage_axis(panel);
+  dea_panel_voltage_axis(panel);
   return DEA_OK;
 }
 

@@ -1,5 +1,5 @@
 /* Where the key of a figure stands. */
-#include "result/figure.h"
+#include "plot/plot.h"
 #include "testing.h"
 
 enum { POINTS = 41 };
@@ -15,7 +15,7 @@ static const char *key_of(double (*y)(double x), double *top)
     values[i] = (double)i / (POINTS - 1);
     values[POINTS + i] = y(values[i]);
   }
-  dea_figure_place_key(&panel);
+  dea_panel_place_key(&panel);
   *top = panel.y_max;
   return panel.key;
 }

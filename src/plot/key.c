@@ -1,5 +1,5 @@
 /* Where the key of a panel stands: in a corner that no curve crosses, or else above all curves. */
-#include "result/figure.h"
+#include "plot/plot.h"
 
 #include <math.h>
 
@@ -50,7 +50,7 @@ static bool crosses(const struct dea_series *series, const struct range *x, cons
   return false;
 }
 
-void dea_figure_place_key(struct dea_panel *panel)
+void dea_panel_place_key(struct dea_panel *panel)
 {
   static const struct {
     const char *name;

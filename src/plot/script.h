@@ -1,8 +1,8 @@
 /* What all gnuplot scripts begin with. */
-#ifndef DEA_OUTPUT_SCRIPT_H
-#define DEA_OUTPUT_SCRIPT_H
+#ifndef DEA_PLOT_SCRIPT_H
+#define DEA_PLOT_SCRIPT_H
 
-#include "output/plot.h"
+#include "plot/plot.h"
 
 /* The settings that a user may want to change, and those that hold for all figures. */
 void dea_script_head(struct dea_text *gp, const char *name, const char *caption,

@@ -1,4 +1,4 @@
-#include "output/script.h"
+#include "plot/script.h"
 
 #include "base/version.h"
 

@@ -1,7 +1,7 @@
-#include "output/plot.h"
+#include "plot/plot.h"
 
 #include "base/write_file.h"
-#include "output/script.h"
+#include "plot/script.h"
 
 #include <math.h>
 #include <stdio.h>

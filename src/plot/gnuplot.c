@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L // unlinkat, renameat, dirfd
-#include "output/gnuplot.h"
+#include "plot/gnuplot.h"
 
 #include "base/file.h"
 #include "base/program.h"

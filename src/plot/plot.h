@@ -1,7 +1,7 @@
 /* A figure before it is drawn: panels with series and marks. What it shows is decided by who fills
- * it, what it looks like in output/plot.c only. */
-#ifndef DEA_RESULT_PLOT_H
-#define DEA_RESULT_PLOT_H
+ * it, what it looks like in plot/write.c only. */
+#ifndef DEA_PLOT_PLOT_H
+#define DEA_PLOT_PLOT_H
 
 #include "base/text.h"
 
@@ -12,7 +12,7 @@ enum {
   DEA_LABEL_SIZE = 128,
 };
 
-/* Colours of Okabe and Ito (safe for the colour-blind), numbered as in output/plot.c. */
+/* Colours of Okabe and Ito (safe for the colour-blind), numbered as in plot/write.c. */
 enum dea_colour {
   DEA_BLUE,
   DEA_VERMILLION,
@@ -91,11 +91,26 @@ dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, si
 void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
 void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
+/* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
+void dea_panel_voltage_axis(struct dea_panel *panel);
+/* At most about `most` tics on the left axis, all with the same number of decimals. */
+void dea_panel_even_tics(struct dea_panel *panel, int most);
+/* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
+ * called when all series are there. */
+void dea_panel_place_key(struct dea_panel *panel);
 /* True when a series, or some series of a plot, has a point to show. */
 bool dea_series_shows(const struct dea_series *series);
 bool dea_plot_shows(const struct dea_plot *plot);
 
 /* Plain text as gnuplot's enhanced text (signs with a meaning there get a backslash). */
 void dea_label_escape(const char *text, char *out, size_t size);
+
+struct dea_plot_format {
+  bool svg, pdf, png;
+  double width_m;
+};
+/* The plot as gnuplot draws it (plot/gnuplot.h): writes NAME.gp and NAME.dat into directory. */
+dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
+                          const struct dea_plot_format *format, const char *directory);
 
 #endif

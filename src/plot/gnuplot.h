@@ -1,6 +1,6 @@
 /* Drawing by a gnuplot process. */
-#ifndef DEA_OUTPUT_GNUPLOT_H
-#define DEA_OUTPUT_GNUPLOT_H
+#ifndef DEA_PLOT_GNUPLOT_H
+#define DEA_PLOT_GNUPLOT_H
 
 #include "base/context.h"
 
