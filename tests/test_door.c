@@ -81,6 +81,8 @@ static void test_status_names(void **state)
   NAMED(DEA_E_NOT_CONVERGED);
   NAMED(DEA_E_NO_EQUILIBRIUM);
   NAMED(DEA_E_INTERRUPTED);
+  NAMED(DEA_E_SLACK);
+  NAMED(DEA_E_INVERTED);
   assert_true(strlen(dea_error_meaning(DEA_E_IO)) > 10);
   int a, b, c;
   assert_int_equal(sscanf(dea_version(), "%d.%d.%d", &a, &b, &c), 3);

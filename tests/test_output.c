@@ -281,6 +281,7 @@ static void test_summary_of_a_stopped_sweep(void **state)
   assert_true(json_is_false(json_object_get(root, "complete")));
   assert_string_equal(json_string_value(json_object_get(root, "stopped")), "interrupted at 3 kV");
   assert_string_equal(json_string_value(json_object_get(root, "status")), "DEA_E_INTERRUPTED");
+  assert_string_equal(json_string_value(json_object_get(root, "verdict")), "");
   json_decref(root);
   dea_free(ctx, text);
 }

@@ -73,8 +73,8 @@ static struct record trace(const struct dea_material *material, double pre, doub
   assert_int_equal(dea_film_eval(&free.film, false, 0, pre, pre, &plane), DEA_OK);
   free.load_Pa = plane.s1;
   free.scale_Pa = dea_film_modulus(&free.film);
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point,
-                                         dea_film_voltage_scale(&free.film)};
+  const struct dea_path_system system = {
+      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
   const struct dea_path_options options = {end, INFINITY, 5000};
   struct dea_path *path;
   struct record record = {0};
@@ -174,8 +174,8 @@ static void test_points_lie_on_the_closed_form(void **state)
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_material m = test_yeoh();
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 3e5};
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point,
-                                         dea_film_voltage_scale(&free.film)};
+  const struct dea_path_system system = {
+      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
   const struct dea_path_options options = {2.5, INFINITY, 5000};
   const double start = 1;
   struct dea_path *path;
@@ -195,7 +195,7 @@ static void test_seek_snaps_and_shows_hysteresis(void **state)
   struct dea_material m = test_material("gent", 1e5, 90, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
   double unit_V = dea_film_voltage_scale(&free.film);
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V};
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL};
   const double start = 1;
   struct dea_path *path;
   struct dea_load_point p;
@@ -223,14 +223,21 @@ static void test_seek_beyond_pull_in_keeps_the_last_point(void **state)
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
   double unit_V = dea_film_voltage_scale(&free.film);
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V};
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL};
   const double start = 1;
   struct dea_path *path;
   struct dea_load_point before, after;
   assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
   assert_int_equal(dea_path_seek(ctx, path, 0.68 * unit_V, 10), DEA_OK);
   assert_int_equal(dea_path_point(ctx, path, &before), DEA_OK);
+  assert_null(dea_path_limit(path));
   assert_int_equal(dea_path_seek(ctx, path, 0.69 * unit_V, 10), DEA_E_NO_EQUILIBRIUM);
+  const struct dea_event *limit = dea_path_limit(path);
+  assert_non_null(limit); // stretch 2^(1/3), field^2 = l^-2 - l^-8
+  double l = pow(2, 1.0 / 3);
+  assert_int_equal(limit->kind, DEA_EVENT_PULL_IN);
+  assert_close(limit->point.electrode_stretch, l, 1e-7, 0);
+  assert_close(limit->point.voltage_V, unit_V * sqrt(pow(l, -2) - pow(l, -8)), 1e-10, 0);
   assert_int_equal(dea_path_point(ctx, path, &after), DEA_OK);
   assert_close(after.electrode_stretch, before.electrode_stretch, 0, 0);
   assert_close(after.voltage_V, before.voltage_V, 0, 0);
@@ -257,8 +264,8 @@ static void test_events_come_in_order(void **state)
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
-  const struct dea_path_system system = {1, &free, free_evaluate, crowded_point,
-                                         dea_film_voltage_scale(&free.film)};
+  const struct dea_path_system system = {
+      1, &free, free_evaluate, crowded_point, dea_film_voltage_scale(&free.film), NULL};
   const double start = 1;
   struct dea_path *path;
   assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);

@@ -98,6 +98,8 @@ _KINDS = {
     "DEA_E_DOMAIN": SolverError,
     "DEA_E_NOT_CONVERGED": SolverError,
     "DEA_E_NO_EQUILIBRIUM": SolverError,
+    "DEA_E_SLACK": SolverError,
+    "DEA_E_INVERTED": SolverError,
 }
 _SEVERITIES = ("note", "warning", "error")
 

@@ -64,7 +64,9 @@ typedef enum dea_status {
   DEA_STATUS_SUSPECT,   // never returned; from here on there are partial results
   DEA_E_NOT_CONVERGED,  // the solver did not converge
   DEA_E_NO_EQUILIBRIUM, // there is none at this load: pull-in
-  DEA_E_INTERRUPTED     // the interrupt callback said so
+  DEA_E_INTERRUPTED,    // the interrupt callback said so
+  DEA_E_SLACK,          // the film loses its tension on the way
+  DEA_E_INVERTED        // an element of the mesh turns inside out
 } dea_status;
 
 enum dea_severity { DEA_NOTE, DEA_WARNING, DEA_ERROR };

@@ -23,7 +23,9 @@
   X(DEA_STATUS_SUSPECT, 4, "")                                                                     \
   X(DEA_E_NOT_CONVERGED, 4, "the solver did not converge")                                         \
   X(DEA_E_NO_EQUILIBRIUM, 4, "there is no equilibrium at this load")                               \
-  X(DEA_E_INTERRUPTED, 130, "interrupted")
+  X(DEA_E_INTERRUPTED, 130, "interrupted")                                                         \
+  X(DEA_E_SLACK, 4, "the film loses its tension")                                                  \
+  X(DEA_E_INVERTED, 4, "an element of the mesh turns inside out")
 
 typedef enum dea_status {
 #define DEA_STATUS_ENUM(code, exit_code, message) code,

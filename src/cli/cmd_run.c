@@ -210,8 +210,12 @@ static void print_model(const struct dea_result *result, const char *model)
   if (count > 0) {
     print_row(&sweep->points[count - 1]);
   }
-  for (size_t i = 0; path != NULL && i < path->event_count; i++) {
-    print_event(&path->events[i]);
+  const struct dea_curve *limits = path != NULL ? path : sweep;
+  for (size_t i = 0; i < limits->event_count; i++) {
+    print_event(&limits->events[i]);
+  }
+  if (sweep != NULL && dea_verdict_of(sweep->status)[0] != '\0') {
+    printf("  stopped, %s: %s\n", dea_verdict_of(sweep->status), sweep->stopped);
   }
 }
 

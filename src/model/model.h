@@ -70,10 +70,14 @@ struct dea_model_type {
                        const struct dea_model_settings *settings, struct dea_model **out);
   void (*destroy)(struct dea_context *ctx, struct dea_model *model);
   /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film
-   * at 0 V). DEA_E_NO_EQUILIBRIUM beyond the last limit point: the model stays at its last point.
-   */
+   * at 0 V). Where there is none: DEA_E_NO_EQUILIBRIUM beyond a limit point (pull-in; see limit),
+   * DEA_E_SLACK, DEA_E_DOMAIN at the end of a law, DEA_E_INVERTED, DEA_E_NOT_CONVERGED where the
+   * model does not know (docs/theory/stops.md); it then stays at its last point. */
   dea_status (*solve)(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                       struct dea_load_point *out);
+  /* Where the last solve that failed came to an end, a limit point or a loss of tension; lent until
+   * the next one. NULL: none was located, or the model does not look for one. */
+  const struct dea_event *(*limit)(const struct dea_model *model);
   /* The whole equilibrium path by arc-length from 0 V, through limit points; events (may be NULL)
    * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the
    * path itself ends, with DEA_OK. NULL when the model has none. */

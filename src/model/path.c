@@ -16,6 +16,10 @@ struct dea_path {
   struct dea_context *ctx;
   struct dea_path_system system;
   struct dea_path_state state, rest;
+  struct dea_event limit, slack; // first limit point, first loss of tension of the last seek
+  bool limited, slackened;       // whether it has passed them
+  bool crossed;                  // the wanted voltage at a state that compression has made unstable
+  dea_status ended;              // why the last step that was tried failed
   double g[ROWS_MAX], gV[ROWS_MAX], K[ROWS_MAX * ROWS_MAX], bordered[ROWS_MAX * ROWS_MAX];
 };
 
@@ -128,7 +132,8 @@ static dea_status step_adaptively(struct dea_path *path, const struct dea_path_s
   double scale2 = path->system.voltage_scale_V * path->system.voltage_scale_V;
   while (*ds > step_smallest) {
     int iterations = 0;
-    if (step(path, from, *ds, to, &iterations) == DEA_OK) {
+    path->ended = step(path, from, *ds, to, &iterations);
+    if (path->ended == DEA_OK) {
       double cosine =
           dot(path, from->tangent_u, to->tangent_u) + from->tangent_V * to->tangent_V / scale2;
       if (cosine > turn_cosine) {
@@ -212,6 +217,46 @@ static dea_status locate(struct dea_path *path, const struct dea_path_state *fro
   return DEA_OK;
 }
 
+/* The equilibrium at 0 V from path->rest, which stays as it was where there is none near by. */
+static dea_status find_rest(struct dea_path *path)
+{
+  static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
+  struct dea_path_state origin = path->rest, at = path->rest;
+  int iterations;
+  dea_status status = correct(path, &origin, nowhere, 1, 0, &at, &iterations);
+  if (status == DEA_OK) {
+    status = finish(path, nowhere, path->system.voltage_scale_V, &at);
+  }
+  if (status == DEA_OK) {
+    path->rest = at;
+  }
+  return status;
+}
+
+/* The same along the system's ease: from nothing of what is in the way to all of it, in shares that
+ * are halved where Newton's method fails and doubled where it does not. */
+static dea_status ease_rest(struct dea_path *path)
+{
+  static const double least = 1e-6;
+  double share = 0, more = 0.5;
+  path->system.ease(path->system.self, share);
+  dea_status status = find_rest(path);
+  while (status == DEA_OK && share < 1) {
+    double next = fmin(share + more, 1);
+    path->system.ease(path->system.self, next);
+    dea_status tried = find_rest(path);
+    if (tried == DEA_OK) {
+      share = next;
+      more *= 2;
+    } else {
+      more /= 2;
+      status = more < least ? tried : DEA_OK;
+    }
+  }
+  path->system.ease(path->system.self, 1);
+  return status;
+}
+
 dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system *system,
                            const double *start, struct dea_path **out)
 {
@@ -227,12 +272,9 @@ dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system
   path->ctx = ctx;
   path->system = *system;
   memcpy(path->rest.u, start, system->unknowns * sizeof *start);
-  static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
-  struct dea_path_state origin = path->rest;
-  int iterations;
-  dea_status status = correct(path, &origin, nowhere, 1, 0, &path->rest, &iterations);
-  if (status == DEA_OK) {
-    status = finish(path, nowhere, system->voltage_scale_V, &path->rest);
+  dea_status status = find_rest(path);
+  if (status != DEA_OK && system->ease != NULL) {
+    status = ease_rest(path);
   }
   if (status != DEA_OK) {
     dea_free(ctx, path);
@@ -308,16 +350,82 @@ static bool settle(struct dea_path *path, const struct dea_path_state *from, dou
   return true;
 }
 
+/* Takes the first limit point and the first loss of tension of a search, if they are within this
+ * segment, whose ends are states and points. */
+static void note_events(struct dea_path *path, const struct dea_path_state *from,
+                        const struct dea_load_point *from_point, double ds,
+                        const struct dea_path_state *to, const struct dea_load_point *to_point,
+                        const struct watch *watch)
+{
+  double tension[2] = {from_point->min_tension_N_per_m, to_point->min_tension_N_per_m}, arc;
+  struct dea_path_state at;
+  if (!path->limited && from->tangent_V * to->tangent_V < 0 &&
+      locate(path, from, ds, WATCH_LIMIT, watch, from->tangent_V, to->tangent_V, &arc, &at,
+             &path->limit.point) == DEA_OK) {
+    path->limit.kind = from->tangent_V > 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
+    path->limited = true;
+  }
+  if (!path->slackened && !path->limited && tension[0] >= 0 && tension[1] < 0 &&
+      locate(path, from, ds, WATCH_TENSION, watch, tension[0], tension[1], &arc, &at,
+             &path->slack.point) == DEA_OK) {
+    path->slack.kind = DEA_EVENT_SLACK;
+    path->slackened = true;
+  }
+}
+
+/* What a search that found nothing says: *last is where it ended. */
+static dea_status fail_seek(struct dea_context *ctx, const struct dea_path *path, double voltage_V,
+                            const struct dea_load_point *last)
+{
+  if (path->limited) {
+    const struct dea_load_point *at = &path->limit.point;
+    return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                    "%s at %.6g kV and an electrode stretch of %.5g: beyond it there is no stable "
+                    "equilibrium at %.6g kV",
+                    path->limit.kind == DEA_EVENT_PULL_IN ? "pull-in" : "snap-back",
+                    1e-3 * at->voltage_V, at->electrode_stretch, 1e-3 * voltage_V);
+  }
+  if (path->crossed && path->slackened) {
+    const struct dea_load_point *at = &path->slack.point;
+    return dea_fail(ctx, DEA_E_SLACK,
+                    "the film loses its tension at %.6g kV and an electrode stretch of %.5g, and "
+                    "before %.6g kV its compression is unstable: it wrinkles, which this model "
+                    "does not show (model 3d does)",
+                    1e-3 * at->voltage_V, at->electrode_stretch, 1e-3 * voltage_V);
+  }
+  if (path->crossed) {
+    return dea_fail(
+        ctx, DEA_E_SLACK,
+        "the film has lost its tension, and before %.6g kV its compression is unstable: "
+        "it wrinkles, which this model does not show (model 3d does)",
+        1e-3 * voltage_V);
+  }
+  if (path->ended == DEA_OK || path->ended == DEA_E_DOMAIN) {
+    return dea_fail(ctx, DEA_E_DOMAIN,
+                    "the path to %.6g kV ends at %.6g kV and an electrode stretch of %.5g: %s",
+                    1e-3 * voltage_V, 1e-3 * last->voltage_V, last->electrode_stretch,
+                    path->ended == DEA_OK ? "there the film's range is at its end"
+                                          : "beyond it the material's law is not defined");
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                  "the path to %.6g kV cannot be followed beyond %.6g kV and an electrode stretch "
+                  "of %.5g (ours: not converged)",
+                  1e-3 * voltage_V, 1e-3 * last->voltage_V, last->electrode_stretch);
+}
+
 dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
                          double max_stretch)
 {
   struct dea_path_state found;
+  path->limited = path->slackened = path->crossed = false;
   if (seek_directly(path, voltage_V, &found)) {
     path->state = found;
     return DEA_OK;
   }
   struct watch watch = {.stretch_end = max_stretch, .voltage_end_V = voltage_V};
   struct dea_path_state from = path->state, to;
+  struct dea_load_point point, next;
+  DEA_TRY(ctx, state_point(path, &from, &point));
   if ((voltage_V - from.voltage_V) * from.tangent_V < 0) { // turn round
     for (size_t i = 0; i < path->system.unknowns; i++) {
       from.tangent_u[i] = -from.tangent_u[i];
@@ -326,25 +434,34 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
   }
   double ds = step_first, taken;
   for (int i = 0; i < STEPS_MAX; i++) {
-    struct dea_load_point point;
     if (step_adaptively(path, &from, &ds, &to, &taken) != DEA_OK) {
       break;
     }
     double at_0 = voltage_V - from.voltage_V, at_1 = voltage_V - to.voltage_V;
     if (at_0 * at_1 <= 0 && settle(path, &from, taken, &watch, at_0, at_1, &found)) {
       path->state = found;
+      path->limited = path->slackened = false;
       return DEA_OK;
     }
-    dea_status status = state_point(path, &to, &point);
-    if (status != DEA_OK || point.electrode_stretch > max_stretch || to.voltage_V < -1) {
+    dea_status status = state_point(path, &to, &next);
+    if (status != DEA_OK) {
+      break;
+    }
+    path->crossed =
+        path->crossed || (at_0 * at_1 <= 0 && to.negative > 0 && next.min_tension_N_per_m < 0);
+    note_events(path, &from, &point, taken, &to, &next, &watch);
+    point = next;
+    if (point.electrode_stretch > max_stretch || to.voltage_V < -1) {
       break;
     }
     from = to;
   }
-  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
-                  "no stable equilibrium at %.6g kV: the path from %.6g kV does not reach it (it "
-                  "turns back at pull-in, or ends); lower the voltage or look at the whole path",
-                  1e-3 * voltage_V, 1e-3 * path->state.voltage_V);
+  return fail_seek(ctx, path, voltage_V, &point);
+}
+
+const struct dea_event *dea_path_limit(const struct dea_path *path)
+{
+  return path->limited ? &path->limit : path->crossed && path->slackened ? &path->slack : NULL;
 }
 
 /* A path being traced, with what it reports to. */

@@ -24,6 +24,9 @@ struct dea_path_system {
   /* What the model says of this equilibrium; stability is filled in by the path. */
   dea_status (*point)(void *self, const double *u, double voltage_V, struct dea_load_point *out);
   double voltage_scale_V; // V_s
+  /* Share, 0 to 1, of what keeps the system from being at rest at the start it is given (stiffness
+   * of electrodes); 0: the start is its rest. The path begins with 1. NULL: none. */
+  void (*ease)(void *self, double share);
 };
 
 struct dea_path_state {
@@ -35,7 +38,8 @@ struct dea_path_state {
 
 struct dea_path; // workspace for one system
 
-/* system: lent. start: unknowns of the equilibrium at 0 V, or near it; it is solved for. */
+/* system: lent. start: unknowns of the equilibrium at 0 V, or near it; it is solved for, where that
+ * fails along the system's ease. */
 dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system *system,
                            const double *start, struct dea_path **out);
 void dea_path_destroy(struct dea_context *ctx, struct dea_path *path);
@@ -45,10 +49,16 @@ const struct dea_path_state *dea_path_state_get(const struct dea_path *path);
 
 /* The stable equilibrium at `voltage_V` that follows the current state along the path: the same
  * branch, or after a limit point the next stable branch at that voltage (a snap). The path is left
- * at it. DEA_E_NO_EQUILIBRIUM when none comes before total electrode stretch `max_stretch`: the
- * state then stays as it was. */
+ * at it. Where none comes before total electrode stretch `max_stretch` the state stays as it was:
+ * DEA_E_NO_EQUILIBRIUM beyond a limit point (dea_path_limit), DEA_E_SLACK where the path reaches
+ * the voltage at a state that compression has made unstable, DEA_E_DOMAIN where it ends with the
+ * law or there, DEA_E_NOT_CONVERGED. */
 dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
                          double max_stretch);
+
+/* Where the last seek that found nothing came to its end: the first limit point or the loss of
+ * tension; lent until the next. NULL: neither. */
+const struct dea_event *dea_path_limit(const struct dea_path *path);
 
 /* The whole path from rest, as dea_model_type.path says. stretch_factor: total stretch over
  * electrode_stretch (the pre-stretch). */

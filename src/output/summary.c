@@ -52,7 +52,10 @@ static void put_model(json_t *object, const struct dea_result *result, const cha
   dea_json_put_text(object, "stopped", stopped != NULL ? stopped->stopped : "");
   json_object_set_new(object, "status",
                       json_string(dea_status_name(stopped != NULL ? stopped->status : DEA_OK)));
-  json_object_set_new(object, "limits", limits_json(dea_result_find(result, model, "path")));
+  json_object_set_new(object, "verdict",
+                      json_string(stopped != NULL ? dea_verdict_of(stopped->status) : ""));
+  const struct dea_curve *path = dea_result_find(result, model, "path");
+  json_object_set_new(object, "limits", limits_json(path != NULL ? path : sweep));
   dea_summary_put_studies(result, model, object);
 }
 

@@ -189,6 +189,24 @@ dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_s
   return status;
 }
 
+const char *dea_verdict_of(dea_status status)
+{
+  switch (status) {
+  case DEA_E_NO_EQUILIBRIUM:
+    return "pull_in";
+  case DEA_E_SLACK:
+    return "slack";
+  case DEA_E_DOMAIN:
+    return "law_end";
+  case DEA_E_INVERTED:
+    return "inverted_element";
+  case DEA_E_NOT_CONVERGED:
+    return "not_converged";
+  default:
+    return "";
+  }
+}
+
 /* A record of its own memory; nothing to be freed after a failure. */
 static dea_status copy_profile(struct dea_context *ctx, const char *model, double voltage_V,
                                const struct dea_profile *profile, struct dea_profile_record *out)

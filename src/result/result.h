@@ -138,6 +138,10 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
 /* How a curve ended, and for a failure the recorded message as the reason. Returns the status, for
  * DEA_TRY. */
 dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status);
+/* Kind of a stop, for tables and JSON (docs/theory/stops.md): "pull_in", "slack", "law_end",
+ * "inverted_element", "not_converged" (ours); "" for what is none: success, a refusal, an
+ * interruption, want of memory. Static storage. */
+const char *dea_verdict_of(dea_status status);
 /* Highest voltage of the curves but paths [V]; 0 for none. */
 double dea_result_highest_V(const struct dea_result *result);
 /* Curve of that model and kind, or NULL; lent. */

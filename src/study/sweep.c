@@ -130,8 +130,17 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
 static void open_curve(struct dea_curve *curve)
 {
   curve->complete = false;
+  curve->event_count = 0;
   curve->status = DEA_E_INTERRUPTED;
   snprintf(curve->stopped, sizeof curve->stopped, "the run was ended before the sweep");
+}
+
+/* Where the model has stopped, if it knows that, as an event of the curve. */
+static dea_status add_limit(struct dea_context *ctx, const struct dea_model_type *type,
+                            const struct dea_model *model, struct dea_curve *curve)
+{
+  const struct dea_event *limit = type->limit != NULL ? type->limit(model) : NULL;
+  return limit != NULL ? dea_curve_add_event(ctx, curve, limit) : DEA_OK;
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
@@ -154,7 +163,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, total);
     }
   }
-  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
+  dea_curve_end(ctx, curve, status);
+  if (dea_verdict_of(status)[0] != '\0') {
+    DEA_TRY(ctx, add_limit(ctx, type, model, curve));
+  }
+  DEA_TRY(ctx, status);
   return DEA_OK;
 }
 

@@ -115,6 +115,13 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   return DEA_OK;
 }
 
+/* Rest of a film whose electrodes have a share of their stiffness. */
+static void ease(void *self, double share)
+{
+  struct dea_model *model = self;
+  model->disc.film.electrode_ratio = share * dea_film_electrode_ratio(model->device);
+}
+
 static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
@@ -138,6 +145,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->disc.film),
+      .ease = model->disc.film.electrode != NULL ? ease : NULL,
   };
   DEA_TRY(ctx, dea_path_create(ctx, &system, rest, &model->path));
   struct dea_load_point at_rest;
@@ -160,6 +168,11 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
           dea_path_seek(ctx, model->path, voltage_V, model->max_stretch / model->disc.pre_stretch));
   DEA_TRY(ctx, dea_path_point(ctx, model->path, out));
   return DEA_OK;
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return dea_path_limit(model->path);
 }
 
 static dea_status path(struct dea_context *ctx, struct dea_model *model,
@@ -217,6 +230,7 @@ const struct dea_model_type dea_model_axisymmetric = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .limit = limit,
     .path = path,
     .profile = profile,
 };

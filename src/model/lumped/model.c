@@ -93,6 +93,13 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   return fill_point(model, &model->lumped, u[0], voltage_V, out);
 }
 
+/* Rest of a film whose electrodes have a share of their stiffness. */
+static void ease(void *self, double share)
+{
+  struct dea_model *model = self;
+  model->lumped.film.electrode_ratio = share * dea_film_electrode_ratio(model->device);
+}
+
 static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
@@ -133,6 +140,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->lumped.film),
+      .ease = model->lumped.film.electrode != NULL ? ease : NULL,
   };
   static const double start = 1;
   DEA_TRY(ctx, dea_path_create(ctx, &system, &start, &model->path));
@@ -153,6 +161,11 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                              model->max_stretch / model->lumped.pre_stretch));
   DEA_TRY(ctx, dea_path_point(ctx, model->path, out));
   return DEA_OK;
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return dea_path_limit(model->path);
 }
 
 static dea_status path(struct dea_context *ctx, struct dea_model *model,
@@ -250,6 +263,7 @@ const struct dea_model_type dea_model_lumped = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .limit = limit,
     .path = path,
     .hold = hold,
     .begin = begin,
