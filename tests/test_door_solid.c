@@ -373,6 +373,82 @@ static void test_body(void **state)
   assert_non_null(strstr(dea_error_message(ctx), "no node for body 0"));
 }
 
+/* A block with a rigid plate on top, where a spring holds it: at a shift, or a turn, that takes the
+ * force with which the block is held there without one. */
+static void check_spring(const dea_body_spring *given, double there, const char *force)
+{
+  const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.02}, bottom[3] = {0.01, 0.01, 0};
+  dea_part part = rubber(&mu);
+  const dea_part *parts[] = {&part};
+  dea_body plate = DEA_BODY_INIT;
+  plate.low_m[2] = size[2];
+  memcpy(plate.high_m, size, sizeof size);
+  plate.centre_m[0] = plate.centre_m[1] = 0.005;
+  plate.centre_m[2] = size[2];
+  const dea_body *bodies[] = {&plate};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  memcpy(options.box_m, size, sizeof size);
+  options.elements[0] = options.elements[1] = options.elements[2] = 2;
+  options.parts = parts;
+  options.part_count = 1;
+  options.bodies = bodies;
+  options.body_count = 1;
+  dea_solid *solid;
+  dea_body_spring spring = *given;
+  bool turn = spring.component >= 8;
+  int i = turn ? 1 : 2;
+  double move[3] = {0}, table[3];
+  move[i] = there;
+  good(dea_solid_new(ctx, &options, &solid));
+  good(dea_solid_hold(ctx, solid, nothing, bottom, 7, nothing));
+  good(dea_solid_hold_body(ctx, solid, 0, 63, turn ? NULL : move, turn ? move : NULL));
+  good(dea_solid_solve(ctx, solid, 0));
+  double F = array(solid, turn ? "body_moment_N_m" : "body_force_N")->data[i];
+  assert_true(F * there > 0);
+  for (size_t k = 0; k < spring.count; k++) { // in shares of F, which is at y = there - place
+    table[k] = -given->force[k] * F;
+  }
+  spring.force = table;
+  spring.place = spring.count > 0 ? 0 : there + F / spring.stiffness;
+  good(dea_solid_hold_body(ctx, solid, 0, spring.component, NULL, NULL));
+  good(dea_solid_add_spring(ctx, solid, &spring));
+  good(dea_solid_solve(ctx, solid, 0));
+  const char *where = turn ? "body_turn_rad" : "body_shift_m";
+  assert_close(array(solid, where)->data[i], there, 1e-7, 0);
+  assert_close(array(solid, force)->data[0], -F, 1e-6, 0);
+  assert_true(isnan(array(solid, turn ? "spring_force_N" : "spring_moment_N_m")->data[0]));
+  if (spring.count == 0) { // at its free length it does nothing
+    good(dea_solid_move_spring(ctx, solid, 0, 0));
+    good(dea_solid_solve(ctx, solid, 0));
+    assert_close(array(solid, where)->data[i], 0, 0, 1e-9 * there);
+  }
+  assert_int_equal(dea_solid_move_spring(ctx, solid, 1, 0), DEA_E_ARGUMENT);
+  spring.body = 1;
+  assert_int_equal(dea_solid_add_spring(ctx, solid, &spring), DEA_E_ARGUMENT);
+  spring.body = 0;
+  spring.component = 3; // two of them
+  assert_int_equal(dea_solid_add_spring(ctx, solid, &spring), DEA_E_ARGUMENT);
+  dea_solid_free(solid);
+}
+
+static void test_springs(void **state)
+{
+  (void)state;
+  const double y[3] = {-1e-3, 1e-3, 3e-3}, F[3] = {2, 1, 0.8}; // less and less
+  dea_body_spring spring = DEA_BODY_SPRING_INIT;
+  spring.component = 4;
+  spring.stiffness = 500;
+  check_spring(&spring, 1e-3, "spring_force_N");
+  spring.component = 16;
+  spring.stiffness = 0.02;
+  check_spring(&spring, 0.1, "spring_moment_N_m");
+  spring.component = 4;
+  spring.count = 3;
+  spring.at = y;
+  spring.force = F;
+  check_spring(&spring, 1e-3, "spring_force_N");
+}
+
 static void test_refused(void **state)
 {
   (void)state;
@@ -446,9 +522,11 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage), cmocka_unit_test(test_modes),
-      cmocka_unit_test(test_channels), cmocka_unit_test(test_msh),     cmocka_unit_test(test_body),
-      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),    cmocka_unit_test(test_voltage),
+      cmocka_unit_test(test_modes),   cmocka_unit_test(test_channels),
+      cmocka_unit_test(test_msh),     cmocka_unit_test(test_body),
+      cmocka_unit_test(test_springs), cmocka_unit_test(test_settings),
+      cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

@@ -383,6 +383,21 @@ typedef struct {
   double centre_m[3];         // X_0: what it turns about, and where its shift is told
 } dea_body;
 
+/* Pulls a body back along one component of its shift or its rotation vector, by a force (moment) F
+ * of y, how far that component is beyond `place`: F = stiffness y, or a table. */
+typedef struct {
+  size_t size;      // set by DEA_BODY_SPRING_INIT
+  size_t body;      // its number
+  int component;    // 1, 2, 4: shift along x, y, z; 8, 16, 32: of the rotation vector
+  double place;     // of the outer end [m or rad]
+  double stiffness; // 0 or more [N/m or N m/rad]
+  /* A table in place of the stiffness: a monotone cubic through its points, straight on beyond its
+   * ends. F may fall, as that of a bistable spring does. */
+  size_t count;        // 0: none; 2 or more
+  const double *at;    // [count] y, rising [m or rad]
+  const double *force; // [count] F [N or N m]
+} dea_body_spring;
+
 typedef struct {
   size_t size;        // set by DEA_SOLID_OPTIONS_INIT
   int order, order_z; // of the elements, 1 to 3; 0: 2
@@ -432,6 +447,11 @@ dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, 
  * come; in place of what was there. */
 dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
                                const double force_N[3], const double moment_N_m[3]);
+/* Adds a spring between a body and the outside; copied. The next solve brings its outer end from
+ * where the body is to its place. Springs count from 0 in the order in which they were added. */
+dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_body_spring *spring);
+/* Another place of a spring's outer end [m or rad], that the next solve goes to. */
+dea_status dea_solid_move_spring(dea_context *ctx, dea_solid *solid, size_t spring, double place);
 /* Adds a force per reference area on the faces of elements whose middles are there; an outer face
  * of the solid is a box without thickness. */
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
@@ -472,9 +492,10 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
 dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid);
 /* points_m, displacement_m, reaction_N, force_N [points][3], mode_Hz [modes] (negative: unstable),
  * mode_shape [modes][points][3], of bodies body_shift_m, body_turn_rad, and what holds them,
- * body_force_N, body_moment_N_m [bodies][3], and those of dea_solid_find_charges. *out: lent until
- * the next call of this function; its numbers until the next solve, step or modes. DEA_E_ARGUMENT
- * for another name. */
+ * body_force_N, body_moment_N_m [bodies][3], by which springs pull back spring_force_N,
+ * spring_moment_N_m [springs] (NAN for those of the other kind), and those of
+ * dea_solid_find_charges. *out: lent until the next call of this function; its numbers until the
+ * next solve, step or modes. DEA_E_ARGUMENT for another name, or when there are none. */
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out);
 /* voltage_V, energy_J, unstable_modes, iterations, load, arc. */
@@ -497,6 +518,10 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
     {                                                                                              \
       0, 0, 0                                                                                      \
     }                                                                                              \
+  }
+#define DEA_BODY_SPRING_INIT                                                                       \
+  {                                                                                                \
+    sizeof(dea_body_spring), 0, 0, 0, 0, 0, NULL, NULL                                             \
   }
 #define DEA_SOLID_OPTIONS_INIT                                                                     \
   {                                                                                                \

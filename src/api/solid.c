@@ -283,6 +283,31 @@ dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
   return DEA_OK;
 }
 
+dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_body_spring *spring)
+{
+  dea_body_spring all = DEA_BODY_SPRING_INIT;
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  memcpy(&all, spring, spring->size < sizeof all ? spring->size : sizeof all);
+  struct dea_spring_spec spec = {.body = all.body,
+                                 .place = all.place,
+                                 .stiffness = all.stiffness,
+                                 .count = all.count,
+                                 .at = all.at,
+                                 .force = all.force};
+  while (spec.component < 6 && all.component != 1 << spec.component) {
+    spec.component++;
+  }
+  DEA_TRY(ctx->inner, solid->access->add_spring(ctx->inner, solid->object, &spec));
+  return DEA_OK;
+}
+
+dea_status dea_solid_move_spring(dea_context *ctx, dea_solid *solid, size_t spring, double place)
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->move_spring(ctx->inner, solid->object, spring, place));
+  return DEA_OK;
+}
+
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
                           const double high_m[3], const double traction_Pa[3])
 {
@@ -358,11 +383,12 @@ dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out)
 {
-  static const char *const known[] = {"points_m",      "displacement_m", "reaction_N",
-                                      "force_N",       "mode_Hz",        "mode_shape",
-                                      "channel_V",     "charge_C",       "capacitance_held_F",
-                                      "capacitance_F", "body_shift_m",   "body_turn_rad",
-                                      "body_force_N",  "body_moment_N_m"};
+  static const char *const known[] = {"points_m",         "displacement_m",  "reaction_N",
+                                      "force_N",          "mode_Hz",         "mode_shape",
+                                      "channel_V",        "charge_C",        "capacitance_held_F",
+                                      "capacitance_F",    "body_shift_m",    "body_turn_rad",
+                                      "body_force_N",     "body_moment_N_m", "spring_force_N",
+                                      "spring_moment_N_m"};
   const char *unit = "";
   size_t shape[3] = {0, 0, 0};
   *out = NULL;

@@ -57,6 +57,15 @@ struct dea_body_spec {
   double centre_m[3];
 };
 
+/* A spring between a body and the outside; copied. */
+struct dea_spring_spec {
+  size_t body;
+  int component;            // 0 to 2: shift, 3 to 5: rotation vector
+  double place, stiffness;  // m, N/m; of a turn rad, N m/rad
+  size_t count;             // of a table in place of the stiffness, or 0
+  const double *at, *force; // [count]
+};
+
 struct dea_solid_object;
 
 /* Where nodes or the middles of faces are looked for: low_m <= X <= high_m, with a little more. */
@@ -86,6 +95,13 @@ struct dea_solid_access {
                           int components, const double *shift_m, const double *turn_rad);
   dea_status (*push_body)(struct dea_context *ctx, struct dea_solid_object *object, size_t body,
                           const double force_N[3], const double moment_N_m[3]);
+  /* Adds a spring whose outer end the next solve brings from where the body is to its place; gives
+   * one another place. DEA_E_ARGUMENT where there is no such body or spring, or numbers that cannot
+   * be. */
+  dea_status (*add_spring)(struct dea_context *ctx, struct dea_solid_object *object,
+                           const struct dea_spring_spec *spec);
+  dea_status (*move_spring)(struct dea_context *ctx, struct dea_solid_object *object, size_t spring,
+                            double place);
   /* Adds a dead load per reference area on the faces whose middles are there. */
   dea_status (*pull)(struct dea_context *ctx, struct dea_solid_object *object,
                      struct dea_solid_place place, const double traction_Pa[3]);

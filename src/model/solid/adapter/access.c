@@ -3,6 +3,7 @@
 
 #include "base/module.h"
 #include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
@@ -14,6 +15,13 @@
 #include <string.h>
 
 enum { FACES = 6 };
+
+/* A spring of a body, and which component it holds. */
+struct held_spring {
+  struct dea_spring *spring;
+  size_t body;
+  int component; // 0 to 2: shift, 3 to 5: rotation vector
+};
 
 struct dea_solid_object {
   struct dea_plane_mesh *plane; // of a .msh file, otherwise NULL
@@ -33,6 +41,9 @@ struct dea_solid_object {
   double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
   size_t body_count;
   double *body_told; // [4][body_count][3] shift, turn, force, moment
+  size_t spring_count;
+  struct held_spring *springs; // [spring_count]
+  double *spring_told;         // [2][spring_count] force, moment
 };
 
 // Mesh -------------------------------------------------------------------------------------------
@@ -344,6 +355,11 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
   if (object != NULL) {
     dea_solid_continuation_destroy(ctx, object->path);
     dea_solid_destroy(ctx, object->solid);
+    for (size_t i = 0; i < object->spring_count; i++) { // loads of the solid
+      dea_spring_destroy(ctx, object->springs[i].spring);
+    }
+    dea_free(ctx, object->springs);
+    dea_free(ctx, object->spring_told);
     dea_grid_destroy(ctx, object->grid);
     dea_free(ctx, object->constituents);
     dea_free(ctx, object->between);
@@ -491,6 +507,79 @@ static dea_status push_body(struct dea_context *ctx, struct dea_solid_object *ob
   DEA_TRY(ctx, check_body(ctx, object, body));
   dea_solid_body_push(object->solid, body, force_N, moment_N_m);
   return DEA_OK;
+}
+
+/* The component of a body that a spring is at [m or rad]. */
+static double spring_end(const struct dea_solid_object *object, size_t body, int component)
+{
+  double place[6];
+  dea_solid_body_place(object->solid, body, place, place + 3);
+  return place[component];
+}
+
+static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *object,
+                             const struct dea_spring_spec *spec)
+{
+  end_path(ctx, object);
+  DEA_TRY(ctx, check_body(ctx, object, spec->body));
+  if (spec->component < 0 || spec->component > 5 || !isfinite(spec->place)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a spring holds one component of a body at a place");
+  }
+  size_t count = object->spring_count + 1;
+  struct held_spring *springs = dea_resize(ctx, object->springs, count, sizeof *springs);
+  object->springs = springs != NULL ? springs : object->springs;
+  double *told = dea_resize(ctx, object->spring_told, 2 * count, sizeof *told);
+  object->spring_told = told != NULL ? told : object->spring_told;
+  if (springs == NULL || told == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const struct dea_solid_body *body = &object->solid->problem.bodies[spec->body];
+  const struct dea_spring_options options = {.node = body->node + (size_t)spec->component / 3,
+                                             .component = spec->component % 3,
+                                             .unit_m = spec->component < 3 ? 1 : body->length_m,
+                                             .place =
+                                                 spring_end(object, spec->body, spec->component),
+                                             .stiffness = spec->stiffness,
+                                             .count = spec->count,
+                                             .at = spec->at,
+                                             .force = spec->force};
+  struct held_spring one = {.body = spec->body, .component = spec->component};
+  DEA_TRY(ctx, dea_spring_create(ctx, &options, &one.spring));
+  const struct dea_solid_load load = dea_spring_load(one.spring);
+  dea_status status = dea_solid_add_load(ctx, object->solid, &load);
+  if (status != DEA_OK) {
+    dea_spring_destroy(ctx, one.spring);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  dea_spring_move(one.spring, spec->place);
+  springs[object->spring_count++] = one;
+  return DEA_OK;
+}
+
+static dea_status move_spring(struct dea_context *ctx, struct dea_solid_object *object,
+                              size_t spring, double place)
+{
+  end_path(ctx, object);
+  if (spring >= object->spring_count || !isfinite(place)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "spring %zu to %g: there are %zu springs", spring, place,
+                    object->spring_count);
+  }
+  dea_spring_move(object->springs[spring].spring, place);
+  return DEA_OK;
+}
+
+/* What springs pull back by. */
+static const double *tell_springs(struct dea_solid_object *object)
+{
+  size_t count = object->spring_count;
+  for (size_t i = 0; i < count; i++) {
+    const struct held_spring *held = &object->springs[i];
+    double x = spring_end(object, held->body, held->component);
+    double pull = dea_spring_force(held->spring, x);
+    object->spring_told[i] = held->component < 3 ? pull : NAN;
+    object->spring_told[count + i] = held->component < 3 ? NAN : pull;
+  }
+  return count > 0 ? object->spring_told : NULL;
 }
 
 /* Where the bodies are and what holds them. */
@@ -675,6 +764,9 @@ static const double *array(struct dea_solid_object *object, const char *name, co
   size_t b = object->body_count;
   const double *charges = object->charges;
   const double *told = strncmp(name, "body_", strlen("body_")) == 0 ? tell_bodies(object) : NULL;
+  size_t k = object->spring_count;
+  const double *pull =
+      strncmp(name, "spring_", strlen("spring_")) == 0 ? tell_springs(object) : NULL;
   const struct {
     const char *name, *unit;
     const double *data;
@@ -690,6 +782,8 @@ static const double *array(struct dea_solid_object *object, const char *name, co
       {"body_turn_rad", "rad", told != NULL ? told + 3 * b : NULL, {b, 3}},
       {"body_force_N", "N", told != NULL ? told + 6 * b : NULL, {b, 3}},
       {"body_moment_N_m", "N m", told != NULL ? told + 9 * b : NULL, {b, 3}},
+      {"spring_force_N", "N", pull, {k, 0}},
+      {"spring_moment_N_m", "N m", pull != NULL ? pull + k : NULL, {k, 0}},
       {"channel_V", "V", charges, {c, 0}},
       {"charge_C", "C", charges != NULL ? charges + c : NULL, {c, 0}},
       {"capacitance_held_F", "F", charges != NULL ? charges + 2 * c : NULL, {c, c}},
@@ -736,6 +830,8 @@ const struct dea_solid_access dea_solid_access = {.create = create,
                                                   .hold = hold,
                                                   .hold_body = hold_body,
                                                   .push_body = push_body,
+                                                  .add_spring = add_spring,
+                                                  .move_spring = move_spring,
                                                   .pull = pull,
                                                   .set_channel = set_channel,
                                                   .solve = solve,
