@@ -166,8 +166,11 @@ static void test_modes(void **state)
   options.part_count = 2;
   dea_solid *solid;
   good(dea_solid_new(ctx, &options, &solid));
-  const double end[3] = {0, size[1], size[2]};
-  good(dea_solid_hold(ctx, solid, nothing, end, 7, nothing));
+  int ends[9] = {0, ALONG, 2 * ALONG};
+  for (int n = 3; n < 9; n++) {
+    ends[n] = ends[n % 3] + n / 3 * 3 * ALONG;
+  }
+  good(dea_solid_hold_nodes(ctx, solid, ends, 9, 7, nothing));
   good(dea_solid_solve(ctx, solid, 0));
   good(dea_solid_modes(ctx, solid, 3));
   const double exact = 1.8751 * 1.8751 / (2 * acos(-1) * size[0] * size[0]) *
@@ -181,7 +184,9 @@ static void test_modes(void **state)
   assert_int_equal(f->rank, 3);
   assert_int_equal(f->shape[1], POINTS);
 
-  cells[5] = POINTS; // a node that is not there
+  cells[5] = ends[1] = POINTS; // a node that is not there
+  assert_int_equal(dea_solid_hold_nodes(ctx, solid, ends, 9, 7, nothing), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "there is no node 189: 189 of them"));
   dea_solid *bad;
   assert_int_equal(dea_solid_new(ctx, &options, &bad), DEA_E_ARGUMENT);
   assert_null(bad);
@@ -371,6 +376,10 @@ static void test_body(void **state)
   dea_solid *none;
   assert_int_equal(dea_solid_new(ctx, &options, &none), DEA_E_ARGUMENT);
   assert_non_null(strstr(dea_error_message(ctx), "no node for body 0"));
+  plate.nodes = (const int[]){-1};
+  plate.node_count = 1;
+  assert_int_equal(dea_solid_new(ctx, &options, &none), DEA_E_ARGUMENT);
+  assert_non_null(strstr(dea_error_message(ctx), "there is no node -1"));
 }
 
 /* A block with a rigid plate on top, where a spring holds it: at a shift, or a turn, that takes the

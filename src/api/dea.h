@@ -381,6 +381,8 @@ typedef struct {
   const char *curve;          // of these only nodes on, above and below a physical curve of the
                               // .msh file; NULL: all
   double centre_m[3];         // X_0: what it turns about, and where its shift is told
+  const int *nodes;           // [node_count] of these only, from 0; NULL: all
+  size_t node_count;
 } dea_body;
 
 /* Pulls a body back along one component of its shift or its rotation vector, by a force (moment) F
@@ -438,6 +440,9 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
 dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *curve,
                                 const double low_m[3], const double high_m[3], int components,
                                 const double displacement_m[3]);
+/* The same of the nodes [count] with these numbers, from 0: rows of points_m. */
+dea_status dea_solid_hold_nodes(dea_context *ctx, dea_solid *solid, const int *nodes, size_t count,
+                                int components, const double displacement_m[3]);
 /* Holds components of a body (1, 2, 4: shift along x, y, z; 8, 16, 32: of the rotation vector, or
  * sums of them) at a shift and a rotation vector that the next solve goes to; both NULL frees them.
  */
@@ -514,10 +519,7 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
   }
 #define DEA_BODY_INIT                                                                              \
   {                                                                                                \
-    sizeof(dea_body), {0, 0, 0}, {0, 0, 0}, NULL,                                                  \
-    {                                                                                              \
-      0, 0, 0                                                                                      \
-    }                                                                                              \
+    sizeof(dea_body), {0, 0, 0}, {0, 0, 0}, NULL, {0, 0, 0}, NULL, 0                               \
   }
 #define DEA_BODY_SPRING_INIT                                                                       \
   {                                                                                                \

@@ -178,7 +178,9 @@ static void take_bodies(const dea_solid_options *o, dea_body *copies, struct dea
                       memcmp(copies[i].low_m, all.low_m, sizeof all.low_m) == 0;
     bodies[i] = (struct dea_body_spec){.low_m = everywhere ? NULL : copies[i].low_m,
                                        .high_m = everywhere ? NULL : copies[i].high_m,
-                                       .curve = copies[i].curve};
+                                       .curve = copies[i].curve,
+                                       .nodes = copies[i].nodes,
+                                       .node_count = copies[i].node_count};
     memcpy(bodies[i].centre_m, copies[i].centre_m, sizeof bodies[i].centre_m);
   }
   out->body_count = o->body_count;
@@ -246,8 +248,18 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
-                                          (struct dea_solid_place){low_m, high_m, NULL}, components,
-                                          displacement_m));
+                                          (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
+                                          components, displacement_m));
+  return DEA_OK;
+}
+
+dea_status dea_solid_hold_nodes(dea_context *ctx, dea_solid *solid, const int *nodes, size_t count,
+                                int components, const double displacement_m[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
+                                          (struct dea_solid_place){NULL, NULL, NULL, nodes, count},
+                                          components, displacement_m));
   return DEA_OK;
 }
 
@@ -260,7 +272,7 @@ dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box has two corners");
   }
   DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
-                                          (struct dea_solid_place){low_m, high_m, curve},
+                                          (struct dea_solid_place){low_m, high_m, curve, NULL, 0},
                                           components, displacement_m));
   return DEA_OK;
 }
@@ -314,7 +326,7 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DEA_TRY(ctx->inner,
           solid->access->pull(ctx->inner, solid->object,
-                              (struct dea_solid_place){low_m, high_m, NULL}, traction_Pa));
+                              (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, traction_Pa));
   return DEA_OK;
 }
 

@@ -54,6 +54,8 @@ struct dea_solid_spec {
 struct dea_body_spec {
   const double *low_m, *high_m; // [3], NULL: everywhere
   const char *curve;            // of the .msh file, NULL: all
+  const int *nodes;             // [node_count], NULL: all
+  size_t node_count;
   double centre_m[3];
 };
 
@@ -72,6 +74,8 @@ struct dea_solid_object;
 struct dea_solid_place {
   const double *low_m, *high_m; // [3], NULL: everywhere
   const char *curve;            // of the .msh file, nodes above and on it only; NULL: all
+  const int *nodes;             // [node_count] these only; NULL: all
+  size_t node_count;
 };
 
 struct dea_solid_access {

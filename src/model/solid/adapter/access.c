@@ -238,19 +238,49 @@ static dea_status mark_curve(struct dea_context *ctx, const struct dea_plane_mes
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
+/* Whether each node of the mesh is there [mesh_node_count]; owned by the caller. */
+static dea_status find_nodes(struct dea_context *ctx, const struct dea_solid_object *object,
+                             struct dea_solid_place place, bool **out)
+{
+  const struct dea_grid *grid = object->grid;
+  bool *curve = NULL, *on = dea_alloc(ctx, object->mesh_node_count, sizeof *on);
+  *out = NULL;
+  dea_status status = on != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK && place.curve != NULL) {
+    status = mark_curve(ctx, object->plane, place.curve, &curve);
+  }
+  for (size_t i = 0; i < place.node_count && status == DEA_OK; i++) {
+    if (place.nodes[i] < 0 || (size_t)place.nodes[i] >= object->mesh_node_count) {
+      status = dea_fail(ctx, DEA_E_ARGUMENT, "there is no node %d: %zu of them", place.nodes[i],
+                        object->mesh_node_count);
+    } else {
+      on[place.nodes[i]] = true;
+    }
+  }
+  for (size_t n = 0; n < object->mesh_node_count && status == DEA_OK; n++) {
+    on[n] = (on[n] || place.nodes == NULL) && (curve == NULL || curve[grid->column[n]]) &&
+            is_there(object, place, grid->X + 3 * n);
+  }
+  dea_free(ctx, curve);
+  if (status != DEA_OK) {
+    dea_free(ctx, on);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = on;
+  return DEA_OK;
+}
+
 /* Two nodes for each body behind those of the mesh. follows: [nodes of the mesh], of the caller. */
 static dea_status mark_body(struct dea_context *ctx, const struct dea_body_spec *body, int number,
                             const struct dea_solid_object *object, int *follows)
 {
-  const struct dea_solid_place place = {body->low_m, body->high_m, body->curve};
-  bool *on = NULL;
+  const struct dea_solid_place place = {body->low_m, body->high_m, body->curve, body->nodes,
+                                        body->node_count};
+  bool *on;
   size_t found = 0;
-  if (body->curve != NULL) {
-    DEA_TRY(ctx, mark_curve(ctx, object->plane, body->curve, &on));
-  }
+  DEA_TRY(ctx, find_nodes(ctx, object, place, &on));
   for (size_t n = 0; n < object->mesh_node_count; n++) {
-    if ((on == NULL || on[object->grid->column[n]]) &&
-        is_there(object, place, object->grid->X + 3 * n)) {
+    if (on[n]) {
       follows[n] = number;
       found++;
     }
@@ -454,16 +484,13 @@ static void end_path(struct dea_context *ctx, struct dea_solid_object *object)
 static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
                        struct dea_solid_place place, int components, const double *displacement_m)
 {
-  const struct dea_grid *grid = object->grid;
-  bool *on = NULL;
+  bool *on;
   size_t found = 0;
   end_path(ctx, object);
-  if (place.curve != NULL) {
-    DEA_TRY(ctx, mark_curve(ctx, object->plane, place.curve, &on));
-  }
+  DEA_TRY(ctx, find_nodes(ctx, object, place, &on));
   dea_status status = DEA_OK;
   for (size_t n = 0; n < object->mesh_node_count && status == DEA_OK; n++) {
-    if ((on == NULL || on[grid->column[n]]) && is_there(object, place, grid->X + 3 * n)) {
+    if (on[n]) {
       status = displacement_m != NULL
                    ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)
                    : dea_solid_release(ctx, object->solid, n, components);
