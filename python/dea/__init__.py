@@ -8,6 +8,8 @@
     result["3d/sweep/centre_z_m"]          # a numpy array with .unit
     result.figure("displacement").save("displacement.svg")
 
+Solid is the 3D engine with a mesh of one's own.
+
 Numbers are SI and say so in their names; texts have any unit. Errors are exceptions: see DeaError.
 Docs: docs/python.md.
 """
@@ -24,10 +26,12 @@ from ._door import (
 )
 from ._design import Design, Model, Study, Value, models, studies
 from ._result import Actuator, Array, Field, Mesh, Result, Svg, load, run
+from ._solid import Body, Fill, Law, Part, Setting, Solid, laws
 
 __version__ = version()
 __all__ = [
-    "Actuator", "ArgumentError", "Array", "DeaError", "Design", "DesignError", "Field", "FileError",
-    "Finding", "Mesh", "Model", "Result", "SolverError", "Study", "Svg", "UnsupportedError", "Value",
-    "load", "models", "run", "studies", "version",
+    "Actuator", "ArgumentError", "Array", "Body", "DeaError", "Design", "DesignError", "Field",
+    "FileError", "Fill", "Finding", "Law", "Mesh", "Model", "Part", "Result", "Setting", "Solid",
+    "SolverError", "Study", "Svg", "UnsupportedError", "Value", "laws", "load", "models", "run",
+    "studies", "version",
 ]
