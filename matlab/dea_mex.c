@@ -2,14 +2,15 @@
  *
  *   [...] = dea_mex(COMMAND, ...)   is what the files of +dea call; people call those
  *
- * Designs, results and actuators stay here, in a table; MATLAB has their numbers, of which none is
- * used twice. A call that fails is an error with an identifier such as "dea:design" and the
+ * Designs, results, actuators and solids stay here, in a table; MATLAB has their numbers, of which
+ * none is used twice. A call that fails is an error with an identifier such as "dea:design" and the
  * findings in its message. Nothing is owned where an error may be raised: what the interpreter gave
  * it takes back by itself. */
 #include <dea.h>
 #include <mex.h>
 
 #include <ctype.h>
+#include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,9 +119,9 @@ static void on_note(void *user, enum dea_severity severity, const char *text)
 
 // Objects -----------------------------------------------------------------------------------------
 
-enum kind { DESIGN, RESULT, ACTUATOR };
+enum kind { DESIGN, RESULT, ACTUATOR, SOLID };
 
-static const char *const kind_names[] = {"design", "result", "actuator"};
+static const char *const kind_names[] = {"design", "result", "actuator", "solid"};
 
 struct object {
   uint64_t id;
@@ -139,8 +140,10 @@ static void release(struct object object)
     dea_design_free(object.handle);
   } else if (object.kind == RESULT) {
     dea_result_free(object.handle);
-  } else {
+  } else if (object.kind == ACTUATOR) {
     dea_actuator_free(object.handle);
+  } else {
+    dea_solid_free(object.handle);
   }
 }
 
@@ -799,6 +802,361 @@ static void get_actuator_mesh(struct call *call)
   call->out[0] = from_mesh(mesh);
 }
 
+// Commands: solids --------------------------------------------------------------------------------
+
+/* A member of struct i of an array of structs. */
+static const mxArray *get_member(const mxArray *structs, size_t i, const char *name)
+{
+  const mxArray *member = mxIsStruct(structs) ? mxGetField(structs, (mwIndex)i, name) : NULL;
+  if (member == NULL) {
+    mexErrMsgIdAndTxt("dea:argument", "there is no member '%s'", name);
+  }
+  return member;
+}
+
+/* Its numbers, column by column; NULL for an empty one. */
+static const double *get_numbers(const mxArray *from, size_t *count)
+{
+  *count = mxGetNumberOfElements(from);
+  if (*count > 0 && (!mxIsDouble(from) || mxIsComplex(from))) {
+    mexErrMsgIdAndTxt("dea:argument", "an array of doubles is due");
+  }
+  return *count > 0 ? mxGetPr(from) : NULL;
+}
+
+/* Whole numbers, less `first`; NULL for an empty one. */
+static int *get_whole(const mxArray *from, int first, size_t *count)
+{
+  const double *numbers = get_numbers(from, count);
+  int *out = numbers != NULL ? mxCalloc(*count, sizeof *out) : NULL;
+  for (size_t i = 0; i < *count; i++) {
+    if (!(numbers[i] >= 0 && numbers[i] <= INT_MAX)) {
+      mexErrMsgIdAndTxt("dea:argument", "%g is no number of something", numbers[i]);
+    }
+    out[i] = (int)numbers[i] - first;
+  }
+  return out;
+}
+
+/* One that counts from 1. */
+static size_t get_index(double from)
+{
+  if (!(from >= 1 && from <= INT_MAX)) {
+    mexErrMsgIdAndTxt("dea:argument", "%g is no number of something: they count from 1", from);
+  }
+  return (size_t)from - 1;
+}
+
+/* x, y, z; NULL for an empty one. */
+static const double *get_vector(const mxArray *from)
+{
+  size_t count;
+  const double *out = get_numbers(from, &count);
+  if (count != 0 && count != 3) {
+    mexErrMsgIdAndTxt("dea:argument", "three numbers are due, not %lu", (unsigned long)count);
+  }
+  return out;
+}
+
+static double member_number(const mxArray *structs, size_t i, const char *name)
+{
+  const mxArray *one = get_member(structs, i, name);
+  const struct call of_one = {0, NULL, 1, &one};
+  return get_number(&of_one, 0);
+}
+
+/* NULL for an empty one. */
+static char *member_text(const mxArray *structs, size_t i, const char *name)
+{
+  const mxArray *one = get_member(structs, i, name);
+  const struct call of_one = {0, NULL, 1, &one};
+  return get_text_or_null(&of_one, 0);
+}
+
+static void take_vector(const double *from, double out[3])
+{
+  for (int i = 0; from != NULL && i < 3; i++) {
+    out[i] = from[i];
+  }
+}
+
+static const dea_part *take_part(const mxArray *parts, size_t i)
+{
+  dea_part *out = mxCalloc(1, sizeof *out);
+  out->size = sizeof *out;
+  out->law = member_text(parts, i, "law");
+  out->parameters = get_numbers(get_member(parts, i, "parameters"), &out->parameter_count);
+  out->young_modulus_Pa = member_number(parts, i, "young_modulus_Pa");
+  out->poisson_ratio = member_number(parts, i, "poisson_ratio");
+  out->bulk_modulus_Pa = member_number(parts, i, "bulk_modulus_Pa");
+  out->pre_stretch = member_number(parts, i, "pre_stretch");
+  out->permittivity = member_number(parts, i, "permittivity");
+  out->electrode_gap_m = member_number(parts, i, "electrode_gap_m");
+  out->density_kg_per_m3 = member_number(parts, i, "density_kg_per_m3");
+  out->channel_above = (int)member_number(parts, i, "channel_above");
+  out->channel_below = (int)member_number(parts, i, "channel_below");
+  return out;
+}
+
+static const dea_body *take_body(const mxArray *bodies, size_t i)
+{
+  dea_body *out = mxCalloc(1, sizeof *out);
+  out->size = sizeof *out;
+  out->curve = member_text(bodies, i, "curve");
+  out->nodes = get_whole(get_member(bodies, i, "nodes"), 1, &out->node_count);
+  take_vector(get_vector(get_member(bodies, i, "low_m")), out->low_m);
+  take_vector(get_vector(get_member(bodies, i, "high_m")), out->high_m);
+  take_vector(get_vector(get_member(bodies, i, "centre_m")), out->centre_m);
+  return out;
+}
+
+static dea_fill *take_fills(const mxArray *fills, size_t count)
+{
+  dea_fill *out = mxCalloc(count + 1, sizeof *out);
+  for (size_t i = 0; i < count; i++) {
+    out[i].ply = get_index(member_number(fills, i, "ply"));
+    out[i].group = member_text(fills, i, "group");
+    out[i].part = get_index(member_number(fills, i, "part"));
+  }
+  return out;
+}
+
+/* points_m and cells: one column a point and a cell. */
+static void take_mesh(const mxArray *from, dea_solid_options *out)
+{
+  size_t count, nodes;
+  const double *elements = get_vector(get_member(from, 0, "elements"));
+  const double *box = get_vector(get_member(from, 0, "box_m"));
+  out->order = (int)member_number(from, 0, "order");
+  out->order_z = (int)member_number(from, 0, "order_z");
+  take_vector(box, out->box_m);
+  for (int i = 0; box != NULL && elements != NULL && i < 3; i++) {
+    out->elements[i] = get_index(elements[i]) + 1;
+  }
+  out->points_m = get_numbers(get_member(from, 0, "points_m"), &count);
+  out->point_count = count / 3;
+  out->cells = get_whole(get_member(from, 0, "cells"), 1, &count);
+  nodes = (size_t)(out->order + 1) * (size_t)(out->order + 1) * (size_t)(out->order_z + 1);
+  if (out->order < 1 || out->order_z < 1 || count % nodes != 0) {
+    mexErrMsgIdAndTxt("dea:argument", "cells of order %d and %d have %lu nodes", out->order,
+                      out->order_z, (unsigned long)nodes);
+  }
+  out->cell_count = count / nodes;
+  out->part_of = get_whole(get_member(from, 0, "part_of"), 1, &count);
+  if (count != 0 && count != out->cell_count) {
+    mexErrMsgIdAndTxt("dea:argument", "parts of %lu cells for %lu", (unsigned long)count,
+                      (unsigned long)out->cell_count);
+  }
+}
+
+static void take_plies(const mxArray *from, dea_solid_options *out)
+{
+  size_t count;
+  const mxArray *fills = get_member(from, 0, "fills");
+  out->msh_file = member_text(from, 0, "msh_file");
+  out->msh_unit_m = member_number(from, 0, "msh_unit_m");
+  out->ply_thickness_m = get_numbers(get_member(from, 0, "ply_thickness_m"), &out->ply_count);
+  const int *elements = get_whole(get_member(from, 0, "ply_elements"), 0, &count);
+  if (count != 0 && count != out->ply_count) {
+    mexErrMsgIdAndTxt("dea:argument", "numbers of elements of %lu plies for %lu",
+                      (unsigned long)count, (unsigned long)out->ply_count);
+  }
+  size_t *through = count > 0 ? mxCalloc(count, sizeof *through) : NULL;
+  for (size_t i = 0; i < count; i++) {
+    through[i] = (size_t)elements[i];
+  }
+  out->ply_elements = through;
+  out->fill_count = mxIsStruct(fills) ? mxGetNumberOfElements(fills) : 0;
+  out->fills = take_fills(fills, out->fill_count);
+}
+
+/* parts, bodies, options: structs as dea.Part, dea.Body and dea.Solid make them. */
+static void new_solid(struct call *call)
+{
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  const mxArray *parts = call->in[1], *bodies = call->in[2];
+  dea_solid *solid;
+  options.part_count = mxIsStruct(parts) ? mxGetNumberOfElements(parts) : 0;
+  options.body_count = mxIsStruct(bodies) ? mxGetNumberOfElements(bodies) : 0;
+  const dea_part **part = mxCalloc(options.part_count + 1, sizeof *part);
+  const dea_body **body = mxCalloc(options.body_count + 1, sizeof *body);
+  for (size_t i = 0; i < options.part_count; i++) {
+    part[i] = take_part(parts, i);
+  }
+  for (size_t i = 0; i < options.body_count; i++) {
+    body[i] = take_body(bodies, i);
+  }
+  options.parts = part;
+  options.bodies = body;
+  take_mesh(call->in[3], &options);
+  take_plies(call->in[3], &options);
+  check(dea_solid_new(ctx, &options, &solid));
+  call->out[0] = from_object(SOLID, solid);
+}
+
+/* solid, components, displacement (empty: free), low, high, curve, nodes (empty: by the place) */
+static void hold(struct call *call)
+{
+  dea_solid *solid = get_handle(call, 1, SOLID);
+  int components = (int)get_number(call, 2);
+  const double *move = get_vector(call->in[3]), *low = get_vector(call->in[4]);
+  const double *high = get_vector(call->in[5]);
+  const char *curve = get_text_or_null(call, 6);
+  size_t count;
+  const int *nodes = get_whole(call->in[7], 1, &count);
+  if (nodes != NULL) {
+    check(dea_solid_hold_nodes(ctx, solid, nodes, count, components, move));
+  } else if (curve != NULL) {
+    check(dea_solid_hold_curve(ctx, solid, curve, low, high, components, move));
+  } else {
+    check(dea_solid_hold(ctx, solid, low, high, components, move));
+  }
+}
+
+/* solid, body, components, shift, turn (both empty: free) */
+static void hold_body(struct call *call)
+{
+  check(dea_solid_hold_body(ctx, get_handle(call, 1, SOLID), get_index(get_number(call, 2)),
+                            (int)get_number(call, 3), get_vector(call->in[4]),
+                            get_vector(call->in[5])));
+}
+
+/* solid, body, force, moment */
+static void push_body(struct call *call)
+{
+  double force[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+  take_vector(get_vector(call->in[3]), force);
+  take_vector(get_vector(call->in[4]), moment);
+  check(dea_solid_push_body(ctx, get_handle(call, 1, SOLID), get_index(get_number(call, 2)), force,
+                            moment));
+}
+
+/* solid, body, component, place, stiffness, table's displacements and forces (empty: none) */
+static void add_spring(struct call *call)
+{
+  dea_body_spring spring = DEA_BODY_SPRING_INIT;
+  size_t forces;
+  spring.body = get_index(get_number(call, 2));
+  spring.component = (int)get_number(call, 3);
+  spring.place = get_number(call, 4);
+  spring.stiffness = get_number(call, 5);
+  spring.at = get_numbers(call->in[6], &spring.count);
+  spring.force = get_numbers(call->in[7], &forces);
+  if (forces != spring.count) {
+    mexErrMsgIdAndTxt("dea:argument", "%lu displacements and %lu forces",
+                      (unsigned long)spring.count, (unsigned long)forces);
+  }
+  check(dea_solid_add_spring(ctx, get_handle(call, 1, SOLID), &spring));
+}
+
+static void move_spring(struct call *call)
+{
+  check(dea_solid_move_spring(ctx, get_handle(call, 1, SOLID), get_index(get_number(call, 2)),
+                              get_number(call, 3)));
+}
+
+/* solid, traction, low, high */
+static void pull(struct call *call)
+{
+  double traction[3] = {0, 0, 0};
+  take_vector(get_vector(call->in[2]), traction);
+  check(dea_solid_pull(ctx, get_handle(call, 1, SOLID), get_vector(call->in[3]),
+                       get_vector(call->in[4]), traction));
+}
+
+static void set_channel(struct call *call)
+{
+  check(dea_solid_set_channel(ctx, get_handle(call, 1, SOLID), (int)get_number(call, 2),
+                              get_number(call, 3)));
+}
+
+static void solve_solid(struct call *call)
+{
+  run_state.quiet = 1;
+  check(dea_solid_solve(ctx, get_handle(call, 1, SOLID), get_number(call, 2)));
+}
+
+static void find_charges(struct call *call)
+{
+  check(dea_solid_find_charges(ctx, get_handle(call, 1, SOLID)));
+}
+
+static void find_modes(struct call *call)
+{
+  check(dea_solid_modes(ctx, get_handle(call, 1, SOLID), get_index(get_number(call, 2)) + 1));
+}
+
+/* solid, voltage, step, unit */
+static void begin_path(struct call *call)
+{
+  check(dea_solid_path_begin(ctx, get_handle(call, 1, SOLID), get_number(call, 2),
+                             get_number(call, 3), get_number(call, 4)));
+}
+
+static void step_path(struct call *call)
+{
+  run_state.quiet = 1;
+  check(dea_solid_path_step(ctx, get_handle(call, 1, SOLID)));
+}
+
+/* A number or an array by its name, and its unit. */
+static void get_of_solid(struct call *call)
+{
+  dea_solid *solid = get_handle(call, 1, SOLID);
+  const char *name = get_text(call, 2), *unit = "";
+  const dea_array *array;
+  double number;
+  if (dea_solid_number(ctx, solid, name, &number) == DEA_OK) {
+    call->out[0] = mxCreateDoubleScalar(number);
+  } else {
+    check(dea_solid_array(ctx, solid, name, &array));
+    call->out[0] = from_array(array);
+    unit = array->unit;
+  }
+  if (call->outputs > 1) {
+    call->out[1] = from_text(unit);
+  }
+}
+
+static void get_settings(struct call *call)
+{
+  const char *names[] = {"name", "unit", "meaning", "value"};
+  const dea_solid *solid = get_handle(call, 1, SOLID);
+  const dea_solid_setting *setting;
+  size_t count = 0;
+  while (dea_solid_setting_at(ctx, solid, count) != NULL) {
+    count++;
+  }
+  call->out[0] = MAKE_STRUCTS(count, names);
+  for (size_t i = 0; (setting = dea_solid_setting_at(ctx, solid, i)) != NULL; i++) {
+    put_text(call->out[0], i, "name", setting->name);
+    put_text(call->out[0], i, "unit", setting->unit);
+    put_text(call->out[0], i, "meaning", setting->meaning);
+    put_number(call->out[0], i, "value", setting->value);
+  }
+}
+
+static void set_setting(struct call *call)
+{
+  check(dea_solid_set(ctx, get_handle(call, 1, SOLID), get_text(call, 2), get_number(call, 3)));
+}
+
+static void get_laws(struct call *call)
+{
+  const char *names[] = {"name", "title", "parameters"};
+  const dea_law_info *law;
+  size_t count = 0;
+  while (dea_law_at(ctx, count) != NULL) {
+    count++;
+  }
+  call->out[0] = MAKE_STRUCTS(count, names);
+  for (size_t i = 0; (law = dea_law_at(ctx, i)) != NULL; i++) {
+    put_text(call->out[0], i, "name", law->name);
+    put_text(call->out[0], i, "title", law->title);
+    put_text(call->out[0], i, "parameters", law->parameters);
+  }
+}
+
 // -------------------------------------------------------------------------------------------------
 
 static const struct {
@@ -837,6 +1195,23 @@ static const struct {
     {"actuator_indent", 4, indent_actuator},
     {"actuator_get", 2, get_quantity},
     {"actuator_mesh", 1, get_actuator_mesh},
+    {"laws", 0, get_laws},
+    {"solid_new", 3, new_solid},
+    {"solid_hold", 7, hold},
+    {"solid_hold_body", 5, hold_body},
+    {"solid_push_body", 4, push_body},
+    {"solid_add_spring", 7, add_spring},
+    {"solid_move_spring", 3, move_spring},
+    {"solid_pull", 4, pull},
+    {"solid_set_channel", 3, set_channel},
+    {"solid_solve", 2, solve_solid},
+    {"solid_find_charges", 1, find_charges},
+    {"solid_modes", 2, find_modes},
+    {"solid_path_begin", 4, begin_path},
+    {"solid_path_step", 1, step_path},
+    {"solid_get", 2, get_of_solid},
+    {"solid_settings", 1, get_settings},
+    {"solid_set", 3, set_setting},
 };
 
 void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[])

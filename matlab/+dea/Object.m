@@ -1,5 +1,5 @@
 classdef Object < handle
-  % What dea_mex holds for a design, a result or an actuator; freed with its last copy.
+  % What dea_mex holds for a design, a result, an actuator or a solid; freed with its last copy.
 
   properties (SetAccess = protected, Hidden)
     id = 0;
