@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 800, KEYS_MAX = 32 };
+enum { MESSAGE_SIZE = 800, KEYS_MAX = 48 };
 
 /* A section being read: node is NULL when it is absent and only defaults apply. */
 struct section {
@@ -30,7 +30,7 @@ static void absent_section(const struct dea_record *record, char *base,
 {
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
-    if (field->list_max > 0) {
+    if (field->list_max > 0 || field->elsewhere != NULL) {
       continue;
     }
     if (field->kind == DEA_FIELD_RECORD) {
@@ -45,7 +45,8 @@ static void absent_section(const struct dea_record *record, char *base,
 static dea_status check_form(const struct dea_reader *reader, const struct dea_field *field,
                              const struct dea_node *node, bool element, bool *good)
 {
-  bool list = field->list_max > 0 && !element;
+  bool one = element || (field->lone && node->kind != DEA_NODE_LIST);
+  bool list = (field->list_max > 0 && !one) || field->kind == DEA_FIELD_ROWS;
   bool section = dea_field_has_record(field) || field->kind == DEA_FIELD_SECTION;
   enum dea_node_kind due = list ? DEA_NODE_LIST : section ? DEA_NODE_SECTION : DEA_NODE_VALUE;
   *good = node->kind == due && !(due == DEA_NODE_VALUE && node->empty);
@@ -92,7 +93,7 @@ static dea_status read_node(const struct dea_reader *reader, const struct dea_fi
   if (field->kind == DEA_FIELD_SETTINGS) {
     return read_settings(reader, field, node, path, node->key_place, target);
   }
-  if (field->kind == DEA_FIELD_SECTION) {
+  if (field->kind == DEA_FIELD_SECTION || field->kind == DEA_FIELD_ROWS) {
     *(const struct dea_node **)target = node;
     return DEA_OK;
   }
@@ -139,8 +140,11 @@ static dea_status read_given(const struct dea_reader *reader, const struct secti
   if (field->present_offset > 0) {
     *(bool *)(section->base + field->present_offset) = true;
   }
-  if (field->list_max > 0) {
+  if (field->list_max > 0 && node->kind == DEA_NODE_LIST) {
     return read_list(reader, field, node, path, origin, section->base);
+  }
+  if (field->list_max > 0) {
+    *(size_t *)(void *)(section->base + field->count_offset) = 1;
   }
   return read_node(reader, field, node, path, origin, section->base + field->offset);
 }
@@ -332,8 +336,8 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
   size_t count = 0, used = 0;
   for (; count < record->field_count && count < KEYS_MAX; count++) {
     keys[count] = record->fields[count].key;
-    if (used < sizeof list) {
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? ", " : "",
+    if (used < sizeof list && record->fields[count].elsewhere == NULL) {
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "",
                                keys[count]);
     }
   }
@@ -343,7 +347,10 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
       i++;
     }
     if (i < count) {
-      DEA_TRY(reader->ctx, check_twice(reader, section, &record->fields[i], node));
+      const char *instead = record->fields[i].elsewhere;
+      DEA_TRY(reader->ctx, instead != NULL
+                               ? dea_schema_error(reader, node->key_place, "%s", instead)
+                               : check_twice(reader, section, &record->fields[i], node));
       continue;
     }
     const char *nearest = dea_nearest_name(node->key, keys, count);
@@ -370,7 +377,9 @@ static dea_status read_section(const struct dea_reader *reader, const struct sec
     DEA_TRY(reader->ctx, check_unknown_keys(reader, section));
   }
   for (size_t i = 0; i < section->record->field_count; i++) {
-    DEA_TRY(reader->ctx, read_field(reader, section, &section->record->fields[i]));
+    if (section->record->fields[i].elsewhere == NULL) {
+      DEA_TRY(reader->ctx, read_field(reader, section, &section->record->fields[i]));
+    }
   }
   return DEA_OK;
 }

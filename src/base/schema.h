@@ -7,6 +7,7 @@
 #define DEA_BASE_SCHEMA_H
 
 #include "base/text.h"
+#include "base/units.h"
 #include "base/value.h"
 #include "base/yaml.h"
 
@@ -18,6 +19,7 @@ enum dea_field_kind {
   DEA_FIELD_INPLANE,   // struct dea_inplane_length: "5 mm stretched" or "5 mm unstretched"
   DEA_FIELD_STRETCHED, // struct dea_quantity: the same, where only the stretched film makes sense
   DEA_FIELD_CHOICE,    // struct dea_choice: one of `choices`, value is its index
+  DEA_FIELD_ROWS,      // const struct dea_node *: a list of lists of numbers, for dea_schema_rows
   DEA_FIELD_RECORD,    // a section; its fields' offsets count from this record's offset
   DEA_FIELD_SECTION,   // const struct dea_node *: a section whose keys another table knows
   DEA_FIELD_SETTINGS,  // void *: a section read into zeroed memory of its own, of element_size
@@ -54,10 +56,15 @@ struct dea_field {
   /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
    * count_offset. */
   size_t list_min, list_max, element_size, count_offset;
+  bool lone; // a single value stands for a list of one
 
   /* Of a DEA_FIELD_SECTION: the tables of which one holds, for printing; ended by NULL, NULL: none.
    */
   const struct dea_record *const *kinds;
+
+  /* Of a key that is none here, but is one of another form of file: what to write instead, for the
+   * message; NULL: it is one. */
+  const char *elsewhere;
 };
 
 /* Whether the keys of a section are those of the field's record. */
@@ -83,6 +90,13 @@ struct dea_reader {
  * caller goes on only when the number of errors has not grown. */
 dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_record *record,
                            const struct dea_node *node, const char *path, void *base);
+
+/* Numbers of a node of a DEA_FIELD_ROWS: rows[*count][columns] in SI, each column with what is due,
+ * at least `least` rows; owned by the caller (dea_free). key: of the node, for messages. Errors are
+ * findings, *rows is then NULL and the status DEA_OK, as in dea_schema_read. */
+dea_status dea_schema_rows(const struct dea_reader *reader, const struct dea_node *node,
+                           const char *key, const struct dea_measure *due, size_t columns,
+                           size_t least, double **rows, size_t *count);
 
 /* Adds a value to the reader's list. text: lent for as long as the list. */
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,

@@ -32,6 +32,8 @@ static const char *word_of(enum dea_field_kind kind)
     return "length";
   case DEA_FIELD_CHOICE:
     return "one of:";
+  case DEA_FIELD_ROWS:
+    return "list of lists of numbers";
   case DEA_FIELD_RECORD:
   case DEA_FIELD_SECTION:
   case DEA_FIELD_SETTINGS:
@@ -43,7 +45,8 @@ static const char *word_of(enum dea_field_kind kind)
 /* "length, stretched or unstretched, > 0" and the like: what may be written. */
 static void add_form(struct dea_text *out, const struct dea_field *field)
 {
-  dea_text_add(out, "%s%s", field->list_max > 0 ? "list of " : "", word_of(field->kind));
+  dea_text_add(out, "%s%s%s", field->lone ? "one or " : "", field->list_max > 0 ? "list of " : "",
+               word_of(field->kind));
   for (size_t i = 0; field->kind == DEA_FIELD_CHOICE && field->choices[i] != NULL; i++) {
     dea_text_add(out, "%s%s", i > 0 ? ", " : " ", field->choices[i]);
   }
@@ -86,6 +89,9 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
 {
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
+    if (field->elsewhere != NULL) {
+      continue;
+    }
     struct dea_text inner = {.ctx = out->ctx};
     dea_text_add(&inner, "%s%s%s%s", path, path[0] != '\0' ? "." : "", field->key,
                  field->list_max > 0 && dea_field_has_record(field) ? "[]" : "");
@@ -230,6 +236,8 @@ static json_t *value_json(const struct dea_field *field)
     return field->kinds != NULL ? kinds_json(field) : json_pack("{s:s}", "type", "object");
   case DEA_FIELD_CHOICE:
     return choice_json(field);
+  case DEA_FIELD_ROWS:
+    return json_pack("{s:s, s:{s:s}}", "type", "array", "items", "type", "array");
   case DEA_FIELD_LABEL:
     return json_pack("{s:s, s:i}", "type", "string", "maxLength", DEA_TITLE_SIZE - 1);
   case DEA_FIELD_TEXT:
@@ -247,8 +255,12 @@ static json_t *field_json(const struct dea_field *field)
 {
   json_t *json = value_json(field);
   if (field->list_max > 0) {
+    json_t *one = field->lone ? json_incref(json) : NULL;
     json = json_pack("{s:s, s:o, s:I, s:I}", "type", "array", "items", json, "minItems",
                      (json_int_t)field->list_min, "maxItems", (json_int_t)field->list_max);
+    if (one != NULL) {
+      json = json_pack("{s:[oo]}", "anyOf", one, json);
+    }
   }
   json_object_set_new(json, "description", json_string(field->doc));
   if (field->default_text != NULL) {
@@ -288,6 +300,9 @@ static json_t *record_json(const struct dea_record *record)
   json_t *properties = json_object(), *required = json_array(), *groups = groups_json(record);
   for (size_t i = 0; i < record->field_count; i++) {
     const struct dea_field *field = &record->fields[i];
+    if (field->elsewhere != NULL) {
+      continue;
+    }
     json_object_set_new(properties, field->key, field_json(field));
     if (field->alias != NULL) {
       json_t *old = field_json(field);

@@ -82,6 +82,7 @@ void dea_schema_value_absent(const struct dea_field *field, char *target,
     *(struct dea_choice *)target = (struct dea_choice){-1, DEA_ABSENT, location};
     break;
   case DEA_FIELD_TEXT:
+  case DEA_FIELD_ROWS:
   case DEA_FIELD_RECORD:
   case DEA_FIELD_SECTION:
   case DEA_FIELD_SETTINGS:
@@ -292,6 +293,7 @@ dea_status dea_schema_value_read(const struct dea_reader *reader,
   case DEA_FIELD_CHOICE:
     DEA_TRY(reader->ctx, read_choice(reader, value, (struct dea_choice *)target));
     break;
+  case DEA_FIELD_ROWS:
   case DEA_FIELD_RECORD:
   case DEA_FIELD_SECTION:
   case DEA_FIELD_SETTINGS:

@@ -1,6 +1,7 @@
 #include "cli/models.h"
 
 #include "base/text.h"
+#include "cli/print_layout.h"
 #include "device/device.h"
 #include "study/design_file.h"
 
@@ -93,19 +94,22 @@ static void print_material(const char *what, const struct dea_material *material
   putchar('\n');
 }
 
-static void print_text(const struct dea_design *design, const struct dea_device *device)
+static void print_voltages(const struct dea_design *design)
+{
+  size_t last = design->compute.voltage_count - 1;
+  printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
+         1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
+}
+
+static void print_disc(const struct dea_design *design, const struct dea_device *device)
 {
   struct derived rows[DERIVED_MAX];
-  size_t count = derive(device, rows), last = design->compute.voltage_count - 1;
-  printf("%s\n\nValues\n", design->file);
-  print_values(design);
-  puts("\nDerived");
+  size_t count = derive(device, rows);
   for (size_t i = 0; i < count; i++) {
     printf("  %-32s  %.6g%s%s\n", rows[i].meaning, rows[i].factor * rows[i].si,
            rows[i].unit[0] != '\0' ? " " : "", rows[i].unit);
   }
-  printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
-         1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
+  print_voltages(design);
   printf("  %-32s  %g%s\n", "end of the path (total stretch)", design->compute.path_max_stretch.si,
          design->compute.path_max_stretch.origin == DEA_DEFAULT
              ? ", or that of the highest voltage if larger"
@@ -113,6 +117,19 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   print_material("film", &device->film);
   print_material("electrodes", &device->electrode);
   print_material("fibres", &device->fibre);
+}
+
+static void print_text(const struct dea_design *design, const struct dea_device *device)
+{
+  printf("%s\n\nValues\n", design->file);
+  print_values(design);
+  puts("\nDerived");
+  if (device->general) {
+    print_voltages(design);
+    cli_layout_print(device->layout);
+  } else {
+    print_disc(design, device);
+  }
 }
 
 static json_t *values_json(const struct dea_design *design)
@@ -143,7 +160,9 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
   if (design != NULL) {
     json_object_set_new(json, "values", values_json(design));
   }
-  if (device != NULL) {
+  if (device != NULL && device->general) {
+    json_object_set_new(json, "derived", cli_layout_json(device->layout));
+  } else if (device != NULL) {
     struct derived rows[DERIVED_MAX];
     size_t count = derive(device, rows);
     json_t *derived = json_object();

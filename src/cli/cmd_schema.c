@@ -18,7 +18,7 @@ static int run(struct dea_cli *cli, void *user)
                                     : request->protocol ? &dea_protocol_record
                                     : request->mapping  ? &dea_mapping_record
                                     : request->fit      ? &dea_fit_record
-                                                        : &design.record;
+                                                        : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   if (request->json) {

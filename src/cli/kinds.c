@@ -82,7 +82,7 @@ static dea_status list_keys(struct dea_cli *cli, struct dea_text *out)
   (void)cli;
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
-  dea_schema_print_keys(&schema.record, out);
+  dea_schema_print_keys(&schema.disc.record, out);
   return DEA_OK;
 }
 

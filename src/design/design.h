@@ -8,6 +8,7 @@
 
 #include "base/value.h"
 #include "design/fabrication.h"
+#include "design/parts.h"
 #include "material/catalogue.h"
 #include "waveform/waveform.h"
 
@@ -74,6 +75,8 @@ struct dea_settings {
 struct dea_design {
   const char *file; // as given by the caller; interned in the context
   struct dea_label title;
+  struct dea_parts *parts; // owned, of the general form, which has no film, frame, electrodes, and
+                           // fibres of the next members; NULL: the short form
 
   struct {                                         // film
     struct dea_label material;                     // catalogue or inline name

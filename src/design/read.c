@@ -108,7 +108,7 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
   struct dea_quantity *end = &design->compute.path_max_stretch;
   double pre_stretch = design->pre_stretch.si;
   if (end->origin == DEA_ABSENT) {
-    end->si = 1.5 * pre_stretch;
+    end->si = design->parts != NULL ? INFINITY : 1.5 * pre_stretch; // plies differ in theirs
     end->origin = DEA_DEFAULT;
     return DEA_OK;
   }
@@ -262,8 +262,16 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
   }
   struct dea_design_schema schema;
   dea_design_schema_fill(source->sections, &schema);
-  DEA_TRY(ctx, dea_schema_read(&reader, &schema.record, dea_yaml_root(design->document), "", raw));
-  if (dea_yaml_root(design->document)->kind == DEA_NODE_SECTION) {
+  const struct dea_node *root = dea_yaml_root(design->document);
+  const struct dea_node *plies = dea_node_find(root, "plies");
+  DEA_TRY(ctx,
+          dea_schema_read(&reader, plies != NULL ? &schema.general.record : &schema.disc.record,
+                          root, "", raw));
+  if (plies != NULL) {
+    DEA_TRY(ctx, dea_parts_read(&reader, &schema.shapes, &raw->parts, &design->parts));
+    design->parts->place = plies->key_place;
+  }
+  if (root->kind == DEA_NODE_SECTION) {
     DEA_TRY(ctx, take_materials(&reader, raw));
     DEA_TRY(ctx, take_voltages(ctx, raw));
     DEA_TRY(ctx, take_path(ctx, design));
@@ -291,6 +299,7 @@ static void clear_design(struct dea_context *ctx, struct dea_design *design)
     dea_free(ctx, design->compute.settings[i].values);
   }
   dea_waveform_destroy(design->drive.waveform);
+  dea_parts_destroy(ctx, design->parts);
   dea_free(ctx, design->compute.voltages_V);
   dea_free(ctx, design->materials);
   dea_listing_free(ctx, &design->values);

@@ -411,25 +411,140 @@ static struct dea_field section_field(const struct dea_design_section *section, 
                             .doc = section->record->doc};
 }
 
-void dea_design_schema_fill(const struct dea_design_sections *sections,
-                            struct dea_design_schema *out)
+/* Keys of the short form that the general one has not, and what to write there. */
+static const struct dea_field not_general[] = {
+    {.key = "film",
+     .elsewhere = "'film' belongs to the short form of a disc; here a film is one of the 'plies', "
+                  "with its shape and its own pre_stretch"},
+    {.key = "pre_stretch",
+     .elsewhere = "'pre_stretch' belongs to the short form of a disc; here each of the 'plies' has "
+                  "its own, along one axis or two"},
+    {.key = "frame",
+     .elsewhere = "'frame' belongs to the short form of a disc; here a rigid frame is one of the "
+                  "'supports', such as '{edge: film}', and a flexible one is one of the 'plies'"},
+    {.key = "fibres",
+     .elsewhere =
+         "'fibres' belongs to the short form of a disc; here a fibre is one of the 'plies', "
+         "with a shape such as a rectangle, a strip, or an array or polar of them"},
+    {.key = "fabrication",
+     .elsewhere = "'fabrication' belongs to the short form of a disc; files for the workshop are "
+                  "not made of the general form yet"},
+    {.key = "stripes",
+     .elsewhere = "there are no 'stripes': they are one of the 'plies', with a shape of kind array "
+                  "of rectangles"},
+    {.key = "layers", .elsewhere = "layers are the 'plies' here"},
+    {.key = "hub", .elsewhere = "a hub is one of the 'bodies' here, with its shape"},
+};
+
+#define ONLY_GENERAL(word, what)                                                                   \
+  {                                                                                                \
+    .key = word, .elsewhere =                                                                      \
+                     "'" word "' belongs to the general form of a design, which lists " what       \
+                     " (docs/design-file.md); this file is of the short form of a "                \
+                     "disc in a frame, because it has no 'plies'"                                  \
+  }
+/* The other way round. */
+static const struct dea_field not_short[] = {
+    ONLY_GENERAL("shapes", "shapes, and 'plies' of them"),
+    ONLY_GENERAL("channels", "'plies', and electrodes with their channels"),
+    ONLY_GENERAL("supports", "'plies', and supports that hold them"),
+    ONLY_GENERAL("bodies", "'plies', and rigid bodies"),
+    ONLY_GENERAL("springs", "'plies', and rigid bodies with springs"),
+    ONLY_GENERAL("pressures", "'plies', and pressures on them"),
+    ONLY_GENERAL("monitors", "'plies', and monitors"),
+    ONLY_GENERAL("stripes", "'plies', of which one can be an array of stripes"),
+    ONLY_GENERAL("layers", "'plies'"),
+    ONLY_GENERAL("hub", "'plies', and rigid bodies such as a hub"),
+};
+
+static const char *const general_gravities[] = {"off", "top_up", "top_down", NULL}; // dea_gravity
+
+/* Fields of a form that are those of the other one, or differ a little. */
+static bool is_of(const struct dea_field *fields, size_t count, const char *key)
 {
-  static_assert(COUNT(design_fields) <= DEA_DESIGN_TOP_MAX, "room for all sections");
-  static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
-                "room for all of compute");
-  size_t count = COUNT(compute_fields);
-  *out = (struct dea_design_schema){.record = design_record, .compute_record = compute_record};
-  memcpy(out->top, design_fields, sizeof design_fields);
-  memcpy(out->compute, compute_fields, sizeof compute_fields);
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(fields[i].key, key) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* `compute` with the sections of studies, into a form whose rows of the top are there. */
+static void fill_compute(const struct dea_design_sections *sections, bool general,
+                         struct dea_design_form *out)
+{
+  size_t count = 0;
+  out->compute_record = compute_record;
+  for (size_t i = 0; i < COUNT(compute_fields); i++) {
+    if (!general || strncmp(compute_fields[i].key, "coverage", strlen("coverage")) != 0) {
+      out->compute[count++] = compute_fields[i];
+    }
+  }
+  if (general) {
+    out->compute[0].default_text = "[3d]"; // the only one that knows more than a disc
+    out->compute[0].example = "[3d]";
+  }
   for (size_t i = 0; i < sections->count && i < DEA_DESIGN_SECTIONS_MAX; i++) {
     out->compute[count++] = section_field(sections->items[i], i);
   }
-  for (size_t i = 0; i < COUNT(design_fields); i++) {
+  out->compute_record.fields = out->compute;
+  out->compute_record.field_count = count;
+  for (size_t i = 0; i < out->record.field_count; i++) {
     if (out->top[i].record == &compute_record) {
       out->top[i].record = &out->compute_record;
     }
   }
-  out->compute_record.fields = out->compute;
-  out->compute_record.field_count = count;
   out->record.fields = out->top;
+}
+
+static void add_fields(struct dea_design_form *out, const struct dea_field *fields, size_t count)
+{
+  memcpy(out->top + out->record.field_count, fields, count * sizeof *fields);
+  out->record.field_count += count;
+}
+
+static void fill_general(const struct dea_shape_schema *shapes, struct dea_design_form *out)
+{
+  out->record =
+      (struct dea_record){"design file", "design of any actuator of flat layers", NULL, 0};
+  for (size_t i = 0; i < COUNT(design_fields); i++) {
+    const char *key = design_fields[i].key;
+    if (strcmp(key, "gravity") == 0) { // the parts come before it
+      add_fields(out, dea_parts_fields, dea_parts_field_count);
+    }
+    if (!is_of(not_general, COUNT(not_general), key) &&
+        !is_of(dea_parts_fields, dea_parts_field_count, key)) {
+      add_fields(out, &design_fields[i], 1);
+    }
+  }
+  for (size_t i = 0; i < out->record.field_count; i++) {
+    struct dea_field *field = &out->top[i];
+    if (strcmp(field->key, "gravity") == 0) {
+      field->choices = general_gravities;
+      field->doc = "weight, and which way the top of the plies faces";
+      field->example = "top_up";
+    } else if (strcmp(field->key, "shapes") == 0) {
+      field->kinds = shapes->kinds;
+    }
+  }
+  add_fields(out, not_general, COUNT(not_general));
+}
+
+void dea_design_schema_fill(const struct dea_design_sections *sections,
+                            struct dea_design_schema *out)
+{
+  static_assert(COUNT(design_fields) + COUNT(not_short) <= DEA_DESIGN_TOP_MAX, "room for the top");
+  static_assert(COUNT(design_fields) + COUNT(not_general) + 9 <= DEA_DESIGN_TOP_MAX,
+                "room for the top with all parts");
+  static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
+                "room for all of compute");
+  dea_shape_schema_fill(&out->shapes);
+  out->disc.record = design_record;
+  out->disc.record.field_count = 0;
+  add_fields(&out->disc, design_fields, COUNT(design_fields));
+  add_fields(&out->disc, not_short, COUNT(not_short));
+  fill_general(&out->shapes, &out->general);
+  fill_compute(sections, false, &out->disc);
+  fill_compute(sections, true, &out->general);
 }

@@ -4,6 +4,7 @@
 
 #include "base/schema.h"
 #include "design/design.h"
+#include "design/schema_parts.h"
 
 enum { DEA_FIGURE_SVG, DEA_FIGURE_PDF, DEA_FIGURE_PNG, DEA_FIGURE_COUNT };
 
@@ -20,6 +21,7 @@ struct dea_design_raw {
   struct dea_quantity fields_at_V[DEA_DESIGN_FIELDS_MAX];
   size_t fields_at_count;
   struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
+  struct dea_parts_raw parts; // of the general form
 };
 
 /* Parts of the table that have files of their own; base as below. */
@@ -28,13 +30,18 @@ extern const struct dea_record dea_fibres_record, dea_solid_record, dea_fabricat
 /* base: a struct dea_design_variant. */
 extern const struct dea_record dea_compare_record;
 
-enum { DEA_DESIGN_TOP_MAX = 20, DEA_DESIGN_COMPUTE_MAX = 32 };
+enum { DEA_DESIGN_TOP_MAX = 40, DEA_DESIGN_COMPUTE_MAX = 32 };
 
-/* Table of a design file with sections of studies; record's base: a struct dea_design_raw. Its
- * parts point to each other: not to be copied. */
-struct dea_design_schema {
+/* The table of one form of a design file; record's base: a struct dea_design_raw. */
+struct dea_design_form {
   struct dea_record record, compute_record;
   struct dea_field top[DEA_DESIGN_TOP_MAX], compute[DEA_DESIGN_COMPUTE_MAX];
+};
+/* Tables of a design file with sections of studies: of the short form, which describes a disc in a
+ * frame, and of the general one, which lists parts. They point to each other: not to be copied. */
+struct dea_design_schema {
+  struct dea_design_form disc, general;
+  struct dea_shape_schema shapes;
 };
 void dea_design_schema_fill(const struct dea_design_sections *sections,
                             struct dea_design_schema *out);

@@ -42,8 +42,9 @@ struct dea_device {
  * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
-/* For a device that was filled by hand: DEA_E_DESIGN with the number that none can have, such as a
- * coverage that is not between 0 and 1. Models ask it. */
+/* Whether it is a disc in a round frame, which models of one ask: DEA_E_UNSUPPORTED for a general
+ * device, and for one that was filled by hand DEA_E_DESIGN with the number that none can have, such
+ * as a coverage that is not between 0 and 1. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);
 

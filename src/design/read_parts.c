@@ -1,0 +1,176 @@
+/* Reading of the general form: what the tables of schema_parts.c cannot do alone. */
+#include "base/schema_value.h"
+#include "design/schema_parts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Places and copies of the names in the key `of` of a shape. */
+static void take_of(const struct dea_node *node, struct dea_parts_shape *shape)
+{
+  const struct dea_node *of = dea_node_find(node, "of");
+  if (of == NULL || shape->of_count == 0) {
+    return;
+  }
+  const struct dea_node *item = of->kind == DEA_NODE_LIST ? of->child : of;
+  for (size_t i = 0; i < shape->of_count && item != NULL; i++, item = item->next) {
+    shape->of_place[i] = item->location;
+  }
+}
+
+/* Numbers of a DEA_FIELD_ROWS of two columns into the parts' memory. */
+static dea_status take_rows(const struct dea_reader *reader, struct dea_parts *parts,
+                            const struct dea_node *node, const char *key,
+                            const struct dea_measure due[2], size_t least, const double (**out)[2],
+                            size_t *count)
+{
+  double *rows;
+  *out = NULL;
+  *count = 0;
+  if (node == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(reader->ctx, dea_schema_rows(reader, node, key, due, 2, least, &rows, count));
+  double(*kept)[2] = rows != NULL ? dea_arena_alloc(&parts->memory, *count, sizeof *kept) : NULL;
+  for (size_t i = 0; i < *count && kept != NULL; i++) {
+    kept[i][0] = rows[2 * i];
+    kept[i][1] = rows[2 * i + 1];
+  }
+  *out = (const double(*)[2])kept;
+  *count = kept != NULL ? *count : 0;
+  dea_free(reader->ctx, rows);
+  return dea_arena_status(&parts->memory);
+}
+
+static dea_status read_shape(const struct dea_reader *reader, const struct dea_shape_schema *schema,
+                             const struct dea_node *node, size_t number, struct dea_parts *parts)
+{
+  static const struct dea_measure point[2] = {{"m", "0 mm"}, {"m", "0 mm"}};
+  struct dea_parts_shape *shape = &parts->shapes[number];
+  const char *names[DEA_SHAPE_KINDS_MAX];
+  char path[32];
+  size_t kind, errors = dea_finding_count(reader->ctx, DEA_ERROR);
+  for (size_t i = 0; i < schema->count; i++) {
+    names[i] = schema->record[i].name;
+  }
+  DEA_TRY(reader->ctx, dea_schema_kind(reader, node, "a shape", names, schema->count, &kind));
+  if (kind == schema->count) {
+    return DEA_OK;
+  }
+  snprintf(path, sizeof path, "shapes[%zu]", number);
+  DEA_TRY(reader->ctx, dea_schema_read(reader, &schema->record[kind], node, path, shape));
+  shape->make = schema->make[kind];
+  shape->type = schema->type[kind];
+  take_of(node, shape);
+  return dea_finding_count(reader->ctx, DEA_ERROR) == errors
+             ? take_rows(reader, parts, shape->points, "points", point, 1, &shape->point_m,
+                         &shape->point_count)
+             : DEA_OK;
+}
+
+static dea_status read_table(const struct dea_reader *reader, struct dea_parts *parts,
+                             struct dea_parts_spring *spring)
+{
+  static const struct dea_measure shift[2] = {{"m", "1 mm"}, {"N", "5 mN"}};
+  static const struct dea_measure turn[2] = {{"radian", "10 degree"}, {"N.m", "1 mN.m"}};
+  DEA_TRY(reader->ctx, take_rows(reader, parts, spring->table, "table",
+                                 spring->direction.value < 3 ? shift : turn, 2, &spring->row,
+                                 &spring->row_count));
+  for (size_t i = 1; i < spring->row_count; i++) {
+    if (!(spring->row[i][0] > spring->row[i - 1][0])) {
+      const struct dea_node *row = spring->table->child;
+      for (size_t k = 0; k < i; k++) {
+        row = row->next;
+      }
+      return dea_schema_error(reader, row->location, "table: places must rise from row to row");
+    }
+  }
+  return DEA_OK;
+}
+
+/* A name that stands twice among parts of one kind. */
+static dea_status check_names(const struct dea_reader *reader, const char *what, const void *items,
+                              size_t count, size_t size, size_t offset)
+{
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_label *a = (const void *)((const char *)items + i * size + offset);
+    for (size_t j = 0; j < i && a->text[0] != '\0'; j++) {
+      const struct dea_label *b = (const void *)((const char *)items + j * size + offset);
+      if (strcmp(a->text, b->text) == 0) {
+        DEA_TRY(reader->ctx, dea_schema_error(reader, a->location,
+                                              "the name '%.60s' is taken by the %s in line %zu",
+                                              a->text, what, b->location.line));
+        break;
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+#define CHECK_NAMES(what, items, count)                                                            \
+  check_names(reader, what, items, count, sizeof *(items), offsetof_name(items))
+#define offsetof_name(items) ((size_t)((const char *)&(items)->name - (const char *)(items)))
+
+static dea_status check_all_names(const struct dea_reader *reader, const struct dea_parts *p)
+{
+  DEA_TRY(reader->ctx, CHECK_NAMES("shape", p->shapes, p->shape_count));
+  DEA_TRY(reader->ctx, CHECK_NAMES("ply", p->plies, p->ply_count));
+  DEA_TRY(reader->ctx, CHECK_NAMES("channel", p->channels, p->channel_count));
+  DEA_TRY(reader->ctx, CHECK_NAMES("body", p->bodies, p->body_count));
+  return CHECK_NAMES("monitor", p->monitors, p->monitor_count);
+}
+
+/* Copies the lists of one table. */
+#define TAKE(items, counter)                                                                       \
+  do {                                                                                             \
+    parts->items = dea_arena_alloc(&parts->memory, raw->counter, sizeof *parts->items);            \
+    if (parts->items != NULL) {                                                                    \
+      memcpy(parts->items, raw->items, raw->counter * sizeof *parts->items);                       \
+      parts->counter = raw->counter;                                                               \
+    }                                                                                              \
+  } while (0)
+
+static dea_status take_lists(const struct dea_parts_raw *raw, struct dea_parts *parts)
+{
+  parts->shapes = dea_arena_alloc(&parts->memory, raw->shape_count, sizeof *parts->shapes);
+  parts->shape_count = parts->shapes != NULL ? raw->shape_count : 0;
+  TAKE(plies, ply_count);
+  TAKE(electrodes, electrode_count);
+  TAKE(channels, channel_count);
+  TAKE(supports, support_count);
+  TAKE(bodies, body_count);
+  TAKE(springs, spring_count);
+  TAKE(pressures, pressure_count);
+  TAKE(monitors, monitor_count);
+  return dea_arena_status(&parts->memory);
+}
+
+dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
+                          const struct dea_parts_raw *raw, struct dea_parts **out)
+{
+  struct dea_context *ctx = reader->ctx;
+  struct dea_parts *parts = dea_alloc(ctx, 1, sizeof *parts);
+  *out = parts;
+  if (parts == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *parts = (struct dea_parts){.ctx = ctx, .memory = {.ctx = ctx}};
+  DEA_TRY(ctx, take_lists(raw, parts));
+  for (size_t i = 0; i < parts->shape_count; i++) {
+    if (raw->shapes[i] != NULL) { // else it is no section, which was said
+      DEA_TRY(ctx, read_shape(reader, schema, raw->shapes[i], i, parts));
+    }
+  }
+  for (size_t i = 0; i < parts->spring_count; i++) {
+    DEA_TRY(ctx, read_table(reader, parts, &parts->springs[i]));
+  }
+  return check_all_names(reader, parts);
+}
+
+void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts)
+{
+  if (parts != NULL) {
+    dea_arena_free(&parts->memory);
+    dea_free(ctx, parts);
+  }
+}

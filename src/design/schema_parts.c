@@ -1,0 +1,237 @@
+/* Keys of the general form of a design (docs/theory/devices.md). */
+#include "design/schema_parts.h"
+
+#include "design/schema.h"
+
+#include <stddef.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define RAW(member) offsetof(struct dea_design_raw, parts.member)
+
+/* Rows of the tables below; `type` is the struct of an item. */
+#define NAME(type, member, word, text, sample, ...)                                                \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_LABEL, .offset = offsetof(struct type, member), .doc = text,    \
+    .example = sample, __VA_ARGS__                                                                 \
+  }
+#define NUMBER(type, member, word, si_unit, text, sample, ...)                                     \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_NUMBER, .offset = offsetof(struct type, member),                \
+    .unit = si_unit, .doc = text, .example = sample, __VA_ARGS__                                   \
+  }
+#define CHOICE(type, member, word, words, text, sample, ...)                                       \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_CHOICE, .offset = offsetof(struct type, member),                \
+    .choices = words, .doc = text, .example = sample, __VA_ARGS__                                  \
+  }
+/* A list in an item, with its number in `counter`. */
+#define LIST(type, item, counter, least, most)                                                     \
+  .list_min = (least), .list_max = (most), .element_size = sizeof(struct item),                    \
+  .count_offset = offsetof(struct type, counter)
+#define REQUIRED .required = true
+#define OPTIONAL .required = false
+#define POINT(type, member, word, text, number)                                                    \
+  NUMBER(type, member##_m, word, "m", text, "[0 mm, 0 mm]", .group = 1, .option = (number),        \
+         LIST(type, dea_quantity, member##_count, 2, 2))
+/* Six numbers along and about the axes, of which the last three turn. */
+#define SIX(type, member, shift, shift_unit, shift_example, shift_text, turn, turn_unit,           \
+            turn_example, turn_text)                                                               \
+  NUMBER(type, member[0], shift "_x", shift_unit, shift_text " along x", shift_example, OPTIONAL), \
+      NUMBER(type, member[1], shift "_y", shift_unit, shift_text " along y", shift_example,        \
+             OPTIONAL),                                                                            \
+      NUMBER(type, member[2], shift "_z", shift_unit, shift_text " along z", shift_example,        \
+             OPTIONAL),                                                                            \
+      NUMBER(type, member[3], turn "_x", turn_unit, turn_text " about x", turn_example, OPTIONAL), \
+      NUMBER(type, member[4], turn "_y", turn_unit, turn_text " about y", turn_example, OPTIONAL), \
+      NUMBER(type, member[5], turn "_z", turn_unit, turn_text " about z", turn_example, OPTIONAL)
+
+static const struct dea_field ply_fields[] = {
+    NAME(dea_parts_ply, name, "name", "its name", "film", REQUIRED),
+    NAME(dea_parts_ply, shape, "shape", "shape that it covers", "film", REQUIRED),
+    NAME(dea_parts_ply, material, "material",
+         "its material, from `dea materials` or from this file's `materials`", "elastosil-2030",
+         REQUIRED),
+    NAME(dea_parts_ply, law, "law", "id of the material's set of law parameters", "yeoh-178",
+         .absent_text = "the material's first"),
+    NAME(dea_parts_ply, permittivity, "permittivity", "id of the material's permittivity",
+         "constant", .absent_text = "the material's first"),
+    NAME(dea_parts_ply, breakdown, "breakdown", "id of the material's breakdown field", "datasheet",
+         .absent_text = "the material's first"),
+    NAME(dea_parts_ply, viscosity, "viscosity", "id of the material's viscosity; none: without",
+         "none", .absent_text = "the material's first"),
+    NUMBER(dea_parts_ply, thickness_m, "thickness", "m", "its thickness before the pre-stretch",
+           "100 um", REQUIRED, .above_min = true, .max = 0.1),
+    NUMBER(dea_parts_ply, pre_stretch, "pre_stretch", "1",
+           "stretch at which it is bonded: of both axes, or one of each", "[1.2, 1.5]", .min = 0.1,
+           .max = 10, .lone = true, .default_text = "[1]",
+           LIST(dea_parts_ply, dea_quantity, pre_stretch_count, 1, 2)),
+    NUMBER(dea_parts_ply, angle_rad, "angle", "radian",
+           "direction of the first axis of the pre-stretch, counter-clockwise from x", "30 degree",
+           .default_text = "0 degree"),
+    {.key = "elements",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = offsetof(struct dea_parts_ply, elements),
+     .unit = "1",
+     .min = 1,
+     .max = 32,
+     .absent_text = "as many as the model takes",
+     .doc = "elements through its thickness",
+     .example = "2"},
+};
+
+static const char *const sides[] = {"bottom", "top", NULL}; // enum dea_parts_side
+
+static const struct dea_field electrode_fields[] = {
+    NAME(dea_parts_electrode, name, "name", "its name", "upper", .absent_text = "its channel"),
+    NAME(dea_parts_electrode, ply, "ply", "ply on whose face it lies", "film", REQUIRED),
+    CHOICE(dea_parts_electrode, side, "side", sides,
+           "face of that ply; a ply that lies there feels it too", "top", REQUIRED),
+    NAME(dea_parts_electrode, shape, "shape", "shape that it covers", "active", REQUIRED),
+    NAME(dea_parts_electrode, channel, "channel", "what it is connected to; ground: 0 V", "drive",
+         REQUIRED),
+};
+
+static const struct dea_field channel_fields[] = {
+    NAME(dea_parts_channel, name, "name", "its name", "drive", REQUIRED),
+    NUMBER(dea_parts_channel, ratio, "ratio", "1",
+           "its voltage is this times compute.voltage, and `voltage` of its own", "0.5",
+           .default_text = "1", .min = -1e6, .max = 1e6),
+    NUMBER(dea_parts_channel, voltage_V, "voltage", "V", "voltage of its own", "2 kV",
+           .default_text = "0 V", .min = -1e6, .max = 1e6),
+};
+
+static const char *const holds[] = {"clamped", "hinged", "x", "y", "z", NULL}; // dea_parts_hold
+
+static const struct dea_field support_fields[] = {
+    NAME(dea_parts_support, edge, "edge", "shape on whose boundary it holds", "film", REQUIRED,
+         .group = 1, .option = 1),
+    NAME(dea_parts_support, shape, "shape", "shape in which it holds", "clamp", .group = 1,
+         .option = 2),
+    NAME(dea_parts_support, within, "within", "only what lies in this shape too", "left",
+         .absent_text = "everywhere"),
+    CHOICE(dea_parts_support, hold, "hold", holds,
+           "clamped; hinged: only at the bottom, so that it may turn; or the directions held",
+           "[x, z]", .lone = true, .default_text = "[clamped]",
+           LIST(dea_parts_support, dea_choice, hold_count, 1, DEA_HOLDS_MAX)),
+    NUMBER(dea_parts_support, move_m[0], "move_x", "m", "how far it is moved along x", "1 mm",
+           OPTIONAL),
+    NUMBER(dea_parts_support, move_m[1], "move_y", "m", "how far it is moved along y", "1 mm",
+           OPTIONAL),
+    NUMBER(dea_parts_support, move_m[2], "move_z", "m", "how far it is moved along z", "1 mm",
+           OPTIONAL),
+};
+
+static const char *const directions[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
+
+static const struct dea_field body_fields[] = {
+    NAME(dea_parts_body, name, "name", "its name", "hub", REQUIRED),
+    NAME(dea_parts_body, shape, "shape", "all that lies in this shape moves as one", "hub",
+         REQUIRED),
+    CHOICE(dea_parts_body, free, "free", directions, "what it may do; []: nothing", "[z]",
+           .lone = true, .absent_text = "everything",
+           .present_offset = offsetof(struct dea_parts_body, free_given),
+           LIST(dea_parts_body, dea_choice, free_count, 0, DEA_DIRECTIONS)),
+    NUMBER(dea_parts_body, mass_kg, "mass", "kg", "its mass beside that of its plies", "20 g",
+           .default_text = "0 g", .max = 1e6),
+    SIX(dea_parts_body, force, "force", "N", "1 mN", "force on it", "moment", "N.m", "1 mN.m",
+        "moment on it"),
+    SIX(dea_parts_body, move, "move", "m", "2 mm", "how far it is moved", "turn", "radian",
+        "10 degree", "how far it is turned"),
+};
+
+static const struct dea_field spring_fields[] = {
+    NAME(dea_parts_spring, body, "body", "rigid body that it pulls back", "hub", REQUIRED),
+    CHOICE(dea_parts_spring, direction, "direction", directions, "along or about which axis", "z",
+           REQUIRED),
+    NUMBER(dea_parts_spring, stiffness_N_per_m, "stiffness", "N/m", "force by shift", "10 N/m",
+           REQUIRED, .group = 1, .option = 1, .max = 1e12),
+    NUMBER(dea_parts_spring, stiffness_N_m_per_rad, "turn_stiffness", "N.m/radian",
+           "moment by turn, of a direction turn_x, turn_y, turn_z", "1 mN.m/radian", .group = 1,
+           .option = 2, .max = 1e12),
+    {.key = "table",
+     .kind = DEA_FIELD_ROWS,
+     .offset = offsetof(struct dea_parts_spring, table),
+     .group = 1,
+     .option = 3,
+     .doc = "how far it is from free_at, rising, and the force that pulls back; it may fall",
+     .example = "[[0 mm, 0 mN], [1 mm, 5 mN], [2 mm, 3 mN]]"},
+    NUMBER(dea_parts_spring, free_at_m, "free_at", "m", "shift at which it has no force", "1 mm",
+           .default_text = "0 mm", .group = 2, .option = 1),
+    NUMBER(dea_parts_spring, free_at_rad, "free_at_angle", "radian",
+           "turn at which it has no moment", "10 degree", .group = 2, .option = 2),
+};
+
+static const struct dea_field pressure_fields[] = {
+    NAME(dea_parts_pressure, ply, "ply", "ply on whose face it acts", "film", REQUIRED),
+    CHOICE(dea_parts_pressure, side, "side", sides, "face of that ply", "bottom", REQUIRED),
+    NAME(dea_parts_pressure, shape, "shape", "shape in which it acts", "film", REQUIRED),
+    NUMBER(dea_parts_pressure, pressure_Pa, "pressure", "Pa",
+           "follows the face and pushes into the ply; below 0 it pulls", "1 kPa", REQUIRED,
+           .min = -1e9, .max = 1e9),
+};
+
+static const struct dea_field monitor_fields[] = {
+    NAME(dea_parts_monitor, name, "name", "name in results", "middle", REQUIRED),
+    POINT(dea_parts_monitor, at, "at", "the point x, y of a ply", 1),
+    POINT(dea_parts_monitor, from, "from", "one end of a line on a ply", 2),
+    POINT(dea_parts_monitor, to, "to", "the other end of that line", 2),
+    NAME(dea_parts_monitor, shape, "shape", "a shape of a ply", "active", .group = 1, .option = 3),
+    NAME(dea_parts_monitor, body, "body", "a rigid body", "hub", .group = 1, .option = 4),
+    NAME(dea_parts_monitor, ply, "ply", "ply that the point, line or shape lies in", "film",
+         .absent_text = "the uppermost one there"),
+};
+
+#define RECORD(id, text)                                                                           \
+  static const struct dea_record id##_record = {#id, text, id##_fields, COUNT(id##_fields)}
+RECORD(ply, "a sheet of one material");
+RECORD(electrode, "an electrode without thickness on a face of a ply");
+RECORD(channel, "what electrodes are connected to");
+RECORD(support, "what is held");
+RECORD(body, "what moves as one");
+RECORD(spring, "a spring from a body to the outside");
+RECORD(pressure, "pressure on a face of a ply");
+RECORD(monitor, "what results are reported of");
+
+/* The list `word` of items of one table. */
+#define ITEMS(word, id, items, most, text, ...)                                                    \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_RECORD, .offset = RAW(items), .record = &id##_record,           \
+    .list_min = 1, .list_max = (most), .element_size = sizeof(struct dea_parts_##id),              \
+    .count_offset = RAW(id##_count), .doc = text, __VA_ARGS__                                      \
+  }
+#define NO_ITEMS .absent_text = "none"
+
+const struct dea_field dea_parts_fields[] = {
+    {.key = "shapes",
+     .kind = DEA_FIELD_SECTION,
+     .offset = RAW(shapes),
+     .list_min = 1,
+     .list_max = DEA_PARTS_SHAPES_MAX,
+     .element_size = sizeof(const struct dea_node *),
+     .count_offset = RAW(shape_count),
+     .required = true,
+     .doc =
+         "named parts of the plane, in the flat film as it is stretched when parts are bonded to "
+         "it; their keys go with their kind",
+     .example = "[{name: film, kind: circle, radius: 20 mm}]"},
+    ITEMS("plies", ply, plies, DEA_PARTS_PLIES_MAX,
+          "sheets from bottom to top: films, stiff electrodes, glue, stiffeners, flexible frames; "
+          "the key that makes a file one of the general form",
+          .required = true,
+          .example = "[{name: film, shape: film, material: elastosil-2030, thickness: 100 um}]"),
+    ITEMS("electrodes", electrode, electrodes, DEA_PARTS_ELECTRODES_MAX,
+          "electrodes without thickness, on faces of plies", NO_ITEMS),
+    ITEMS("channels", channel, channels, DEA_PARTS_CHANNELS_MAX,
+          "channels whose voltage is not that of compute.voltage",
+          .absent_text = "those of the electrodes, all with ratio 1"),
+    ITEMS("supports", support, supports, DEA_PARTS_SUPPORTS_MAX, "what is held, or moved",
+          NO_ITEMS),
+    ITEMS("bodies", body, bodies, DEA_PARTS_BODIES_MAX, "rigid bodies", NO_ITEMS),
+    ITEMS("springs", spring, springs, DEA_PARTS_SPRINGS_MAX,
+          "springs between bodies and the outside", NO_ITEMS),
+    ITEMS("pressures", pressure, pressures, DEA_PARTS_PRESSURES_MAX, "pressures on faces",
+          NO_ITEMS),
+    ITEMS("monitors", monitor, monitors, DEA_PARTS_MONITORS_MAX, "what results are reported of",
+          NO_ITEMS),
+};
+const size_t dea_parts_field_count = COUNT(dea_parts_fields);

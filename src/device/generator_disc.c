@@ -1,0 +1,92 @@
+/* A disc of film in a rigid round frame, with radial fibres: the short form of a design. */
+#include "device/generator.h"
+#include "device/geometry.h"
+
+static dea_status build_film(struct dea_context *ctx, const struct dea_design *design,
+                             struct dea_device *device)
+{
+  const struct dea_material_choice choice = {
+      .law = design->film.law.text,
+      .permittivity = design->film.permittivity.text,
+      .breakdown = design->film.breakdown.text,
+      .law_place = design->film.law.location,
+      .permittivity_place = design->film.permittivity.location,
+      .breakdown_place = design->film.breakdown.location,
+      .viscosity = design->film.viscosity.text,
+      .viscosity_place = design->film.viscosity.location,
+  };
+  const double pre_stretch[2] = {design->pre_stretch.si, design->pre_stretch.si};
+  const struct dea_generator_film film = {
+      .material = &device->film,
+      .what = "the film",
+      .name = &design->film.material,
+      .breakdown = &design->film.breakdown,
+      .viscosity = &design->film.viscosity,
+      .pre_stretch = pre_stretch,
+      .pre_stretch_place = design->pre_stretch.location,
+  };
+  DEA_TRY(ctx, dea_generator_material(ctx, design, &design->film.material, &choice, &device->film));
+  DEA_TRY(ctx, dea_generator_check_film(ctx, &film));
+  return dea_generator_check_film_in_time(ctx, design, &film);
+}
+
+static dea_status build_electrode(struct dea_context *ctx, const struct dea_design *design,
+                                  struct dea_device *device)
+{
+  const struct dea_material_choice first = {0};
+  if (design->electrodes.material.origin != DEA_ABSENT) {
+    DEA_TRY(ctx, dea_generator_material(ctx, design, &design->electrodes.material, &first,
+                                        &device->electrode));
+  }
+  if (device->electrode_thickness_m > 0 && device->electrode.law == NULL &&
+      device->electrode.young_modulus_Pa == 0) {
+    bool named = design->electrodes.material.origin != DEA_ABSENT;
+    return dea_finding_add(ctx, DEA_ERROR, design->electrodes.thickness_m.location,
+                           "electrodes with a thickness need a material with a law or a Young's "
+                           "modulus; %s%s%s",
+                           named ? "'" : "", named ? device->electrode.name : "none is given",
+                           named ? "' has neither" : "");
+  }
+  return DEA_OK;
+}
+
+static dea_status build_fibre(struct dea_context *ctx, const struct dea_design *design,
+                              struct dea_device *device)
+{
+  const struct dea_material_choice first = {0};
+  if (!design->has_fibres) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx,
+          dea_generator_material(ctx, design, &design->fibres.material, &first, &device->fibre));
+  if (device->fibre.young_modulus_Pa == 0) {
+    return dea_finding_add(ctx, DEA_ERROR, design->fibres.material.location,
+                           "material '%s' has no linear elastic constants and cannot be a fibre",
+                           device->fibre.name);
+  }
+  return DEA_OK;
+}
+
+static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
+                       struct dea_device *device)
+{
+  typedef dea_status (*build_fn)(struct dea_context *, const struct dea_design *,
+                                 struct dea_device *);
+  static const build_fn parts[] = {build_film, build_electrode, build_fibre};
+  dea_geometry_fill(design, device);
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    dea_status status = parts[i](ctx, design, device);
+    if (status != DEA_OK && status != DEA_E_DESIGN) { // a finding lets the other parts be checked
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+  }
+  return dea_geometry_check(ctx, design, device);
+}
+
+static bool takes(const struct dea_design *design)
+{
+  (void)design;
+  return true;
+}
+
+const struct dea_generator dea_generator_disc = {.name = "disc", .takes = takes, .fill = fill};

@@ -1,0 +1,487 @@
+/* Any device of flat layers, of its parts: the general form of a design. */
+#include "device/generator.h"
+#include "device/layout_check.h"
+#include "device/part_names.h"
+#include "device/shape_regions.h"
+
+#include <math.h>
+#include <string.h>
+
+struct maker {
+  struct dea_context *ctx;
+  const struct dea_design *design;
+  const struct dea_parts *parts;
+  struct dea_layout *out;
+};
+
+#define PARTS_OF(what, items, counter)                                                             \
+  const struct dea_part_names names = DEA_PART_NAMES(what, m->parts->items, m->parts->counter);    \
+  return dea_part_find(m->ctx, &names, label->text, label->location, out)
+
+static dea_status find_shape(const struct maker *m, const struct dea_label *label, size_t *out)
+{
+  PARTS_OF("shape", shapes, shape_count);
+}
+
+static dea_status find_ply(const struct maker *m, const struct dea_label *label, size_t *out)
+{
+  PARTS_OF("ply", plies, ply_count);
+}
+
+static dea_status find_body(const struct maker *m, const struct dea_label *label, size_t *out)
+{
+  PARTS_OF("body", bodies, body_count);
+}
+
+/* A copy of a name, since a device outlives its design; NULL when the arena has failed. */
+static const char *keep(const struct maker *m, const char *text)
+{
+  size_t size = strlen(text) + 1;
+  char *copy = dea_arena_alloc(&m->out->memory, size, 1);
+  return copy != NULL ? memcpy(copy, text, size) : NULL;
+}
+
+static double or_zero(const struct dea_quantity *value)
+{
+  return value->origin == DEA_ABSENT ? 0 : value->si;
+}
+
+// Plies ------------------------------------------------------------------------------------------
+
+static dea_status resolve_ply(const struct maker *m, const struct dea_parts_ply *ply,
+                              struct dea_material *out)
+{
+  const struct dea_material_choice choice = {
+      .law = ply->law.text,
+      .permittivity = ply->permittivity.text,
+      .breakdown = ply->breakdown.text,
+      .law_place = ply->law.location,
+      .permittivity_place = ply->permittivity.location,
+      .breakdown_place = ply->breakdown.location,
+      .viscosity = ply->viscosity.text,
+      .viscosity_place = ply->viscosity.location,
+  };
+  dea_status status = dea_generator_material(m->ctx, m->design, &ply->material, &choice, out);
+  if (status == DEA_E_DESIGN) { // a finding lets the other plies be checked
+    return DEA_OK;
+  }
+  DEA_TRY(m->ctx, status);
+  if (out->law == NULL && out->young_modulus_Pa == 0) {
+    return dea_finding_add(m->ctx, DEA_ERROR, ply->material.location,
+                           "material '%s' has neither a law nor a Young's modulus, which a ply "
+                           "needs",
+                           out->name);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_plies(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->plies = dea_arena_alloc(&l->memory, m->parts->ply_count, sizeof *l->plies);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->ply_count = m->parts->ply_count;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_parts_ply *from = &m->parts->plies[i];
+    struct dea_layout_ply *to = &l->plies[i];
+    double l1 = from->pre_stretch[0].si,
+           l2 = from->pre_stretch_count > 1 ? from->pre_stretch[1].si : l1;
+    to->name = keep(m, from->name.text);
+    to->thickness_unstretched_m = from->thickness_m.si;
+    to->thickness_m = from->thickness_m.si / (l1 * l2);
+    to->pre_stretch[0] = l1;
+    to->pre_stretch[1] = l2;
+    to->angle_rad = from->angle_rad.si;
+    to->elements = from->elements.origin == DEA_ABSENT ? 0 : (size_t)from->elements.si;
+    to->location = from->name.location;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
+  }
+  return DEA_OK;
+}
+
+/* What a ply needs that is a dielectric. */
+static dea_status check_dielectrics(struct maker *m)
+{
+  bool any = false;
+  for (size_t i = 0; i < m->out->ply_count; i++) {
+    const struct dea_parts_ply *ply = &m->parts->plies[i];
+    const struct dea_generator_film film = {
+        .material = &m->out->plies[i].material,
+        .what = "the dielectric between two electrodes",
+        .name = &ply->material,
+        .breakdown = &ply->breakdown,
+        .viscosity = &ply->viscosity,
+        .pre_stretch = m->out->plies[i].pre_stretch,
+        .pre_stretch_place = ply->pre_stretch[0].location,
+    };
+    if (dea_layout_is_dielectric(m->out, i)) {
+      any = true;
+      DEA_TRY(m->ctx, dea_generator_check_film(m->ctx, &film));
+      DEA_TRY(m->ctx, dea_generator_check_film_in_time(m->ctx, m->design, &film));
+    }
+  }
+  return any ? DEA_OK
+             : dea_finding_add(m->ctx, DEA_NOTE, m->parts->place,
+                               "no ply lies between electrodes of different channels: a voltage "
+                               "does nothing");
+}
+
+// Electrodes and channels ------------------------------------------------------------------------
+
+/* The channel of that name; a new one has the ratio 1. */
+static dea_status take_channel(struct maker *m, const struct dea_label *label, size_t *out)
+{
+  struct dea_layout *l = m->out;
+  *out = dea_layout_find_channel(l, label->text);
+  if (*out != DEA_LAYOUT_NONE) {
+    return DEA_OK;
+  }
+  const char *names[DEA_LAYOUT_CHANNELS_MAX];
+  size_t listed = m->parts->channel_count;
+  for (size_t i = 0; i < listed; i++) {
+    names[i] = m->parts->channels[i].name.text;
+  }
+  names[listed] = "ground";
+  const char *near = dea_nearest_name(label->text, names, listed + 1);
+  if (near != NULL && (listed > 0 || strcmp(near, "ground") == 0)) {
+    return dea_finding_add(m->ctx, DEA_ERROR, label->location,
+                           "there is no channel '%.60s'; did you mean '%s'? One that is meant to "
+                           "be new can be put into 'channels'",
+                           label->text, near);
+  }
+  if (l->channel_count == DEA_LAYOUT_CHANNELS_MAX) {
+    return dea_finding_add(m->ctx, DEA_ERROR, label->location,
+                           "there can be %d channels at most, with ground",
+                           DEA_LAYOUT_CHANNELS_MAX);
+  }
+  l->channels[l->channel_count] = (struct dea_layout_channel){
+      .name = keep(m, label->text), .ratio = 1, .location = label->location};
+  *out = l->channel_count++;
+  return dea_arena_status(&l->memory);
+}
+
+static dea_status add_channels(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  const struct dea_layout_channel ground = l->channels[0];
+  l->channels = dea_arena_alloc(&l->memory, DEA_LAYOUT_CHANNELS_MAX, sizeof *l->channels);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->channels[0] = ground;
+  for (size_t i = 0; i < m->parts->channel_count; i++) {
+    const struct dea_parts_channel *from = &m->parts->channels[i];
+    if (strcmp(from->name.text, ground.name) == 0) {
+      DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_ERROR, from->name.location,
+                                      "'ground' is at 0 V and needs no line of its own"));
+      continue;
+    }
+    l->channels[l->channel_count++] = (struct dea_layout_channel){
+        keep(m, from->name.text), from->ratio.si, from->voltage_V.si, from->name.location};
+  }
+  return dea_arena_status(&l->memory);
+}
+
+static dea_status add_electrodes(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->electrodes = dea_arena_alloc(&l->memory, m->parts->electrode_count, sizeof *l->electrodes);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->electrode_count = m->parts->electrode_count;
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    const struct dea_parts_electrode *from = &m->parts->electrodes[i];
+    struct dea_layout_electrode *to = &l->electrodes[i];
+    to->name = keep(m, from->name.origin == DEA_ABSENT ? from->channel.text : from->name.text);
+    to->top = from->side.value == DEA_SIDE_TOP;
+    to->location = from->shape.location;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
+    DEA_TRY(m->ctx, take_channel(m, &from->channel, &to->channel));
+  }
+  for (size_t c = m->parts->channel_count > 0 ? 1 : l->channel_count; c < l->channel_count; c++) {
+    size_t i = 0;
+    while (i < l->electrode_count && l->electrodes[i].channel != c) {
+      i++;
+    }
+    if (i == l->electrode_count) {
+      DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_WARNING, l->channels[c].location,
+                                      "no electrode is connected to the channel '%.60s'",
+                                      l->channels[c].name));
+    }
+  }
+  return DEA_OK;
+}
+
+// Supports, bodies, springs, pressures -----------------------------------------------------------
+
+static dea_status take_hold(const struct maker *m, const struct dea_parts_support *from,
+                            struct dea_layout_support *to)
+{
+  for (size_t k = 0; k < from->hold_count; k++) {
+    int hold = from->hold[k].value;
+    bool alone = hold == DEA_HOLD_CLAMPED || hold == DEA_HOLD_HINGED;
+    if (alone && from->hold_count > 1) {
+      DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_ERROR, from->hold[k].location,
+                                      "hold: 'clamped' and 'hinged' stand alone; write directions "
+                                      "such as [x, z], or one of them"));
+    }
+    to->hinged |= hold == DEA_HOLD_HINGED;
+    to->components |= alone ? 7 : hold >= DEA_HOLD_X ? 1 << (hold - DEA_HOLD_X) : 0;
+  }
+  for (int k = 0; k < 3; k++) {
+    const struct dea_quantity *move = &from->move_m[k];
+    to->move_m[k] = or_zero(move);
+    if (move->origin != DEA_ABSENT && (to->components & 1 << k) == 0) {
+      DEA_TRY(m->ctx,
+              dea_finding_add(m->ctx, DEA_ERROR, move->location,
+                              "move_%c: this support does not hold %c", "xyz"[k], "xyz"[k]));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status add_supports(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->supports = dea_arena_alloc(&l->memory, m->parts->support_count, sizeof *l->supports);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->support_count = m->parts->support_count;
+  for (size_t i = 0; i < l->support_count; i++) {
+    const struct dea_parts_support *from = &m->parts->supports[i];
+    struct dea_layout_support *to = &l->supports[i];
+    to->edge = from->edge.origin != DEA_ABSENT;
+    const struct dea_label *shape = to->edge ? &from->edge : &from->shape;
+    to->within = DEA_LAYOUT_NONE;
+    to->location = shape->location;
+    DEA_TRY(m->ctx, find_shape(m, shape, &to->region));
+    if (from->within.origin != DEA_ABSENT) {
+      DEA_TRY(m->ctx, find_shape(m, &from->within, &to->within));
+    }
+    DEA_TRY(m->ctx, take_hold(m, from, to));
+  }
+  return DEA_OK;
+}
+
+static dea_status take_motion(const struct maker *m, const struct dea_parts_body *from,
+                              struct dea_layout_body *to)
+{
+  to->free = from->free_given ? 0 : 63;
+  for (size_t k = 0; k < from->free_count; k++) {
+    to->free |= from->free[k].value >= 0 ? 1 << from->free[k].value : 0;
+  }
+  for (int k = 0; k < DEA_DIRECTIONS; k++) {
+    const struct dea_quantity *move = &from->move[k], *force = &from->force[k];
+    *(k < 3 ? &to->shift_m[k] : &to->turn_rad[k - 3]) = or_zero(move);
+    *(k < 3 ? &to->force_N[k] : &to->moment_N_m[k - 3]) = or_zero(force);
+    to->moved |= move->origin != DEA_ABSENT ? 1 << k : 0;
+    to->free &= ~to->moved;
+    if (force->origin != DEA_ABSENT && force->si != 0 && (to->free & 1 << k) == 0) {
+      DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_WARNING, force->location,
+                                      "%s_%c has no effect: the body is not free to %s",
+                                      k < 3 ? "force" : "moment", "xyz"[k % 3],
+                                      k < 3 ? "move there" : "turn there"));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status add_bodies(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->bodies = dea_arena_alloc(&l->memory, m->parts->body_count, sizeof *l->bodies);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->body_count = m->parts->body_count;
+  for (size_t i = 0; i < l->body_count; i++) {
+    const struct dea_parts_body *from = &m->parts->bodies[i];
+    struct dea_layout_body *to = &l->bodies[i];
+    to->name = keep(m, from->name.text);
+    to->mass_kg = from->mass_kg.si;
+    to->location = from->name.location;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    DEA_TRY(m->ctx, take_motion(m, from, to));
+  }
+  return DEA_OK;
+}
+
+/* A spring's numbers, by whether its direction is a turn. */
+static dea_status take_spring(const struct maker *m, const struct dea_parts_spring *from,
+                              struct dea_layout_spring *to)
+{
+  bool turns = from->direction.value >= 3;
+  const struct dea_quantity *right =
+      turns ? &from->stiffness_N_m_per_rad : &from->stiffness_N_per_m;
+  const struct dea_quantity *wrong =
+      turns ? &from->stiffness_N_per_m : &from->stiffness_N_m_per_rad;
+  if (wrong->origin != DEA_ABSENT) {
+    return dea_finding_add(m->ctx, DEA_ERROR, wrong->location, "a spring against a %s has its '%s'",
+                           turns ? "turn" : "shift", turns ? "turn_stiffness" : "stiffness");
+  }
+  const struct dea_quantity *place = turns ? &from->free_at_rad : &from->free_at_m;
+  const struct dea_quantity *other = turns ? &from->free_at_m : &from->free_at_rad;
+  if (other->origin == DEA_GIVEN || other->origin == DEA_OVERRIDE) {
+    return dea_finding_add(m->ctx, DEA_ERROR, other->location,
+                           "a spring against a %s is free at its '%s'", turns ? "turn" : "shift",
+                           turns ? "free_at_angle" : "free_at");
+  }
+  to->stiffness = or_zero(right);
+  to->free_at = or_zero(place);
+  to->count = from->row_count;
+  double *at = dea_arena_alloc(&m->out->memory, to->count, sizeof *at);
+  double *force = dea_arena_alloc(&m->out->memory, to->count, sizeof *force);
+  DEA_TRY(m->ctx, dea_arena_status(&m->out->memory));
+  for (size_t k = 0; k < to->count; k++) {
+    at[k] = from->row[k][0];
+    force[k] = from->row[k][1];
+  }
+  to->at = at;
+  to->force = force;
+  return DEA_OK;
+}
+
+static dea_status add_springs(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->springs = dea_arena_alloc(&l->memory, m->parts->spring_count, sizeof *l->springs);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->spring_count = m->parts->spring_count;
+  for (size_t i = 0; i < l->spring_count; i++) {
+    const struct dea_parts_spring *from = &m->parts->springs[i];
+    struct dea_layout_spring *to = &l->springs[i];
+    to->component = from->direction.value;
+    to->location = from->body.location;
+    DEA_TRY(m->ctx, find_body(m, &from->body, &to->body));
+    DEA_TRY(m->ctx, take_spring(m, from, to));
+  }
+  return DEA_OK;
+}
+
+static dea_status add_pressures(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->pressures = dea_arena_alloc(&l->memory, m->parts->pressure_count, sizeof *l->pressures);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->pressure_count = m->parts->pressure_count;
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    const struct dea_parts_pressure *from = &m->parts->pressures[i];
+    struct dea_layout_pressure *to = &l->pressures[i];
+    to->top = from->side.value == DEA_SIDE_TOP;
+    to->pressure_Pa = from->pressure_Pa.si;
+    to->location = from->shape.location;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
+  }
+  return DEA_OK;
+}
+
+// Monitors ---------------------------------------------------------------------------------------
+
+/* Whether a ply lies at both ends of a line, or in a region somewhere. */
+static bool lies_there(const struct dea_layout *l, size_t ply, const struct dea_layout_monitor *to)
+{
+  size_t own = l->plies[ply].region;
+  if (own == DEA_LAYOUT_NONE) {
+    return false;
+  }
+  if (to->kind == DEA_MONITOR_REGION) {
+    return to->region != DEA_LAYOUT_NONE && dea_layout_overlap_m2(l, to->region, own) > 0;
+  }
+  int points = to->kind == DEA_MONITOR_LINE ? 2 : 1;
+  for (int k = 0; k < points; k++) {
+    if (!dea_layout_holds(l, own, to->at_m[k])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static dea_status take_ply(const struct maker *m, const struct dea_parts_monitor *from,
+                           struct dea_layout_monitor *to)
+{
+  if (from->ply.origin != DEA_ABSENT) {
+    return find_ply(m, &from->ply, &to->ply);
+  }
+  to->ply = m->out->ply_count;
+  while (to->ply > 0 && !lies_there(m->out, to->ply - 1, to)) {
+    to->ply--;
+  }
+  if (to->ply == 0) {
+    to->ply = DEA_LAYOUT_NONE;
+    return dea_finding_add(m->ctx, DEA_ERROR, from->name.location,
+                           "no ply lies where the monitor '%.60s' is", from->name.text);
+  }
+  to->ply--;
+  return DEA_OK;
+}
+
+static dea_status take_monitor(const struct maker *m, const struct dea_parts_monitor *from,
+                               struct dea_layout_monitor *to)
+{
+  to->name = keep(m, from->name.text);
+  to->location = from->name.location;
+  to->ply = to->region = to->body = DEA_LAYOUT_NONE;
+  if (from->body.origin != DEA_ABSENT) {
+    to->kind = DEA_MONITOR_BODY;
+    return find_body(m, &from->body, &to->body);
+  }
+  if (from->shape.origin != DEA_ABSENT) {
+    to->kind = DEA_MONITOR_REGION;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    return to->region != DEA_LAYOUT_NONE ? take_ply(m, from, to) : DEA_OK;
+  }
+  bool point = from->at_count > 0;
+  to->kind = point ? DEA_MONITOR_POINT : DEA_MONITOR_LINE;
+  for (int k = 0; k < 2; k++) {
+    to->at_m[0][k] = point ? from->at_m[k].si : from->from_m[k].si;
+    to->at_m[1][k] = point ? 0 : from->to_m[k].si;
+  }
+  return take_ply(m, from, to);
+}
+
+static dea_status add_monitors(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  l->monitors = dea_arena_alloc(&l->memory, m->parts->monitor_count, sizeof *l->monitors);
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
+  l->monitor_count = m->parts->monitor_count;
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    DEA_TRY(m->ctx, take_monitor(m, &m->parts->monitors[i], &l->monitors[i]));
+  }
+  return DEA_OK;
+}
+
+// All --------------------------------------------------------------------------------------------
+
+static bool takes(const struct dea_design *design)
+{
+  return design->parts != NULL;
+}
+
+static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
+                       struct dea_device *device)
+{
+  typedef dea_status (*add_fn)(struct maker *);
+  static const add_fn parts[] = {add_plies,  add_channels, add_electrodes, add_supports,
+                                 add_bodies, add_springs,  add_pressures,  add_monitors};
+  static const double g = 9.80665; // m/s2, standard
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  struct maker m = {.ctx = ctx, .design = design, .parts = design->parts};
+  device->general = true;
+  device->gravity = (enum dea_gravity)design->gravity.value;
+  DEA_TRY(ctx, dea_layout_create(ctx, &device->layout));
+  m.out = device->layout;
+  m.out->gravity_m_per_s2[2] = device->gravity == DEA_GRAVITY_FIBRES_UP     ? -g
+                               : device->gravity == DEA_GRAVITY_FIBRES_DOWN ? g
+                                                                            : 0;
+  DEA_TRY(ctx, dea_shape_regions_make(ctx, design, m.out));
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    DEA_TRY(ctx, parts[i](&m));
+    DEA_TRY(ctx, dea_arena_status(&m.out->memory));
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) > errors) {
+    return DEA_OK; // where things lie says nothing then
+  }
+  DEA_TRY(ctx, check_dielectrics(&m));
+  DEA_TRY(ctx, dea_layout_check(ctx, m.out));
+  return dea_layout_find_symmetry(ctx, m.out);
+}
+
+const struct dea_generator dea_generator_parts = {.name = "parts", .takes = takes, .fill = fill};

@@ -1,0 +1,308 @@
+#include "device/layout_check.h"
+
+#include "geometry/boolean.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Parts of an area that rounding may leave. */
+static const double rounding = 1e-6;
+enum { SAMPLES = 16 }; // of a piece of a contour
+
+static const struct dea_region *region_of(const struct dea_layout *l, size_t number)
+{
+  return &l->regions[number].region;
+}
+
+/* What two regions have in common; false where it cannot be told. out: to be freed. */
+static bool common_of(const struct dea_layout *l, size_t a, size_t b, struct dea_region *out)
+{
+  double one[4], two[4];
+  *out = (struct dea_region){.ctx = l->ctx};
+  dea_region_box_m(region_of(l, a), one);
+  dea_region_box_m(region_of(l, b), two);
+  if (one[0] >= two[2] || two[0] >= one[2] || one[1] >= two[3] || two[1] >= one[3]) {
+    return true;
+  }
+  size_t errors = dea_finding_trial_begin(l->ctx);
+  dea_status status =
+      dea_region_combine(l->ctx, DEA_INTERSECTION, region_of(l, a), region_of(l, b), out);
+  dea_finding_trial_end(l->ctx, errors);
+  if (status != DEA_OK) {
+    dea_context_clear(l->ctx);
+  }
+  return status == DEA_OK;
+}
+
+double dea_layout_overlap_m2(const struct dea_layout *l, size_t a, size_t b)
+{
+  struct dea_region common;
+  if (a == b) {
+    return dea_region_area_m2(region_of(l, a));
+  }
+  bool known = common_of(l, a, b, &common);
+  double area = known ? dea_region_area_m2(&common) : NAN;
+  dea_region_free(&common);
+  return area;
+}
+
+bool dea_layout_holds(const struct dea_layout *l, size_t region, const double x_m[2])
+{
+  const struct dea_region *r = region_of(l, region);
+  double near = 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r);
+  for (size_t c = 0; c < r->contour_count; c++) {
+    const struct dea_contour contour = dea_region_contour(r, c);
+    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i);
+      double at[2];
+      dea_piece_nearest(&piece, x_m, at);
+      if (hypot(at[0] - x_m[0], at[1] - x_m[1]) <= near) {
+        return true;
+      }
+    }
+  }
+  return dea_region_inside(r, x_m[0], x_m[1]);
+}
+
+/* Whether some ply holds a point. */
+static bool on_device(const struct dea_layout *l, const double x_m[2])
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_layout_holds(l, l->plies[i].region, x_m)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Whether some of the boundary of a region lies on the device and, unless that is none, within
+ * another region. */
+static bool edge_is_there(const struct dea_layout *l, size_t region, size_t within)
+{
+  const struct dea_region *r = region_of(l, region);
+  for (size_t c = 0; c < r->contour_count; c++) {
+    const struct dea_contour contour = dea_region_contour(r, c);
+    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i);
+      for (int k = 0; k < SAMPLES; k++) {
+        double at[2];
+        dea_piece_point(&piece, (double)k / SAMPLES, at);
+        if ((within == DEA_LAYOUT_NONE || dea_layout_holds(l, within, at)) && on_device(l, at)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/* Whether two regions have an area or a part of a boundary in common. */
+static bool touch(const struct dea_layout *l, size_t a, size_t b)
+{
+  const size_t both[2] = {a, b};
+  double area = dea_layout_overlap_m2(l, a, b);
+  if (isnan(area) || area > 0) {
+    return true;
+  }
+  for (int which = 0; which < 2; which++) {
+    const struct dea_region *r = region_of(l, both[which]);
+    for (size_t c = 0; c < r->contour_count; c++) {
+      const struct dea_contour contour = dea_region_contour(r, c);
+      for (size_t i = 0; i < SAMPLES * dea_contour_pieces(&contour); i++) {
+        const struct dea_piece piece = dea_contour_piece(&contour, i / SAMPLES);
+        double at[2];
+        dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
+        if (dea_layout_holds(l, both[1 - which], at)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+static bool on_some_ply(const struct dea_layout *l, size_t region)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (touch(l, region, l->plies[i].region)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Electrodes -------------------------------------------------------------------------------------
+
+/* Number of the face that an electrode lies on, counted from below: a top is the next one's bottom.
+ */
+static size_t interface_of(const struct dea_layout_electrode *e)
+{
+  return e->ply + (e->top ? 1 : 0);
+}
+
+static dea_status check_electrode(struct dea_context *ctx, const struct dea_layout *l,
+                                  const struct dea_layout_electrode *e)
+{
+  const struct dea_layout_ply *ply = &l->plies[e->ply];
+  double area = dea_region_area_m2(region_of(l, e->region));
+  double on = dea_layout_overlap_m2(l, e->region, ply->region);
+  if (area - on > rounding * area) {
+    return dea_finding_add(ctx, DEA_ERROR, e->location,
+                           on > 0 ? "the electrode '%s' reaches beyond its ply '%s': %.4g mm2 of "
+                                    "its %.4g mm2 lie outside"
+                                  : "the electrode '%s' does not lie on its ply '%s' at all: %.4g "
+                                    "mm2 of its %.4g mm2 lie outside",
+                           e->name, ply->name, 1e6 * (area - on), 1e6 * area);
+  }
+  return DEA_OK;
+}
+
+static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l,
+                             const struct dea_layout_electrode *a,
+                             const struct dea_layout_electrode *b)
+{
+  struct dea_region common;
+  dea_status status = DEA_OK;
+  if (a->channel == b->channel || interface_of(a) != interface_of(b)) {
+    return DEA_OK;
+  }
+  double least = fmin(dea_region_area_m2(region_of(l, a->region)),
+                      dea_region_area_m2(region_of(l, b->region)));
+  if (common_of(l, a->region, b->region, &common) &&
+      dea_region_area_m2(&common) > rounding * least) {
+    double at[2];
+    dea_region_centroid_m(&common, at);
+    status = dea_finding_add(
+        ctx, DEA_ERROR, b->location,
+        "electrodes of the channels '%s' and '%s' lie on each other on one face of '%s', about "
+        "(%.4g, %.4g) mm: %.4g mm2 (the other one is in line %zu)",
+        l->channels[a->channel].name, l->channels[b->channel].name, l->plies[b->ply].name,
+        1e3 * at[0], 1e3 * at[1], 1e6 * dea_region_area_m2(&common), a->location.line);
+  }
+  dea_region_free(&common);
+  return status;
+}
+
+static dea_status check_electrodes(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    DEA_TRY(ctx, check_electrode(ctx, l, &l->electrodes[i]));
+    for (size_t j = 0; j < i; j++) {
+      DEA_TRY(ctx, check_pair(ctx, l, &l->electrodes[j], &l->electrodes[i]));
+    }
+  }
+  return DEA_OK;
+}
+
+// All else ---------------------------------------------------------------------------------------
+
+static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    bool alone = l->ply_count > 1;
+    for (size_t j = 0; j < l->ply_count && alone; j++) {
+      alone = j == i || !touch(l, l->plies[i].region, l->plies[j].region);
+    }
+    if (alone) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, l->plies[i].location,
+                                   "the ply '%s' lies on no other ply", l->plies[i].name));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status check_supports(struct dea_context *ctx, const struct dea_layout *l)
+{
+  bool held = l->support_count > 0;
+  for (size_t i = 0; i < l->support_count; i++) {
+    const struct dea_layout_support *s = &l->supports[i];
+    bool there = s->edge ? edge_is_there(l, s->region, s->within)
+                         : on_some_ply(l, s->region) &&
+                               (s->within == DEA_LAYOUT_NONE || touch(l, s->region, s->within));
+    if (!there) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, s->location,
+                                   "the support by '%s'%s%s%s holds nothing: no ply lies there",
+                                   l->regions[s->region].name,
+                                   s->within != DEA_LAYOUT_NONE ? " within '" : "",
+                                   s->within != DEA_LAYOUT_NONE ? l->regions[s->within].name : "",
+                                   s->within != DEA_LAYOUT_NONE ? "'" : ""));
+    }
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    held |= l->bodies[i].free != 63;
+  }
+  return held ? DEA_OK
+              : dea_finding_add(ctx, DEA_WARNING, l->plies[0].location,
+                                "nothing holds the device: it has neither a support nor a body "
+                                "that may not do everything");
+}
+
+static dea_status check_bodies(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->body_count; i++) {
+    const struct dea_layout_body *b = &l->bodies[i];
+    if (!on_some_ply(l, b->region)) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, b->location,
+                                   "nothing holds the body '%s': no ply lies in its shape '%s'",
+                                   b->name, l->regions[b->region].name));
+    }
+    for (size_t j = 0; j < i; j++) {
+      if (dea_layout_overlap_m2(l, b->region, l->bodies[j].region) > 0) {
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, b->location,
+                                     "the bodies '%s' and '%s' lie on each other: what moves as "
+                                     "one is one body",
+                                     b->name, l->bodies[j].name));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status check_pressures(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    const struct dea_layout_pressure *p = &l->pressures[i];
+    const struct dea_layout_ply *ply = &l->plies[p->ply];
+    if (dea_layout_overlap_m2(l, p->region, ply->region) <= 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, p->location,
+                                   "the pressure in '%s' does not lie on its ply '%s'",
+                                   l->regions[p->region].name, ply->name));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status check_monitors(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    const struct dea_layout_monitor *m = &l->monitors[i];
+    if (m->kind == DEA_MONITOR_BODY) {
+      continue;
+    }
+    const struct dea_layout_ply *ply = &l->plies[m->ply];
+    bool there = true;
+    for (int k = 0; k < (m->kind == DEA_MONITOR_LINE ? 2 : 1); k++) {
+      there &= m->kind == DEA_MONITOR_REGION || dea_layout_holds(l, ply->region, m->at_m[k]);
+    }
+    if (m->kind == DEA_MONITOR_REGION) {
+      there = !(dea_layout_overlap_m2(l, m->region, ply->region) <= 0);
+    }
+    if (!there) {
+      DEA_TRY(ctx,
+              dea_finding_add(ctx, DEA_ERROR, m->location,
+                              "the monitor '%s' does not lie on the ply '%s'", m->name, ply->name));
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout)
+{
+  typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
+  static const check_fn checks[] = {check_electrodes, check_plies,     check_supports,
+                                    check_bodies,     check_pressures, check_monitors};
+  for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+    DEA_TRY(ctx, checks[i](ctx, layout));
+  }
+  return DEA_OK;
+}

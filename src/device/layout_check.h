@@ -1,0 +1,16 @@
+/* Whether the parts of a layout lie where they can. */
+#ifndef DEA_DEVICE_LAYOUT_CHECK_H
+#define DEA_DEVICE_LAYOUT_CHECK_H
+
+#include "device/layout.h"
+
+/* Adds a finding for each part that lies where it cannot: an electrode beyond its ply, electrodes
+ * of different channels on each other, what lies nowhere. Fails only for memory. */
+dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout);
+
+/* Area that two regions have in common; NAN where it cannot be told. */
+double dea_layout_overlap_m2(const struct dea_layout *layout, size_t a, size_t b);
+/* Whether a point lies in a region or on its boundary. */
+bool dea_layout_holds(const struct dea_layout *layout, size_t region, const double x_m[2]);
+
+#endif
