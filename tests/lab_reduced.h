@@ -13,7 +13,7 @@ static inline struct dea_reduction *reduced(const struct dea_recording *r,
 {
   struct dea_reduction *out;
   dea_finding_clear(ctx);
-  dea_status status = dea_reduce(ctx, r, NULL, options, &out);
+  dea_status status = dea_reduce(ctx, r, options, &out);
   if (status != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }

@@ -3,6 +3,7 @@
 #define DEA_TESTS_PROTOCOL_TEXT_H
 
 #include "design_text.h"
+#include "job/film_of_design.h"
 #include "lab/protocol/protocol.h"
 
 #include "own_folder.h" // after: its context shadows no name of the headers above
@@ -30,7 +31,7 @@ static inline dea_status protocol_of(struct dea_context *context, const char *te
 {
   write_in_folder("design.yaml", GOOD_DESIGN);
   write_in_folder("protocol.yaml", text);
-  return dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, out);
+  return dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, out);
 }
 
 static inline struct dea_protocol *good_protocol(struct dea_context *context, const char *text)

@@ -179,7 +179,7 @@ static void test_history_keeps_edges(void **state)
   struct dea_recording r = bench();
   struct dea_reduction *reduction;
   struct dea_history_table all, few;
-  assert_int_equal(dea_reduce(own, &r, NULL, NULL, &reduction), DEA_OK);
+  assert_int_equal(dea_reduce(own, &r, NULL, &reduction), DEA_OK);
   assert_int_equal(dea_history_table_fill(own, &r, reduction, 1000000, &all), DEA_OK);
   assert_int_equal(dea_history_table_fill(own, &r, reduction, 600, &few), DEA_OK);
   assert_false(all.thinned);
@@ -213,7 +213,7 @@ static dea_status write_kept(struct dea_context *ctx)
 {
   struct dea_reduction *reduction;
   const struct dea_plot_format none = {.width_m = 85e-3};
-  DEA_TRY(ctx, dea_reduce(ctx, &kept, NULL, NULL, &reduction));
+  DEA_TRY(ctx, dea_reduce(ctx, &kept, NULL, &reduction));
   dea_status status = dea_reduction_folder(ctx, kept_folder, true);
   if (status == DEA_OK) {
     status = dea_reduction_write(ctx, &kept, reduction, "test", &none, kept_folder);

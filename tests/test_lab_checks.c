@@ -50,8 +50,9 @@ static void test_example_passes(void **state)
   struct dea_protocol *p;
   double stretch;
   dea_finding_clear(ctx);
-  assert_int_equal(
-      dea_protocol_read(ctx, DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", NULL, 0, &p), DEA_OK);
+  assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
+                                     DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", NULL, 0, &p),
+                   DEA_OK);
   dea_status status = dea_protocol_check(ctx, p, &plan);
   if (status != DEA_OK || dea_finding_count(ctx, DEA_WARNING) > 0) {
     print_findings(ctx);
@@ -273,8 +274,9 @@ static void test_specimen(void **state)
   write_in_folder("g.yaml", "dea-specimen: 1\nname: G\nmax_voltage: 9 kV\n");
   for (size_t i = 0; i < 2; i++) {
     dea_finding_clear(ctx);
-    assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), &others[i], 1, &p),
-                     DEA_E_DESIGN);
+    assert_int_equal(
+        dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), &others[i], 1, &p),
+        DEA_E_DESIGN);
   }
   static const char *const wrong[] = {"dea-specimen: 1\nname: F12\n", "x", "",
                                       "dea-specimen: 1\nname: F12\nmax_voltage: 6\n",
@@ -323,7 +325,8 @@ static void test_pull_in(void **state)
                   "dea-protocol: 1\ndesign: soft.yaml\n" PROTOCOL_AMPLIFIER CHANNELS
                   "waveform: {kind: ramp, to: 9 kV, duration: 2 s}\n");
   dea_finding_clear(ctx);
-  assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), NULL, 0, &p), DEA_OK);
+  assert_int_equal(
+      dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p), DEA_OK);
   assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_E_INTERLOCK);
   const struct dea_finding *f = find_finding(
       ctx, DEA_ERROR, "refused: the film pulls in at 3.915 kV on its way to 9 kV at step 1");
@@ -393,7 +396,8 @@ static void test_warnings(void **state)
 static dea_status check_in_folder(struct dea_context *context)
 {
   struct dea_protocol *p;
-  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  dea_status status =
+      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
   if (status == DEA_OK) {
     status = dea_protocol_check(context, p, &plan);
   }
@@ -413,7 +417,8 @@ static dea_status export_in_folder(struct dea_context *context)
   struct dea_protocol *p;
   char to[800];
   snprintf(to, sizeof to, "%s/export", folder);
-  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  dea_status status =
+      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
   if (status == DEA_OK) {
     status = dea_protocol_export(context, p, to);
   }

@@ -11,7 +11,7 @@ static struct dea_protocol *read_example(const char *name)
   struct dea_protocol *protocol;
   snprintf(file, sizeof file, "%s/examples/bench/%s", DEA_SOURCE_DIR, name);
   dea_finding_clear(ctx);
-  if (dea_protocol_read(ctx, file, NULL, 0, &protocol) != DEA_OK) {
+  if (dea_protocol_read(ctx, &dea_film_of_design, file, NULL, 0, &protocol) != DEA_OK) {
     print_findings(ctx);
     fail_msg("%s: %s", file, dea_context_message(ctx));
   }
@@ -40,7 +40,7 @@ static void test_cyclic_example(void **state)
   assert_int_equal(p->input_count, 3);
   assert_int_equal(p->inputs[0].kind.value, DEA_CHANNEL_VOLTAGE);
   assert_close(p->inputs[2].per_volt, 1e-3, 1e-14, 0);
-  assert_non_null(p->design);
+  assert_non_null(p->film);
   assert_non_null(strstr(p->text, "dea-protocol"));
   assert_non_null(strstr(p->design_text, "pre_stretch"));
   dea_protocol_destroy(ctx, p);
@@ -119,7 +119,8 @@ static void test_waveform_alone_and_overrides(void **state)
   assert_close(p->steps[0].lowest_V, -2000, 1e-9, 0);
   dea_protocol_destroy(ctx, p);
   const struct dea_override set = {"waveform.amplitude", "4 kV"};
-  assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), &set, 1, &p), DEA_OK);
+  assert_int_equal(
+      dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), &set, 1, &p), DEA_OK);
   assert_close(dea_protocol_value(p, 0.05), 4000, 1e-12, 0);
   assert_int_equal(p->steps[0].waveform->type == NULL, 0);
   dea_protocol_destroy(ctx, p);
@@ -225,11 +226,14 @@ static void test_wrong_design(void **state)
   dea_finding_clear(ctx);
   write_in_folder("design.yaml", "dea: 1\nfilm: {material: x}\n");
   write_in_folder("protocol.yaml", PROTOCOL_HEAD SQUARE);
-  assert_int_equal(dea_protocol_read(ctx, in_folder("protocol.yaml"), NULL, 0, &p), DEA_E_DESIGN);
+  assert_int_equal(
+      dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p),
+      DEA_E_DESIGN);
   const struct dea_finding *f = find_error(ctx, "lacks 'pre_stretch'");
   assert_non_null(f);
   assert_non_null(strstr(f->location.file, "design.yaml"));
-  assert_int_equal(dea_protocol_read(ctx, in_folder("no.yaml"), NULL, 0, &p), DEA_E_IO);
+  assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design, in_folder("no.yaml"), NULL, 0, &p),
+                   DEA_E_IO);
 }
 
 static void test_channels(void **state)
@@ -258,7 +262,8 @@ static void test_channels(void **state)
 static dea_status read_two_steps(struct dea_context *context)
 {
   struct dea_protocol *p;
-  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  dea_status status =
+      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
   dea_protocol_destroy(context, p);
   return status;
 }

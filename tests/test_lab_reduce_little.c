@@ -58,7 +58,7 @@ static void test_without_voltage(void **state)
   (void)state;
   struct dea_recording r = {.file = "", .title = ""};
   struct dea_reduction *out;
-  assert_int_equal(dea_reduce(ctx, &r, NULL, NULL, &out), DEA_E_IO);
+  assert_int_equal(dea_reduce(ctx, &r, NULL, &out), DEA_E_IO);
   assert_null(out);
   assert_non_null(strstr(dea_context_message(ctx), "no voltage"));
 }
@@ -119,7 +119,7 @@ static dea_status reduce_whole(struct dea_context *own)
 {
   struct dea_reduction *out;
   const struct dea_reduce_options options = {3e-3, 15e-3, 3.75e-3, 0.0, NAN};
-  dea_status status = dea_reduce(own, &whole, NULL, &options, &out);
+  dea_status status = dea_reduce(own, &whole, &options, &out);
   dea_reduction_destroy(own, out);
   return status;
 }

@@ -2,6 +2,7 @@
  * measured, and left out where it was cut off. */
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
+#include "job/film_of_design.h"
 #include "lab/drive/drive.h"
 #include "lab/protocol/protocol.h"
 #include "lab/reduce/reduce.h"
@@ -25,9 +26,10 @@ static void test_too_small_range(void **state)
   struct dea_drive_report report;
   char file[sizeof path];
   snprintf(file, sizeof file, "%s", in_folder("range.h5"));
-  assert_int_equal(
-      dea_protocol_read(ctx, DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", sets, 3, &protocol),
-      DEA_OK);
+  assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
+                                     DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", sets, 3,
+                                     &protocol),
+                   DEA_OK);
   const struct dea_drive_options options = {.simulate = true, .file = file};
   assert_int_equal(dea_drive_run(ctx, protocol, &options, &report), DEA_OK);
   assert_non_null(
@@ -37,7 +39,7 @@ static void test_too_small_range(void **state)
   const struct dea_channel *laser = dea_recording_kind(recording, DEA_CHANNEL_DISPLACEMENT);
   assert_close(laser->highest, 1.5e-3, 1e-12, 0);
   assert_close(laser->lowest, -1.5e-3, 1e-12, 0);
-  assert_int_equal(dea_reduce(ctx, recording, NULL, NULL, &r), DEA_OK);
+  assert_int_equal(dea_reduce(ctx, recording, NULL, &r), DEA_OK);
   assert_int_equal(r->level_count, 4);
   for (size_t l = 0; l < 4; l++) {
     double mean = r->levels[l].mean[DEA_REDUCED_DISPLACEMENT];

@@ -106,7 +106,8 @@ static struct dea_protocol *bench_protocol(const char *text)
   write_in_folder("design.yaml", VISCOUS_DESIGN);
   write_in_folder("protocol.yaml", text);
   dea_finding_clear(ctx);
-  if (dea_protocol_read(ctx, in_folder("protocol.yaml"), NULL, 0, &p) != DEA_OK) {
+  if (dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p) !=
+      DEA_OK) {
     print_findings(ctx);
     fail_msg("%s", text);
   }
@@ -438,7 +439,8 @@ static dea_status play_short(struct dea_context *context)
 {
   struct dea_protocol *p;
   struct record r = {0};
-  dea_status status = dea_protocol_read(context, in_folder("protocol.yaml"), NULL, 0, &p);
+  dea_status status =
+      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
   if (status == DEA_OK) {
     status = play(context, p, 10, &r);
   }

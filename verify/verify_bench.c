@@ -2,6 +2,7 @@
  * reduced; what comes out is laid beside what the film does by study "transient" of model lumped,
  * which knows nothing of the bench. */
 #include "base/file.h"
+#include "job/film_of_design.h"
 #include "lab/drive/drive.h"
 #include "lab/protocol/protocol.h"
 #include "lab/reduce/output.h"
@@ -213,12 +214,20 @@ static struct dea_reduction *measure(struct dea_context *ctx, const struct measu
   all[1] = (struct dea_override){"design", m->design};
   all[2] = (struct dea_override){"channels", channels};
   memcpy(all + 3, sets, set_count * sizeof *sets);
-  verify_ok(ctx, dea_protocol_read(ctx, protocol_file, all, set_count + 3, &protocol));
+  verify_ok(ctx, dea_protocol_read(ctx, &dea_film_of_design, protocol_file, all, set_count + 3,
+                                   &protocol));
   const struct dea_drive_options options = {.simulate = true, .file = file};
   verify_ok(ctx, dea_drive_run(ctx, protocol, &options, &report));
   verify_absolute("cycles", (double)report.cycles, (double)(m->level_count * m->cycles), 0);
   verify_ok(ctx, dea_recording_read(ctx, file, &recording));
-  verify_ok(ctx, dea_reduce(ctx, recording, truth->device, NULL, &reduction));
+  const struct dea_device *device = truth->device;
+  const struct dea_reduce_options radii = {
+      .tip_radius_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : (double)NAN,
+      .film_radius_m = device->frame_radius_m,
+      .electrode_radius_m = device->electrode_radius_m,
+      .force_offset_N = NAN,
+  };
+  verify_ok(ctx, dea_reduce(ctx, recording, &radii, &reduction));
   verify_absolute("levels", (double)reduction->level_count, (double)m->level_count, 0);
   if (set != NULL) {
     *set = compare(ctx, truth, recording, reduction, measured);

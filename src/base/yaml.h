@@ -39,6 +39,12 @@ dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char 
 void dea_yaml_destroy(struct dea_context *ctx, struct dea_yaml *yaml);
 /* The outermost node; lent. Its place is the first line. */
 const struct dea_node *dea_yaml_root(const struct dea_yaml *yaml);
+/* One override of --set: key is the dotted path in the file ("film.thickness"), value as it would
+ * stand in the file ("200 um"). */
+struct dea_override {
+  const char *key, *value;
+};
+
 /* Puts value, YAML text such as "200 um" or "[1 kV, 2 kV]", at a dotted path of sections; sections
  * that are missing are made, "null" takes the key away. Places of new nodes are "--set PATH", line
  * 0. DEA_E_DESIGN after a finding. */

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/write_file.h"
+#include "job/film_of_design.h"
 #include "lab/drive/drive.h"
 #include "lab/instrument/instrument.h"
 #include "lab/protocol/export.h"
@@ -301,7 +302,7 @@ static dea_status look(struct dea_cli *cli, const struct request *request,
                        bool *planned)
 {
   struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_protocol_read(ctx, request->protocol, request->overrides.at,
+  DEA_TRY(ctx, dea_protocol_read(ctx, &dea_film_of_design, request->protocol, request->overrides.at,
                                  request->overrides.count, protocol));
   DEA_TRY(ctx, dea_instrument_check(ctx, *protocol));
   if (dea_finding_count(ctx, DEA_ERROR) > 0) {

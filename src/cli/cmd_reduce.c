@@ -24,21 +24,41 @@ static int take_settle(struct dea_cli *cli, const struct dea_command *command,
                                 option->name, text);
 }
 
-/* The device of --design, or of the design that the recording brings along; NULL without. */
-static dea_status find_device(struct dea_context *ctx, const struct request *request,
-                              const struct dea_recording *recording, struct dea_design **design,
-                              struct dea_device **device)
+/* The design of --design, or the one that the recording brings along; NULL without. */
+static dea_status find_design(struct dea_context *ctx, const struct request *request,
+                              const struct dea_recording *recording, struct dea_design **out)
 {
   if (request->design != NULL) {
-    DEA_TRY(ctx, dea_design_read(ctx, request->design, NULL, 0, design));
-  } else if (recording->design != NULL) {
-    const char *name = recording->design_name != NULL ? recording->design_name : "design";
-    DEA_TRY(ctx, dea_design_read_memory(ctx, name, recording->design, strlen(recording->design),
-                                        NULL, 0, design));
-  } else {
+    return dea_design_read(ctx, request->design, NULL, 0, out);
+  }
+  if (recording->design == NULL) {
     return DEA_OK;
   }
-  return dea_device_build(ctx, *design, device);
+  const char *name = recording->design_name != NULL ? recording->design_name : "design";
+  return dea_design_read_memory(ctx, name, recording->design, strlen(recording->design), NULL, 0,
+                                out);
+}
+
+/* Radii that no option says are the design's. */
+static dea_status complete_options(struct dea_context *ctx, const struct request *request,
+                                   const struct dea_recording *recording,
+                                   struct dea_reduce_options *options)
+{
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  DEA_TRY(ctx, find_design(ctx, request, recording, &design));
+  dea_status status = design != NULL ? dea_device_build(ctx, design, &device) : DEA_OK;
+  if (device != NULL) {
+    double tip_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : NAN;
+    options->tip_radius_m = isnan(options->tip_radius_m) ? tip_m : options->tip_radius_m;
+    options->film_radius_m =
+        isnan(options->film_radius_m) ? device->frame_radius_m : options->film_radius_m;
+    options->electrode_radius_m = isnan(options->electrode_radius_m) ? device->electrode_radius_m
+                                                                     : options->electrode_radius_m;
+  }
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  return status;
 }
 
 static void print_levelling(const struct dea_levelling *l)
@@ -176,23 +196,13 @@ static dea_status reduce(struct dea_cli *cli, const struct request *request,
                          struct dea_recording **recording, struct dea_reduction **reduction)
 {
   struct dea_context *ctx = cli->ctx;
-  struct dea_design *design = NULL;
-  struct dea_device *device = NULL;
+  struct dea_reduce_options options = request->options;
   DEA_TRY(ctx, dea_recording_read(ctx, request->file, recording));
-  dea_status status = find_device(ctx, request, *recording, &design, &device);
-  if (status == DEA_OK) {
-    status = dea_reduce(ctx, *recording, device, &request->options, reduction);
-  }
-  if (status == DEA_OK) {
-    status = dea_reduction_folder(ctx, request->output, request->force);
-  }
-  if (status == DEA_OK) {
-    status = dea_reduction_write(ctx, *recording, *reduction, cli->command_line, &request->format,
-                                 request->output);
-  }
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
-  return status;
+  DEA_TRY(ctx, complete_options(ctx, request, *recording, &options));
+  DEA_TRY(ctx, dea_reduce(ctx, *recording, &options, reduction));
+  DEA_TRY(ctx, dea_reduction_folder(ctx, request->output, request->force));
+  return dea_reduction_write(ctx, *recording, *reduction, cli->command_line, &request->format,
+                             request->output);
 }
 
 static int run(struct dea_cli *cli, void *user)

@@ -2,7 +2,7 @@
 
 #include "calibrate/fit_file.h"
 #include "lab/import/import.h"
-#include "lab/protocol/protocol.h"
+#include "lab/instrument/instrument.h"
 #include "study/design_file.h"
 
 struct request {
@@ -13,9 +13,11 @@ static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design_schema design;
+  struct dea_protocol_schema protocol;
   dea_design_file_schema(&design);
+  dea_instrument_protocol_schema(&protocol);
   const struct dea_record *record = request->material   ? &dea_material_file_record
-                                    : request->protocol ? &dea_protocol_record
+                                    : request->protocol ? &protocol.record
                                     : request->mapping  ? &dea_mapping_record
                                     : request->fit      ? &dea_fit_record
                                                         : &design.disc.record;

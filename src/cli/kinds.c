@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "lab/import/import.h"
-#include "lab/protocol/protocol.h"
+#include "lab/instrument/instrument.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "output/figure.h"
@@ -89,7 +89,9 @@ static dea_status list_keys(struct dea_cli *cli, struct dea_text *out)
 static dea_status list_protocol_keys(struct dea_cli *cli, struct dea_text *out)
 {
   (void)cli;
-  dea_schema_print_keys(&dea_protocol_record, out);
+  struct dea_protocol_schema schema;
+  dea_instrument_protocol_schema(&schema);
+  dea_schema_print_keys(&schema.record, out);
   return DEA_OK;
 }
 

@@ -7,6 +7,7 @@
 #define DEA_DESIGN_DESIGN_H
 
 #include "base/value.h"
+#include "base/yaml.h"
 #include "design/fabrication.h"
 #include "design/parts.h"
 #include "material/catalogue.h"
@@ -158,12 +159,6 @@ struct dea_design {
 
   struct dea_listing values; // every value as written or by default, in the order of the schema
   struct dea_yaml *document; // the file; texts of materials and values live in it
-};
-
-/* One override of --set: key is the dotted path in the file ("film.thickness"), value as it would
- * stand in the file ("200 um"). */
-struct dea_override {
-  const char *key, *value;
 };
 
 /* Settings of a section, NULL when the design was read without it; lent. */

@@ -15,11 +15,16 @@ static const struct dea_instrument_type *const types[] = {
         NULL};
 enum { TYPES = sizeof types / sizeof types[0] - 1 };
 
-const struct dea_record *const dea_instrument_records[] = {
+void dea_instrument_protocol_schema(struct dea_protocol_schema *out)
+{
+  static const struct dea_record *const all[] = {
 #define INSTRUMENT_RECORD(name) &dea_instrument_##name##_record,
-    DEA_INSTRUMENT_LIST(INSTRUMENT_RECORD)
+      DEA_INSTRUMENT_LIST(INSTRUMENT_RECORD)
 #undef INSTRUMENT_RECORD
-        NULL};
+          NULL};
+  static const struct dea_record *const sim[] = {&dea_instrument_sim_record, NULL};
+  dea_protocol_schema_fill(all, sim, out);
+}
 
 const struct dea_instrument_type *dea_instrument_find(const char *name)
 {

@@ -94,8 +94,8 @@ struct dea_instrument_type {
 
 /* NULL when there is none of that name. */
 const struct dea_instrument_type *dea_instrument_find(const char *name);
-/* Tables of all kinds for printing, ended by NULL. */
-extern const struct dea_record *const dea_instrument_records[];
+/* The table of a protocol's keys with those of all kinds of instruments. */
+void dea_instrument_protocol_schema(struct dea_protocol_schema *out);
 
 /* Reads an instrument's section (not NULL) and opens it. A wrong key is a finding and DEA_E_DESIGN.
  * out: owned by the caller (type->close), NULL on failure. */

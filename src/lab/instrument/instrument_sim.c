@@ -148,30 +148,32 @@ static dea_status check(const struct dea_reader *reader, const void *data,
                         const struct dea_protocol *protocol)
 {
   const struct raw *raw = data;
-  const struct dea_model_type *type = dea_model_find(raw->model.text);
-  if (protocol->design == NULL) {
-    DEA_TRY(reader->ctx, dea_finding_add(reader->ctx, DEA_ERROR, raw->kind.location,
-                                         "the simulated bench needs a film: name its `design`"));
+  if (protocol->film == NULL) {
+    return dea_finding_add(reader->ctx, DEA_ERROR, raw->kind.location,
+                           "the simulated bench needs a film: name its `design`");
   }
-  if (type != NULL && type->advance != NULL) {
-    return DEA_OK;
-  }
-  const char *names[16];
-  size_t count = 0, all;
-  const struct dea_model_type *const *types = dea_model_all(&all);
+  const char *names[16], *name;
+  size_t count = 0;
+  bool there = false, moves;
   struct dea_text list = {.ctx = reader->ctx};
-  for (size_t i = 0; i < all && count < sizeof names / sizeof names[0]; i++) {
-    if (types[i]->advance != NULL) {
-      dea_text_add(&list, "%s%s", count > 0 ? ", " : "", types[i]->name);
-      names[count++] = types[i]->name;
+  for (size_t i = 0; (name = protocol->film->type->model(i, &moves)) != NULL; i++) {
+    bool is = strcmp(name, raw->model.text) == 0;
+    if (is && moves) {
+      dea_text_free(&list);
+      return DEA_OK;
+    }
+    there = there || is;
+    if (moves && count < sizeof names / sizeof names[0]) {
+      dea_text_add(&list, "%s%s", count > 0 ? ", " : "", name);
+      names[count++] = name;
     }
   }
   const char *nearest = dea_nearest_name(raw->model.text, names, count);
   dea_status status = dea_finding_add(
       reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s%s%s; models with time are: %s",
-      type == NULL ? "there is no model" : "model", raw->model.text,
-      type == NULL ? "" : " knows no time", nearest != NULL ? "; did you mean '" : "",
-      nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "", dea_text_get(&list));
+      there ? "model" : "there is no model", raw->model.text, there ? " knows no time" : "",
+      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+      nearest != NULL ? "'?" : "", dea_text_get(&list));
   status = list.failed ? DEA_E_MEMORY : status;
   dea_text_free(&list);
   return status;
@@ -227,7 +229,7 @@ static dea_status prepare(struct dea_context *ctx, const struct raw *raw, struct
   if (s->x_m == NULL || s->z_m == NULL || s->volts == NULL) {
     return DEA_E_MEMORY;
   }
-  double half_m = dea_sim_bench_device(s->bench)->frame_radius_m + raw->frame_width_m.si;
+  double half_m = dea_sim_bench_model(s->bench)->frame_radius_m + raw->frame_width_m.si;
   for (size_t i = 0; i < points; i++) {
     double share = points > 1 ? (double)i / (double)(points - 1) : 0.5;
     s->x_m[i] = raw->centre_m.si + half_m * (2 * share - 1);

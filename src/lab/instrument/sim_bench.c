@@ -9,9 +9,8 @@ struct dea_sim_bench {
   struct dea_context *ctx;
   const struct dea_protocol *protocol;
   struct dea_sim_settings settings;
-  const struct dea_model_type *type;
-  struct dea_model *model;
-  struct dea_device *device;
+  const struct dea_bench_film_type *type;
+  struct dea_bench_model *model; // owned
   struct dea_load_point point;
   struct dea_sim_state state;
   double source_V, target_V; // of the amplifier now, and where it goes
@@ -22,9 +21,9 @@ struct dea_sim_bench {
   size_t profile_at;
 };
 
-const struct dea_device *dea_sim_bench_device(const struct dea_sim_bench *bench)
+const struct dea_bench_model *dea_sim_bench_model(const struct dea_sim_bench *bench)
 {
-  return bench->device;
+  return bench->model;
 }
 
 static double or_zero(double value)
@@ -33,30 +32,23 @@ static double or_zero(double value)
 }
 
 /* The model's answer becomes the state. */
-static void take(struct dea_sim_bench *b, const struct dea_load_point *point, double length_s)
+static void take_point(struct dea_sim_bench *b, const struct dea_bench_point *at, double length_s)
 {
-  const struct dea_material *film = &b->device->film;
-  double stretch = point->electrode_stretch * b->device->pre_stretch;
-  double permittivity =
-      DEA_EPSILON_0 * (film->permittivity.at_rest + film->permittivity.slope * (stretch - 1));
-  double charge_C = 0.5 * (point->charge_C + b->point.charge_C);
-  b->charge_C += point->charge_C - b->point.charge_C;
-  if (film->resistivity_ohm_m > 0) { // resistance times capacitance is resistivity x permittivity
-    b->charge_C += charge_C * length_s / (film->resistivity_ohm_m * permittivity);
-  }
-  b->point = *point;
+  double charge_C = 0.5 * (at->point.charge_C + b->point.charge_C);
+  b->charge_C += at->point.charge_C - b->point.charge_C;
+  b->charge_C += charge_C * length_s / at->leakage_s;
+  b->point = at->point;
 }
 
 static dea_status try_step(struct dea_sim_bench *b, double length_s, double source_V, bool *good)
 {
-  const struct dea_time_step step = {length_s, source_V};
-  struct dea_load_point point;
+  struct dea_bench_point at;
   double error = 0, factor = 0.25;
-  dea_status status = dea_model_advance(b->ctx, b->type, b->model, &step, &point, &error);
+  dea_status status = b->type->advance(b->ctx, b->model, length_s, source_V, &at, &error);
   *good = status == DEA_OK && (length_s == 0 || error <= tolerance);
   if (*good) {
     b->type->accept(b->model);
-    take(b, &point, length_s);
+    take_point(b, &at, length_s);
     factor = 0.9 * cbrt(tolerance / fmax(error, 1e-30));
     b->next_s = length_s > 0 ? fmax(b->next_s, length_s) * fmin(fmax(factor, 0.3), 3) : b->next_s;
     return DEA_OK;
@@ -179,13 +171,12 @@ dea_status dea_sim_bench_sample(struct dea_sim_bench *bench, double control_V,
 /* The model's own profile, linear between its points. */
 static bool model_height(struct dea_sim_bench *b, double radius_m, double *z_m)
 {
-  if (b->type->profile == NULL || b->state.broken) {
+  if (b->state.broken) {
     return false;
   }
   if (b->profile_at != b->samples) {
     b->profile_at = b->samples;
-    if (dea_model_profile(b->ctx, b->type, b->model, &b->profile) != DEA_OK ||
-        b->profile.z_m == NULL) {
+    if (b->type->profile(b->ctx, b->model, &b->profile) != DEA_OK || b->profile.z_m == NULL) {
       b->profile.count = 0;
       dea_context_clear(b->ctx);
     }
@@ -204,10 +195,8 @@ static bool model_height(struct dea_sim_bench *b, double radius_m, double *z_m)
 
 double dea_sim_bench_height(struct dea_sim_bench *bench, double radius_m)
 {
-  const struct dea_device *d = bench->device;
   const struct dea_sim_state *s = &bench->state;
-  double z_m, frame = d->frame_radius_m;
-  double tip = d->fibre_count > 0 ? d->fibre_tip_radius_m : d->electrode_radius_m;
+  double z_m, frame = bench->model->frame_radius_m, tip = bench->model->tip_radius_m;
   if (radius_m >= frame) {
     return 0;
   }
@@ -221,35 +210,26 @@ double dea_sim_bench_height(struct dea_sim_bench *bench, double radius_m)
 static dea_status begin(struct dea_sim_bench *b)
 {
   const struct dea_quantity *limit = &b->protocol->amplifier.current_A;
-  const struct dea_time_options options = {
-      .circuit = {.series_resistance_ohm = b->settings.series_resistance_ohm,
-                  .current_limit_A = limit->origin != DEA_ABSENT ? limit->si : INFINITY},
-      .rho_inf = 0.8,
-  };
-  DEA_TRY(b->ctx, b->type->solve(b->ctx, b->model, 0, &b->point));
-  return dea_model_begin(b->ctx, b->type, b->model, &options, &b->point);
+  const struct dea_bench_circuit circuit = {b->settings.series_resistance_ohm,
+                                            limit->origin != DEA_ABSENT ? limit->si : INFINITY};
+  struct dea_bench_point at;
+  DEA_TRY(b->ctx, b->type->open(b->ctx, b->protocol->film, b->settings.model, &b->model));
+  DEA_TRY(b->ctx, b->type->begin(b->ctx, b->model, &circuit, &at));
+  b->point = at.point;
+  return DEA_OK;
 }
 
 dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protocol *protocol,
                                 const struct dea_sim_settings *settings, struct dea_sim_bench **out)
 {
-  const struct dea_model_type *type = dea_model_find(settings->model);
   *out = NULL;
-  if (type == NULL || type->advance == NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the simulated bench cannot use model '%s': it %s",
-                    settings->model, type == NULL ? "is not there" : "knows no time");
-  }
   struct dea_sim_bench *bench = dea_alloc(ctx, 1, sizeof *bench);
   if (bench == NULL) {
     return DEA_E_MEMORY;
   }
-  *bench =
-      (struct dea_sim_bench){.ctx = ctx, .protocol = protocol, .settings = *settings, .type = type};
-  dea_status status = dea_device_build(ctx, protocol->design, &bench->device);
-  status = status == DEA_OK
-               ? dea_model_create(ctx, type, protocol->design, bench->device, &bench->model)
-               : status;
-  status = status == DEA_OK ? begin(bench) : status;
+  *bench = (struct dea_sim_bench){
+      .ctx = ctx, .protocol = protocol, .settings = *settings, .type = protocol->film->type};
+  dea_status status = begin(bench);
   if (status != DEA_OK) {
     dea_sim_bench_destroy(ctx, bench);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -261,10 +241,7 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
 void dea_sim_bench_destroy(struct dea_context *ctx, struct dea_sim_bench *bench)
 {
   if (bench != NULL) {
-    if (bench->model != NULL) {
-      bench->type->destroy(ctx, bench->model);
-    }
-    dea_device_destroy(ctx, bench->device);
+    bench->type->close(ctx, bench->model);
     dea_free(ctx, bench);
   }
 }

@@ -8,7 +8,6 @@
 #define DEA_LAB_INSTRUMENT_SIM_BENCH_H
 
 #include "lab/protocol/protocol.h"
-#include "model/model.h"
 
 struct dea_sim_settings {
   const char *model;
@@ -36,7 +35,8 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
                                 const struct dea_sim_settings *settings,
                                 struct dea_sim_bench **out);
 void dea_sim_bench_destroy(struct dea_context *ctx, struct dea_sim_bench *bench);
-const struct dea_device *dea_sim_bench_device(const struct dea_sim_bench *bench);
+/* Its model of the film; lent. */
+const struct dea_bench_model *dea_sim_bench_model(const struct dea_sim_bench *bench);
 
 /* The next sample: what is read at it, and then the control voltage [V] that the output takes. A
  * film that loses its equilibrium breaks down. */

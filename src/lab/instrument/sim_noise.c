@@ -87,7 +87,7 @@ void dea_sim_read_profile(struct dea_sim_bench *bench, const struct dea_sim_nois
                           size_t points, double *z_m)
 {
   static const double largest_outlier_m = 1e-3;
-  double frame_m = dea_sim_bench_device(bench)->frame_radius_m, slope = tan(noise->tilt_rad);
+  double frame_m = dea_sim_bench_model(bench)->frame_radius_m, slope = tan(noise->tilt_rad);
   double drift_m = noise->displacement_drift_m_per_s * time_s;
   for (size_t i = 0; i < points; i++) {
     double radius_m = fabs(x_m[i] - noise->centre_m);

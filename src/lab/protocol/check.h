@@ -34,7 +34,7 @@ dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
                                          const struct dea_protocol *protocol,
                                          const struct dea_protocol_plan *plan);
 
-/* Field, pull-in, capacitance and energy of the film at the peak, by the model `lumped`. */
+/* Field, pull-in, capacitance and energy of the film at the peak. */
 dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_protocol *protocol,
                                    const struct dea_protocol_peak *peak,
                                    struct dea_protocol_plan *plan);

@@ -5,8 +5,9 @@
 #ifndef DEA_LAB_PROTOCOL_PROTOCOL_H
 #define DEA_LAB_PROTOCOL_PROTOCOL_H
 
-#include "design/design.h"
+#include "lab/protocol/bench_film.h"
 #include "lab/recording/recording.h"
+#include "waveform/waveform.h"
 
 enum {
   DEA_PROTOCOL_VERSION = 1,
@@ -52,7 +53,7 @@ struct dea_protocol {
   const char *file; // interned
   struct dea_label title;
   struct dea_label design_file;
-  struct dea_design *design; // owned; NULL: none named
+  struct dea_bench_film *film; // of that design; owned; NULL: none named
   struct dea_label specimen_file;
   struct dea_specimen specimen;
   char *text, *design_text; // whole files; owned; the second NULL without a design
@@ -94,17 +95,28 @@ struct dea_protocol {
   struct dea_listing values;
 };
 
-/* Reads a protocol and the design it names. Errors are findings; DEA_E_DESIGN after the whole file
- * was looked at. out: owned by the caller, NULL on failure. */
-dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
-                             const struct dea_override *overrides, size_t override_count,
-                             struct dea_protocol **out);
+/* Reads a protocol and, with `films`, the design it names. Errors are findings; DEA_E_DESIGN after
+ * the whole file was looked at. out: owned by the caller, NULL on failure. */
+dea_status dea_protocol_read(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                             const char *file, const struct dea_override *overrides,
+                             size_t override_count, struct dea_protocol **out);
 /* The same of a text; file: its name, for places and for what it names beside it. */
-dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, const char *text,
-                                    size_t length, const struct dea_override *overrides,
-                                    size_t override_count, struct dea_protocol **out);
+dea_status dea_protocol_read_memory(struct dea_context *ctx,
+                                    const struct dea_bench_film_type *films, const char *file,
+                                    const char *text, size_t length,
+                                    const struct dea_override *overrides, size_t override_count,
+                                    struct dea_protocol **out);
 void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol);
-extern const struct dea_record dea_protocol_record;
+
+/* The table of a protocol's keys. Its record points to its fields: not to be copied. */
+enum { DEA_PROTOCOL_KEYS = 12 };
+struct dea_protocol_schema {
+  struct dea_record record;
+  struct dea_field fields[DEA_PROTOCOL_KEYS];
+};
+/* instruments, sim: tables of the kinds that these sections may be of, ended by NULL; lent. */
+void dea_protocol_schema_fill(const struct dea_record *const *instruments,
+                              const struct dea_record *const *sim, struct dea_protocol_schema *out);
 
 /* The largest voltages [V] that may ever go out: of the amplifier, of its control voltage, and of
  * the specimen. */

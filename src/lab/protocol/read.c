@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "lab/protocol/schema.h"
-#include "study/design_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -243,7 +242,8 @@ static dea_status take_sequence(const struct dea_reader *reader, struct dea_prot
 // Design, instruments ----------------------------------------------------------------------------
 
 /* The design that the file names: what is wrong in it stands at its own places. */
-static dea_status take_design(struct dea_context *ctx, struct dea_protocol *protocol)
+static dea_status take_design(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                              struct dea_protocol *protocol)
 {
   size_t length;
   if (protocol->design_file.text[0] == '\0') {
@@ -259,8 +259,7 @@ static dea_status take_design(struct dea_context *ctx, struct dea_protocol *prot
                              "design: %s; a path counts from the protocol's folder",
                              dea_context_message(ctx));
   } else if (status == DEA_OK) {
-    status = dea_design_read_memory(ctx, path, protocol->design_text, length, NULL, 0,
-                                    &protocol->design);
+    status = films->read(ctx, path, protocol->design_text, length, &protocol->film);
   }
   dea_free(ctx, path);
   return status == DEA_E_DESIGN ? DEA_OK : status; // counted with the others
@@ -342,9 +341,10 @@ static dea_status copy_lists(struct dea_context *ctx, struct dea_protocol_raw *r
 }
 
 /* Fills *raw; what it owns is in raw->protocol and in its steps, also after a failure. */
-static dea_status read_raw(struct dea_context *ctx, const char *file, const char *text,
-                           size_t length, const struct dea_override *overrides,
-                           size_t override_count, struct dea_protocol_raw *raw)
+static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                           const char *file, const char *text, size_t length,
+                           const struct dea_override *overrides, size_t override_count,
+                           struct dea_protocol_raw *raw)
 {
   struct dea_protocol *protocol = &raw->protocol;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
@@ -372,7 +372,7 @@ static dea_status read_raw(struct dea_context *ctx, const char *file, const char
     DEA_TRY(ctx, take_inputs(&reader, raw));
     DEA_TRY(ctx, take_amplifier(ctx, protocol));
     DEA_TRY(ctx, take_instruments(ctx, protocol));
-    DEA_TRY(ctx, take_design(ctx, protocol));
+    DEA_TRY(ctx, take_design(ctx, films, protocol));
     DEA_TRY(ctx,
             dea_specimen_read(ctx, protocol->file, &protocol->specimen_file, &protocol->specimen));
   }
@@ -386,7 +386,9 @@ static dea_status read_raw(struct dea_context *ctx, const char *file, const char
 /* Frees what a protocol owns but its steps' waveforms. */
 static void clear(struct dea_context *ctx, struct dea_protocol *protocol)
 {
-  dea_design_destroy(ctx, protocol->design);
+  if (protocol->film != NULL) {
+    protocol->film->type->destroy(ctx, protocol->film);
+  }
   dea_free(ctx, protocol->text);
   dea_free(ctx, protocol->design_text);
   dea_free(ctx, protocol->overrides);
@@ -403,16 +405,18 @@ static void clear_steps(struct dea_protocol_step *steps, size_t count)
   }
 }
 
-dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, const char *text,
-                                    size_t length, const struct dea_override *overrides,
-                                    size_t override_count, struct dea_protocol **out)
+dea_status dea_protocol_read_memory(struct dea_context *ctx,
+                                    const struct dea_bench_film_type *films, const char *file,
+                                    const char *text, size_t length,
+                                    const struct dea_override *overrides, size_t override_count,
+                                    struct dea_protocol **out)
 {
   *out = NULL;
   struct dea_protocol_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
   if (raw == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = read_raw(ctx, file, text, length, overrides, override_count, raw);
+  dea_status status = read_raw(ctx, films, file, text, length, overrides, override_count, raw);
   if (status == DEA_OK) {
     *out = dea_alloc(ctx, 1, sizeof **out);
     status = *out != NULL ? DEA_OK : DEA_E_MEMORY;
@@ -427,16 +431,16 @@ dea_status dea_protocol_read_memory(struct dea_context *ctx, const char *file, c
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-dea_status dea_protocol_read(struct dea_context *ctx, const char *file,
-                             const struct dea_override *overrides, size_t override_count,
-                             struct dea_protocol **out)
+dea_status dea_protocol_read(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                             const char *file, const struct dea_override *overrides,
+                             size_t override_count, struct dea_protocol **out)
 {
   char *text;
   size_t length;
   *out = NULL;
   DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &text, &length));
   dea_status status =
-      dea_protocol_read_memory(ctx, file, text, length, overrides, override_count, out);
+      dea_protocol_read_memory(ctx, films, file, text, length, overrides, override_count, out);
   dea_free(ctx, text);
   return status;
 }

@@ -1,10 +1,9 @@
-/* The table of all keys of a protocol: `dea schema --protocol` prints it, the reader reads with it.
- */
+/* The table of all keys of a protocol but those of the instruments, whose kinds know them: `dea
+ * schema --protocol` prints it with theirs, the reader reads with it. */
 #include "lab/protocol/schema.h"
 
-#include "lab/instrument/instrument_make.h"
-
 #include <stddef.h>
+#include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_protocol_raw, protocol.member)
@@ -296,8 +295,6 @@ static const struct dea_record input_record = {"channel", "an analogue input", i
 static const struct dea_record safety_record = {"safety", "what must not be exceeded",
                                                 safety_fields, COUNT(safety_fields)};
 
-static const struct dea_record *const sim_records[] = {&dea_instrument_sim_record, NULL};
-
 static const struct dea_field protocol_fields[] = {
     {.key = "dea-protocol",
      .kind = DEA_FIELD_INTEGER,
@@ -381,14 +378,12 @@ static const struct dea_field protocol_fields[] = {
      .list_max = DEA_PROTOCOL_INSTRUMENTS_MAX,
      .element_size = sizeof(struct dea_protocol_instrument),
      .count_offset = AT(instrument_count),
-     .kinds = dea_instrument_records,
      .absent_text = "none: only --sim and --export",
      .doc = "what plays and measures; each with its kind and the keys of that",
      .example = "[{kind: comedi}, {kind: gocator, address: 192.168.1.10}]"},
     {.key = "sim",
      .kind = DEA_FIELD_SECTION,
      .offset = AT(sim),
-     .kinds = sim_records,
      .absent_text = "its defaults",
      .doc = "the simulated bench of --sim",
      .example = "{seed: 2}"},
@@ -396,3 +391,17 @@ static const struct dea_field protocol_fields[] = {
 
 const struct dea_record dea_protocol_record = {"protocol", "protocol of a measurement on the bench",
                                                protocol_fields, COUNT(protocol_fields)};
+
+void dea_protocol_schema_fill(const struct dea_record *const *instruments,
+                              const struct dea_record *const *sim, struct dea_protocol_schema *out)
+{
+  *out = (struct dea_protocol_schema){.record = dea_protocol_record};
+  memcpy(out->fields, protocol_fields, sizeof protocol_fields);
+  out->record.fields = out->fields;
+  for (size_t i = 0; i < COUNT(protocol_fields); i++) {
+    struct dea_field *field = &out->fields[i];
+    field->kinds = field->offset == AT(instruments) ? instruments
+                   : field->offset == AT(sim)       ? sim
+                                                    : field->kinds;
+  }
+}

@@ -386,32 +386,19 @@ static dea_status reduce_current(struct job *job)
 
 // ------------------------------------------------------------------------------------------------
 
-/* Radii and share: asked for, or of the design, or not known. */
-static void take_options(const struct dea_device *device, const struct dea_reduce_options *options,
-                         struct dea_reduction *out)
+static void take_options(const struct dea_reduce_options *options, struct dea_reduction *out)
 {
-  struct dea_levelling *l = &out->levelling;
-  bool fibres = device != NULL && device->fibre_count > 0;
-  *l = (struct dea_levelling){.centre_m = NAN,
-                              .tilt_rad = NAN,
-                              .offset_m = NAN,
-                              .offset_std_m = NAN,
-                              .frame_height_m = NAN,
-                              .edges_m = {NAN, NAN},
-                              .beside_m = NAN,
-                              .width_m = NAN,
-                              .tip_radius_m = options->tip_radius_m,
-                              .film_radius_m = options->film_radius_m,
-                              .electrode_radius_m = options->electrode_radius_m};
-  if (isnan(l->tip_radius_m) && fibres) {
-    l->tip_radius_m = device->fibre_tip_radius_m;
-  }
-  if (isnan(l->film_radius_m) && device != NULL) {
-    l->film_radius_m = device->frame_radius_m;
-  }
-  if (isnan(l->electrode_radius_m) && device != NULL) {
-    l->electrode_radius_m = device->electrode_radius_m;
-  }
+  out->levelling = (struct dea_levelling){.centre_m = NAN,
+                                          .tilt_rad = NAN,
+                                          .offset_m = NAN,
+                                          .offset_std_m = NAN,
+                                          .frame_height_m = NAN,
+                                          .edges_m = {NAN, NAN},
+                                          .beside_m = NAN,
+                                          .width_m = NAN,
+                                          .tip_radius_m = options->tip_radius_m,
+                                          .film_radius_m = options->film_radius_m,
+                                          .electrode_radius_m = options->electrode_radius_m};
   out->settle = options->settle > 0.0 && options->settle <= 1.0 ? options->settle : 0.2;
   out->force_offset_N = out->preload_N = NAN;
   out->current = (struct dea_current_limits){.noise_A = NAN, .factor = NAN, .blind_s = NAN};
@@ -439,8 +426,7 @@ static const struct dea_channel *filled(const struct dea_recording *recording,
 }
 
 dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recording,
-                      const struct dea_device *device, const struct dea_reduce_options *options,
-                      struct dea_reduction **out)
+                      const struct dea_reduce_options *options, struct dea_reduction **out)
 {
   static const struct dea_reduce_options none = {NAN, NAN, NAN, 0.0, NAN};
   struct job job = {.ctx = ctx,
@@ -459,7 +445,7 @@ dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recor
   if (job.out == NULL) {
     return DEA_E_MEMORY;
   }
-  take_options(device, options, job.out);
+  take_options(options, job.out);
   dea_status status = reduce(&job, options);
   dea_free(ctx, job.list.parts);
   dea_free(ctx, job.level_of);

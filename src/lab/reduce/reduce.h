@@ -7,7 +7,6 @@
 #ifndef DEA_LAB_REDUCE_REDUCE_H
 #define DEA_LAB_REDUCE_REDUCE_H
 
-#include "device/device.h"
 #include "lab/recording/recording.h"
 
 /* How a quantity of a cycle is formed; see docs/theory/reduction.md. NAN: not formed. */
@@ -100,19 +99,16 @@ struct dea_reduction {
   double settle;                                // that was used
 };
 
-/* NAN or 0 where the design or the data say it. */
 struct dea_reduce_options {
-  double tip_radius_m, film_radius_m, electrode_radius_m; // NAN: from the design
+  double tip_radius_m, film_radius_m, electrode_radius_m; // NAN: not known
   double settle;         // last share of each part of a cycle that is averaged; 0: 0.2
   double force_offset_N; // reading of the unloaded cell; NAN: the first samples' mean
 };
 
-/* device: of the recording's design; NULL without one. options: NULL for all from there. out: owned
- * by the caller, NULL on failure. What could not be formed and why becomes notes. DEA_E_IO for a
- * recording without a voltage. */
+/* options: NULL for the defaults. out: owned by the caller, NULL on failure. What could not be
+ * formed and why becomes notes. DEA_E_IO for a recording without a voltage. */
 dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recording,
-                      const struct dea_device *device, const struct dea_reduce_options *options,
-                      struct dea_reduction **out);
+                      const struct dea_reduce_options *options, struct dea_reduction **out);
 void dea_reduction_destroy(struct dea_context *ctx, struct dea_reduction *reduction);
 
 #endif
