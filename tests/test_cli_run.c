@@ -136,7 +136,9 @@ static void test_path_reaches_as_far_as_the_sweep(void **state)
                   " --set compute.voltage='{to: 8 kV, step: 0.1 kV}'"),
       0);
   assert_contains(command_out, "\n    8.000   3."); // last row
-  assert_contains(command_out, "  slack\n");
+  assert_contains(command_out, "  not trusted: slack locking breakdown\n");
+  assert_contains(command_err, "model lumped: to be trusted and safe up to ");
+  assert_contains(command_err, "the film's law is near its locking stretch");
   assert_contains(command_out, ": the film goes slack\n");
   assert_contains(command_out, "reaches the film's breakdown field, ");
 }

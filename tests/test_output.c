@@ -96,6 +96,7 @@ static void assert_same_points(const struct dea_load_point *a, const struct dea_
   }
   assert_int_equal(a->stable, b->stable);
   assert_int_equal(a->unstable_modes, b->unstable_modes);
+  assert_int_equal(dea_load_point_flags(a), dea_load_point_flags(b));
 }
 
 // results.h5 -------------------------------------------------------------------------------------

@@ -177,6 +177,8 @@ static void test_curve_survives_the_round_trip(void **state)
     }
     assert_int_equal(m->curve.points[i].stable, curve->points[i].stable);
     assert_int_equal(m->curve.points[i].unstable_modes, curve->points[i].unstable_modes);
+    assert_int_equal(dea_load_point_flags(&m->curve.points[i]),
+                     dea_load_point_flags(&curve->points[i]));
   }
   dea_measurement_destroy(ctx, m);
   unlink(name);
@@ -198,7 +200,8 @@ static void test_columns_without_numbers_are_left_out(void **state)
   size_t length;
   snprintf(name, sizeof name, "%s/m_k.csv", folder);
   assert_int_equal(dea_file_read(ctx, name, 10000, &text, &length), DEA_OK);
-  assert_string_equal(text, "V (kV),z centre (um),stable,unstable_modes\n1.5,,1,0\n2,-30,0,2\n");
+  assert_string_equal(text, "V (kV),z centre (um),stable,unstable_modes,trusted,flags\n"
+                            "1.5,,1,0,1,\n2,-30,0,2,0,unstable\n");
   dea_free(ctx, text);
   unlink(name);
 }

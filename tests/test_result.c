@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "result/compare.h"
+#include "result/trust.h"
 #include "testing.h"
 
 #include <stdlib.h>
@@ -35,6 +36,72 @@ static void test_columns_reach_their_members(void **state)
   assert_true(isnan(p.energy_J));
   assert_int_equal(dea_point_column_find("force"), -1);
   assert_int_equal(dea_point_column_find("voltage_V"), 0);
+}
+
+/* A number that is off by a hair on either side of where its flag begins. */
+static void test_flags_begin_where_they_say(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *key;
+    double without, with;
+    enum dea_flag flag;
+    bool trusted, safe;
+  } cases[] = {
+      {"min_tension_N_per_m", 0, -0.01, DEA_FLAG_SLACK, false, true},
+      {"compression_ratio", 0.99, 1.01, DEA_FLAG_SLACK, false, true},
+      {"locking_share", 0.79, 0.81, DEA_FLAG_LOCKING, false, true},
+      {"range_share", 1, 1.01, DEA_FLAG_RANGE, false, true},
+      {"breakdown_margin", 0, -0.01, DEA_FLAG_BREAKDOWN, true, false},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_load_point p = dea_load_point_empty();
+    dea_point_set(&p, dea_point_column_find(cases[i].key), cases[i].without);
+    assert_int_equal(dea_load_point_flags(&p), 0);
+    dea_point_set(&p, dea_point_column_find(cases[i].key), cases[i].with);
+    assert_int_equal(dea_load_point_flags(&p), 1u << cases[i].flag);
+    assert_int_equal(dea_load_point_trusted(&p), cases[i].trusted);
+    assert_int_equal(dea_load_point_safe(&p), cases[i].safe);
+  }
+  struct dea_load_point corner = dea_load_point_empty(); // slack, but too small to wrinkle
+  corner.min_tension_N_per_m = -3;
+  corner.compression_ratio = 0.5;
+  assert_true(dea_load_point_trusted(&corner));
+}
+
+static void test_flags_are_read_as_they_are_written(void **state)
+{
+  (void)state;
+  char words[DEA_FLAGS_SIZE];
+  for (unsigned flags = 0; flags < 1u << DEA_FLAG_COUNT; flags++) {
+    assert_int_equal(dea_flags_of_text(dea_flags_text(flags, words)), flags);
+  }
+  assert_string_equal(dea_flags_text(1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_BREAKDOWN, words),
+                      "slack breakdown");
+  assert_int_equal(dea_flags_of_text("slackness"), 0);
+}
+
+/* Up and down again: what is doubtful on the way down ends the prediction too. */
+static void test_trust_ends_at_the_lowest_doubt(void **state)
+{
+  (void)state;
+  struct dea_context *ctx = context();
+  struct dea_load_point points[7];
+  for (int i = 0; i < 7; i++) {
+    points[i] = dea_load_point_empty();
+    points[i].voltage_V = i < 4 ? 1e3 * (i + 1) : 1e3 * (7 - i);           // 1 2 3 4 3 2 1 kV
+    points[i].breakdown_margin = 0.55 - 0.15 * 1e-3 * points[i].voltage_V; // -0.05 at 4 kV
+  }
+  points[4].told = 1u << DEA_FLAG_STATES; // 3 kV, on the way down
+  const struct dea_curve curve = {.points = points, .count = 7};
+  struct dea_trust trust = dea_curve_trust(&curve);
+  assert_true(trust.trusted_V == 2e3 && trust.safe_V == 3e3 && trust.good_V == 2e3);
+  assert_true(trust.doubt_V == 3e3 && trust.danger_V == 4e3);
+  struct dea_text text = {.ctx = ctx};
+  dea_trust_text(&trust, &text);
+  assert_non_null(strstr(dea_text_get(&text), "to be trusted and safe up to 2 kV; at 3 kV one of"));
+  dea_text_free(&text);
+  dea_context_destroy(ctx);
 }
 
 static void test_curves_grow_and_are_found(void **state)
@@ -305,6 +372,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_empty_point_is_nan_everywhere),
       cmocka_unit_test(test_columns_reach_their_members),
+      cmocka_unit_test(test_flags_begin_where_they_say),
+      cmocka_unit_test(test_flags_are_read_as_they_are_written),
+      cmocka_unit_test(test_trust_ends_at_the_lowest_doubt),
       cmocka_unit_test(test_curves_grow_and_are_found),
       cmocka_unit_test(test_names_are_checked),
       cmocka_unit_test(test_profiles_are_copied),

@@ -57,6 +57,39 @@ static void check_exact(const struct dea_device *device, const struct dea_model_
   assert_close(point.energy_J, wanted.energy_J, tolerance, 0);
 }
 
+/* A film free of stress, flat below its buckling voltage: the compression of the exact disc over
+ * its area, by 4 pi^2 D. */
+static void test_compression_ratio(void **state)
+{
+  (void)state;
+  const double pi = acos(-1), h = 100e-6;
+  struct dea_device device = test_disc(test_yeoh(), 1, 3.75e-3, 0.25, 0);
+  const struct dea_model_type *exact = dea_model_find("axisymmetric");
+  struct dea_model *model;
+  struct dea_load_point point;
+  struct dea_profile profile;
+  double sum = 0, mu = 2 * device.film.param[0];
+  assert_int_equal(exact->create(ctx, &device, NULL, &model), DEA_OK);
+  assert_int_equal(exact->solve(ctx, model, 400, &point), DEA_OK);
+  assert_int_equal(exact->profile(ctx, model, &profile), DEA_OK);
+  for (size_t i = 0; i + 1 < profile.count; i++) {
+    for (size_t k = i; k < i + 2; k++) {
+      double T = fmin(profile.tension_r_N_per_m[k], profile.tension_t_N_per_m[k]);
+      sum +=
+          pi * (profile.radius_m[i + 1] - profile.radius_m[i]) * profile.radius_m[k] * fmax(-T, 0);
+    }
+  }
+  exact->destroy(ctx, model);
+  double wanted = sum / (4 * pi * pi * mu * pow(h, 3) / 3);
+  point = solve(solid, &device, &solid_film, 400);
+  assert_true(wanted > 0.05 && device.film_thickness_m == h);
+  assert_close(point.compression_ratio, wanted, 0.03, 0);
+  device = plain();
+  assert_true(solve(solid, &device, &solid_film, 3e3).compression_ratio == 0);
+  point = solve(solid, &device, &membrane, 1e3);
+  assert_int_equal(dea_load_point_flags(&point), 1u << DEA_FLAG_PREVIEW);
+}
+
 static void test_permittivity_that_depends_on_stretch(void **state)
 {
   (void)state;
@@ -305,6 +338,7 @@ static int tear_down(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_compression_ratio),
       cmocka_unit_test(test_permittivity_that_depends_on_stretch),
       cmocka_unit_test(test_electrodes_of_a_membrane),
       cmocka_unit_test(test_electrode_layers),

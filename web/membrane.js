@@ -279,7 +279,9 @@
         high = Math.max(high, value);
       }
       const between = state.at % 1 > 0.01 && state.at % 1 < 0.99;
-      facts.textContent = `${dea.number(voltage() / 1e3, 3)} kV${between ? ' (between two computed points)' : ''}: ` +
+      const doubt = [Math.floor(state.at), Math.ceil(state.at)].map((at) => film.doubts[at]).find((words) => words);
+      facts.textContent = `${dea.number(voltage() / 1e3, 3)} kV${between ? ' (between two computed points)' : ''}` +
+        `${doubt ? ` – not to be trusted: ${doubt}` : ''}: ` +
         `${channel.label} from ${dea.number(channel.factor * low, 4)} to ${dea.number(channel.factor * high, 4)} ${channel.unit}`;
       paint?.(state);
       drawProfile();

@@ -145,11 +145,10 @@ dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, cons
                             double *out)
 {
   int column = dea_point_column_find(key);
+  const struct dea_point_state *state = dea_point_state_find(key);
   *out = NAN;
-  if (strcmp(key, "stable") == 0) {
-    *out = actuator->point.stable;
-  } else if (strcmp(key, "unstable_modes") == 0) {
-    *out = actuator->point.unstable_modes;
+  if (state != NULL) {
+    *out = state->get(&actuator->point);
   } else if (column < 0) {
     const char *known[DEA_LOAD_POINT_COLUMNS];
     for (int i = 0; i < DEA_LOAD_POINT_COLUMNS; i++) {

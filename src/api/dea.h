@@ -240,7 +240,7 @@ typedef struct {
 
 /* Arrays are named by model, study and quantity:
  *   MODEL/STUDY/KEY           of each point; keys as in docs/results.md, and stable (1 or 0),
- *                             unstable_modes
+ *                             unstable_modes, trusted (1 or 0), flags (a sum of powers of two)
  *   MODEL/STUDY/KIND/KEY      where its path turns or ends: KIND pull_in, snap_back, slack,
  * breakdown MODEL/profiles/NNNN/KEY   along the radius, NNNN counts the points of the sweep from
  * 0000 MODEL/STUDY/NNNN/KEY      of studies convergence and compare-design, one NNNN a mesh or

@@ -107,24 +107,24 @@ static void enter(struct filling *f, const char *format, ...)
 static void add_points(struct filling *f, const struct dea_load_point *points, size_t stride,
                        size_t count)
 {
-  static const struct dea_column flags[2] = {
-      {"stable", "1", "1", 1, "stable", "1: stable under voltage control, 0: not"},
-      {"unstable_modes", "1", "1", 1, "unstable_modes", "number of negative modes of the tangent"}};
   const char *bytes = (const char *)points;
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS + 2 && count > 0; c++) {
-    bool flag = c >= DEA_LOAD_POINT_COLUMNS, any = flag;
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && count > 0; c++) {
+    bool any = false;
     for (size_t i = 0; i < count && !any; i++) {
       const void *at = bytes + i * stride;
       any = !isnan(dea_point_get(at, c));
     }
-    const struct dea_column *column =
-        flag ? &flags[c - DEA_LOAD_POINT_COLUMNS] : &dea_point_columns[c];
-    double *values = any ? add_array(f, column, count) : NULL;
+    double *values = any ? add_array(f, &dea_point_columns[c], count) : NULL;
     for (size_t i = 0; i < count && values != NULL; i++) {
-      const struct dea_load_point *at = (const void *)(bytes + i * stride);
-      values[i] = !flag                         ? dea_point_get(at, c)
-                  : c == DEA_LOAD_POINT_COLUMNS ? (double)at->stable
-                                                : (double)at->unstable_modes;
+      values[i] = dea_point_get((const void *)(bytes + i * stride), c);
+    }
+  }
+  for (int k = 0; k < DEA_POINT_STATES && count > 0; k++) {
+    const struct dea_point_state *state = &dea_point_states[k];
+    const struct dea_column column = {state->key, "1", "1", 1, state->key, state->meaning};
+    double *values = add_array(f, &column, count);
+    for (size_t i = 0; i < count && values != NULL; i++) {
+      values[i] = state->get((const void *)(bytes + i * stride));
     }
   }
 }

@@ -165,16 +165,32 @@ static void print_event(const struct dea_event *event)
   }
 }
 
+/* z of the fibre tip, "<" before what is an upper bound. */
+static void print_tip(const struct dea_load_point *p)
+{
+  char text[40];
+  bool bound = dea_point_is_bound(p, dea_point_column_find("fibre_tip_z_m"));
+  if (isnan(p->fibre_tip_z_m) || !bound) {
+    print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+    return;
+  }
+  snprintf(text, sizeof text, "<%.1f", 1e6 * p->fibre_tip_z_m);
+  printf("%12s", text);
+}
+
 static void print_row(const struct dea_load_point *p)
 {
   print_cell(p->voltage_V, 1e-3, 9, 3);
   print_cell(p->electrode_stretch, 1, 10, 5);
   print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-  print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+  print_tip(p);
   print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
   print_cell(p->breakdown_margin, 100, 10, 1);
   print_cell(p->min_tension_N_per_m, 1, 10, 3);
-  printf("%s%s\n", p->stable ? "" : "  unstable", p->min_tension_N_per_m < 0 ? "  slack" : "");
+  char words[DEA_FLAGS_SIZE];
+  dea_flags_text(dea_load_point_flags(p) & ~(1u << DEA_FLAG_BOUND), words);
+  printf("%s%s%s\n", words[0] != '\0' ? "  " : "",
+         dea_load_point_trusted(p) ? "" : "not trusted: ", words);
 }
 
 /* Points from row to row of a table of at most TABLE_ROWS rows: 1, 2 or 5 times a power of ten, so

@@ -65,6 +65,9 @@ struct dea_law {
   /* Shear modulus of the ground state [Pa] (isotropic part), for the small-strain limit and for
    * scaling. */
   double (*shear_modulus)(const double *p);
+  /* A measure of stretch over its value where the chains are fully stretched, 1 there; NULL for a
+   * law that does not lock up. */
+  double (*locking_share)(const double *p, double I1);
 };
 
 /* Law of that name, or NULL. Static storage. */

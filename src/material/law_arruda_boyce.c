@@ -51,6 +51,12 @@ static double shear_modulus(const double *p)
   return 2.0 * p[MU] * W1;
 }
 
+/* Stretch of the eight chains over theirs: the five terms go on beyond it, the chains do not. */
+static double locking_share(const double *p, double I1)
+{
+  return sqrt(I1 / 3.0) / p[LAMBDA_M];
+}
+
 const struct dea_law DEA_NAME(dea_law_arruda_boyce) = {
     .name = "arruda-boyce",
     .long_name = "Arruda-Boyce eight-chain, five terms",
@@ -59,4 +65,5 @@ const struct dea_law DEA_NAME(dea_law_arruda_boyce) = {
     .params = params,
     .invariants = invariants,
     .shear_modulus = shear_modulus,
+    .locking_share = locking_share,
 };

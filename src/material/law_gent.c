@@ -37,6 +37,11 @@ static double shear_modulus(const double *p)
   return p[MU];
 }
 
+static double locking_share(const double *p, double I1)
+{
+  return (I1 - 3.0) / p[JM];
+}
+
 const struct dea_law DEA_NAME(dea_law_gent) = {
     .name = "gent",
     .long_name = "Gent, limited chain extensibility",
@@ -45,4 +50,5 @@ const struct dea_law DEA_NAME(dea_law_gent) = {
     .params = params,
     .invariants = invariants,
     .shear_modulus = shear_modulus,
+    .locking_share = locking_share,
 };

@@ -121,4 +121,24 @@ double dea_breakdown_field(const struct dea_material *material, double mean_stre
   }
   return breakdown->at_rest_V_per_m * pow(mean_stretch, breakdown->exponent);
 }
+
+struct dea_reach dea_material_reach(const struct dea_material *material, double lambda1,
+                                    double lambda2)
+{
+  struct dea_reach reach = {NAN, NAN};
+  double a = lambda1 * lambda1, b = lambda2 * lambda2;
+  if (material->law != NULL && material->law->locking_share != NULL) {
+    reach.locking_share = material->law->locking_share(material->param, a + b + 1 / (a * b));
+  }
+  if (material->stretch_max > 0) {
+    reach.range_share = fmax(lambda1, lambda2) / material->stretch_max;
+  }
+  return reach;
+}
+
+void dea_reach_take(struct dea_reach *reach, struct dea_reach other)
+{
+  reach->locking_share = fmax(reach->locking_share, other.locking_share);
+  reach->range_share = fmax(reach->range_share, other.range_share);
+}
 #endif

@@ -28,4 +28,17 @@ void DEA_NAME(dea_plane_electric)(const struct dea_material *material, double no
 /* True breakdown field [V/m] at the mean in-plane stretch s; NAN when unknown. */
 double dea_breakdown_field(const struct dea_material *material, double mean_stretch);
 
+/* How far a stretched film uses what its law is good for; NAN where the law does not lock up, or
+ * the range of its data is unknown. */
+struct dea_reach {
+  double locking_share; // 1 at the locking stretch
+  double range_share;   // 1 at the end of the measured stretches
+};
+/* lambda1, lambda2: principal stretches in the plane, from the unstretched film. A material without
+ * a law has neither. */
+struct dea_reach dea_material_reach(const struct dea_material *material, double lambda1,
+                                    double lambda2);
+/* *reach becomes the larger of the two, share by share; NAN counts as nothing. */
+void dea_reach_take(struct dea_reach *reach, struct dea_reach other);
+
 #endif

@@ -50,10 +50,12 @@ bool dea_surface_has_shapes(const struct dea_surface_record *record)
   return dea_field_mesh_find(record->mesh, first) != NULL;
 }
 
-dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_surface_record *record,
-                                 size_t pieces, struct dea_colour_map *out)
+dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_result *result,
+                                 const struct dea_surface_record *record, size_t pieces,
+                                 struct dea_colour_map *out)
 {
   *out = (struct dea_colour_map){.voltage_V = record->voltage_V};
+  dea_voltage_words(result, record->model, record->voltage_V, out->words);
   DEA_TRY(ctx, dea_surface_lattice_create(ctx, record->mesh, pieces, &out->drawing));
   DEA_TRY(ctx,
           dea_surface_lattice_outlines(ctx, record->mesh, &out->outlines, &out->outline_count));

@@ -4,6 +4,7 @@
 
 #include "output/figure.h"
 #include "output/surface_lattice.h"
+#include "result/trust.h"
 
 /* The surface of the result's first model with surfaces at the voltage, or the nearest to it; the
  * last one for NAN. NULL when there is none; lent. */
@@ -19,13 +20,16 @@ bool dea_surface_has_shapes(const struct dea_surface_record *record);
 /* A surface ready to be drawn. */
 struct dea_colour_map {
   double voltage_V;
+  char words[DEA_VOLTAGE_WORDS]; // what it shows: dea_voltage_words
   struct dea_surface_lattice drawing;
   struct dea_outline *outlines;
   size_t outline_count;
 };
-/* pieces: as in dea_surface_lattice_create. out: dea_colour_map_free, also after a failure. */
-dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_surface_record *record,
-                                 size_t pieces, struct dea_colour_map *out);
+/* result: of the record, for its words; NULL: of none. pieces: as in dea_surface_lattice_create.
+ * out: dea_colour_map_free, also after a failure. */
+dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_result *result,
+                                 const struct dea_surface_record *record, size_t pieces,
+                                 struct dea_colour_map *out);
 void dea_colour_map_free(struct dea_context *ctx, struct dea_colour_map *picture);
 
 /* Range of colours for displacements between two values [m], and the palette: from blue over white

@@ -40,7 +40,7 @@ static void add_header(struct dea_text *text, const bool *used)
       dea_text_add(text, "%s,", title);
     }
   }
-  dea_text_add(text, "stable,unstable_modes\n");
+  dea_text_add(text, "stable,unstable_modes,trusted,flags\n");
 }
 
 static void add_point(struct dea_text *text, const bool *used, const struct dea_load_point *point)
@@ -51,7 +51,9 @@ static void add_point(struct dea_text *text, const bool *used, const struct dea_
       dea_text_add(text, ",");
     }
   }
-  dea_text_add(text, "%d,%d\n", point->stable, point->unstable_modes);
+  char words[DEA_FLAGS_SIZE];
+  dea_text_add(text, "%d,%d,%d,%s\n", point->stable, point->unstable_modes,
+               dea_load_point_trusted(point), dea_flags_text(dea_load_point_flags(point), words));
 }
 
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,

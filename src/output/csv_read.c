@@ -12,7 +12,7 @@
 
 enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 64, FILE_MAX = 100000000, FINDINGS_MAX = 20 };
 
-enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES };
+enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES, ROLE_TRUSTED, ROLE_FLAGS };
 
 struct field_meaning {
   enum role role;
@@ -139,6 +139,25 @@ static void read_unit(struct reader *r, const char *title, const char *unit, boo
   }
 }
 
+/* Columns that are no quantities. */
+static bool find_state(const char *name, enum role *role)
+{
+  static const struct {
+    const char *name;
+    enum role role;
+  } states[] = {{"stable", ROLE_STABLE},
+                {"unstable modes", ROLE_MODES},
+                {"trusted", ROLE_TRUSTED},
+                {"flags", ROLE_FLAGS}};
+  for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
+    if (strcmp(states[i].name, name) == 0) {
+      *role = states[i].role;
+      return true;
+    }
+  }
+  return false;
+}
+
 static void read_title(struct reader *r, const char *title, size_t column,
                        struct field_meaning *field)
 {
@@ -151,8 +170,7 @@ static void read_title(struct reader *r, const char *title, size_t column,
     name[length - 4] = '\0';
   }
   *field = (struct field_meaning){.role = is_std ? ROLE_STD : ROLE_VALUE, .factor = 1.0};
-  if (strcmp(name, "stable") == 0 || strcmp(name, "unstable modes") == 0) {
-    field->role = name[0] == 's' ? ROLE_STABLE : ROLE_MODES;
+  if (find_state(name, &field->role)) {
     field->column = -1;
   } else {
     field->column = find_column(name, &by_key);
@@ -210,6 +228,9 @@ static void set_field(const struct field_meaning *field, double value, struct de
   case ROLE_MODES:
     point->unstable_modes = value > 0.0 && value < 1e9 ? (int)value : 0;
     break;
+  case ROLE_TRUSTED: // follows from the flags
+  case ROLE_FLAGS:
+    break;
   }
 }
 
@@ -230,7 +251,9 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
     }
     char shown[FIELD_MAX];
     memcpy(shown, text, sizeof shown);
-    if (!dea_csv_number(r->separator, text, &value)) {
+    if (r->fields[i].role == ROLE_FLAGS) {
+      point->told = dea_flags_of_text(text);
+    } else if (!dea_csv_number(r->separator, text, &value)) {
       if (one_more_error(r)) {
         dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "'%s' is not a number", shown);
       }

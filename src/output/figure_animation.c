@@ -26,24 +26,25 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
                "screen 0.06 front\n",
                2e3 * space->radius_m, space->times);
-  dea_text_add(gp, "array kV = [");
+  dea_text_add(gp, "array words = [");
   for (size_t i = 0; i < space->count; i++) {
-    dea_text_add(gp, "%s\"%.4g\"", i > 0 ? ", " : "", 1e-3 * space->pictures[i].voltage_V);
+    dea_text_add(gp, "%s\"%s\"", i > 0 ? ", " : "", space->pictures[i].words);
   }
   dea_text_add(gp,
                "]\n\nset terminal gif animate delay 15 loop 0 optimize size %d, %.0f font "
                "\"DejaVuSans,13\"\nset output out.name.\".gif\"\n"
                "set pm3d interpolate 2, 2\n"
                "do for [k = 0:%zu] {\n"
-               "  set label 1 kV[k + 1].\" kV\" at screen 0.03, screen 0.94 front\n",
+               "  set label 1 words[k + 1] at screen 0.03, screen 0.94 front\n",
                WIDTH_PX, height_px, space->count - 1);
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "}\nunset output\n");
 }
 
 /* Pictures of all records on one mesh; *count: how many were made, also after a failure. */
-static dea_status make_pictures(struct dea_context *ctx, const struct dea_surface_record *records[],
-                                size_t record_count, struct dea_colour_map *pictures, size_t *count)
+static dea_status make_pictures(struct dea_context *ctx, const struct dea_result *result,
+                                const struct dea_surface_record *records[], size_t record_count,
+                                struct dea_colour_map *pictures, size_t *count)
 {
   const struct dea_field_mesh *first = records[0]->mesh;
   *count = 0;
@@ -51,7 +52,7 @@ static dea_status make_pictures(struct dea_context *ctx, const struct dea_surfac
     const struct dea_field_mesh *mesh = records[i]->mesh;
     if (mesh->point_count == first->point_count && mesh->cell_count == first->cell_count &&
         memcmp(mesh->X, first->X, 3 * mesh->point_count * sizeof *mesh->X) == 0) {
-      DEA_TRY(ctx, dea_colour_map_create(ctx, records[i], PIECES, &pictures[(*count)++]));
+      DEA_TRY(ctx, dea_colour_map_create(ctx, result, records[i], PIECES, &pictures[(*count)++]));
     }
   }
   return DEA_OK;
@@ -69,7 +70,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   if (!*drawn) {
     return DEA_OK;
   }
-  dea_status status = make_pictures(ctx, records, count, pictures, &count);
+  dea_status status = make_pictures(ctx, result, records, count, pictures, &count);
   if (status == DEA_OK) {
     status = dea_view3d_write(ctx, &figure, pictures, count, &options->format, directory);
   }

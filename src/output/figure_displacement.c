@@ -12,7 +12,8 @@ static double z_factor(const struct dea_result *result, const int columns[2])
   for (size_t i = 0; i < result->curve_count; i++) {
     for (size_t k = 0; k < result->curves[i].count; k++) {
       for (int c = 0; c < 2; c++) {
-        if (fabs(dea_point_get(&result->curves[i].points[k], columns[c])) > 0.5e-3) {
+        bool shown = !dea_figure_leaves_out(result, &result->curves[i], columns[c]);
+        if (shown && fabs(dea_point_get(&result->curves[i].points[k], columns[c])) > 0.5e-3) {
           return 1e3;
         }
       }
@@ -56,8 +57,9 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   enum { COLOURS = sizeof colours / sizeof colours[0] };
   size_t next = count > 2 ? 1 : 0;
   for (size_t m = 0; m < count; m++) {
-    bool once = are_equal(dea_figure_curve(result, models[m], false), z);
-    for (int c = 0; c < (once ? 1 : 2); c++) {
+    const struct dea_curve *curve = dea_figure_curve(result, models[m], false);
+    bool once = are_equal(curve, z), out = dea_figure_leaves_out(result, curve, z[0]);
+    for (int c = 0; c < (out ? 0 : once ? 1 : 2); c++) {
       struct dea_series look = dea_figure_style(models[m], m);
       look.style = DEA_LINE_MARKED;
       look.colour = colours[next % COLOURS];
@@ -67,8 +69,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
       snprintf(look.title + n, sizeof look.title - n, ", {/:Italic z}%s%s", once ? "" : " ",
                once ? "" : words[c]);
       size_t before = panel->series_count;
-      DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], false), z[c],
-                                  factor, 0.0, &look));
+      DEA_TRY(ctx, dea_figure_add(ctx, panel, curve, z[c], factor, 0.0, &look));
       next += panel->series_count > before;
     }
   }

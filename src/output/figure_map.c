@@ -33,10 +33,10 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
                "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
-               "  set label 1 \"%.4g kV\" at graph 0.02, graph 0.96 front\n"
+               "  set label 1 \"%s\" at graph 0.02, graph 0.96 front\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
-               1e-3 * space->pictures[0].voltage_V);
+               space->pictures[0].words);
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }

@@ -45,7 +45,7 @@ static dea_status make_picture(struct dea_context *ctx, const struct dea_surface
       mesh.fields[f].values = values;
     }
   }
-  dea_status status = dea_colour_map_create(ctx, &moved, PIECES, out);
+  dea_status status = dea_colour_map_create(ctx, NULL, &moved, PIECES, out);
   dea_free(ctx, values);
   return status;
 }

@@ -1,5 +1,6 @@
 /* Stretch and tension along the radius at up to four voltages: full lines radial, dashed hoop. */
 #include "result/figure.h"
+#include "result/trust.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,11 +26,13 @@ static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
 }
 
 static dea_status add_record(struct dea_context *ctx, struct dea_plot *plot,
+                             const struct dea_result *result,
                              const struct dea_profile_record *record, size_t shown)
 {
   static const enum dea_colour order[SHOWN_MAX] = {DEA_BLACK, DEA_SKY, DEA_ORANGE, DEA_VERMILLION};
   char title[64];
-  snprintf(title, sizeof title, "%.3g kV", 1e-3 * record->voltage_V);
+  bool doubtful = dea_result_doubts(result, record->model, record->voltage_V) != 0;
+  snprintf(title, sizeof title, "%.3g kV%s", 1e-3 * record->voltage_V, doubtful ? " (?)" : "");
   for (int p = 0; p < 2; p++) {
     struct dea_panel *panel = &plot->panels[p];
     DEA_TRY(ctx, add(ctx, panel, record, 2 + 2 * p, order[shown], DEA_LINE, p == 0 ? title : ""));
@@ -82,7 +85,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   size_t next = 0;
   for (size_t i = 0; i < result->profile_count && next < shown; i++) {
     if (strcmp(records[i].model, records[0].model) == 0 && seen++ == index[next]) {
-      DEA_TRY(ctx, add_record(ctx, plot, &records[i], next++));
+      DEA_TRY(ctx, add_record(ctx, plot, result, &records[i], next++));
     }
   }
   if (shown > 0) {
@@ -96,6 +99,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 
 const struct dea_figure dea_figure_profile = {
     .name = "profile",
-    .caption = "stretch and tension along the radius (full: radial, dashed: hoop)",
+    .caption = "stretch and tension along the radius (full: radial, dashed: hoop; ?: not to be "
+               "trusted)",
     .build = build,
 };

@@ -29,12 +29,15 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
 }
 
 static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
+                             const struct dea_result *result,
                              const struct dea_surface_record *record, size_t shown)
 {
   static const enum dea_colour order[SHOWN_MAX] = {DEA_SKY, DEA_VERMILLION, DEA_BLACK};
   struct dea_series look = {.style = DEA_LINE, .colour = order[shown]};
   struct dea_surface_lattice drawing;
-  snprintf(look.title, sizeof look.title, "%.4g kV", 1e-3 * record->voltage_V);
+  bool doubtful = dea_result_doubts(result, record->model, record->voltage_V) != 0;
+  snprintf(look.title, sizeof look.title, "%.4g kV%s", 1e-3 * record->voltage_V,
+           doubtful ? " (not trusted)" : "");
   dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
   if (status == DEA_OK) {
     status = add_diameter(ctx, panel, &drawing, 0, &look);
@@ -59,7 +62,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   size_t first =
       count > SHOWN_MAX ? 1 : 0; // at the first voltage, mostly 0, there is nothing to see
   for (size_t i = first; i < count; i++) {
-    DEA_TRY(ctx, add_record(ctx, panel, records[i], SHOWN_MAX - count + i));
+    DEA_TRY(ctx, add_record(ctx, panel, result, records[i], SHOWN_MAX - count + i));
   }
   if (count == 0) {
     return DEA_OK;

@@ -11,11 +11,11 @@ static const char name[] = "surface";
 static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
-  double width_mm = 1e3 * format->width_m, voltage_kV = 1e-3 * space->pictures[0].voltage_V;
-  char caption[160];
+  double width_mm = 1e3 * format->width_m;
+  char caption[2 * DEA_VOLTAGE_WORDS];
   snprintf(caption, sizeof caption,
-           "the film's middle surface at %.4g kV, z drawn %g times larger than x and y", voltage_kV,
-           space->times);
+           "the film's middle surface at %s, z drawn %g times larger than x and y",
+           space->pictures[0].words, space->times);
   double height_mm = 0.78 * width_mm * dea_view3d_shape(space) + 2 * LABEL_MM;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
   dea_colour_map_add_palette(gp, space->low_m, space->high_m);
@@ -25,12 +25,12 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   dea_script_terminals(gp);
   dea_text_add(gp,
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
-               "  set label 1 \"%.4g kV, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
+               "  set label 1 \"%s, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
                "front\n"
                "  set label 2 \"frame \342\214\200 %.4g mm\" at screen 0.03, screen 0.06 front\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
-               voltage_kV, space->times, 2e3 * space->radius_m);
+               space->pictures[0].words, space->times, 2e3 * space->radius_m);
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }

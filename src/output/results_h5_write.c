@@ -28,6 +28,20 @@ static void put_column(struct h5 *h, hid_t group, const char *points, size_t str
   }
 }
 
+/* What of points is no quantity. whole: [count] to work with. */
+static void put_states(struct h5 *h, hid_t group, const char *points, size_t stride, size_t count,
+                       int *whole)
+{
+  for (int k = 0; k < DEA_POINT_STATES; k++) {
+    const struct dea_point_state *state = &dea_point_states[k];
+    for (size_t i = 0; i < count; i++) {
+      whole[i] = state->get((const struct dea_load_point *)(const void *)(points + i * stride));
+    }
+    dea_h5_put_array(h, group, state->key, H5T_NATIVE_INT, k == 0 ? H5T_STD_U8LE : H5T_STD_I32LE,
+                     count, whole, "1", state->meaning);
+  }
+}
+
 static void put_points(struct h5 *h, hid_t group, const char *points, size_t stride, size_t count)
 {
   dea_h5_put_int(h, group, "count", (long long)count);
@@ -42,16 +56,7 @@ static void put_points(struct h5 *h, hid_t group, const char *points, size_t str
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     put_column(h, group, points, stride, count, c, buffer);
   }
-  for (size_t i = 0; i < count; i++) {
-    whole[i] = ((const struct dea_load_point *)(const void *)(points + i * stride))->stable;
-  }
-  dea_h5_put_array(h, group, "stable", H5T_NATIVE_INT, H5T_STD_U8LE, count, whole, "1",
-                   "1: stable under voltage control, 0: not");
-  for (size_t i = 0; i < count; i++) {
-    whole[i] = ((const struct dea_load_point *)(const void *)(points + i * stride))->unstable_modes;
-  }
-  dea_h5_put_array(h, group, "unstable_modes", H5T_NATIVE_INT, H5T_STD_I32LE, count, whole, "1",
-                   "number of negative modes of the tangent");
+  put_states(h, group, points, stride, count, whole);
   dea_free(h->ctx, whole);
   dea_free(h->ctx, buffer);
 }

@@ -3,7 +3,7 @@
 #include "base/json.h"
 #include "base/write_file.h"
 #include "output/summary_studies.h"
-#include "result/result.h"
+#include "result/trust.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,12 +41,26 @@ static const struct dea_curve *first_stopped(const struct dea_result *result, co
   return NULL;
 }
 
+/* How far the sweep is to be trusted. */
+static json_t *trust_json(const struct dea_curve *sweep)
+{
+  json_t *object = json_object();
+  if (sweep != NULL && sweep->count > 0) {
+    struct dea_trust trust = dea_curve_trust(sweep);
+    dea_json_put(object, "trusted_and_safe_V", trust.good_V);
+    dea_json_put(object, "trusted_V", trust.trusted_V);
+    dea_json_put(object, "safe_V", trust.safe_V);
+  }
+  return object;
+}
+
 /* Puts what is known of one model into an object. */
 static void put_model(json_t *object, const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
   json_object_set_new(object, "points", dea_points_json(sweep));
+  json_object_set_new(object, "trust", trust_json(sweep));
   const struct dea_curve *stopped = first_stopped(result, model);
   json_object_set_new(object, "complete", json_boolean(stopped == NULL));
   dea_json_put_text(object, "stopped", stopped != NULL ? stopped->stopped : "");

@@ -3,6 +3,17 @@
 #include <math.h>
 #include <string.h>
 
+static json_t *flags_json(unsigned flags)
+{
+  json_t *list = json_array();
+  for (int k = 0; k < DEA_FLAG_COUNT; k++) {
+    if ((flags >> k & 1u) != 0) {
+      json_array_append_new(list, json_string(dea_flag_words[k].word));
+    }
+  }
+  return list;
+}
+
 static json_t *point_json(const struct dea_load_point *point)
 {
   json_t *object = json_object();
@@ -11,6 +22,8 @@ static json_t *point_json(const struct dea_load_point *point)
   }
   json_object_set_new(object, "stable", json_boolean(point->stable));
   json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
+  json_object_set_new(object, "trusted", json_boolean(dea_load_point_trusted(point)));
+  json_object_set_new(object, "flags", flags_json(dea_load_point_flags(point)));
   return object;
 }
 

@@ -60,7 +60,7 @@ void dea_panel_place_key(struct dea_panel *panel)
                  {"bottom left", true, false},
                  {"top right", false, true}};
   struct range x = {INFINITY, -INFINITY}, y[2] = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
-  double lines = panel->says_unstable ? 1.6 : 0.6;
+  double lines = (panel->dashed != NULL) ? 1.6 : 0.6;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     bool shown = false;

@@ -41,7 +41,7 @@ void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel)
     dea_free(ctx, panel->series[s].values);
   }
   panel->series_count = 0;
-  panel->says_unstable = false;
+  panel->dashed = NULL;
 }
 
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,

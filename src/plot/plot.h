@@ -63,7 +63,7 @@ struct dea_panel {
   double y_step;        // between tics of the left axis; 0: gnuplot's choice
   const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage
   enum dea_colour y2_colour;
-  bool says_unstable; // key entry: dashed = unstable
+  const char *dashed; // key entry: what dashed parts of curves are; NULL: there are none; static
   size_t series_count, mark_count;
   struct dea_series series[DEA_PANEL_SERIES_MAX];
   struct dea_mark marks[DEA_PANEL_MARKS_MAX];

@@ -312,11 +312,11 @@ static void add_panel(struct dea_text *gp, const struct dea_plot *plot, size_t p
   if (first) {
     dea_text_add(gp, "  plot NaN notitle"); // an empty panel keeps its axes
   }
-  if (panel->says_unstable) {
+  if (panel->dashed != NULL) {
     dea_text_add(gp,
                  ", \\\n       keyentry with lines lw 1.2 dt (8,5) lc rgb \"%s\" "
-                 "title \"unstable\"",
-                 colours[DEA_GREY]);
+                 "title \"%s\"",
+                 colours[DEA_GREY], panel->dashed);
   }
   dea_text_add(gp, "\n");
 }

@@ -49,6 +49,53 @@ bool dea_points_have(const struct dea_load_point *points, size_t count, int colu
   return false;
 }
 
+bool dea_point_is_bound(const struct dea_load_point *point, int column)
+{
+  static const char *const bounded[] = {"centre_z_m", "fibre_tip_z_m", "force_N"};
+  bool found = false;
+  for (size_t k = 0; k < sizeof bounded / sizeof bounded[0]; k++) {
+    found = found || strcmp(dea_point_columns[column].key, bounded[k]) == 0;
+  }
+  return found && dea_load_point_bounds(point);
+}
+
+static int get_stable(const struct dea_load_point *point)
+{
+  return point->stable;
+}
+
+static int get_unstable_modes(const struct dea_load_point *point)
+{
+  return point->unstable_modes;
+}
+
+static int get_trusted(const struct dea_load_point *point)
+{
+  return dea_load_point_trusted(point);
+}
+
+static int get_flags(const struct dea_load_point *point)
+{
+  return (int)dea_load_point_flags(point);
+}
+
+const struct dea_point_state dea_point_states[DEA_POINT_STATES] = {
+    {"stable", "1: stable under voltage control, 0: not", get_stable},
+    {"unstable_modes", "number of negative modes of the tangent", get_unstable_modes},
+    {"trusted", "0: the numbers are not to be trusted, flags say why", get_trusted},
+    {"flags", "sum of 2^k, k the place from 0 in: " DEA_FLAG_WORDS, get_flags},
+};
+
+const struct dea_point_state *dea_point_state_find(const char *key)
+{
+  for (int k = 0; k < DEA_POINT_STATES; k++) {
+    if (strcmp(dea_point_states[k].key, key) == 0) {
+      return &dea_point_states[k];
+    }
+  }
+  return NULL;
+}
+
 static const char *const event_names[] = {
     [DEA_EVENT_PULL_IN] = "pull_in",
     [DEA_EVENT_SNAP_BACK] = "snap_back",

@@ -33,6 +33,20 @@ void dea_point_set(struct dea_load_point *point, int column, double value_si);
 /* True when at least one of the points has a number in that column. */
 bool dea_points_have(const struct dea_load_point *points, size_t count, int column);
 
+/* Whether the number in that column is an upper bound and no prediction: z and force of a point
+ * with DEA_FLAG_BOUND. */
+bool dea_point_is_bound(const struct dea_load_point *point, int column);
+
+/* What of a point is no quantity: whole numbers, the same key in CSV, JSON, HDF5 and dea.h. */
+struct dea_point_state {
+  const char *key, *meaning;
+  int (*get)(const struct dea_load_point *point);
+};
+enum { DEA_POINT_STATES = 4 }; // stable, unstable_modes, trusted, flags (a sum of powers of two)
+extern const struct dea_point_state dea_point_states[DEA_POINT_STATES];
+/* The one of that key, or NULL. */
+const struct dea_point_state *dea_point_state_find(const char *key);
+
 /* Names of the kinds of events in files: "pull_in", "snap_back", "slack", "breakdown". */
 const char *dea_event_name(enum dea_event_kind kind);
 /* Kind of that name; false when there is none. */

@@ -40,29 +40,43 @@ dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel
   return DEA_OK;
 }
 
-/* Series of the points with that stability; where the two meet both have the point of the dashed
- * side's start, so that no gap opens. */
+/* Series of the points that are to be trusted, or that are not; where the two meet both have the
+ * point of the dashed side's start, so that no gap opens. */
 static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
                            const struct dea_curve *curve, int column, double factor, double shift,
-                           const struct dea_series *look, bool stable)
+                           const struct dea_series *look, bool trusted)
 {
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
-  if (!stable) {
+  if (!trusted) {
     series->style = DEA_DASHED;
     series->title[0] = '\0';
   }
   const struct dea_load_point *p = curve->points;
+  bool before = true;
   for (size_t i = 0; i < curve->count; i++) {
-    bool shown = stable ? p[i].stable
-                        : !p[i].stable || (i > 0 && !p[i - 1].stable) ||
-                              (i + 1 < curve->count && !p[i + 1].stable);
+    bool here = dea_load_point_trusted(&p[i]);
+    bool after = i + 1 == curve->count || dea_load_point_trusted(&p[i + 1]);
     series->values[i] = 1e-3 * p[i].voltage_V;
-    if (shown) {
+    if (trusted ? here : !(before && here && after)) {
       series->values[curve->count + i] = factor * (dea_point_get(&p[i], column) + shift);
     }
+    before = here;
   }
   return DEA_OK;
+}
+
+/* What a key says of the dashed parts of a panel that had `before`. */
+static const char *dashed_words(const struct dea_curve *curve, const char *before)
+{
+  static const char unstable[] = "unstable", doubtful[] = "not to be trusted";
+  const char *words = before;
+  for (size_t i = 0; i < curve->count; i++) {
+    if (!dea_load_point_trusted(&curve->points[i])) {
+      words = curve->points[i].stable || words == doubtful ? doubtful : unstable;
+    }
+  }
+  return words;
 }
 
 dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
@@ -72,14 +86,37 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
   if (curve == NULL || !dea_points_have(curve->points, curve->count, column)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, look, true));
+  struct dea_series shown = *look;
+  if (dea_figure_is_bound(curve, column)) {
+    size_t n = strlen(shown.title);
+    snprintf(shown.title + n, sizeof shown.title - n, " (upper bound)");
+    shown.style = DEA_DOTTED;
+  }
+  DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
   for (size_t i = 0; i < curve->count; i++) {
-    if (!curve->points[i].stable) {
-      panel->says_unstable = true;
-      return add_part(ctx, panel, curve, column, factor, shift, look, false);
+    if (!dea_load_point_trusted(&curve->points[i])) {
+      panel->dashed = dashed_words(curve, panel->dashed);
+      return add_part(ctx, panel, curve, column, factor, shift, &shown, false);
     }
   }
   return DEA_OK;
+}
+
+bool dea_figure_is_bound(const struct dea_curve *curve, int column)
+{
+  return curve != NULL && curve->count > 0 && dea_point_is_bound(&curve->points[0], column);
+}
+
+bool dea_figure_leaves_out(const struct dea_result *result, const struct dea_curve *curve,
+                           int column)
+{
+  bool predicted = false;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *other = &result->curves[i];
+    predicted = predicted || (!dea_figure_is_bound(other, column) &&
+                              dea_points_have(other->points, other->count, column));
+  }
+  return predicted && dea_figure_is_bound(curve, column);
 }
 
 dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *panel,
@@ -89,8 +126,11 @@ dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *pane
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     struct dea_series look = dea_figure_style(models[m], m);
-    DEA_TRY(ctx, dea_figure_add(ctx, panel, dea_figure_curve(result, models[m], prefer_path),
-                                column, dea_point_columns[column].factor, 0.0, &look));
+    const struct dea_curve *curve = dea_figure_curve(result, models[m], prefer_path);
+    if (!dea_figure_leaves_out(result, curve, column)) {
+      DEA_TRY(ctx, dea_figure_add(ctx, panel, curve, column, dea_point_columns[column].factor, 0.0,
+                                  &look));
+    }
   }
   return DEA_OK;
 }
@@ -100,6 +140,21 @@ struct quantity {
   int column;
   double factor, shift;
 };
+
+/* First point beyond breakdown of a sweep whose model has no path to say it; NULL for none. */
+static const struct dea_load_point *broken(const struct dea_result *result, size_t curve)
+{
+  const struct dea_curve *sweep = &result->curves[curve];
+  if (strcmp(sweep->kind, "sweep") != 0 || dea_result_find(result, sweep->model, "path") != NULL) {
+    return NULL;
+  }
+  for (size_t i = 0; i < sweep->count; i++) {
+    if (!dea_load_point_safe(&sweep->points[i])) {
+      return &sweep->points[i];
+    }
+  }
+  return NULL;
+}
 
 /* Adds the events of one kind as markers; left out are those that fall outside a sweep. */
 static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel,
@@ -114,7 +169,7 @@ static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel
   };
   size_t count = 0, n = 0;
   for (size_t i = 0; i < result->curve_count; i++) {
-    count += result->curves[i].event_count;
+    count += result->curves[i].event_count + 1;
   }
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
@@ -123,6 +178,12 @@ static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel
   series->marker = 5 + (int)kind;
   snprintf(series->title, sizeof series->title, "%s", words[kind]);
   for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_load_point *first = kind == DEA_EVENT_BREAKDOWN ? broken(result, i) : NULL;
+    if (first != NULL) {
+      series->values[n] = 1e-3 * first->voltage_V;
+      series->values[count + n] = q->factor * (dea_point_get(first, q->column) + q->shift);
+    }
+    n++;
     for (size_t e = 0; e < result->curves[i].event_count; e++, n++) {
       const struct dea_event *event = &result->curves[i].events[e];
       const struct dea_load_point *p = &event->point;

@@ -28,10 +28,17 @@ struct dea_figure {
 const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
                                          bool prefer_path);
 /* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
- * right); stable parts so, unstable ones dashed. Adds nothing when the curve has no such number. */
+ * right); what is not to be trusted is dashed, what is a bound dotted and said to be one. Adds
+ * nothing when the curve has no such number. */
 dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
                           const struct dea_curve *curve, int column, double factor, double shift,
                           const struct dea_series *look);
+/* Whether the column of a curve is a bound and no prediction. */
+bool dea_figure_is_bound(const struct dea_curve *curve, int column);
+/* Whether that is to be left out: beside what other models predict a bound of many times the size
+ * would set the axes. */
+bool dea_figure_leaves_out(const struct dea_result *result, const struct dea_curve *curve,
+                           int column);
 /* Look of the m-th model. */
 struct dea_series dea_figure_style(const char *model, size_t m);
 /* Adds that column of all models, in the units of figures. */

@@ -33,6 +33,13 @@
     "1 - true field / breakdown field: 1 without field, 0 at breakdown")                           \
   X(min_tension_N_per_m, "N/m", "N/m", 1.0, "smallest tension",                                    \
     "smallest principal tension (true stress x current thickness); below 0 the film is slack")     \
+  X(compression_ratio, "1", "1", 1.0, "compression ratio",                                         \
+    "compression in the slack part of the film over what a clamped plate of its area bears: "      \
+    "from 1 on it wrinkles")                                                                       \
+  X(locking_share, "1", "%", 100.0, "share of locking",                                            \
+    "stretch measure of the film's law over its value at lock-up, largest of the film")            \
+  X(range_share, "1", "%", 100.0, "share of measured range",                                       \
+    "largest stretch of the film over the largest that the law was measured at")                   \
   X(pull_in_distance_V, "V", "kV", 1e-3, "distance to pull-in",                                    \
     "voltage of the next limit point of this branch minus voltage")                                \
   X(energy_J, "J", "uJ", 1e6, "energy", "potential energy at this voltage, 0 at rest")             \
@@ -65,16 +72,65 @@
   X(fibre_tip_phase_rad, "rad", "deg", 57.29577951308232, "phase fibre tip",                       \
     "of the fibre tip's z against the excitation")
 
+/* What a reader of a point has to know of its numbers (docs/theory/trust.md). A doubt: they are not
+ * to be trusted. A danger: they are, but the device would not live. A bound: z and force are no
+ * prediction.
+ * X(NAME, word in files, kind, sentence) */
+#define DEA_FLAG_LIST(X)                                                                           \
+  X(SLACK, "slack", DOUBT,                                                                         \
+    "the film has lost its tension and wrinkles: its shape depends on the mesh and is one of "     \
+    "several")                                                                                     \
+  X(UNSTABLE, "unstable", DOUBT, "the state is unstable: a device does not stay in it")            \
+  X(STATES, "states", DOUBT,                                                                       \
+    "one of several stable states: the sweep has gone over from a state that ended or was left")   \
+  X(LOCKING, "locking", DOUBT,                                                                     \
+    "the film's law is near its locking stretch or beyond it (from 80 % on)")                      \
+  X(RANGE, "range", DOUBT, "the film is stretched beyond the measured range of its law")           \
+  X(PREVIEW, "preview", DOUBT,                                                                     \
+    "a membrane film is a preview: no bending of the film, no shape of its wrinkles")              \
+  X(BREAKDOWN, "breakdown", DANGER, "the true field is beyond the film's breakdown field")         \
+  X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")
+
+enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT };
+#define DEA_FLAG_NUMBER(name, word, kind, sentence) DEA_FLAG_##name,
+enum dea_flag { DEA_FLAG_LIST(DEA_FLAG_NUMBER) DEA_FLAG_COUNT };
+#undef DEA_FLAG_NUMBER
+
 struct dea_load_point {
 #define DEA_LOAD_POINT_MEMBER(member, si, display, factor, header, meaning) double member;
   DEA_LOAD_POINT_LIST(DEA_LOAD_POINT_MEMBER)
 #undef DEA_LOAD_POINT_MEMBER
   bool stable;        // under voltage control, within the motions the model knows
   int unstable_modes; // number of negative modes of the tangent
+  unsigned told;      // flags that the numbers do not say, 1u << enum dea_flag: STATES, ...
 };
 
 /* Point with every number NAN, stable, no unstable mode. */
 struct dea_load_point dea_load_point_empty(void);
+
+/* All flags of a point, 1u << enum dea_flag: those told and those that its numbers say. This is the
+ * one place that decides. */
+unsigned dea_load_point_flags(const struct dea_load_point *point);
+/* Without a flag of that kind. */
+bool dea_load_point_trusted(const struct dea_load_point *point);
+bool dea_load_point_safe(const struct dea_load_point *point);
+bool dea_load_point_bounds(const struct dea_load_point *point);
+
+/* "slack unstable ...", each with a blank after it. */
+#define DEA_FLAG_WORD(name, word, kind, sentence) word " "
+#define DEA_FLAG_WORDS DEA_FLAG_LIST(DEA_FLAG_WORD)
+
+/* A flag as files and people read it; static storage. */
+struct dea_flag_words {
+  const char *word, *sentence; // "slack", "the film ..."
+  enum dea_flag_kind kind;
+};
+extern const struct dea_flag_words dea_flag_words[DEA_FLAG_COUNT];
+/* Words of flags with blanks between them, "" for none; out: DEA_FLAGS_SIZE. Returns out. */
+enum { DEA_FLAGS_SIZE = 96 };
+const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE]);
+/* Flags of such words; what is no word is passed over. */
+unsigned dea_flags_of_text(const char *text);
 
 /* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down.
  */

@@ -2,6 +2,7 @@
  * a curve that has points already goes on after them.
  */
 #include "result/checkpoint.h"
+#include "result/trust.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -143,6 +144,22 @@ static dea_status add_limit(struct dea_context *ctx, const struct dea_model_type
   return limit != NULL ? dea_curve_add_event(ctx, curve, limit) : DEA_OK;
 }
 
+/* Where the prediction ends, as a warning: also for a reader of the notes alone. */
+static dea_status say_trust(struct dea_context *ctx, const struct dea_curve *curve)
+{
+  struct dea_text text = {.ctx = ctx};
+  struct dea_trust trust = dea_curve_trust(curve);
+  dea_status status = DEA_OK;
+  if ((trust.doubts | trust.dangers) != 0) {
+    dea_trust_text(&trust, &text);
+    status = text.failed ? DEA_E_MEMORY
+                         : dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                                           "model %s: %s", curve->model, dea_text_get(&text));
+  }
+  dea_text_free(&text);
+  return status;
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
@@ -163,6 +180,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, total);
     }
   }
+  DEA_TRY(ctx, say_trust(ctx, curve));
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
     DEA_TRY(ctx, add_limit(ctx, type, model, curve));

@@ -57,6 +57,7 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
                                 struct dea_load_point *out)
 {
   double field = voltage_V / disc->film.thickness_m;
+  struct dea_reach reach = {NAN, NAN};
   out->min_tension_N_per_m = INFINITY;
   out->breakdown_margin = INFINITY;
   out->true_field_V_per_m = 0;
@@ -69,6 +70,7 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
       }
       out->min_tension_N_per_m =
           fmin(out->min_tension_N_per_m, fmin(at.tension_r_N_per_m, at.tension_t_N_per_m));
+      dea_reach_take(&reach, dea_material_reach(disc->film.material, at.stretch_r, at.stretch_t));
       if (disc->element[e].active) {
         double area = at.stretch_r * at.stretch_t;
         out->true_field_V_per_m = fmax(out->true_field_V_per_m, field * area);
@@ -78,6 +80,8 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
       }
     }
   }
+  out->locking_share = reach.locking_share;
+  out->range_share = reach.range_share;
   if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
     out->breakdown_margin = NAN;
   }

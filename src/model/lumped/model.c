@@ -52,6 +52,7 @@ static dea_status add_lift(const struct dea_model *model, const struct dea_lumpe
                            double field, struct dea_load_point *out)
 {
   double z = dea_lift_height(&model->lift, out->electrode_stretch), where;
+  out->told |= 1u << DEA_FLAG_BOUND;
   out->fibre_tip_z_m = out->centre_z_m = z;
   if (z > 0) {
     return dea_lift_force_max(lumped, &model->lift, field, z, &out->force_N, &where);
@@ -82,6 +83,10 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   out->breakdown_margin = dea_film_breakdown_margin(film, field, l_A, l_A);
   out->min_tension_N_per_m = fmin(smallest_tension(film, &balance.active, l_A),
                                   smallest_tension(film, &balance.passive, l_P));
+  struct dea_reach reach = dea_material_reach(film->material, l_A, l_A);
+  dea_reach_take(&reach, dea_material_reach(film->material, l_P, l_P));
+  out->locking_share = reach.locking_share;
+  out->range_share = reach.range_share;
   out->energy_J = (balance.energy_Pa - model->rest_energy_Pa) * disc_volume_m3(model);
   out->capacitance_F = dea_film_capacitance(film, disc_volume_m3(model), l_A, l_A);
   return model->device->fibre_count > 0 ? add_lift(model, lumped, field, out) : DEA_OK;

@@ -267,10 +267,10 @@ static void add_marks(struct dea_text *out, const struct dea_panel *panel, const
 
 static void add_key(struct dea_text *out, const struct dea_plot *plot)
 {
-  bool unstable = false;
+  const char *dashed = NULL;
   dea_text_add(out, "<ul class=\"key\">");
   for (size_t p = 0; p < plot->panel_count; p++) {
-    unstable = unstable || plot->panels[p].says_unstable;
+    dashed = plot->panels[p].dashed != NULL ? plot->panels[p].dashed : dashed;
     for (size_t s = 0; s < plot->panels[p].series_count; s++) {
       const struct dea_series *series = &plot->panels[p].series[s];
       if (series->title[0] == '\0' || !shows(series)) {
@@ -295,9 +295,11 @@ static void add_key(struct dea_text *out, const struct dea_plot *plot)
       dea_text_add(out, "</li>");
     }
   }
-  if (unstable) {
-    dea_text_add(out, "<li><svg class=\"sample\" viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
-                      "class=\"line c7 dashed\" d=\"M1 7H27\"/></svg>unstable</li>");
+  if (dashed != NULL) {
+    dea_text_add(out,
+                 "<li><svg class=\"sample\" viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
+                 "class=\"line c7 dashed\" d=\"M1 7H27\"/></svg>%s</li>",
+                 dashed);
   }
   dea_text_add(out, "</ul>");
 }

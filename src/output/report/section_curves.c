@@ -96,7 +96,8 @@ static void add_last_points(struct dea_report *report)
                   "<th scope=\"col\" class=\"n\">strain (%)</th>"
                   "<th scope=\"col\" class=\"n\">z centre (\302\265m)</th>"
                   "<th scope=\"col\" class=\"n\">z fibre tip (\302\265m)</th>"
-                  "<th scope=\"col\" class=\"n\">breakdown margin (%)</th>");
+                  "<th scope=\"col\" class=\"n\">breakdown margin (%)</th>"
+                  "<th scope=\"col\">flags</th>");
   for (size_t r = 0; r < report->count; r++) {
     const struct dea_result *result = report->runs[r].run->result;
     for (size_t c = 0; c < result->curve_count; c++) {
@@ -114,6 +115,8 @@ static void add_last_points(struct dea_report *report)
       dea_html_cell(out, 1e6 * p->centre_z_m, 5);
       dea_html_cell(out, 1e6 * p->fibre_tip_z_m, 5);
       dea_html_cell(out, 100 * p->breakdown_margin, 3);
+      char words[DEA_FLAGS_SIZE];
+      dea_html_element(out, "td", dea_flags_text(dea_load_point_flags(p), words));
       dea_text_add(out, "</tr>");
     }
   }

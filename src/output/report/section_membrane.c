@@ -2,6 +2,7 @@
  * that was computed, quantised to 16 bits between the extremes of the sweep, in base64. */
 #include "output/colour_map.h"
 #include "output/report/section.h"
+#include "result/trust.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -193,6 +194,13 @@ dea_status dea_section_membrane(struct dea_report *report, const struct dea_repo
   dea_text_add(out, "\"voltages\":[");
   for (size_t s = 0; s < steps.count; s++) {
     dea_text_add(out, "%s%.9g", s > 0 ? "," : "", steps.at[s]->voltage_V);
+  }
+  dea_text_add(out, "],\"doubts\":[");
+  for (size_t s = 0; s < steps.count; s++) {
+    char flags[DEA_FLAGS_SIZE];
+    const struct dea_surface_record *at = steps.at[s];
+    unsigned doubts = dea_result_doubts(run->run->result, at->model, at->voltage_V);
+    dea_text_add(out, "%s\"%s\"", s > 0 ? "," : "", dea_flags_text(doubts, flags));
   }
   dea_text_add(out, "],\"channels\":[");
   for (size_t c = 0; c < CHANNELS; c++) {

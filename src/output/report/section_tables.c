@@ -1,6 +1,7 @@
 /* Numbers of a run: what matters at a glance, limits, all points. */
 #include "output/csv.h"
 #include "output/report/section.h"
+#include "result/trust.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,31 +18,75 @@ static void add_card(struct dea_text *out, const char *what, double value, const
   dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
 }
 
-/* Cards of one model at the last point of its sweep. */
-static void add_cards(struct dea_report *report, const struct dea_result *result,
-                      const struct dea_curve *sweep)
+static void add_event(struct dea_text *out, const struct dea_curve *path, enum dea_event_kind kind,
+                      const char *what)
+{
+  const struct dea_event *event = dea_curve_first_event(path, kind);
+  add_card(out, what, event != NULL ? 1e-3 * event->point.voltage_V : NAN, "kV", 4);
+}
+
+/* Cards of one point. heading: what it is. */
+static void add_cards(struct dea_report *report, const struct dea_load_point *p,
+                      const char *heading)
 {
   struct dea_text *out = &report->text;
-  const struct dea_load_point *p = &sweep->points[sweep->count - 1];
-  const struct dea_curve *path = dea_result_find(result, sweep->model, "path");
-  const struct dea_event *slack = dea_curve_first_event(path, DEA_EVENT_SLACK);
-  const struct dea_event *pull_in = dea_curve_first_event(path, DEA_EVENT_PULL_IN);
-  const struct dea_event *breakdown = dea_curve_first_event(path, DEA_EVENT_BREAKDOWN);
-  char heading[2 * DEA_NAME_SIZE];
-  snprintf(heading, sizeof heading, "Model %s at %.4g kV%s", sweep->model, 1e-3 * p->voltage_V,
-           p->stable ? "" : ", unstable");
+  bool bound = dea_load_point_bounds(p);
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
   add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", 3);
-  add_card(out, "centre", 1e6 * p->centre_z_m, "\302\265m", 4);
-  add_card(out, "fibre tip", 1e6 * p->fibre_tip_z_m, "\302\265m", 4);
-  add_card(out, "force", 1e3 * p->force_N, "mN", 3);
+  add_card(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m, "\302\265m", 4);
+  add_card(out, bound ? "fibre tip, at most" : "fibre tip", 1e6 * p->fibre_tip_z_m, "\302\265m", 4);
+  add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", 3);
   add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", 3);
   add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", 3);
-  add_card(out, "slack from", slack != NULL ? 1e-3 * slack->point.voltage_V : NAN, "kV", 4);
-  add_card(out, "breakdown at", breakdown != NULL ? 1e-3 * breakdown->point.voltage_V : NAN, "kV",
-           4);
-  add_card(out, "pull-in at", pull_in != NULL ? 1e-3 * pull_in->point.voltage_V : NAN, "kV", 4);
+  dea_text_add(out, "</dl>");
+}
+
+/* Cards of a sweep at one of its voltages, NAN for none. what: it is. */
+static void add_cards_at(struct dea_report *report, const struct dea_curve *sweep, double voltage_V,
+                         const char *what)
+{
+  const struct dea_load_point *p = NULL;
+  for (size_t i = 0; i < sweep->count; i++) {
+    p = sweep->points[i].voltage_V == voltage_V ? &sweep->points[i] : p;
+  }
+  if (p != NULL) {
+    char heading[3 * DEA_NAME_SIZE], words[DEA_FLAGS_SIZE];
+    snprintf(heading, sizeof heading, "Model %s at %.4g kV%s%s", sweep->model, 1e-3 * p->voltage_V,
+             what, dea_flags_text(dea_load_point_flags(p), words));
+    add_cards(report, p, heading);
+  }
+}
+
+/* How far one model's sweep is to be trusted, and its cards: at the largest voltage that is to be
+ * trusted and safe, at the largest that is to be trusted, at the last. */
+static void add_glance(struct dea_report *report, const struct dea_result *result,
+                       const struct dea_curve *sweep)
+{
+  struct dea_text *out = &report->text, text = {.ctx = report->ctx};
+  struct dea_trust trust = dea_curve_trust(sweep);
+  const struct dea_curve *path = dea_result_find(result, sweep->model, "path");
+  double last_V = sweep->points[sweep->count - 1].voltage_V;
+  dea_trust_text(&trust, &text);
+  dea_text_add(out, "<p class=\"%s\"><strong>Model ",
+               trust.doubts != 0 || trust.dangers != 0 ? "warning" : "verdict");
+  dea_html_text(out, sweep->model);
+  dea_text_add(out, "</strong>: ");
+  dea_html_text(out, dea_text_get(&text));
+  dea_text_add(out, ".</p>");
+  out->failed = out->failed || text.failed;
+  dea_text_free(&text);
+  add_cards_at(report, sweep, trust.good_V, ", the largest voltage to be trusted and safe");
+  if (trust.trusted_V > trust.good_V || isnan(trust.good_V)) {
+    add_cards_at(report, sweep, trust.trusted_V, ", the largest voltage to be trusted, but ");
+  }
+  if (!(last_V <= trust.trusted_V)) {
+    add_cards_at(report, sweep, last_V, ", not to be trusted: ");
+  }
+  dea_text_add(out, "<dl class=\"cards\">");
+  add_event(out, path, DEA_EVENT_SLACK, "slack from");
+  add_event(out, path, DEA_EVENT_BREAKDOWN, "breakdown at");
+  add_event(out, path, DEA_EVENT_PULL_IN, "pull-in at");
   dea_text_add(out, "</dl>");
 }
 
@@ -52,7 +97,7 @@ dea_status dea_section_glance(struct dea_report *report, const struct dea_report
   for (size_t i = 0; i < result->curve_count; i++) {
     const struct dea_curve *curve = &result->curves[i];
     if (strcmp(curve->kind, "sweep") == 0 && curve->count > 0) {
-      add_cards(report, result, curve);
+      add_glance(report, result, curve);
     }
     if (!curve->complete) {
       dea_text_add(&report->text, "<p class=\"warning\">Model ");
@@ -203,6 +248,7 @@ static void add_curve_points(struct dea_report *report, const struct dea_curve *
     }
   }
   dea_html_element(&header, "th scope=\"col\"", "stable");
+  dea_html_element(&header, "th scope=\"col\"", "trusted");
   out->failed = out->failed || header.failed;
   snprintf(caption, sizeof caption, "Model %s, %s: %zu points", curve->model, curve->kind,
            curve->count);
@@ -217,7 +263,12 @@ static void add_curve_points(struct dea_report *report, const struct dea_curve *
         dea_html_cell(out, dea_point_columns[c].factor * dea_point_get(&curve->points[i], c), 5);
       }
     }
-    dea_text_add(out, "<td>%s</td></tr>", curve->points[i].stable ? "yes" : "no");
+    const struct dea_load_point *p = &curve->points[i];
+    char words[DEA_FLAGS_SIZE];
+    dea_flags_text(dea_load_point_flags(p), words);
+    dea_text_add(out, "<td>%s</td><td class=\"%s\">%s%s%s</td></tr>", p->stable ? "yes" : "no",
+                 dea_load_point_trusted(p) ? "good" : "bad",
+                 dea_load_point_trusted(p) ? "yes" : "no", words[0] != '\0' ? ": " : "", words);
   }
   dea_table_end(report);
   dea_text_add(out, "</details>");

@@ -30,6 +30,7 @@ struct dea_model {
       between_twin; // on the other side of the film's middle plane, or the same ones
   double voltage_V, rest_energy_J;
   struct dea_solid_report report;
+  bool left_a_state;               // since 0 V the solid has gone over to another state
   double *profile;                 // what the last one lends from
   struct dea_indent *indent;       // NULL: no probe
   struct dea_circuit_step *driven; // NULL: no history in time
@@ -201,7 +202,12 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
   out->min_tension_N_per_m = extremes.min_tension_N_per_m;
+  out->locking_share = extremes.reach.locking_share;
+  out->range_share = extremes.reach.range_share;
   double copies = dea_actuator_copies(&model->actuator);
+  out->compression_ratio = copies * extremes.compression_ratio;
+  out->told |= (unsigned)model->left_a_state << DEA_FLAG_STATES;
+  out->told |= (unsigned)model->actuator.plate.membrane << DEA_FLAG_PREVIEW;
   out->energy_J = copies * (model->report.energy_J - model->rest_energy_J);
   out->capacitance_F = copies * capacitance_F;
   if (model->indent != NULL) {
@@ -250,6 +256,7 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
                                         model->centre, model->actuator.settings.buckling_branch,
                                         &model->report, &moved));
   if (moved) {
+    model->left_a_state = true;
     double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: at %.4g kV the centre goes over from %.4g to %.4g um "
@@ -334,6 +341,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
       return stopped(ctx, model, next, status);
     }
     model->voltage_V = next;
+    model->left_a_state = next > 0 && (model->left_a_state || model->report.snapped);
     DEA_TRY(ctx, say_snap(ctx, model));
     DEA_TRY(ctx, take_side(ctx, model));
   }
@@ -446,6 +454,9 @@ static dea_status save(struct dea_context *ctx, struct dea_model *model, struct 
   *out = (struct dea_state){0};
   DEA_TRY(ctx, dea_solid_save(ctx, model->solid, out));
   DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "model", own, 1));
+  if (model->left_a_state) { // by its presence
+    DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "left_a_state", own, 1));
+  }
   return DEA_OK;
 }
 
@@ -458,6 +469,7 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
   }
   DEA_TRY(ctx, dea_solid_load(ctx, model->solid, state));
   model->voltage_V = own[0];
+  model->left_a_state = dea_state_find(state, "left_a_state", 1) != NULL;
   return DEA_OK;
 }
 

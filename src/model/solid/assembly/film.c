@@ -8,6 +8,37 @@
 #include <math.h>
 #include <string.h>
 
+/* What a clamped circular plate bears is 14.7 D / R^2, by its area 46 D / A; 4 pi^2 D / A is about
+ * that of any clamped plate as wide as long (docs/theory/trust.md). D = E h^3 / (12 (1 - nu^2)) of
+ * an incompressible film. */
+static double compression_borne_N(const struct dea_constituent *film)
+{
+  const double pi = 3.14159265358979323846;
+  double D = dea_constituent_modulus(film) * pow(film->thickness_m, 3) / 3;
+  return 4 * pi * pi * D;
+}
+
+/* Compression and use of the law at the points in the plane of one element. */
+static dea_status wear_of(const struct dea_element *element, const struct dea_element_input *in,
+                          const struct dea_membrane_state *film,
+                          const struct dea_material *material, struct dea_solid_extremes *out)
+{
+  const struct dea_constituent *constituent = in->constituent;
+  struct dea_element_strains strains;
+  dea_status status = element->type->strains(element, in, &strains);
+  for (int q = 0; status == DEA_OK && q < element->points; q++) {
+    int p = q % film->count; // point in the plane
+    double area = film->area[p] * strains.volume_m3[q] / constituent->thickness_m;
+    const double *C = strains.C[q], *G = constituent->pre_stretch;
+    double a = G[0] * G[0] * C[0], b = G[1] * G[1] * C[1], c = G[0] * G[1] * C[5];
+    double root = hypot(0.5 * (a - b), c), middle = 0.5 * (a + b);
+    out->compression_ratio += fmax(-film->tension[p], 0) * area / compression_borne_N(constituent);
+    dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
+                                                   sqrt(fmax(middle - root, 1e-30))));
+  }
+  return status;
+}
+
 /* Takes the film's extremes of one element into *out. */
 static dea_status extremes_of(const struct dea_solid *s, size_t e,
                               const struct dea_material *material, double pre_stretch,
@@ -29,7 +60,7 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
           fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
     }
   }
-  return status;
+  return status == DEA_OK ? wear_of(element, &in, &film, material, out) : status;
 }
 
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
@@ -60,11 +91,18 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
   return status;
 }
 
+/* Largest of all ranks; NAN where none knows it. */
+static double largest_known(double value)
+{
+  double largest = dea_solid_largest(isnan(value) ? -INFINITY : value);
+  return isinf(largest) ? NAN : largest;
+}
+
 dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
                               double pre_stretch, struct dea_solid_extremes *out)
 {
   dea_status status = DEA_OK;
-  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY};
+  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY, 0, {NAN, NAN}};
   for (size_t k = 0; k < s->problem.own_count && status == DEA_OK; k++) {
     size_t e = s->problem.own[k];
     if (dea_solid_constituent(s, e)->permittivity_F_per_m > 0) { // the film
@@ -78,6 +116,9 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *ma
   out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
   out->breakdown_margin = -dea_solid_largest(-out->breakdown_margin);
   out->min_tension_N_per_m = -dea_solid_largest(-out->min_tension_N_per_m);
+  dea_solid_sum(&out->compression_ratio, 1);
+  out->reach.locking_share = largest_known(out->reach.locking_share);
+  out->reach.range_share = largest_known(out->reach.range_share);
   if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
     out->breakdown_margin = NAN;
   }

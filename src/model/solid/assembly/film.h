@@ -2,9 +2,8 @@
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_FILM_H
 #define DEA_MODEL_SOLID_ASSEMBLY_FILM_H
 
+#include "material/plane.h"
 #include "model/solid/assembly/solid.h"
-
-struct dea_material;
 
 /* Capacitance between the electrodes: charge over the voltage that all channels have their shares
  * of. NAN without electrodes, and where a channel has a voltage of its own (channels.h). */
@@ -16,6 +15,8 @@ struct dea_solid_extremes {
   double true_field_V_per_m;  // largest V over the current thickness
   double breakdown_margin;    // smallest; NAN when unknown
   double min_tension_N_per_m; // smallest principal membrane force per current length
+  double compression_ratio; // integral of compression over 4 pi^2 D, D the film's bending stiffness
+  struct dea_reach reach;   // of the film's law
 };
 /* material: of the film, for its breakdown field; pre_stretch: of it. */
 dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,

@@ -1,0 +1,100 @@
+#include "result/trust.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Flags of a kind. */
+static unsigned of_kind(unsigned flags, enum dea_flag_kind kind)
+{
+  for (int k = 0; k < DEA_FLAG_COUNT; k++) {
+    flags &= dea_flag_words[k].kind == kind ? ~0u : ~(1u << k);
+  }
+  return flags;
+}
+
+/* Largest voltage of a curve below a limit; NAN for none. */
+static double largest_below(const struct dea_curve *curve, double limit_V)
+{
+  double largest = NAN;
+  for (size_t i = 0; i < curve->count; i++) {
+    double at = curve->points[i].voltage_V;
+    largest = at < limit_V ? fmax(largest, at) : largest;
+  }
+  return largest;
+}
+
+struct dea_trust dea_curve_trust(const struct dea_curve *curve)
+{
+  struct dea_trust trust = {.doubt_V = INFINITY, .danger_V = INFINITY};
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    unsigned flags = dea_load_point_flags(p);
+    unsigned doubts = of_kind(flags, DEA_FLAG_DOUBT), dangers = of_kind(flags, DEA_FLAG_DANGER);
+    if (doubts != 0 && p->voltage_V < trust.doubt_V) {
+      trust.doubt_V = p->voltage_V;
+      trust.doubts = doubts;
+    }
+    if (dangers != 0 && p->voltage_V < trust.danger_V) {
+      trust.danger_V = p->voltage_V;
+      trust.dangers = dangers;
+    }
+  }
+  trust.trusted_V = largest_below(curve, trust.doubt_V);
+  trust.safe_V = largest_below(curve, trust.danger_V);
+  trust.good_V = largest_below(curve, fmin(trust.doubt_V, trust.danger_V));
+  return trust;
+}
+
+/* "; at 6.2 kV the film ..., the state ...": what comes next. */
+static void add_flags(struct dea_text *out, unsigned flags, double voltage_V)
+{
+  const char *before = "";
+  dea_text_add(out, "; at %.4g kV ", 1e-3 * voltage_V);
+  for (int k = 0; k < DEA_FLAG_COUNT; k++) {
+    if ((flags >> k & 1u) != 0) {
+      dea_text_add(out, "%s%s", before, dea_flag_words[k].sentence);
+      before = ", and ";
+    }
+  }
+}
+
+void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
+{
+  if (isnan(trust->good_V)) {
+    dea_text_add(out, "at no voltage both to be trusted and safe");
+  } else {
+    dea_text_add(out, "to be trusted and safe up to %.4g kV", 1e-3 * trust->good_V);
+  }
+  if (trust->dangers != 0 && trust->danger_V <= trust->doubt_V) {
+    add_flags(out, trust->dangers, trust->danger_V);
+    if (!isnan(trust->trusted_V) && trust->trusted_V > trust->good_V) {
+      dea_text_add(out, "; to be trusted up to %.4g kV, for a film that holds out",
+                   1e-3 * trust->trusted_V);
+    }
+  }
+  if (trust->doubts != 0) {
+    add_flags(out, trust->doubts, trust->doubt_V);
+  }
+}
+
+unsigned dea_result_doubts(const struct dea_result *result, const char *model, double voltage_V)
+{
+  const struct dea_curve *sweep = result != NULL ? dea_result_find(result, model, "sweep") : NULL;
+  unsigned doubts = 0;
+  for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
+    if (sweep->points[i].voltage_V == voltage_V) {
+      doubts |= of_kind(dea_load_point_flags(&sweep->points[i]), DEA_FLAG_DOUBT);
+    }
+  }
+  return doubts;
+}
+
+const char *dea_voltage_words(const struct dea_result *result, const char *model, double voltage_V,
+                              char out[DEA_VOLTAGE_WORDS])
+{
+  char words[DEA_FLAGS_SIZE];
+  unsigned doubts = dea_result_doubts(result, model, voltage_V);
+  snprintf(out, DEA_VOLTAGE_WORDS, "%.4g kV%s%s", 1e-3 * voltage_V,
+           doubts != 0 ? ", not to be trusted: " : "", dea_flags_text(doubts, words));
+  return out;
+}
