@@ -130,7 +130,9 @@ static void check_disc(const struct dea_quarter *mesh, double tolerance)
     solve(&disc, 1e3 * kV);
     double strain = displacement_at(&disc, a_m, 0, 0)[0] / a_m;
     assert_close(strain, wanted.electrode_stretch - 1, tolerance, 0);
-    assert_int_equal(dea_solid_extremes(disc.solid, &material, 1.5, &extremes), DEA_OK);
+    const struct dea_solid_film_data films[3] = {
+        {&material, 1.5}, {&material, 1.5}, {&material, 1.5}};
+    assert_int_equal(dea_solid_extremes(disc.solid, films, &extremes), DEA_OK);
     assert_close(extremes.true_field_V_per_m, wanted.true_field_V_per_m, tolerance, 0);
     assert_close(extremes.breakdown_margin, wanted.breakdown_margin, 10 * tolerance, tolerance);
     assert_close(extremes.min_tension_N_per_m, wanted.min_tension_N_per_m, 0, 10 * tolerance * 35);
@@ -183,7 +185,8 @@ static void test_slack_film(void **state)
   for (int kV = 0; kV <= 4; kV += 2) {
     solve(&slack, 1e3 * kV);
   }
-  assert_int_equal(dea_solid_extremes(slack.solid, &material, 1, &extremes), DEA_OK);
+  const struct dea_solid_film_data film = {&material, 1};
+  assert_int_equal(dea_solid_extremes(slack.solid, &film, &extremes), DEA_OK);
   assert_close(extremes.min_tension_N_per_m, 0, 0, 1e-9);
   assert_true(extremes.true_field_V_per_m > 4e3 / 100e-6 * 1.02); // it thins all the same
   actuator_destroy(&stiff);

@@ -75,7 +75,8 @@ static void take_samples(struct dea_solid *solid, const struct dea_grid *grid, d
     }
   }
   out->samples[6] = energy_J;
-  if (dea_solid_extremes(solid, &material, 1.5, &extremes) == DEA_OK) {
+  const struct dea_solid_film_data films[2] = {{&material, 1.5}, {&material, 1.5}};
+  if (dea_solid_extremes(solid, films, &extremes) == DEA_OK) {
     out->samples[7] = extremes.min_tension_N_per_m;
     out->samples[8] = extremes.true_field_V_per_m;
   }

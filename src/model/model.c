@@ -72,6 +72,12 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
   return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
 }
 
+dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, struct dea_observation *out)
+{
+  return type->observe != NULL ? type->observe(ctx, model, out) : lacks(ctx, type, "monitors");
+}
+
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out)

@@ -9,6 +9,7 @@
 #include "model/circuit.h"
 #include "result/field_mesh.h"
 #include "result/load_point.h"
+#include "result/observation.h"
 #include "result/profile.h"
 #include "result/state.h"
 
@@ -84,6 +85,10 @@ struct dea_model_type {
   dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_path_options *options, dea_point_sink points,
                      dea_event_sink events, void *user);
+  /* Monitors and channels of the device's layout at the last point solved; out lends from the model
+   * until the next call. NULL when the model knows none. */
+  dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,
+                        struct dea_observation *out);
   /* Profile at the last point solved; NULL when the model has none. */
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
@@ -157,6 +162,8 @@ dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *
                           dea_point_sink points, dea_event_sink events, void *user);
 dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, struct dea_profile *out);
+dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, struct dea_observation *out);
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out);

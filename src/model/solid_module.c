@@ -19,12 +19,13 @@ bool dea_solid_module_find(char *out, size_t size)
   return dea_module_find(module_file, out, size);
 }
 
-/* It cannot be unloaded: MPI. */
-static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
+/* The module's model of discs, or of any layout. It cannot be unloaded: MPI. */
+static dea_status open_module(struct dea_context *ctx, bool general,
+                              const struct dea_model_type **out)
 {
   const void *type = NULL;
-  DEA_TRY(ctx,
-          dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine", advice, &type));
+  const char *name = general ? "dea_solid_layout_module" : "dea_solid_module";
+  DEA_TRY(ctx, dea_module_open(ctx, module_file, name, "the 3D engine", advice, &type));
   *out = type;
   return DEA_OK;
 }
@@ -51,7 +52,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 {
   *out = NULL;
   const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, &type));
+  DEA_TRY(ctx, open_module(ctx, device->general, &type));
   struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
   if (model == NULL) {
     return DEA_E_MEMORY;
@@ -76,13 +77,20 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, model->type->indent(ctx, model->inner, probe, depth_m, out));
+  DEA_TRY(ctx, dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out));
+  return DEA_OK;
+}
+
+static dea_status observe(struct dea_context *ctx, struct dea_model *model,
+                          struct dea_observation *out)
+{
+  DEA_TRY(ctx, dea_model_observe(ctx, model->type, model->inner, out));
   return DEA_OK;
 }
 
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
 {
-  DEA_TRY(ctx, model->type->profile(ctx, model->inner, out));
+  DEA_TRY(ctx, dea_model_profile(ctx, model->type, model->inner, out));
   return DEA_OK;
 }
 
@@ -90,7 +98,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
-  DEA_TRY(ctx, model->type->modes(ctx, model->inner, at, count, points, shapes));
+  DEA_TRY(ctx, dea_model_modes(ctx, model->type, model->inner, at, count, points, shapes));
   return DEA_OK;
 }
 
@@ -99,35 +107,35 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_ac_excitation *excitation, const double *frequency_Hz,
                           size_t count, struct dea_load_point *points)
 {
-  DEA_TRY(ctx,
-          model->type->respond(ctx, model->inner, at, excitation, frequency_Hz, count, points));
+  DEA_TRY(ctx, dea_model_respond(ctx, model->type, model->inner, at, excitation, frequency_Hz,
+                                 count, points));
   return DEA_OK;
 }
 
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, model->type->fields(ctx, model->inner, part, out));
+  DEA_TRY(ctx, dea_model_fields(ctx, model->type, model->inner, part, out));
   return DEA_OK;
 }
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, model->type->save(ctx, model->inner, out));
+  DEA_TRY(ctx, dea_model_save(ctx, model->type, model->inner, out));
   return DEA_OK;
 }
 
 static dea_status load(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_state *state)
 {
-  DEA_TRY(ctx, model->type->load(ctx, model->inner, state));
+  DEA_TRY(ctx, dea_model_load(ctx, model->type, model->inner, state));
   return DEA_OK;
 }
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, model->type->begin(ctx, model->inner, options, out));
+  DEA_TRY(ctx, dea_model_begin(ctx, model->type, model->inner, options, out));
   return DEA_OK;
 }
 
@@ -135,7 +143,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  DEA_TRY(ctx, model->type->advance(ctx, model->inner, step, out, error));
+  DEA_TRY(ctx, dea_model_advance(ctx, model->type, model->inner, step, out, error));
   return DEA_OK;
 }
 
@@ -155,6 +163,7 @@ const struct dea_model_type dea_model_3d = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .observe = observe,
     .indent = indent,
     .modes = modes,
     .respond = respond,

@@ -3,6 +3,7 @@
  */
 #include "result/checkpoint.h"
 #include "result/trust.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -22,11 +23,17 @@ static double distance_to_pull_in(const struct dea_curve *path, const struct dea
   return NAN;
 }
 
+/* Whether the device is of the general form. */
+static bool is_general(const struct dea_result *result)
+{
+  return result->device != NULL && result->device->general;
+}
+
 static dea_status add_profile(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, double voltage_V, struct dea_result *result)
 {
   struct dea_profile profile;
-  if (type->profile == NULL) {
+  if (type->profile == NULL || is_general(result)) { // profiles are along radii of a disc
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
@@ -76,12 +83,12 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
       fields_wanted(result->design, curve->points[curve->count - 1].voltage_V)) {
     DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &fields));
   }
-  if (type->save != NULL) {
+  bool saves = type->save != NULL && !is_general(result);
+  if (saves) {
     status = dea_model_save(ctx, type, model, &state);
   }
   if (status == DEA_OK) {
-    status =
-        sink->point(ctx, sink->user, result, curve, fields, type->save != NULL ? &state : NULL);
+    status = sink->point(ctx, sink->user, result, curve, fields, saves ? &state : NULL);
   }
   dea_field_mesh_destroy(ctx, fields);
   return status;
@@ -123,6 +130,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
+  DEA_TRY(ctx, dea_study_observe(ctx, type, model, voltage_V, result));
   DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
   return result->checkpoint != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
 }
@@ -171,6 +179,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   snprintf(what, sizeof what, "%s sweep", type->name);
   open_curve(curve);
   dea_status status = DEA_OK;
+  if (is_general(result) && curve->count > 0) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a run of a device of the general form cannot be resumed yet; run it anew with "
+                    "--force");
+  }
   if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
     status = restore(ctx, type, model, result->checkpoint);
   }

@@ -1,41 +1,10 @@
 #include "model/solid/actuator/actuator.h"
 
 #include "model/film.h"
+#include "model/solid/actuator/constituent_of_material.h"
 #include "model/solid/point/membrane_point.h"
 
 #include <math.h>
-
-static const double kappa_share = 100; // kappa over the shear modulus
-
-/* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
-static const double incompressible = 0.49;
-
-/* Film or electrode: a law, and the film's pre-stretch. */
-static struct dea_constituent stretched(enum dea_part part, const struct dea_material *material,
-                                        double pre_stretch)
-{
-  struct dea_constituent out = {
-      .part = part,
-      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
-      .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
-  };
-  dea_constituent_set_law(&out, material->law, material->param);
-  return out;
-}
-
-/* A part that is bonded free of stress. */
-static struct dea_constituent bonded(enum dea_part part, double young_modulus_Pa,
-                                     double poisson_ratio)
-{
-  const double param[] = {young_modulus_Pa, poisson_ratio}, shear_modulus = young_modulus_Pa / 3;
-  struct dea_constituent out = dea_constituent_bonded(param);
-  out.part = part;
-  if (poisson_ratio >= incompressible) {
-    dea_constituent_set_law(&out, dea_law_find("neo-hookean"), &shear_modulus);
-    out.kappa_Pa = kappa_share * shear_modulus;
-  }
-  return out;
-}
 
 static bool known(double density)
 {
@@ -112,20 +81,17 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) { // also what this device has not
     constituents[i] = dea_constituent_bonded((const double[]){0, 0});
   }
-  double l = d->pre_stretch, slope = d->film.permittivity.slope;
-  constituents[DEA_CONSTITUENT_FILM] = stretched(DEA_PART_FILM, &d->film, l);
-  // eps_r = at_rest + slope (s - 1), s = l_pre sqrt(area stretch)
-  constituents[DEA_CONSTITUENT_FILM].permittivity_F_per_m =
-      DEA_EPSILON_0 * (d->film.permittivity.at_rest + slope * (l - 1));
-  constituents[DEA_CONSTITUENT_FILM].permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
-  constituents[DEA_CONSTITUENT_FILM].thickness_m = d->film_thickness_m;
-  constituents[DEA_CONSTITUENT_ELECTRODE] =
-      stretched(DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
+  const double l[] = {d->pre_stretch, d->pre_stretch};
+  constituents[DEA_CONSTITUENT_FILM] = dea_constituent_stretched(DEA_PART_FILM, &d->film, l);
+  dea_constituent_set_permittivity(&constituents[DEA_CONSTITUENT_FILM], &d->film.permittivity,
+                                   d->film_thickness_m);
+  constituents[DEA_CONSTITUENT_ELECTRODE] = dea_constituent_stretched(
+      DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
   constituents[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
-  constituents[DEA_CONSTITUENT_GLUE] = bonded(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5);
+  constituents[DEA_CONSTITUENT_GLUE] = dea_constituent_free(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5);
   constituents[DEA_CONSTITUENT_FIBRE] =
-      bonded(DEA_PART_FIBRE, d->fibre.young_modulus_Pa, d->fibre.poisson_ratio);
+      dea_constituent_free(DEA_PART_FIBRE, d->fibre.young_modulus_Pa, d->fibre.poisson_ratio);
   for (int i = 0; i < DEA_CONSTITUENT_BOND; i++) { // bonds come below, free of stress
     bool there = i == DEA_CONSTITUENT_FILM ||
                  (i == DEA_CONSTITUENT_ELECTRODE && film.electrode != NULL) ||

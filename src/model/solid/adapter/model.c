@@ -181,7 +181,11 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   const double *u = dea_solid_displacement(model->solid);
   struct dea_solid_extremes extremes;
   double capacitance_F;
-  dea_status status = dea_solid_extremes(model->solid, &d->film, d->pre_stretch, &extremes);
+  struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+    films[i] = (struct dea_solid_film_data){&d->film, d->pre_stretch};
+  }
+  dea_status status = dea_solid_extremes(model->solid, films, &extremes);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }

@@ -41,7 +41,7 @@ static dea_status wear_of(const struct dea_element *element, const struct dea_el
 
 /* Takes the film's extremes of one element into *out. */
 static dea_status extremes_of(const struct dea_solid *s, size_t e,
-                              const struct dea_material *material, double pre_stretch,
+                              const struct dea_solid_film_data *data,
                               struct dea_solid_extremes *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
@@ -52,15 +52,15 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   dea_status status = element->type->membrane_state(element, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
     double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
-    double stretch = pre_stretch * sqrt(film.area[p]);
+    double stretch = data->pre_stretch * sqrt(film.area[p]);
     out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
     if (s->problem.active[e]) {
       out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
       out->breakdown_margin =
-          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(material, stretch));
+          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(data->material, stretch));
     }
   }
-  return status == DEA_OK ? wear_of(element, &in, &film, material, out) : status;
+  return status == DEA_OK ? wear_of(element, &in, &film, data->material, out) : status;
 }
 
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
@@ -98,15 +98,16 @@ static double largest_known(double value)
   return isinf(largest) ? NAN : largest;
 }
 
-dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_material *material,
-                              double pre_stretch, struct dea_solid_extremes *out)
+dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_data *films,
+                              struct dea_solid_extremes *out)
 {
   dea_status status = DEA_OK;
   *out = (struct dea_solid_extremes){0, INFINITY, INFINITY, 0, {NAN, NAN}};
   for (size_t k = 0; k < s->problem.own_count && status == DEA_OK; k++) {
     size_t e = s->problem.own[k];
-    if (dea_solid_constituent(s, e)->permittivity_F_per_m > 0) { // the film
-      status = extremes_of(s, e, material, pre_stretch, out);
+    const struct dea_solid_film_data *film = &films[s->problem.constituent_of[e]];
+    if (dea_solid_constituent(s, e)->permittivity_F_per_m > 0 && film->material != NULL) {
+      status = extremes_of(s, e, film, out);
     }
   }
   status = dea_solid_agree(NULL, status);

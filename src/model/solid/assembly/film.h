@@ -18,8 +18,13 @@ struct dea_solid_extremes {
   double compression_ratio; // integral of compression over 4 pi^2 D, D the film's bending stiffness
   struct dea_reach reach;   // of the film's law
 };
-/* material: of the film, for its breakdown field; pre_stretch: of it. */
-dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_material *material,
-                              double pre_stretch, struct dea_solid_extremes *out);
+/* What a constituent is as a film, for its breakdown field. */
+struct dea_solid_film_data {
+  const struct dea_material *material; // NULL: not looked at
+  double pre_stretch;                  // root of its area's
+};
+/* films: [constituent_count]. */
+dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_solid_film_data *films,
+                              struct dea_solid_extremes *out);
 
 #endif

@@ -1,0 +1,46 @@
+#include "model/solid/actuator/constituent_of_material.h"
+
+#include <math.h>
+
+static const double kappa_share = 100; // kappa over the shear modulus
+
+/* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
+static const double incompressible = 0.49;
+
+struct dea_constituent dea_constituent_stretched(enum dea_part part,
+                                                 const struct dea_material *material,
+                                                 const double pre_stretch[2])
+{
+  double l1 = pre_stretch[0], l2 = pre_stretch[1];
+  struct dea_constituent out = {
+      .part = part,
+      .pre_stretch = {l1, l2, 1 / (l1 * l2)},
+      .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
+  };
+  dea_constituent_set_law(&out, material->law, material->param);
+  return out;
+}
+
+struct dea_constituent dea_constituent_free(enum dea_part part, double young_modulus_Pa,
+                                            double poisson_ratio)
+{
+  const double param[] = {young_modulus_Pa, poisson_ratio}, shear_modulus = young_modulus_Pa / 3;
+  struct dea_constituent out = dea_constituent_bonded(param);
+  out.part = part;
+  if (poisson_ratio >= incompressible) {
+    dea_constituent_set_law(&out, dea_law_find("neo-hookean"), &shear_modulus);
+    out.kappa_Pa = kappa_share * shear_modulus;
+  }
+  return out;
+}
+
+/* eps_r = at_rest + slope (s - 1), s = sqrt(l1 l2) sqrt(area stretch). */
+void dea_constituent_set_permittivity(struct dea_constituent *constituent,
+                                      const struct dea_permittivity *permittivity,
+                                      double thickness_m)
+{
+  double l = sqrt(1 / constituent->pre_stretch[2]), slope = permittivity->slope;
+  constituent->permittivity_F_per_m = DEA_EPSILON_0 * (permittivity->at_rest + slope * (l - 1));
+  constituent->permittivity_slope_F_per_m = DEA_EPSILON_0 * slope * l;
+  constituent->thickness_m = thickness_m;
+}

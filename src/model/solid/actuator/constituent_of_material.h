@@ -1,0 +1,19 @@
+/* What a part of a material is made of, as the elements take it. */
+#ifndef DEA_MODEL_SOLID_ACTUATOR_CONSTITUENT_OF_MATERIAL_H
+#define DEA_MODEL_SOLID_ACTUATOR_CONSTITUENT_OF_MATERIAL_H
+
+#include "model/solid/point/constituent.h"
+
+/* Of the material's law, stretched along x and y before it came to the flat state. */
+struct dea_constituent dea_constituent_stretched(enum dea_part part,
+                                                 const struct dea_material *material,
+                                                 const double pre_stretch[2]);
+/* Bonded free of stress; a Poisson's ratio of 0.49 and more is taken as incompressible. */
+struct dea_constituent dea_constituent_free(enum dea_part part, double young_modulus_Pa,
+                                            double poisson_ratio);
+/* Permittivity of a film between electrodes h apart, as it depends on its area. */
+void dea_constituent_set_permittivity(struct dea_constituent *constituent,
+                                      const struct dea_permittivity *permittivity,
+                                      double thickness_m);
+
+#endif

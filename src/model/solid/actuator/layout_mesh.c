@@ -1,0 +1,327 @@
+#include "model/solid/actuator/layout_mesh.h"
+
+#include "model/solid/mesh/gmsh.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Sizes of elements at refinement 1, which each refinement more halves: over the root of the area
+ * of the largest ply; and how much finer they are along the edges of electrodes and of plies on
+ * others, where the film's stretch changes. */
+static const double size_share = 0.09, edge_share = 0.3;
+/* A region that is narrow has two elements across: over its area by its boundary. */
+static const double across_share = 1.0;
+static const double near_share = 1e-6; // of the size of all: a node on a boundary
+
+// Plane ------------------------------------------------------------------------------------------
+
+/* What is meshed: regions with parts in them. */
+static void mark_used(const struct dea_layout *l, bool *used)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    used[l->plies[i].region] = true;
+  }
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    used[l->electrodes[i].region] = true;
+  }
+  for (size_t i = 0; i < l->support_count; i++) {
+    used[l->supports[i].region] = true;
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    used[l->bodies[i].region] = true;
+  }
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    used[l->pressures[i].region] = true;
+  }
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    if (l->monitors[i].kind == DEA_MONITOR_REGION) {
+      used[l->monitors[i].region] = true;
+    }
+  }
+}
+
+/* Sizes of elements: everywhere, and along the boundary of a region. */
+static double size_of_all(const struct dea_layout *l, double refinement)
+{
+  double largest = 0;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    largest = fmax(largest, dea_region_area_m2(&l->regions[l->plies[i].region].region));
+  }
+  return size_share * sqrt(largest) * exp2(1 - fmax(1, refinement));
+}
+
+static double size_at_edge(const struct dea_region *region, double size_m, double refinement)
+{
+  double across = across_share * dea_region_area_m2(region) / dea_region_boundary_m(region);
+  return fmin(edge_share * size_m, across * exp2(1 - fmax(1, refinement)));
+}
+
+/* The layout's regions as shapes; their contours come from `memory`. */
+static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_mesh *mesh,
+                            const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
+  if (shapes == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *plan = (struct dea_gmsh_plan){.shapes = shapes,
+                                 .order = settings->order == 1 ? 1 : 2,
+                                 .size_m = size_of_all(l, settings->refinement)};
+  for (size_t i = 0; i < l->region_count; i++) {
+    const struct dea_region *region = &l->regions[i].region;
+    if (mesh->group[i] == DEA_LAYOUT_NONE) {
+      continue;
+    }
+    struct dea_contour *contours = dea_arena_alloc(memory, region->contour_count, sizeof *contours);
+    if (contours == NULL) {
+      return DEA_E_MEMORY;
+    }
+    for (size_t k = 0; k < region->contour_count; k++) {
+      contours[k] = dea_region_contour(region, k);
+    }
+    shapes[plan->shape_count++] = (struct dea_gmsh_shape){
+        .name = l->regions[i].name,
+        .contours = contours,
+        .count = region->contour_count,
+        .edge_size_m = size_at_edge(region, plan->size_m, settings->refinement)};
+  }
+  return DEA_OK;
+}
+
+static dea_status make_plane(struct dea_context *ctx, const struct dea_model_settings *settings,
+                             struct dea_layout_mesh *mesh)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_gmsh_plan plan;
+  bool *used = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *used);
+  mesh->group = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *mesh->group);
+  DEA_TRY(ctx, dea_arena_status(&mesh->memory));
+  mark_used(l, used);
+  size_t groups = 0;
+  for (size_t i = 0; i < l->region_count; i++) {
+    mesh->group[i] = used[i] ? groups++ : DEA_LAYOUT_NONE;
+  }
+  dea_status status = fill_plan(&memory, mesh, settings, &plan);
+  if (status == DEA_OK) {
+    status = dea_gmsh_mesh(ctx, &plan, &mesh->plane);
+  }
+  dea_arena_free(&memory);
+  return status;
+}
+
+static bool is_within(const struct dea_layout_mesh *mesh, size_t plane_region, size_t region)
+{
+  size_t group = mesh->group[region];
+  return group != DEA_LAYOUT_NONE &&
+         mesh->plane->within[plane_region * mesh->plane->group_count + group] != 0;
+}
+
+// Plies ------------------------------------------------------------------------------------------
+
+/* The ply that one lies on in a region of the plane, or DEA_LAYOUT_NONE. */
+static size_t ply_below(const struct dea_layout_mesh *mesh, size_t plane_region, size_t ply)
+{
+  const bool *present = mesh->present + plane_region * mesh->layout->ply_count;
+  while (ply-- > 0) {
+    if (present[ply]) {
+      return ply;
+    }
+  }
+  return DEA_LAYOUT_NONE;
+}
+
+/* How many plies of the list each one passes over. */
+static dea_status find_skips(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             size_t *skips)
+{
+  const struct dea_layout *l = mesh->layout;
+  for (size_t p = 0; p < l->ply_count; p++) {
+    bool first = true;
+    size_t on = DEA_LAYOUT_NONE;
+    for (size_t r = 0; r < mesh->plane->region_count; r++) {
+      size_t here = ply_below(mesh, r, p);
+      if (!mesh->present[r * l->ply_count + p] || (!first && here == on)) {
+        continue;
+      }
+      if (!first) {
+        size_t a = on != DEA_LAYOUT_NONE ? on : here, b = on != DEA_LAYOUT_NONE ? here : on;
+        DEA_TRY(ctx,
+                dea_finding_add(
+                    ctx, DEA_ERROR, l->plies[p].location,
+                    "the ply '%s' lies partly on '%s' and partly on %s%s%s: it has to be flat; "
+                    "fill the step with a ply of that thickness, or make two plies of it",
+                    l->plies[p].name, l->plies[a].name, b != DEA_LAYOUT_NONE ? "'" : "nothing",
+                    b != DEA_LAYOUT_NONE ? l->plies[b].name : "", b != DEA_LAYOUT_NONE ? "'" : ""));
+        return dea_fail(ctx, DEA_E_DESIGN, "the ply '%s' is not flat", l->plies[p].name);
+      }
+      on = here;
+      first = false;
+    }
+    skips[p] = on != DEA_LAYOUT_NONE ? p - 1 - on : p;
+  }
+  return DEA_OK;
+}
+
+static bool is_present(const void *self, int region, int ply)
+{
+  const struct dea_layout_mesh *mesh = self;
+  return mesh->present[(size_t)region * mesh->layout->ply_count + (size_t)ply];
+}
+
+static dea_status extrude(struct dea_context *ctx, const struct dea_model_settings *settings,
+                          struct dea_layout_mesh *mesh)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_ply *plies = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *plies);
+  size_t *skips = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *skips);
+  DEA_TRY(ctx, dea_arena_status(&mesh->memory));
+  DEA_TRY(ctx, find_skips(ctx, mesh, skips));
+  for (size_t p = 0; p < l->ply_count; p++) {
+    bool surface = mesh->membrane && dea_layout_is_dielectric(l, p);
+    plies[p] = (struct dea_ply){
+        .thickness_m = surface ? 0 : l->plies[p].thickness_m,
+        .count = l->plies[p].elements > 0 && !surface ? l->plies[p].elements : 1,
+        .order_z = settings->order_z > 0 ? settings->order_z : 2,
+    };
+  }
+  const struct dea_stack stack = {
+      .plies = plies, .count = l->ply_count, .skips = skips, .present = is_present, .self = mesh};
+  DEA_TRY(ctx, dea_grid_extrude(ctx, mesh->plane, &stack, &mesh->grid));
+  return mesh->grid->element_count > 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "no ply of the device has an element");
+}
+
+// Electrodes -------------------------------------------------------------------------------------
+
+/* Channel of the electrode on a face of a ply, that of the ply at the other side included; -1:
+ * there is none. */
+static int channel_at(const struct dea_layout_mesh *mesh, size_t plane_region, size_t ply, bool top)
+{
+  const struct dea_layout *l = mesh->layout;
+  size_t other = DEA_LAYOUT_NONE;
+  if (!top) {
+    other = ply_below(mesh, plane_region, ply);
+  }
+  for (size_t q = ply + 1; top && q < l->ply_count && other == DEA_LAYOUT_NONE; q++) {
+    bool there = mesh->present[plane_region * l->ply_count + q];
+    other = there && ply_below(mesh, plane_region, q) == ply ? q : other;
+  }
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    const struct dea_layout_electrode *e = &l->electrodes[i];
+    bool here = (e->ply == ply && e->top == top) || (e->ply == other && e->top != top);
+    if (here && is_within(mesh, plane_region, e->region)) {
+      return (int)e->channel;
+    }
+  }
+  return -1;
+}
+
+static void find_fields(struct dea_layout_mesh *mesh)
+{
+  size_t plies = mesh->layout->ply_count;
+  for (size_t i = 0; i < mesh->plane->region_count * plies; i++) {
+    struct dea_layout_field *field = &mesh->field[i];
+    *field = (struct dea_layout_field){-1, -1};
+    if (mesh->present[i]) {
+      int top = channel_at(mesh, i / plies, i % plies, true);
+      int bottom = channel_at(mesh, i / plies, i % plies, false);
+      if (top >= 0 && bottom >= 0 && top != bottom) {
+        *field = (struct dea_layout_field){top, bottom};
+      }
+    }
+  }
+}
+
+static dea_status fill(struct dea_context *ctx, const struct dea_model_settings *settings,
+                       struct dea_layout_mesh *mesh)
+{
+  size_t plies = mesh->layout->ply_count;
+  DEA_TRY(ctx, make_plane(ctx, settings, mesh));
+  size_t count = mesh->plane->region_count * plies;
+  mesh->present = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->present);
+  mesh->field = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->field);
+  DEA_TRY(ctx, dea_arena_status(&mesh->memory));
+  for (size_t i = 0; i < count; i++) {
+    mesh->present[i] = is_within(mesh, i / plies, mesh->layout->plies[i % plies].region);
+  }
+  find_fields(mesh);
+  DEA_TRY(ctx, extrude(ctx, settings, mesh));
+  return DEA_OK;
+}
+
+dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_layout_mesh *out)
+{
+  *out = (struct dea_layout_mesh){
+      .memory = {.ctx = ctx}, .layout = layout, .membrane = settings->film == DEA_FILM_MEMBRANE};
+  dea_status status = fill(ctx, settings, out);
+  if (status != DEA_OK) {
+    dea_layout_mesh_free(ctx, out);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)
+{
+  dea_grid_destroy(ctx, mesh->grid);
+  dea_plane_mesh_destroy(ctx, mesh->plane);
+  dea_arena_free(&mesh->memory);
+  *mesh = (struct dea_layout_mesh){0};
+}
+
+// Places -----------------------------------------------------------------------------------------
+
+bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, size_t region)
+{
+  return is_within(mesh, (size_t)mesh->grid->region[element], region);
+}
+
+static double distance_to(const struct dea_region *region, const double x[2])
+{
+  double least = INFINITY;
+  for (size_t k = 0; k < region->contour_count; k++) {
+    const struct dea_contour contour = dea_region_contour(region, k);
+    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i);
+      double at[2];
+      dea_piece_nearest(&piece, x, at);
+      least = fmin(least, hypot(x[0] - at[0], x[1] - at[1]));
+    }
+  }
+  return least;
+}
+
+size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, bool edge,
+                            size_t within, bool *marked)
+{
+  const struct dea_plane_mesh *plane = mesh->plane;
+  const struct dea_layout_region *regions = mesh->layout->regions;
+  size_t per = (size_t)((plane->order + 1) * (plane->order + 1)), count = 0;
+  double box[4];
+  dea_layout_box_m(mesh->layout, box);
+  double near_m = near_share * hypot(box[2] - box[0], box[3] - box[1]);
+  memset(marked, 0, plane->node_count * sizeof *marked);
+  for (size_t q = 0; q < plane->quad_count; q++) {
+    for (size_t n = 0; n < per && (edge || is_within(mesh, (size_t)plane->region[q], region));
+         n++) {
+      marked[plane->quads[q * per + n]] = true;
+    }
+  }
+  for (size_t n = 0; n < plane->node_count; n++) {
+    const double *x = plane->x + 2 * n;
+    if (marked[n] && edge) {
+      marked[n] = distance_to(&regions[region].region, x) <= near_m;
+    }
+    if (marked[n] && within != DEA_LAYOUT_NONE) {
+      marked[n] = dea_region_inside(&regions[within].region, x[0], x[1]) ||
+                  distance_to(&regions[within].region, x) <= near_m;
+    }
+    count += marked[n] ? 1 : 0;
+  }
+  return count;
+}

@@ -1,0 +1,41 @@
+/* The mesh of a layout (docs/theory/devices.md): its regions go to gmsh, their plane mesh is
+ * extruded through the plies. */
+#ifndef DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
+#define DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
+
+#include "device/layout.h"
+#include "model/model.h"
+#include "model/solid/mesh/grid.h"
+
+/* Channels of an element at its top and bottom; top -1: it is not between electrodes. */
+struct dea_layout_field {
+  int top, bottom;
+};
+
+struct dea_layout_mesh {
+  struct dea_arena memory;
+  const struct dea_layout *layout; // lent
+  bool membrane;                   // dielectric plies are surfaces
+  struct dea_plane_mesh *plane;    // its groups are regions of the layout; owned
+  size_t *group; // [region_count of the layout] group of a region; DEA_LAYOUT_NONE: not meshed
+  bool *present; // [region_count of the plane][ply_count]
+  struct dea_layout_field *field; // [region_count of the plane][ply_count]
+  struct dea_grid *grid;          // its regions are those of the plane mesh; owned
+};
+
+/* DEA_E_DESIGN with a finding for plies that do not lie flat on each other; DEA_E_TOOL as
+ * dea_gmsh_mesh. layout: lent, outlives the mesh. On failure out is empty. */
+dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_layout_mesh *out);
+void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh);
+
+/* Whether an element lies in a region of the layout. */
+bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, size_t region);
+/* Marks the nodes of the plane mesh that lie in a region, its boundary included, or on its boundary
+ * only; `within`: and in this region too (DEA_LAYOUT_NONE: anywhere). Returns their number.
+ * marked: [node_count of the plane mesh]. */
+size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, bool edge,
+                            size_t within, bool *marked);
+
+#endif

@@ -1,0 +1,584 @@
+/* Model "3d" of a device of any layout: the other part of the module, beside that of discs. */
+#include "base/module.h"
+#include "model/make.h"
+#include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/observe.h"
+#include "model/solid/assembly/film.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/load/loads.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+
+struct dea_model {
+  const struct dea_layout *layout;
+  struct dea_model_settings settings;
+  struct dea_arena memory; // of all arrays
+  struct dea_layout_mesh mesh;
+  struct dea_constituent *constituents; // [ply_count]
+  struct dea_solid_film_data *films;    // [ply_count]
+  struct dea_solid_body *bodies;        // [body_count]
+  struct dea_spring **springs;          // [spring_count]
+  struct dea_pressure **pressures;      // [pressure_count]
+  struct dea_surface **surfaces;        // [pressure_count]
+  struct dea_solid *solid;
+  struct dea_observer *observer;
+  size_t mesh_node_count; // without those of bodies
+  size_t film;            // the first dielectric ply, or the first of all
+  double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
+  double voltage_V, rest_energy_J;
+  struct dea_solid_report report;
+};
+
+// Materials --------------------------------------------------------------------------------------
+
+static dea_status fill_constituent(struct dea_context *ctx, const struct dea_model *model, size_t i)
+{
+  const struct dea_layout_ply *ply = &model->layout->plies[i];
+  const struct dea_material *material = &ply->material;
+  struct dea_constituent *out = &model->constituents[i];
+  bool dielectric = dea_layout_is_dielectric(model->layout, i);
+  double quarter = 0.5 * acos(-1.0), turns = ply->angle_rad / quarter;
+  double l[2] = {ply->pre_stretch[0], ply->pre_stretch[1]};
+  bool along = fabs(turns - round(turns)) < 1e-9;
+  if (l[0] != l[1] && !along) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, ply->location,
+                                 "ply '%s': two pre-stretches at an angle of %g deg are not "
+                                 "computed yet; only multiples of 90 deg",
+                                 ply->name, 90 * turns));
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the pre-stretch of '%s' lies at an angle", ply->name);
+  }
+  if (along && fabs(fmod(round(turns), 2)) > 0.5) {
+    l[0] = ply->pre_stretch[1];
+    l[1] = ply->pre_stretch[0];
+  }
+  if (material->law != NULL && material->law->anisotropic) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d does not know films with a direction of their own (law '%s') yet",
+                    material->law->name);
+  }
+  enum dea_part part = dielectric ? DEA_PART_FILM : DEA_PART_FIBRE;
+  *out = material->law != NULL
+             ? dea_constituent_stretched(part, material, l)
+             : dea_constituent_free(part, material->young_modulus_Pa, material->poisson_ratio);
+  if (dielectric) {
+    dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
+    out->relaxed = model->mesh.membrane;
+  }
+  out->thickness_m = ply->thickness_m;
+  out->density_kg_per_m3 = material->density_kg_per_m3;
+  model->films[i] = (struct dea_solid_film_data){dielectric ? material : NULL, sqrt(l[0] * l[1])};
+  if (dea_constituent_relax(out) != DEA_OK) {
+    return dea_fail(ctx, DEA_E_DOMAIN, "ply '%s': the law '%s' ends before the pre-stretch %.4g",
+                    ply->name, out->law->name, fmax(l[0], l[1]));
+  }
+  return DEA_OK;
+}
+
+static bool needs_mass(const struct dea_layout *l)
+{
+  const double *g = l->gravity_m_per_s2;
+  return g[0] != 0 || g[1] != 0 || g[2] != 0;
+}
+
+static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_layout *l = model->layout;
+  model->film = DEA_LAYOUT_NONE;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    DEA_TRY(ctx, fill_constituent(ctx, model, i));
+    if (model->film == DEA_LAYOUT_NONE && model->films[i].material != NULL) {
+      model->film = i;
+    }
+    if (needs_mass(l) && !(l->plies[i].material.density_kg_per_m3 > 0)) {
+      return dea_fail(ctx, DEA_E_DESIGN, "weight needs the density of the material '%s'",
+                      l->plies[i].material.name);
+    }
+  }
+  model->film = model->film == DEA_LAYOUT_NONE ? 0 : model->film;
+  return DEA_OK;
+}
+
+// Callbacks of the solid; region: of the plane mesh ----------------------------------------------
+
+static int constituent_of(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)region;
+  return ply;
+}
+
+static const struct dea_layout_field *field_of(const void *self, int region, int ply)
+{
+  const struct dea_model *model = self;
+  return &model->mesh.field[(size_t)region * model->layout->ply_count + (size_t)ply];
+}
+
+static bool is_active(const void *self, int region, int ply)
+{
+  return field_of(self, region, ply)->top >= 0;
+}
+
+static void channels(const void *self, int region, int ply, int *top, int *bottom)
+{
+  *top = field_of(self, region, ply)->top;
+  *bottom = field_of(self, region, ply)->bottom;
+}
+
+static int nothing_held(const void *self, const double X[3])
+{
+  (void)self;
+  (void)X;
+  return 0;
+}
+
+// Bodies -----------------------------------------------------------------------------------------
+
+enum { ALL_COMPONENTS = 63 };
+
+/* Numbers of the nodes that move with a body into follows [all nodes], counted from 1. */
+static dea_status mark_body(struct dea_context *ctx, struct dea_model *model, size_t i, bool *on,
+                            int *follows, size_t *found)
+{
+  const struct dea_layout_body *body = &model->layout->bodies[i];
+  dea_layout_mesh_mark(&model->mesh, body->region, false, DEA_LAYOUT_NONE, on);
+  *found = 0;
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    if (on[model->mesh.grid->column[n]]) {
+      follows[n] = (int)i + 1;
+      ++*found;
+    }
+  }
+  if (*found == 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, body->location,
+                                 "body '%s': no ply is in its shape '%s'", body->name,
+                                 model->layout->regions[body->region].name));
+    return dea_fail(ctx, DEA_E_DESIGN, "nothing moves with the body '%s'", body->name);
+  }
+  return DEA_OK;
+}
+
+/* The body's nodes at the centroid of its region, in the middle of what moves with it. */
+static dea_status add_body(struct dea_context *ctx, struct dea_model *model, size_t i,
+                           const int *follows)
+{
+  const struct dea_layout_body *body = &model->layout->bodies[i];
+  struct dea_grid *grid = model->mesh.grid;
+  double X[6], low = INFINITY, high = -INFINITY, length = 0;
+  dea_region_centroid_m(&model->layout->regions[body->region].region, X);
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    if (follows[n] == (int)i + 1) {
+      low = fmin(low, grid->X[3 * n + 2]);
+      high = fmax(high, grid->X[3 * n + 2]);
+      length = fmax(length, hypot(grid->X[3 * n] - X[0], grid->X[3 * n + 1] - X[1]));
+    }
+  }
+  X[2] = 0.5 * (low + high);
+  memcpy(X + 3, X, 3 * sizeof *X);
+  DEA_TRY(ctx, dea_grid_add_nodes(ctx, grid, 2, X, &model->bodies[i].node));
+  model->bodies[i].held = ALL_COMPONENTS & ~(body->free | body->moved);
+  model->bodies[i].length_m = length;
+  return DEA_OK;
+}
+
+static dea_status add_bodies(struct dea_context *ctx, struct dea_model *model, int **follows,
+                             double **point_mass)
+{
+  const struct dea_layout *l = model->layout;
+  size_t room = model->mesh_node_count + 2 * l->body_count;
+  bool *on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *on);
+  *follows = dea_arena_alloc(&model->memory, room, sizeof **follows);
+  *point_mass = dea_arena_alloc(&model->memory, room, sizeof **point_mass);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  for (size_t i = 0; i < l->body_count; i++) {
+    size_t found;
+    DEA_TRY(ctx, mark_body(ctx, model, i, on, *follows, &found));
+    for (size_t n = 0; n < model->mesh_node_count; n++) {
+      if ((*follows)[n] == (int)i + 1) {
+        (*point_mass)[n] = l->bodies[i].mass_kg / (double)found;
+      }
+    }
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    DEA_TRY(ctx, add_body(ctx, model, i, *follows));
+  }
+  return DEA_OK;
+}
+
+// Supports and loads -----------------------------------------------------------------------------
+
+/* Holds the nodes of a support that no body moves. */
+static dea_status hold(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_layout_support *support, const int *follows, bool *on)
+{
+  const struct dea_grid *grid = model->mesh.grid;
+  size_t held = 0;
+  dea_layout_mesh_mark(&model->mesh, support->region, support->edge, support->within, on);
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    bool lowest = n == 0 || grid->column[n] != grid->column[n - 1];
+    if (on[grid->column[n]] && follows[n] == 0 && (!support->hinged || lowest)) {
+      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, support->components, support->move_m));
+      held++;
+    }
+  }
+  if (held == 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, support->location,
+                                 "this support holds nothing: no ply is there"));
+    return dea_fail(ctx, DEA_E_DESIGN, "a support holds nothing");
+  }
+  return DEA_OK;
+}
+
+static dea_status add_spring(struct dea_context *ctx, struct dea_model *model, size_t i)
+{
+  const struct dea_layout_spring *spring = &model->layout->springs[i];
+  const struct dea_solid_body *body = &model->bodies[spring->body];
+  bool turns = spring->component >= 3;
+  const struct dea_spring_options options = {
+      .node = body->node + (turns ? 1 : 0),
+      .component = spring->component % 3,
+      .unit_m = turns ? body->length_m : 0,
+      .place = spring->free_at,
+      .stiffness = spring->stiffness,
+      .count = spring->count,
+      .at = spring->at,
+      .force = spring->force,
+  };
+  DEA_TRY(ctx, dea_spring_create(ctx, &options, &model->springs[i]));
+  const struct dea_solid_load load = dea_spring_load(model->springs[i]);
+  DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
+  return DEA_OK;
+}
+
+/* Who a surface is asked for. */
+struct face_of {
+  const struct dea_model *model;
+  const struct dea_layout_pressure *pressure;
+};
+
+static bool is_loaded(const void *self, int region, int ply, const double middle[3])
+{
+  const struct face_of *of = self;
+  const struct dea_layout_mesh *mesh = &of->model->mesh;
+  size_t group = mesh->group[of->pressure->region];
+  (void)middle;
+  return (size_t)ply == of->pressure->ply &&
+         mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
+}
+
+static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model, size_t i)
+{
+  const struct dea_layout_pressure *pressure = &model->layout->pressures[i];
+  const struct face_of of = {model, pressure};
+  double origin[3] = {0};
+  dea_region_centroid_m(&model->layout->regions[pressure->region].region, origin);
+  DEA_TRY(ctx,
+          dea_surface_create(ctx, model->mesh.grid, pressure->top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
+                             is_loaded, &of, &model->surfaces[i]));
+  DEA_TRY(ctx, dea_pressure_create(ctx, model->surfaces[i], origin, &model->pressures[i]));
+  dea_pressure_set(model->pressures[i], pressure->pressure_Pa);
+  const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
+  DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
+  return DEA_OK;
+}
+
+static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
+{
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    const struct dea_layout_body *body = &model->layout->bodies[i];
+    dea_solid_body_push(model->solid, i, body->force_N, body->moment_N_m);
+    if (body->moved != 0) {
+      DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i, body->moved, body->shift_m,
+                                            body->turn_rad));
+    }
+  }
+  return DEA_OK;
+}
+
+/* The weight of plies and bodies among the dead loads. */
+static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+{
+  size_t count = model->mesh.grid->node_count;
+  if (!needs_mass(model->layout)) {
+    return DEA_OK;
+  }
+  double *fall = dea_alloc(ctx, 3 * count, sizeof *fall);
+  double *force = dea_alloc(ctx, 3 * count, sizeof *force);
+  dea_status status = fall != NULL && force != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < 3 * model->mesh_node_count && status == DEA_OK; i++) {
+    fall[i] = model->layout->gravity_m_per_s2[i % 3];
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_mass_apply(ctx, model->solid, fall, force);
+  }
+  for (size_t i = 0; i < 3 * count && status == DEA_OK; i++) {
+    dea_solid_force(model->solid)[i] += force[i];
+  }
+  dea_free(ctx, fall);
+  dea_free(ctx, force);
+  return status;
+}
+
+static dea_status add_loads(struct dea_context *ctx, struct dea_model *model, const int *follows)
+{
+  const struct dea_layout *l = model->layout;
+  bool *on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *on);
+  model->springs = dea_arena_alloc(&model->memory, l->spring_count, sizeof *model->springs);
+  model->pressures = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->pressures);
+  model->surfaces = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->surfaces);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  for (size_t i = 0; i < l->support_count; i++) {
+    DEA_TRY(ctx, hold(ctx, model, &l->supports[i], follows, on));
+  }
+  for (size_t i = 0; i < l->spring_count; i++) {
+    DEA_TRY(ctx, add_spring(ctx, model, i));
+  }
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    DEA_TRY(ctx, add_pressure(ctx, model, i));
+  }
+  DEA_TRY(ctx, load_bodies(ctx, model));
+  DEA_TRY(ctx, add_weight(ctx, model));
+  return DEA_OK;
+}
+
+// The model --------------------------------------------------------------------------------------
+
+static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *model)
+{
+  const struct dea_grid *grid = model->mesh.grid;
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                               "model 3d: %zu elements, %zu unknowns, a free mesh of the whole "
+                               "device",
+                               grid->element_count, 3 * grid->node_count));
+  if (model->mesh.membrane) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d with a membrane film is a preview: it has no bending of "
+                                 "the film and no shape of its wrinkles (compute.solid.film: "
+                                 "solid)"));
+  }
+  return DEA_OK;
+}
+
+static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_layout *l = model->layout;
+  int *follows;
+  double *point_mass, *share = dea_arena_alloc(&model->memory, l->channel_count, sizeof *share);
+  model->bodies = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->bodies);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  model->mesh_node_count = model->mesh.grid->node_count;
+  DEA_TRY(ctx, add_bodies(ctx, model, &follows, &point_mass));
+  for (size_t k = 1; k < l->channel_count; k++) {
+    share[k - 1] = l->channels[k].ratio;
+  }
+  const struct dea_solid_options options = {
+      .order_z = model->settings.order_z > 0 ? model->settings.order_z : 2,
+      .constituent_count = l->ply_count,
+      .constituents = model->constituents,
+      .constituent_of = constituent_of,
+      .active = is_active,
+      .channels = channels,
+      .channel_count = l->channel_count > 1 ? l->channel_count - 1 : 1,
+      .share = share,
+      .held = nothing_held,
+      .body_count = l->body_count,
+      .bodies = model->bodies,
+      .body_of = l->body_count > 0 ? follows : NULL,
+      .point_mass_kg = l->body_count > 0 ? point_mass : NULL,
+      .self = model,
+  };
+  DEA_TRY(ctx, dea_solid_start(ctx));
+  DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
+  for (size_t k = 1; k < l->channel_count; k++) {
+    dea_solid_own_voltages(model->solid)[k] = l->channels[k].own_V;
+  }
+  DEA_TRY(ctx, add_loads(ctx, model, follows));
+  return DEA_OK;
+}
+
+/* The unstretched thickness that steps of voltage are counted by. */
+static double find_thinnest(const struct dea_model *model)
+{
+  double thinnest = INFINITY, ratio = 1e-3;
+  for (size_t i = 0; i < model->layout->ply_count; i++) {
+    if (model->films[i].material != NULL) {
+      thinnest = fmin(thinnest, model->layout->plies[i].thickness_unstretched_m);
+    }
+  }
+  for (size_t k = 1; k < model->layout->channel_count; k++) {
+    ratio = fmax(ratio, fabs(model->layout->channels[k].ratio));
+  }
+  return thinnest / ratio;
+}
+
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+                          const struct dea_model_settings *settings, struct dea_model *model)
+{
+  size_t plies = device->layout->ply_count;
+  model->layout = device->layout;
+  model->settings = *settings;
+  model->memory.ctx = ctx;
+  if (settings->field == DEA_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "compute.solid.field: coupled is known of the disc with one pair of electrodes "
+                    "only; take compute.solid.field: thin");
+  }
+  model->constituents = dea_arena_alloc(&model->memory, plies, sizeof *model->constituents);
+  model->films = dea_arena_alloc(&model->memory, plies, sizeof *model->films);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
+  DEA_TRY(ctx, say_mesh(ctx, model));
+  DEA_TRY(ctx, fill_constituents(ctx, model));
+  DEA_TRY(ctx, make_solid(ctx, model));
+  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
+  model->thinnest_m = find_thinnest(model);
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  model->rest_energy_J = model->report.energy_J;
+  return DEA_OK;
+}
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model == NULL) {
+    return;
+  }
+  dea_observer_destroy(ctx, model->observer);
+  dea_solid_destroy(ctx, model->solid);
+  for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
+    dea_spring_destroy(ctx, model->springs[i]);
+  }
+  for (size_t i = 0; model->pressures != NULL && i < model->layout->pressure_count; i++) {
+    dea_pressure_destroy(ctx, model->pressures[i]);
+  }
+  for (size_t i = 0; model->surfaces != NULL && i < model->layout->pressure_count; i++) {
+    dea_surface_destroy(ctx, model->surfaces[i]);
+  }
+  dea_layout_mesh_free(ctx, &model->mesh);
+  dea_arena_free(&model->memory);
+  dea_free(ctx, model);
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_OK;
+}
+
+static void find_heights(const struct dea_model *model, struct dea_load_point *out)
+{
+  const double *u = dea_solid_displacement(model->solid);
+  out->highest_z_m = -INFINITY;
+  out->lowest_z_m = INFINITY;
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    out->highest_z_m = fmax(out->highest_z_m, u[3 * n + 2]);
+    out->lowest_z_m = fmin(out->lowest_z_m, u[3 * n + 2]);
+  }
+}
+
+static dea_status report(struct dea_context *ctx, struct dea_model *model,
+                         struct dea_load_point *out)
+{
+  struct dea_solid_extremes extremes;
+  double capacitance_F;
+  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
+  if (status == DEA_OK) {
+    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
+  }
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
+  }
+  *out = dea_load_point_empty();
+  out->voltage_V = model->voltage_V;
+  find_heights(model, out);
+  out->nominal_field_V_per_m = model->voltage_V / model->thinnest_m;
+  out->true_field_V_per_m = extremes.true_field_V_per_m;
+  out->breakdown_margin = extremes.breakdown_margin;
+  out->min_tension_N_per_m = extremes.min_tension_N_per_m;
+  out->energy_J = model->report.energy_J - model->rest_energy_J;
+  out->capacitance_F = capacitance_F;
+  out->unstable_modes = model->report.unstable_modes;
+  out->stable = out->unstable_modes == 0;
+  return DEA_OK;
+}
+
+static dea_status stopped(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                          dea_status status)
+{
+  char why[200];
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, status,
+                  "stopped between %.4g and %.4g kV (%s); the points before are kept. Try smaller "
+                  "steps of compute.voltage",
+                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
+}
+
+static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  double step = field_step_V_per_m * model->thinnest_m, from = model->voltage_V;
+  double way = voltage_V - from;
+  int steps = isfinite(step) ? (int)ceil(fabs(way) / step - 1e-9) : 1;
+  steps = steps < 1 ? 1 : steps;
+  for (int i = 1; i <= steps; i++) {
+    if (dea_solid_any(dea_interrupted(ctx))) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
+                      1e-3 * voltage_V);
+    }
+    double next = i == steps ? voltage_V : from + way * i / steps;
+    dea_status status = dea_load_steps_solve(ctx, model->solid, next, &model->report);
+    if (status != DEA_OK) {
+      return stopped(ctx, model, next, status);
+    }
+    model->voltage_V = next;
+    if (model->report.snapped) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                   "model 3d: the state on the way to %.4g kV is unstable "
+                                   "(buckling or snapping); the sweep goes on from the stable one "
+                                   "below it",
+                                   1e-3 * next));
+    }
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  return DEA_OK;
+}
+
+static dea_status observe(struct dea_context *ctx, struct dea_model *model,
+                          struct dea_observation *out)
+{
+  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, out));
+  return DEA_OK;
+}
+
+static dea_status fields(struct dea_context *ctx, struct dea_model *model,
+                         enum dea_fields_part part, struct dea_field_mesh **out)
+{
+  DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
+                   ? dea_solid_volume(ctx, model->solid, out)
+                   : dea_solid_surface(ctx, model->solid, (int)model->film, out));
+  return DEA_OK;
+}
+
+static void size(const struct dea_model *model, struct dea_model_size *out)
+{
+  *out = (struct dea_model_size){.elements = model->mesh.grid->element_count,
+                                 .nodes = model->mesh.grid->node_count,
+                                 .unknowns = 3 * model->mesh.grid->node_count};
+}
+
+extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_layout_module;
+
+const struct dea_model_type dea_solid_layout_module = {
+    .name = "3d",
+    .long_name = "3D solid",
+    .create = create,
+    .destroy = destroy,
+    .solve = solve,
+    .observe = observe,
+    .fields = fields,
+    .size = size,
+};

@@ -1,0 +1,319 @@
+#include "model/solid/adapter/observe.h"
+
+#include "base/quadrature.h"
+#include "model/solid/assembly/channels.h"
+
+#include <math.h>
+
+enum { PLANE_MAX = DEA_ELEMENT_LEVEL_MAX };
+
+/* A point of a ply's middle surface: the mean of its lower and its upper face. */
+struct probe {
+  int count;
+  int node[2][PLANE_MAX]; // of the lowest and the highest element of the ply there
+  double weight[PLANE_MAX];
+};
+
+struct dea_observer {
+  struct dea_arena memory;
+  const struct dea_layout_mesh *mesh;
+  struct probe (*probes)[2]; // [monitor_count] of points and lines
+  double (*monitor)[DEA_OBSERVED_COUNT];
+  struct dea_channel_values *channel;
+  double *work; // of channels
+};
+
+// Where points are -------------------------------------------------------------------------------
+
+/* Nodal basis of a quadrilateral at local coordinates, and its slopes; [(order + 1)^2]. */
+static void basis(int order, const double at[2], double *value, double (*slope)[2])
+{
+  double places[DEA_HEX_LINE_MAX], v[2][DEA_HEX_LINE_MAX], d[2][DEA_HEX_LINE_MAX];
+  size_t line = (size_t)order + 1;
+  dea_lobatto_nodes((size_t)order, places);
+  for (int k = 0; k < 2; k++) {
+    dea_lagrange(line, places, at[k], v[k], d[k]);
+  }
+  for (size_t j = 0; j < line; j++) {
+    for (size_t i = 0; i < line; i++) {
+      value[j * line + i] = v[0][i] * v[1][j];
+      slope[j * line + i][0] = d[0][i] * v[1][j];
+      slope[j * line + i][1] = v[0][i] * d[1][j];
+    }
+  }
+}
+
+/* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method;
+ * false where it is not in it. */
+static bool locate(const struct dea_grid *grid, const int *nodes, const double x_m[2], double at[2])
+{
+  double value[PLANE_MAX], slope[PLANE_MAX][2];
+  int count = (grid->order + 1) * (grid->order + 1);
+  at[0] = at[1] = 0;
+  for (int i = 0; i < 20; i++) {
+    double r[2] = {x_m[0], x_m[1]}, J[4] = {0};
+    basis(grid->order, at, value, slope);
+    for (int n = 0; n < count; n++) {
+      const double *X = grid->X + 3 * nodes[n];
+      for (int k = 0; k < 2; k++) {
+        r[k] -= value[n] * X[k];
+        J[2 * k] += slope[n][0] * X[k];
+        J[2 * k + 1] += slope[n][1] * X[k];
+      }
+    }
+    double det = J[0] * J[3] - J[1] * J[2];
+    double step[2] = {(J[3] * r[0] - J[1] * r[1]) / det, (J[0] * r[1] - J[2] * r[0]) / det};
+    at[0] += step[0];
+    at[1] += step[1];
+    if (!(fabs(at[0]) < 3 && fabs(at[1]) < 3)) {
+      return false;
+    }
+    if (fmax(fabs(step[0]), fabs(step[1])) < 1e-12) {
+      break;
+    }
+  }
+  return fmax(fabs(at[0]), fabs(at[1])) < 1 + 1e-6;
+}
+
+static bool could_be_in(const struct dea_grid *grid, const int *nodes, const double x_m[2])
+{
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (int n = 0; n < (grid->order + 1) * (grid->order + 1); n++) {
+    for (int k = 0; k < 2; k++) {
+      low[k] = fmin(low[k], grid->X[3 * nodes[n] + k]);
+      high[k] = fmax(high[k], grid->X[3 * nodes[n] + k]);
+    }
+  }
+  bool inside = true;
+  for (int k = 0; k < 2; k++) { // sides are curved
+    double more = 0.2 * (high[k] - low[k]);
+    inside = inside && x_m[k] > low[k] - more && x_m[k] < high[k] + more;
+  }
+  return inside;
+}
+
+/* Lower and upper nodes of an element in the plane. */
+static void faces(const struct dea_grid *grid, size_t e, const int **lower, const int **upper)
+{
+  int per = (grid->order + 1) * (grid->order + 1);
+  *lower = grid->nodes + e * DEA_HEX_NODES_MAX;
+  *upper = *lower + (grid->levels[e] - 1) * per;
+}
+
+static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
+                       struct probe *out)
+{
+  const struct dea_grid *grid = mesh->grid;
+  double low = INFINITY, high = -INFINITY;
+  out->count = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *face[2];
+    double at[2], slope[PLANE_MAX][2];
+    faces(grid, e, &face[0], &face[1]);
+    if ((size_t)grid->ply[e] != ply || !could_be_in(grid, face[0], x_m) ||
+        !locate(grid, face[0], x_m, at)) {
+      continue;
+    }
+    double z[2] = {grid->X[3 * face[0][0] + 2], grid->X[3 * face[1][0] + 2]};
+    if (out->count > 0 && z[0] >= low && z[1] <= high) {
+      continue; // on the side of one that was found
+    }
+    out->count = (grid->order + 1) * (grid->order + 1);
+    basis(grid->order, at, out->weight, slope);
+    for (int n = 0; n < out->count; n++) { // elements above each other have the same places
+      out->node[0][n] = z[0] < low ? face[0][n] : out->node[0][n];
+      out->node[1][n] = z[1] > high ? face[1][n] : out->node[1][n];
+    }
+    low = fmin(low, z[0]);
+    high = fmax(high, z[1]);
+  }
+  return out->count > 0;
+}
+
+static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    const struct dea_layout_monitor *m = &l->monitors[i];
+    int points = m->kind == DEA_MONITOR_POINT ? 1 : m->kind == DEA_MONITOR_LINE ? 2 : 0;
+    for (int k = 0; k < points; k++) {
+      if (!find_probe(o->mesh, m->ply, m->at_m[k], &o->probes[i][k])) {
+        DEA_TRY(ctx,
+                dea_finding_add(ctx, DEA_ERROR, m->location,
+                                "monitor '%s': the ply '%s' is not at (%.6g, %.6g) mm", m->name,
+                                l->plies[m->ply].name, 1e3 * m->at_m[k][0], 1e3 * m->at_m[k][1]));
+      }
+    }
+  }
+  return dea_finding_count(ctx, DEA_ERROR) == errors
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "a monitor is off its ply");
+}
+
+dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                               struct dea_observer **out)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_observer *o = dea_alloc(ctx, 1, sizeof *o);
+  *out = NULL;
+  if (o == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh};
+  o->probes = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->probes);
+  o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
+  o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
+  o->work = dea_arena_alloc(&o->memory, (l->channel_count + 2) * l->channel_count, sizeof(double));
+  dea_status status = dea_arena_status(&o->memory);
+  if (status == DEA_OK) {
+    status = find_probes(ctx, o);
+  }
+  if (status != DEA_OK) {
+    dea_observer_destroy(ctx, o);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = o;
+  return DEA_OK;
+}
+
+void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *o)
+{
+  if (o != NULL) {
+    dea_arena_free(&o->memory);
+    dea_free(ctx, o);
+  }
+}
+
+// Values -----------------------------------------------------------------------------------------
+
+static void displacement_at(const struct probe *probe, const double *u, double out[3])
+{
+  for (int i = 0; i < 3; i++) {
+    out[i] = 0;
+    for (int n = 0; n < probe->count; n++) {
+      out[i] +=
+          0.5 * probe->weight[n] * (u[3 * probe->node[0][n] + i] + u[3 * probe->node[1][n] + i]);
+    }
+  }
+}
+
+static void observe_line(const struct dea_layout_monitor *m, const struct probe probe[2],
+                         const double *u, double *out)
+{
+  double v[2][3], flat = 0, now = 0;
+  displacement_at(&probe[0], u, v[0]);
+  displacement_at(&probe[1], u, v[1]);
+  for (int i = 0; i < 3; i++) {
+    double d = i < 2 ? m->at_m[1][i] - m->at_m[0][i] : 0, e = d + v[1][i] - v[0][i];
+    flat += d * d;
+    now += e * e;
+  }
+  out[DEA_OBSERVED_STRETCH] = sqrt(now / flat);
+}
+
+/* Means over the middle surface: of displacements, of the lengths of its two tangents, of its area.
+ * What lies above each other counts once an element, so with the same weights. */
+static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                           const double *u, double *out)
+{
+  const struct dea_grid *grid = mesh->grid;
+  size_t points = (size_t)grid->order + 1;
+  double place[DEA_HEX_LINE_MAX], weight[DEA_HEX_LINE_MAX], sum[6] = {0}, area = 0;
+  int per = (grid->order + 1) * (grid->order + 1);
+  dea_gauss_rule(points, place, weight);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    if ((size_t)grid->ply[e] != m->ply || !dea_layout_mesh_within(mesh, e, m->region)) {
+      continue;
+    }
+    const int *face[2];
+    faces(grid, e, &face[0], &face[1]);
+    for (size_t p = 0; p < points * points; p++) {
+      const double at[2] = {place[p % points], place[p / points]};
+      double value[PLANE_MAX], slope[PLANE_MAX][2], X[3][2] = {{0}}, x[3][2] = {{0}}, v[3] = {0};
+      basis(grid->order, at, value, slope);
+      for (int n = 0; n < per; n++) {
+        for (int i = 0; i < 3; i++) {
+          double w = 0.5 * (u[3 * face[0][n] + i] + u[3 * face[1][n] + i]);
+          double place_m = i < 2 ? grid->X[3 * face[0][n] + i] : 0;
+          v[i] += value[n] * w;
+          for (int k = 0; k < 2; k++) {
+            X[i][k] += slope[n][k] * place_m;
+            x[i][k] += slope[n][k] * (place_m + w);
+          }
+        }
+      }
+      double det = X[0][0] * X[1][1] - X[0][1] * X[1][0], F[3][2], c[2] = {0}, mixed = 0;
+      for (int i = 0; i < 3; i++) { // dx/dX
+        F[i][0] = (x[i][0] * X[1][1] - x[i][1] * X[1][0]) / det;
+        F[i][1] = (x[i][1] * X[0][0] - x[i][0] * X[0][1]) / det;
+        c[0] += F[i][0] * F[i][0];
+        c[1] += F[i][1] * F[i][1];
+        mixed += F[i][0] * F[i][1];
+      }
+      double dA = det * weight[p % points] * weight[p / points];
+      const double values[6] = {v[0],       v[1],       v[2],
+                                sqrt(c[0]), sqrt(c[1]), sqrt(c[0] * c[1] - mixed * mixed)};
+      area += dA;
+      for (int i = 0; i < 6; i++) {
+        sum[i] += dA * values[i];
+      }
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    out[DEA_OBSERVED_X + i] = sum[i] / area;
+    out[DEA_OBSERVED_STRETCH_X + i] = sum[3 + i] / area;
+  }
+}
+
+static void observe_body(const struct dea_solid *solid, size_t body, double *out)
+{
+  dea_solid_body_place(solid, body, out + DEA_OBSERVED_X, out + DEA_OBSERVED_TURN_X);
+  dea_solid_body_reaction(solid, body, out + DEA_OBSERVED_FORCE_X, out + DEA_OBSERVED_MOMENT_X);
+}
+
+static dea_status observe_channels(struct dea_context *ctx, struct dea_observer *o,
+                                   struct dea_solid *solid)
+{
+  size_t count = o->mesh->layout->channel_count;
+  double *voltage = o->work, *charge = voltage + count, *capacitance = charge + count;
+  dea_solid_channel_voltages(solid, voltage);
+  DEA_TRY(ctx, dea_solid_charges(ctx, solid, charge));
+  DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
+  for (size_t k = 0; k < count; k++) {
+    o->channel[k] = (struct dea_channel_values){voltage[k], charge[k], capacitance[k * count + k]};
+  }
+  return DEA_OK;
+}
+
+dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
+                             struct dea_solid *solid, struct dea_observation *out)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  const double *u = dea_solid_displacement(solid);
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    const struct dea_layout_monitor *m = &l->monitors[i];
+    double *values = o->monitor[i];
+    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
+      values[k] = NAN;
+    }
+    switch (m->kind) {
+    case DEA_MONITOR_POINT:
+      displacement_at(&o->probes[i][0], u, values);
+      break;
+    case DEA_MONITOR_LINE:
+      observe_line(m, o->probes[i], u, values);
+      break;
+    case DEA_MONITOR_REGION:
+      observe_region(o->mesh, m, u, values);
+      break;
+    case DEA_MONITOR_BODY:
+      observe_body(solid, m->body, values);
+      break;
+    }
+  }
+  DEA_TRY(ctx, observe_channels(ctx, o, solid));
+  *out = (struct dea_observation){l->monitor_count, l->channel_count,
+                                  (const double(*)[DEA_OBSERVED_COUNT])o->monitor, o->channel};
+  return DEA_OK;
+}

@@ -1,0 +1,141 @@
+#include "study/observe.h"
+
+#define VOLTAGE                                                                                    \
+  {                                                                                                \
+    .key = "voltage_V", .kind = DEA_CELL_NUMBER, .si_unit = "V", .display_unit = "kV",             \
+    .factor = 1e-3, .title = "V", .meaning = "voltage of the sweep"                                \
+  }
+#define NUMBER(name, si, display, scale, head, what)                                               \
+  {                                                                                                \
+    .key = name, .kind = DEA_CELL_NUMBER, .si_unit = si, .display_unit = display, .factor = scale, \
+    .title = head, .meaning = what                                                                 \
+  }
+#define NAME(name, what)                                                                           \
+  {                                                                                                \
+    .key = name, .kind = DEA_CELL_TEXT, .title = name, .meaning = what                             \
+  }
+
+enum { BEFORE = 2 }; // columns before the quantities
+
+/* In the order of enum dea_observed. */
+static const struct dea_result_column monitor_columns[] = {
+    VOLTAGE,
+    NAME("monitor", "name in the design"),
+    NUMBER("x_m", "m", "um", 1e6, "x", "displacement along x"),
+    NUMBER("y_m", "m", "um", 1e6, "y", "displacement along y"),
+    NUMBER("z_m", "m", "um", 1e6, "z", "displacement out of the plane"),
+    NUMBER("turn_x_rad", "rad", "deg", 57.29577951308232, "turn x", "turn of a body about x"),
+    NUMBER("turn_y_rad", "rad", "deg", 57.29577951308232, "turn y", "turn of a body about y"),
+    NUMBER("turn_z_rad", "rad", "deg", 57.29577951308232, "turn z", "turn of a body about z"),
+    NUMBER("stretch", "1", "1", 1, "stretch", "length of a line over its flat one"),
+    NUMBER("stretch_x", "1", "1", 1, "stretch x", "mean stretch of a region along x"),
+    NUMBER("stretch_y", "1", "1", 1, "stretch y", "mean stretch of a region along y"),
+    NUMBER("area_stretch", "1", "1", 1, "area stretch", "area of a region over its flat one"),
+    NUMBER("force_x_N", "N", "mN", 1e3, "force x", "on a body, of what holds or moves it"),
+    NUMBER("force_y_N", "N", "mN", 1e3, "force y", "on a body, of what holds or moves it"),
+    NUMBER("force_z_N", "N", "mN", 1e3, "force z", "on a body, of what holds or moves it"),
+    NUMBER("moment_x_N_m", "N m", "uN m", 1e6, "moment x", "on a body about its centre"),
+    NUMBER("moment_y_N_m", "N m", "uN m", 1e6, "moment y", "on a body about its centre"),
+    NUMBER("moment_z_N_m", "N m", "uN m", 1e6, "moment z", "on a body about its centre"),
+};
+enum { MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0] };
+_Static_assert(MONITOR_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
+
+static const struct dea_result_column channel_columns[] = {
+    VOLTAGE,
+    NAME("channel", "name in the design"),
+    NUMBER("channel_voltage_V", "V", "kV", 1e-3, "voltage", "voltage of the channel"),
+    NUMBER("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),
+    NUMBER("capacitance_F", "F", "pF", 1e12, "capacitance",
+           "change of the channel's charge with its voltage, the film held"),
+};
+enum { CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0] };
+
+static const struct dea_result_table_type monitors = {
+    .study = "sweep",
+    .name = "monitors",
+    .key = "monitors",
+    .title = "Monitors",
+    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+    .columns = monitor_columns,
+    .column_count = MONITOR_COLUMNS,
+};
+static const struct dea_result_table_type channels = {
+    .study = "sweep",
+    .name = "channels",
+    .key = "channels",
+    .title = "Channels",
+    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+    .columns = channel_columns,
+    .column_count = CHANNEL_COLUMNS,
+};
+
+/* The model's table of that type, a new one when there is none; rows: whether any will come. */
+static dea_status get_table(struct dea_context *ctx, const struct dea_result_table_type *type,
+                            const char *model, struct dea_result *result,
+                            struct dea_result_table **out)
+{
+  for (size_t i = 0; i < result->table_count; i++) {
+    if (dea_result_find_table(result, model, type->study, type->name) == &result->tables[i]) {
+      *out = &result->tables[i];
+      return DEA_OK;
+    }
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, type, model, 0, out));
+  return DEA_OK;
+}
+
+static dea_status add_monitors(struct dea_context *ctx, const char *model, double voltage_V,
+                               const struct dea_observation *seen, struct dea_result *result)
+{
+  const struct dea_layout *layout = result->device->layout;
+  struct dea_result_table *table;
+  if (seen->monitor_count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, get_table(ctx, &monitors, model, result, &table));
+  for (size_t i = 0; i < seen->monitor_count; i++) {
+    struct dea_result_table_value row[MONITOR_COLUMNS] = {{.number = voltage_V},
+                                                          {.text = layout->monitors[i].name}};
+    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
+      row[BEFORE + k].number = seen->monitor[i][k];
+    }
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+/* Ground, which has what the others have with the other sign, is left out. */
+static dea_status add_channels(struct dea_context *ctx, const char *model, double voltage_V,
+                               const struct dea_observation *seen, struct dea_result *result)
+{
+  const struct dea_layout *layout = result->device->layout;
+  struct dea_result_table *table;
+  if (seen->channel_count < 2) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, get_table(ctx, &channels, model, result, &table));
+  for (size_t k = 1; k < seen->channel_count; k++) {
+    const struct dea_channel_values *values = &seen->channel[k];
+    const struct dea_result_table_value row[CHANNEL_COLUMNS] = {{.number = voltage_V},
+                                                                {.text = layout->channels[k].name},
+                                                                {.number = values->voltage_V},
+                                                                {.number = values->charge_C},
+                                                                {.number = values->capacitance_F}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, double voltage_V, struct dea_result *result)
+{
+  struct dea_observation seen;
+  if (type->observe == NULL || result->device == NULL || !result->device->general) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
+  DEA_TRY(ctx, add_monitors(ctx, type->name, voltage_V, &seen, result));
+  DEA_TRY(ctx, add_channels(ctx, type->name, voltage_V, &seen, result));
+  return DEA_OK;
+}
