@@ -1,6 +1,7 @@
 /* Model 3d of devices of any layout, against closed forms and tables. */
 // ctest: solid
 #include "device/device.h"
+#include "devices.h"
 #include "model/model.h"
 #include "testing.h"
 
@@ -189,11 +190,123 @@ static void test_pure_shear(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* A stretched layer on one that is free of stress, both of one law, released: it bends evenly to
+ * the curvature of Timoshenko (J. Opt. Soc. Am. 11 (1925) 233), n = 1, m = 1, moduli by the plane
+ * stress of two directions: 3/2 of the mismatch over the thickness of both. Small strains. */
+static void test_release_of_a_bilayer(void **state)
+{
+  (void)state;
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  double a = 2e-3, h = 100e-6, mismatch = 1e-4;
+  add_rectangle(device, "plate", 0, 0, a, a);
+  const size_t left = add_rectangle(device, "left", -a, 0, a, a);
+  const size_t low = add_rectangle(device, "low", 0, -a, a, a);
+  const size_t corner = add_rectangle(device, "corner", -1e-6, -1e-6, 2e-6, 2e-6);
+  add_film(device, 0, 1, 1);
+  add_film(device, 0, 1 + mismatch, 1 + mismatch);
+  l->plies[0].name = "base";
+  l->plies[0].thickness_m = l->plies[1].thickness_m = h;
+  const struct dea_layout_support held[] = {
+      {.region = 0, .edge = true, .within = left, .components = 1},
+      {.region = 0, .edge = true, .within = low, .components = 2},
+      {.region = 0, .edge = true, .within = corner, .components = 4, .hinged = true},
+  };
+  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
+    l->supports[l->support_count++] = held[i];
+  }
+  const double at[3][2] = {{0, 0}, {0.5 * a, 0}, {0.5 * a, 0.5 * a}};
+  for (size_t i = 0; i < 3; i++) {
+    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+        .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{at[i][0], at[i][1]}}, .ply = 1};
+  }
+  struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
+  struct dea_load_point point;
+  struct dea_observation seen = solve(model, 0, &point);
+  double curvature = 1.5 * mismatch / (2 * h);
+  for (size_t i = 1; i < 3; i++) {
+    double rise = seen.monitor[i][DEA_OBSERVED_Z] - seen.monitor[0][DEA_OBSERVED_Z];
+    double square = at[i][0] * at[i][0] + at[i][1] * at[i][1];
+    assert_close(rise, 0.5 * curvature * square, 5e-3, 0);
+  }
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* Two films between alternating electrodes move as one does, with twice its charge. */
+static void test_stack(void **state)
+{
+  struct dea_observation seen;
+  struct dea_load_point point;
+  double u[2] = {0}, charge[2] = {0};
+  (void)state;
+  for (size_t films = 1; films <= 2; films++) {
+    struct dea_device *device = device_new();
+    struct dea_layout *l = device->layout;
+    size_t film = add_rectangle(device, "film", 0, 0, 10e-3, 10e-3);
+    size_t active = add_rectangle(device, "active", 2e-3, 3e-3, 5e-3, 4e-3);
+    for (size_t i = 0; i < films; i++) {
+      add_film(device, film, 1.3, 1.2);
+      add_electrode(device, i, true, active, 1 - i % 2);
+    }
+    add_electrode(device, 0, false, active, 0);
+    l->supports[l->support_count++] = (struct dea_layout_support){
+        .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+        .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{7e-3, 5e-3}}};
+    struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE, 1);
+    seen = solve(model, 4e3, &point);
+    u[films - 1] = seen.monitor[0][DEA_OBSERVED_X];
+    charge[films - 1] = seen.channel[1].charge_C;
+    assert_true(u[films - 1] > 50e-6); // it moves
+    dea_model_find("3d")->destroy(ctx, model);
+    dea_device_destroy(ctx, device);
+  }
+  assert_close(u[1], u[0], 1e-8, 0);
+  assert_close(charge[1], 2 * charge[0], 1e-8, 0);
+}
+
+/* The plain disc on a free mesh and on that of blocks: two models of one film. */
+static void test_disc_of_both_models(void **state)
+{
+  (void)state;
+  struct dea_device plain = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
+  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
+  add_film(device, 0, 1.5, 1.5);
+  add_electrode(device, 0, false, 1, 0);
+  add_electrode(device, 0, true, 1, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  struct dea_model *blocks, *free_mesh = model_of(device, DEA_FILM_MEMBRANE, 1);
+  const struct dea_model_type *type = dea_model_find("3d");
+  assert_int_equal(type->create(ctx, &plain, &settings, &blocks), DEA_OK);
+  for (int kV = 2; kV <= 6; kV += 2) {
+    struct dea_load_point of_blocks, of_free;
+    assert_int_equal(type->solve(ctx, blocks, 1e3 * kV, &of_blocks), DEA_OK);
+    struct dea_observation seen = solve(free_mesh, 1e3 * kV, &of_free);
+    assert_close(seen.monitor[0][DEA_OBSERVED_X], of_blocks.electrode_edge_u_m, 1e-3, 0);
+    assert_close(of_free.capacitance_F, of_blocks.capacitance_F, 1e-4, 0);
+    assert_close(of_free.min_tension_N_per_m, of_blocks.min_tension_N_per_m, 3e-3, 0);
+  }
+  type->destroy(ctx, blocks);
+  type->destroy(ctx, free_mesh);
+  dea_device_destroy(ctx, device);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_pure_shear),
+      cmocka_unit_test(test_release_of_a_bilayer),
+      cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_disc_of_both_models),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

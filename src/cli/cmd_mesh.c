@@ -1,7 +1,7 @@
 #include "cli/cli.h"
 
 #include "model/solid/actuator/actuator.h"
-#include "model/solid/mesh/msh_write.h"
+#include "model/solid/actuator/mesh_file.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,6 +33,44 @@ static size_t count_flat(const struct dea_grid *grid)
   return count;
 }
 
+/* Elements, nodes and their quality, as all meshes have them. */
+static void print_size(const struct dea_grid *grid, size_t unknowns)
+{
+  int face = (grid->order + 1) * (grid->order + 1); // nodes
+  size_t flat = count_flat(grid);
+  printf("%-20s %zu, ", "elements", grid->element_count);
+  if (flat > 0) {
+    printf("%zu of them flat, of %d nodes, the others ", flat, face);
+  }
+  printf("of %d nodes\n", face * (grid->order_z + 1));
+  printf("%-20s %zu\n", "nodes", grid->node_count);
+  printf("%-20s %zu\n", "unknowns", unknowns);
+}
+
+static void print_quality(const struct request *request, const struct dea_grid *grid)
+{
+  printf("%-20s %.3f of an element's mean\n", "smallest Jacobian",
+         dea_grid_smallest_jacobian(grid));
+  if (request->output != NULL) {
+    printf("%-20s %s\n", "file", request->output);
+  }
+}
+
+static void print_layout(const struct request *request, const struct dea_layout_mesh *mesh)
+{
+  const struct dea_grid *grid = mesh->grid;
+  if (request->json) {
+    cli_print_json(json_pack(
+        "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
+        (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
+        (json_int_t)(3 * grid->node_count), "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
+    return;
+  }
+  printf("%-20s the whole device, a free mesh\n", "domain");
+  print_size(grid, 3 * grid->node_count);
+  print_quality(request, grid);
+}
+
 static void print_summary(const struct request *request, const struct dea_fibre_disc *plate,
                           const struct dea_grid *grid)
 {
@@ -48,21 +86,49 @@ static void print_summary(const struct request *request, const struct dea_fibre_
     cli_print_json(json);
     return;
   }
-  int face = (plate->order + 1) * (plate->order + 1); // nodes
   printf("%-20s %g degrees\n", "domain", degrees);
-  printf("%-20s %zu, ", "elements", grid->element_count);
-  if (flat > 0) {
-    printf("%zu of them flat, of %d nodes, the others ", flat, face);
-  }
-  printf("of %d nodes\n", face * (plate->order_z + 1));
-  printf("%-20s %zu\n", "nodes", grid->node_count);
-  printf("%-20s %zu\n", "unknowns", unknowns);
+  print_size(grid, unknowns);
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
          1e3 * plate->size, 1e3 * plate->edge);
-  printf("%-20s %.3f of an element's mean\n", "smallest Jacobian", jacobian);
-  if (request->output != NULL) {
-    printf("%-20s %s\n", "file", request->output);
+  print_quality(request, grid);
+}
+
+/* The disc's mesh of blocks. */
+static dea_status mesh_disc(struct dea_cli *cli, const struct request *request,
+                            const struct dea_device *device,
+                            const struct dea_model_settings *settings)
+{
+  struct dea_grid *grid = NULL;
+  struct dea_fibre_disc plate;
+  dea_status status = dea_fibre_disc_of_device(cli->ctx, device, settings, &plate);
+  if (status == DEA_OK) {
+    status = dea_fibre_disc_create(cli->ctx, &plate, &grid);
   }
+  if (status == DEA_OK && request->output != NULL) {
+    status = dea_fibre_disc_write(cli->ctx, &plate, grid, request->output);
+  }
+  if (status == DEA_OK) {
+    print_summary(request, &plate, grid);
+  }
+  dea_grid_destroy(cli->ctx, grid);
+  return status;
+}
+
+/* The free mesh of any other device. */
+static dea_status mesh_layout(struct dea_cli *cli, const struct request *request,
+                              const struct dea_device *device,
+                              const struct dea_model_settings *settings)
+{
+  struct dea_layout_mesh mesh;
+  dea_status status = dea_layout_mesh_create(cli->ctx, device->layout, settings, &mesh);
+  if (status == DEA_OK && request->output != NULL) {
+    status = dea_layout_mesh_write(cli->ctx, &mesh, request->output);
+  }
+  if (status == DEA_OK) {
+    print_layout(request, &mesh);
+  }
+  dea_layout_mesh_free(cli->ctx, &mesh);
+  return status;
 }
 
 static int run(struct dea_cli *cli, void *user)
@@ -70,25 +136,13 @@ static int run(struct dea_cli *cli, void *user)
   const struct request *request = user;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
-  struct dea_grid *grid = NULL;
-  struct dea_fibre_disc plate;
   dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
   if (status == DEA_OK) {
     const struct dea_model_settings settings = dea_model_settings_of(design);
-    status = dea_fibre_disc_of_device(cli->ctx, device, &settings, &plate);
-  }
-  if (status == DEA_OK) {
-    status = dea_fibre_disc_create(cli->ctx, &plate, &grid);
-  }
-  if (status == DEA_OK && request->output != NULL) {
-    status = dea_msh_write(cli->ctx, &plate, grid, request->output);
-  }
-  if (status == DEA_OK) {
-    print_summary(request, &plate, grid);
+    status = (device->general ? mesh_layout : mesh_disc)(cli, request, device, &settings);
     fflush(stdout);
   }
   int code = cli_report(cli, status);
-  dea_grid_destroy(cli->ctx, grid);
   dea_device_destroy(cli->ctx, device);
   dea_design_destroy(cli->ctx, design);
   return code;

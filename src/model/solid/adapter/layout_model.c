@@ -13,6 +13,7 @@
 #include <string.h>
 
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+static const double no_motion[3] = {0};
 
 struct dea_model {
   const struct dea_layout *layout;
@@ -27,6 +28,8 @@ struct dea_model {
   struct dea_surface **surfaces;        // [pressure_count]
   struct dea_solid *solid;
   struct dea_observer *observer;
+  int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
+  bool *on;               // [nodes of the plane mesh] for who marks them
   size_t mesh_node_count; // without those of bodies
   size_t film;            // the first dielectric ply, or the first of all
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
@@ -141,15 +144,15 @@ static int nothing_held(const void *self, const double X[3])
 enum { ALL_COMPONENTS = 63 };
 
 /* Numbers of the nodes that move with a body into follows [all nodes], counted from 1. */
-static dea_status mark_body(struct dea_context *ctx, struct dea_model *model, size_t i, bool *on,
-                            int *follows, size_t *found)
+static dea_status mark_body(struct dea_context *ctx, struct dea_model *model, size_t i,
+                            size_t *found)
 {
   const struct dea_layout_body *body = &model->layout->bodies[i];
-  dea_layout_mesh_mark(&model->mesh, body->region, false, DEA_LAYOUT_NONE, on);
+  dea_layout_mesh_mark(&model->mesh, body->region, false, DEA_LAYOUT_NONE, model->on);
   *found = 0;
   for (size_t n = 0; n < model->mesh_node_count; n++) {
-    if (on[model->mesh.grid->column[n]]) {
-      follows[n] = (int)i + 1;
+    if (model->on[model->mesh.grid->column[n]]) {
+      model->follows[n] = (int)i + 1;
       ++*found;
     }
   }
@@ -163,15 +166,14 @@ static dea_status mark_body(struct dea_context *ctx, struct dea_model *model, si
 }
 
 /* The body's nodes at the centroid of its region, in the middle of what moves with it. */
-static dea_status add_body(struct dea_context *ctx, struct dea_model *model, size_t i,
-                           const int *follows)
+static dea_status add_body(struct dea_context *ctx, struct dea_model *model, size_t i)
 {
   const struct dea_layout_body *body = &model->layout->bodies[i];
   struct dea_grid *grid = model->mesh.grid;
   double X[6], low = INFINITY, high = -INFINITY, length = 0;
   dea_region_centroid_m(&model->layout->regions[body->region].region, X);
   for (size_t n = 0; n < model->mesh_node_count; n++) {
-    if (follows[n] == (int)i + 1) {
+    if (model->follows[n] == (int)i + 1) {
       low = fmin(low, grid->X[3 * n + 2]);
       high = fmax(high, grid->X[3 * n + 2]);
       length = fmax(length, hypot(grid->X[3 * n] - X[0], grid->X[3 * n + 1] - X[1]));
@@ -185,43 +187,45 @@ static dea_status add_body(struct dea_context *ctx, struct dea_model *model, siz
   return DEA_OK;
 }
 
-static dea_status add_bodies(struct dea_context *ctx, struct dea_model *model, int **follows,
-                             double **point_mass)
+static dea_status add_bodies(struct dea_context *ctx, struct dea_model *model, double **point_mass)
 {
   const struct dea_layout *l = model->layout;
   size_t room = model->mesh_node_count + 2 * l->body_count;
-  bool *on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *on);
-  *follows = dea_arena_alloc(&model->memory, room, sizeof **follows);
+  model->on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *model->on);
+  model->follows = dea_arena_alloc(&model->memory, room, sizeof *model->follows);
   *point_mass = dea_arena_alloc(&model->memory, room, sizeof **point_mass);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   for (size_t i = 0; i < l->body_count; i++) {
     size_t found;
-    DEA_TRY(ctx, mark_body(ctx, model, i, on, *follows, &found));
+    DEA_TRY(ctx, mark_body(ctx, model, i, &found));
     for (size_t n = 0; n < model->mesh_node_count; n++) {
-      if ((*follows)[n] == (int)i + 1) {
+      if (model->follows[n] == (int)i + 1) {
         (*point_mass)[n] = l->bodies[i].mass_kg / (double)found;
       }
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    DEA_TRY(ctx, add_body(ctx, model, i, *follows));
+    DEA_TRY(ctx, add_body(ctx, model, i));
   }
   return DEA_OK;
 }
 
 // Supports and loads -----------------------------------------------------------------------------
 
-/* Holds the nodes of a support that no body moves. */
+/* Holds the nodes of a support that no body moves, where they are or at its shift. */
 static dea_status hold(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_layout_support *support, const int *follows, bool *on)
+                       const struct dea_layout_support *support, bool moved)
 {
+  bool *on = model->on;
+  const int *follows = model->follows;
   const struct dea_grid *grid = model->mesh.grid;
   size_t held = 0;
   dea_layout_mesh_mark(&model->mesh, support->region, support->edge, support->within, on);
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     bool lowest = n == 0 || grid->column[n] != grid->column[n - 1];
     if (on[grid->column[n]] && follows[n] == 0 && (!support->hinged || lowest)) {
-      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, support->components, support->move_m));
+      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, support->components,
+                                       moved ? support->move_m : no_motion));
       held++;
     }
   }
@@ -280,7 +284,6 @@ static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model,
           dea_surface_create(ctx, model->mesh.grid, pressure->top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
                              is_loaded, &of, &model->surfaces[i]));
   DEA_TRY(ctx, dea_pressure_create(ctx, model->surfaces[i], origin, &model->pressures[i]));
-  dea_pressure_set(model->pressures[i], pressure->pressure_Pa);
   const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
   DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
   return DEA_OK;
@@ -323,25 +326,86 @@ static dea_status add_weight(struct dea_context *ctx, const struct dea_model *mo
   return status;
 }
 
-static dea_status add_loads(struct dea_context *ctx, struct dea_model *model, const int *follows)
+static dea_status add_loads(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
-  bool *on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *on);
   model->springs = dea_arena_alloc(&model->memory, l->spring_count, sizeof *model->springs);
   model->pressures = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->pressures);
   model->surfaces = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->surfaces);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  for (size_t i = 0; i < l->support_count; i++) {
-    DEA_TRY(ctx, hold(ctx, model, &l->supports[i], follows, on));
-  }
   for (size_t i = 0; i < l->spring_count; i++) {
     DEA_TRY(ctx, add_spring(ctx, model, i));
   }
   for (size_t i = 0; i < l->pressure_count; i++) {
     DEA_TRY(ctx, add_pressure(ctx, model, i));
   }
+  return DEA_OK;
+}
+
+// Release ----------------------------------------------------------------------------------------
+
+static int free_components(const struct dea_layout_body *body)
+{
+  return body->free | body->moved;
+}
+
+/* The flat state, everything held in it. */
+static dea_status hold_all(struct dea_context *ctx, struct dea_model *model)
+{
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    if (model->follows[n] == 0) {
+      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, 7, no_motion));
+    }
+  }
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i,
+                                          free_components(&model->layout->bodies[i]), no_motion,
+                                          no_motion));
+  }
+  return DEA_OK;
+}
+
+/* Supports only; moved: with their own shifts. */
+static dea_status hold_supports(struct dea_context *ctx, struct dea_model *model, bool moved)
+{
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    if (model->follows[n] == 0) {
+      DEA_TRY(ctx, dea_solid_release(ctx, model->solid, n, 7));
+    }
+  }
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    DEA_TRY(ctx, dea_solid_body_release(ctx, model->solid, i,
+                                        free_components(&model->layout->bodies[i])));
+  }
+  for (size_t i = 0; i < model->layout->support_count; i++) {
+    DEA_TRY(ctx, hold(ctx, model, &model->layout->supports[i], moved));
+  }
+  return DEA_OK;
+}
+
+/* From the flat state, in which everything is held, to that of the loads at 0 V
+ * (docs/theory/devices.md). What held the film and is no support goes away on the way as dead
+ * forces, under which the flat state is an equilibrium, fall to nothing. */
+static dea_status release(struct dea_context *ctx, struct dea_model *model)
+{
+  size_t values = 3 * model->mesh.grid->node_count;
+  double *force = dea_solid_force(model->solid);
+  DEA_TRY(ctx, hold_all(ctx, model));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  memcpy(force, dea_solid_reaction(model->solid), values * sizeof *force);
+  DEA_TRY(ctx, hold_supports(ctx, model, false));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  memset(force, 0, values * sizeof *force);
+  DEA_TRY(ctx, hold_supports(ctx, model, true));
+  for (size_t k = 1; k < model->layout->channel_count; k++) {
+    dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
+  }
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    dea_pressure_set(model->pressures[i], model->layout->pressures[i].pressure_Pa);
+  }
   DEA_TRY(ctx, load_bodies(ctx, model));
   DEA_TRY(ctx, add_weight(ctx, model));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
   return DEA_OK;
 }
 
@@ -366,12 +430,11 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
 static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
-  int *follows;
   double *point_mass, *share = dea_arena_alloc(&model->memory, l->channel_count, sizeof *share);
   model->bodies = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->bodies);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->mesh_node_count = model->mesh.grid->node_count;
-  DEA_TRY(ctx, add_bodies(ctx, model, &follows, &point_mass));
+  DEA_TRY(ctx, add_bodies(ctx, model, &point_mass));
   for (size_t k = 1; k < l->channel_count; k++) {
     share[k - 1] = l->channels[k].ratio;
   }
@@ -387,16 +450,13 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
       .held = nothing_held,
       .body_count = l->body_count,
       .bodies = model->bodies,
-      .body_of = l->body_count > 0 ? follows : NULL,
+      .body_of = l->body_count > 0 ? model->follows : NULL,
       .point_mass_kg = l->body_count > 0 ? point_mass : NULL,
       .self = model,
   };
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
-  for (size_t k = 1; k < l->channel_count; k++) {
-    dea_solid_own_voltages(model->solid)[k] = l->channels[k].own_V;
-  }
-  DEA_TRY(ctx, add_loads(ctx, model, follows));
+  DEA_TRY(ctx, add_loads(ctx, model));
   return DEA_OK;
 }
 
@@ -436,7 +496,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, make_solid(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   model->thinnest_m = find_thinnest(model);
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  DEA_TRY(ctx, release(ctx, model));
   model->rest_energy_J = model->report.energy_J;
   return DEA_OK;
 }

@@ -7,41 +7,6 @@
 enum { LINE3 = 8, QUAD9 = 10, HEX27 = 12 }; // Gmsh's types
 enum { NODES = 27, FACE_NODES = 9, EDGE_NODES = 3, FACES = 6, EDGES = 4, DIMENSIONS = 4 };
 
-/* Physical groups, counted from 1 in the file. What is flat, a membrane, has one dimension less. */
-enum group {
-  FILM,
-  FILM_ACTIVE,
-  ELECTRODE_BELOW,
-  ELECTRODE_ABOVE,
-  FILLER,
-  GLUE,
-  FIBRE,
-  FRAME,
-  AXIS_PLANE,
-  MIDDLE_PLANE,
-  FACE_BELOW,
-  FACE_ABOVE,
-  ELECTRODES, // of a membrane, both
-  BOND,
-  GROUPS
-};
-static const char *const group_names[GROUPS] = {
-    [FILM] = "film",
-    [FILM_ACTIVE] = "film_active", // between the electrodes
-    [ELECTRODE_BELOW] = "electrode_below",
-    [ELECTRODE_ABOVE] = "electrode_above",
-    [FILLER] = "filler",
-    [GLUE] = "glue",
-    [FIBRE] = "fibre",
-    [FRAME] = "frame",
-    [AXIS_PLANE] = "mirror_first",
-    [MIDDLE_PLANE] = "mirror_last",
-    [FACE_BELOW] = "face_below", // of the film, under an electrode
-    [FACE_ABOVE] = "face_above",
-    [ELECTRODES] = "electrodes",
-    [BOND] = "bond",
-};
-
 /* Place in our element, first axis fastest, of each node of Gmsh's: corners, edges, faces, middle.
  */
 static const int hex_order[NODES] = {0,  2,  8,  6,  18, 20, 26, 24, 1,  3,  9,  5,  11, 7,
@@ -52,23 +17,6 @@ static const int quad_order[FACE_NODES] = {0, 2, 8, 6, 1, 5, 7, 3, 4};
 static const int face_first[FACES] = {0, 18, 0, 6, 0, 2};
 static const int face_step[FACES][2] = {{3, 1}, {1, 3}, {1, 9}, {9, 1}, {9, 3}, {3, 9}};
 
-static enum group group_of(const struct dea_fibre_disc *plate, int region, int sheet)
-{
-  bool electrode = (region & DEA_FIBRE_DISC_ELECTRODE) != 0;
-  switch (sheet) {
-  case DEA_FIBRE_DISC_BOTTOM:
-    return plate->membrane ? ELECTRODES : ELECTRODE_BELOW;
-  case DEA_FIBRE_DISC_FILM:
-    return electrode ? FILM_ACTIVE : FILM;
-  case DEA_FIBRE_DISC_BOND:
-    return BOND;
-  case DEA_FIBRE_DISC_TOP:
-    return electrode ? ELECTRODE_ABOVE : FILLER;
-  default:
-    return sheet == DEA_FIBRE_DISC_GLUE ? GLUE : FIBRE;
-  }
-}
-
 static void face_nodes(const int *nodes, int face, int out[FACE_NODES])
 {
   for (int n = 0; n < FACE_NODES; n++) {
@@ -77,35 +25,21 @@ static void face_nodes(const int *nodes, int face, int out[FACE_NODES])
   }
 }
 
-/* Group of a side that looks along the plane: a face of a solid element, an edge of a flat one.
- * GROUPS for none. */
-static enum group side_group(const struct dea_fibre_disc *plate, const struct dea_grid *grid,
-                             const int *nodes, int count)
-{
-  int held = 7, edges = 3;
-  for (int n = 0; n < count; n++) {
-    const double *X = grid->X + 3 * nodes[n];
-    held &= dea_fibre_disc_held(plate, X);
-    edges &= dea_fibre_disc_edges(plate, X);
-  }
-  return held == 7 ? FRAME : edges == 1 ? AXIS_PLANE : edges == 2 ? MIDDLE_PLANE : GROUPS;
-}
-
 /* A mesh on its way into a text; without one its elements are counted only. */
 struct writer {
-  const struct dea_fibre_disc *plate;
+  const struct dea_msh_groups *groups;
   const struct dea_grid *grid;
   struct dea_text *text;
-  size_t number, counts[DIMENSIONS][GROUPS];
+  size_t number, counts[DIMENSIONS][DEA_MSH_GROUPS_MAX];
 };
 
 /* order: places of Gmsh's nodes in ours, NULL: the same. */
-static void add_element(struct writer *w, int dimension, enum group group, const int *nodes,
+static void add_element(struct writer *w, int dimension, int group, const int *nodes,
                         const int *order)
 {
   static const int types[DIMENSIONS] = {0, LINE3, QUAD9, HEX27};
   static const int node_counts[DIMENSIONS] = {0, EDGE_NODES, FACE_NODES, NODES};
-  if (group == GROUPS) {
+  if (group < 0) {
     return;
   }
   w->number++;
@@ -113,37 +47,44 @@ static void add_element(struct writer *w, int dimension, enum group group, const
   if (w->text == NULL) {
     return;
   }
-  dea_text_add(w->text, "%zu %d 2 %d %d", w->number, types[dimension], (int)group + 1,
-               (int)group + 1);
+  dea_text_add(w->text, "%zu %d 2 %d %d", w->number, types[dimension], group + 1, group + 1);
   for (int n = 0; n < node_counts[dimension]; n++) {
     dea_text_add(w->text, " %d", nodes[order != NULL ? order[n] : n] + 1);
   }
   dea_text_add(w->text, "\n");
 }
 
-static void add_solid(struct writer *w, enum group part, const int *nodes)
+static int side_group(const struct writer *w, const int *nodes, int count)
+{
+  const struct dea_msh_groups *g = w->groups;
+  return g->side != NULL ? g->side(g->self, w->grid, nodes, count) : -1;
+}
+
+static int face_group(const struct writer *w, int part, bool top)
+{
+  const struct dea_msh_groups *g = w->groups;
+  return g->face != NULL ? g->face(g->self, part, top) : -1;
+}
+
+static void add_solid(struct writer *w, int part, const int *nodes)
 {
   add_element(w, 3, part, nodes, hex_order);
   for (int face = 0; face < FACES; face++) {
     int own[FACE_NODES];
     face_nodes(nodes, face, own);
-    add_element(w, 2,
-                face >= 2             ? side_group(w->plate, w->grid, own, FACE_NODES)
-                : part != FILM_ACTIVE ? GROUPS
-                : face == 0           ? FACE_BELOW
-                                      : FACE_ABOVE,
+    add_element(w, 2, face >= 2 ? side_group(w, own, FACE_NODES) : face_group(w, part, face == 1),
                 own, NULL);
   }
 }
 
-static void add_flat(struct writer *w, enum group part, const int *nodes)
+static void add_flat(struct writer *w, int part, const int *nodes)
 {
   static const int first[EDGES] = {0, 6, 0, 2}, step[EDGES] = {1, 1, 3, 3};
   add_element(w, 2, part, nodes, quad_order);
-  for (int edge = 0; edge < EDGES && part != ELECTRODES; edge++) {
+  for (int edge = 0; edge < EDGES && part != w->groups->without_sides; edge++) {
     const int own[EDGE_NODES] = {nodes[first[edge]], nodes[first[edge] + 2 * step[edge]],
                                  nodes[first[edge] + step[edge]]};
-    add_element(w, 1, side_group(w->plate, w->grid, own, EDGE_NODES), own, NULL);
+    add_element(w, 1, side_group(w, own, EDGE_NODES), own, NULL);
   }
 }
 
@@ -152,30 +93,31 @@ static void add_elements(struct writer *w)
   const struct dea_grid *grid = w->grid;
   w->number = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    enum group part = group_of(w->plate, grid->region[e], grid->ply[e]);
+    int part = w->groups->part(w->groups->self, grid->region[e], grid->ply[e]);
     (grid->levels[e] == 1 ? add_flat : add_solid)(w, part, grid->nodes + e * DEA_HEX_NODES_MAX);
   }
 }
 
 static void add_names(struct dea_text *text, const struct writer *w)
 {
-  size_t names = 0;
-  for (int i = 0; i < DIMENSIONS * GROUPS; i++) {
-    names += w->counts[i / GROUPS][i % GROUPS] > 0;
+  size_t names = 0, groups = w->groups->count;
+  for (size_t i = 0; i < DIMENSIONS * groups; i++) {
+    names += w->counts[i / groups][i % groups] > 0;
   }
   dea_text_add(text, "$PhysicalNames\n%zu\n", names);
-  for (int i = 0; i < DIMENSIONS * GROUPS; i++) {
-    if (w->counts[i / GROUPS][i % GROUPS] > 0) {
-      dea_text_add(text, "%d %d \"%s\"\n", i / GROUPS, i % GROUPS + 1, group_names[i % GROUPS]);
+  for (size_t i = 0; i < DIMENSIONS * groups; i++) {
+    if (w->counts[i / groups][i % groups] > 0) {
+      dea_text_add(text, "%zu %zu \"%s\"\n", i / groups, i % groups + 1,
+                   w->groups->name[i % groups]);
     }
   }
   dea_text_add(text, "$EndPhysicalNames\n");
 }
 
-static void add_mesh(struct dea_text *text, const struct dea_fibre_disc *plate,
+static void add_mesh(struct dea_text *text, const struct dea_msh_groups *groups,
                      const struct dea_grid *grid)
 {
-  struct writer writer = {.plate = plate, .grid = grid};
+  struct writer writer = {.groups = groups, .grid = grid};
   add_elements(&writer);
   dea_text_add(text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
   add_names(text, &writer);
@@ -190,15 +132,19 @@ static void add_mesh(struct dea_text *text, const struct dea_fibre_disc *plate,
   dea_text_add(text, "$EndElements\n");
 }
 
-dea_status dea_msh_write(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+dea_status dea_msh_write(struct dea_context *ctx, const struct dea_msh_groups *groups,
                          const struct dea_grid *grid, const char *path)
 {
   struct dea_text text = {.ctx = ctx};
-  if (plate->order != 2 || plate->order_z != 2) {
+  if (groups->count > DEA_MSH_GROUPS_MAX) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a mesh for Gmsh has up to %d groups, this one %zu",
+                    DEA_MSH_GROUPS_MAX, groups->count);
+  }
+  if (grid->order != 2 || grid->order_z != 2) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "only meshes of order 2 can be written for Gmsh");
   }
   void *locale = dea_c_locale_enter();
-  add_mesh(&text, plate, grid);
+  add_mesh(&text, groups, grid);
   dea_c_locale_leave(locale);
   dea_status status =
       text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
