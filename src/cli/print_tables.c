@@ -1,5 +1,6 @@
 #include "cli/print_tables.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +10,21 @@ enum { ROWS_SHOWN = 40, WIDTH_MAX = 36, DIGITS = 5, ERROR_DIGITS = 2 };
 static bool on_screen(const struct dea_result_column *column)
 {
   return (column->hidden & DEA_IN_SCREEN) == 0 && column->kind != DEA_CELL_POINTS;
+}
+
+/* Whether some row has something in a column; without rows all have. */
+static bool has_any(const struct dea_result_table *table, size_t column)
+{
+  size_t values = dea_result_table_values(table, column);
+  for (size_t i = 0; i < table->row_count; i++) {
+    const struct dea_cell *cell = dea_result_table_cell(table, i, column);
+    for (size_t k = 0; k < values; k++) {
+      if (!isnan(cell[k].number) || (cell[k].text != NULL && cell[k].text[0] != '\0')) {
+        return true;
+      }
+    }
+  }
+  return table->row_count == 0;
 }
 
 /* A cell as text, with the unit of its quantity where the title cannot say it; row SIZE_MAX: the
@@ -56,8 +72,8 @@ static dea_status print_rows(struct dea_context *ctx, const struct dea_result_ta
     lines[i].ctx = ctx;
   }
   for (size_t c = 0; c < table->type.column_count && !failed; c++) {
-    for (size_t k = 0; k < dea_result_table_values(table, c) && on_screen(&table->type.columns[c]);
-         k++) {
+    bool shown = on_screen(&table->type.columns[c]) && has_any(table, c);
+    for (size_t k = 0; shown && k < dea_result_table_values(table, c); k++) {
       int width = column_width(ctx, table, c, k, rows);
       bool text = table->type.columns[c].kind == DEA_CELL_TEXT ||
                   table->type.columns[c].kind == DEA_CELL_QUANTITY;

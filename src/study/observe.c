@@ -1,5 +1,9 @@
 #include "study/observe.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #define VOLTAGE                                                                                    \
   {                                                                                                \
     .key = "voltage_V", .kind = DEA_CELL_NUMBER, .si_unit = "V", .display_unit = "kV",             \
@@ -139,3 +143,123 @@ dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_typ
   DEA_TRY(ctx, add_channels(ctx, type->name, voltage_V, &seen, result));
   return DEA_OK;
 }
+
+// Figures ----------------------------------------------------------------------------------------
+
+/* A line of a figure: a column of a table, in the rows of one name. */
+struct line {
+  const struct dea_result_table *table;
+  size_t column;
+  const char *name, *suffix;
+  enum dea_series_style style;
+  int number; // of the name: its colour
+};
+
+static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct line *line)
+{
+  const struct dea_result_table *table = line->table;
+  static const enum dea_colour colours[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
+                                            DEA_PURPLE, DEA_ORANGE,     DEA_SKY};
+  double factor = table->type.columns[line->column].factor;
+  struct dea_series *series;
+  size_t count = 0;
+  bool any = false;
+  for (size_t i = 0; i < table->row_count; i++) {
+    bool mine = strcmp(dea_result_table_cell(table, i, 1)->text, line->name) == 0;
+    count += mine ? 1 : 0;
+    any = any || (mine && !isnan(dea_result_table_cell(table, i, line->column)->number));
+  }
+  if (!any || panel->series_count >= DEA_PANEL_SERIES_MAX) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  char title[DEA_LABEL_SIZE];
+  snprintf(title, sizeof title, "%.60s%s", line->name, line->suffix);
+  dea_label_escape(title, series->title, sizeof series->title);
+  series->style = line->style;
+  series->colour = colours[(size_t)line->number % (sizeof colours / sizeof colours[0])];
+  for (size_t i = 0, k = 0; i < table->row_count; i++) {
+    if (strcmp(dea_result_table_cell(table, i, 1)->text, line->name) == 0) {
+      series->values[k] = 1e-3 * dea_result_table_cell(table, i, 0)->number;
+      series->values[count + k++] = factor * dea_result_table_cell(table, i, line->column)->number;
+    }
+  }
+  return DEA_OK;
+}
+
+/* Adds the column of that key for all names of a table of all models. */
+static dea_status add_lines(struct dea_context *ctx, const struct dea_result *result,
+                            const char *table_name, const char *key, const char *suffix,
+                            enum dea_series_style style, struct dea_panel *panel)
+{
+  for (size_t t = 0; t < result->table_count; t++) {
+    struct line line = {.table = &result->tables[t], .suffix = suffix, .style = style};
+    if (strcmp(line.table->type.study, monitors.study) != 0 ||
+        strcmp(line.table->type.name, table_name) != 0) {
+      continue;
+    }
+    while (line.column < line.table->type.column_count &&
+           strcmp(line.table->type.columns[line.column].key, key) != 0) {
+      line.column++;
+    }
+    double first_V = dea_result_table_cell(line.table, 0, 0)->number;
+    for (size_t i = 0; i < line.table->row_count && line.column < line.table->type.column_count &&
+                       dea_result_table_cell(line.table, i, 0)->number == first_V;
+         i++) { // the rows of the first voltage have every name
+      line.name = dea_result_table_cell(line.table, i, 1)->text;
+      line.number = (int)i;
+      DEA_TRY(ctx, add_line(ctx, panel, &line));
+    }
+  }
+  return DEA_OK;
+}
+
+static void finish(struct dea_panel *panel, const char *label)
+{
+  dea_panel_voltage_axis(panel);
+  snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
+  dea_panel_place_key(panel);
+}
+
+static dea_status build_heights(struct dea_context *ctx, const struct dea_result *result,
+                                struct dea_plot *plot)
+{
+  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "z_m", "", DEA_LINE, &plot->panels[0]));
+  finish(&plot->panels[0], "Displacement {/:Italic z} (\302\265m)");
+  return DEA_OK;
+}
+
+static dea_status build_stretches(struct dea_context *ctx, const struct dea_result *result,
+                                  struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch", "", DEA_LINE, panel));
+  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch_x", ", along x", DEA_LINE, panel));
+  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch_y", ", along y", DEA_DASHED, panel));
+  finish(panel, "Stretch from the flat film");
+  return DEA_OK;
+}
+
+static dea_status build_charges(struct dea_context *ctx, const struct dea_result *result,
+                                struct dea_plot *plot)
+{
+  DEA_TRY(ctx, add_lines(ctx, result, channels.name, "charge_C", "", DEA_LINE, &plot->panels[0]));
+  finish(&plot->panels[0], "Charge (nC)");
+  return DEA_OK;
+}
+
+const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
+    {.name = "monitors_z",
+     .study = "sweep",
+     .caption = "displacement of the monitors out of the plane",
+     .build = build_heights},
+    {.name = "monitors_stretch",
+     .study = "sweep",
+     .caption = "stretch between the points of lines, and mean stretch of regions",
+     .build = build_stretches},
+    {.name = "channels",
+     .study = "sweep",
+     .caption = "charge on the channels",
+     .build = build_charges},
+};

@@ -202,4 +202,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
-const struct dea_study dea_study_sweep = {.name = "sweep", .run = run};
+const struct dea_study dea_study_sweep = {.name = "sweep",
+                                          .run = run,
+                                          .figures = dea_observe_figures,
+                                          .figure_count = DEA_OBSERVE_FIGURES};

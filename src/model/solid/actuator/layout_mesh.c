@@ -6,11 +6,12 @@
 #include <string.h>
 
 /* Sizes of elements at refinement 1, which each refinement more halves: over the root of the area
- * of the largest ply; and how much finer they are along the edges of electrodes and of plies on
- * others, where the film's stretch changes. */
-static const double size_share = 0.09, edge_share = 0.3;
-/* A region that is narrow has two elements across: over its area by its boundary. */
-static const double across_share = 1.0;
+ * of the largest ply; and how much finer they are along the edges of what changes the film's
+ * stretch: electrodes, bodies, and plies that others carry. */
+static const double size_share = 0.09, edge_share = 0.4;
+/* A narrow region has elements across: their size over its area by its boundary, which is half its
+ * width. */
+static const double across_share = 1.2;
 static const double near_share = 1e-6; // of the size of all: a node on a boundary
 
 // Plane ------------------------------------------------------------------------------------------
@@ -50,10 +51,33 @@ static double size_of_all(const struct dea_layout *l, double refinement)
   return size_share * sqrt(largest) * exp2(1 - fmax(1, refinement));
 }
 
-static double size_at_edge(const struct dea_region *region, double size_m, double refinement)
+/* Whether the film's stretch changes at the boundary of a region. */
+static bool is_fine(const struct dea_layout *l, size_t region)
 {
-  double across = across_share * dea_region_area_m2(region) / dea_region_boundary_m(region);
-  return fmin(edge_share * size_m, across * exp2(1 - fmax(1, refinement)));
+  double largest = 0;
+  bool fine = false;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    largest = fmax(largest, dea_region_area_m2(&l->regions[l->plies[i].region].region));
+  }
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    fine = fine || l->electrodes[i].region == region;
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    fine = fine || l->bodies[i].region == region;
+  }
+  for (size_t i = 0; i < l->ply_count; i++) {
+    fine = fine || l->plies[i].region == region;
+  }
+  return fine && dea_region_area_m2(&l->regions[region].region) < (1 - 1e-9) * largest;
+}
+
+static double size_at_edge(const struct dea_layout *l, size_t region, double size_m,
+                           double refinement)
+{
+  const struct dea_region *r = &l->regions[region].region;
+  double across = across_share * dea_region_area_m2(r) / dea_region_boundary_m(r);
+  return fmin(is_fine(l, region) ? edge_share * size_m : size_m,
+              across * exp2(1 - fmax(1, refinement)));
 }
 
 /* The layout's regions as shapes; their contours come from `memory`. */
@@ -84,7 +108,7 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
         .name = l->regions[i].name,
         .contours = contours,
         .count = region->contour_count,
-        .edge_size_m = size_at_edge(region, plan->size_m, settings->refinement)};
+        .edge_size_m = size_at_edge(l, i, plan->size_m, settings->refinement)};
   }
   return DEA_OK;
 }
