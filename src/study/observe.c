@@ -218,6 +218,7 @@ static dea_status add_lines(struct dea_context *ctx, const struct dea_result *re
 static void finish(struct dea_panel *panel, const char *label)
 {
   dea_panel_voltage_axis(panel);
+  dea_panel_even_tics(panel, 6);
   snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
   dea_panel_place_key(panel);
 }

@@ -34,6 +34,7 @@ struct dea_model {
   size_t film;            // the first dielectric ply, or the first of all
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
   double voltage_V, rest_energy_J;
+  bool left_a_state; // on the way an unstable state was left: there are several
   struct dea_solid_report report;
 };
 
@@ -406,6 +407,7 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, load_bodies(ctx, model));
   DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  model->left_a_state = model->report.snapped;
   return DEA_OK;
 }
 
@@ -558,7 +560,13 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   out->nominal_field_V_per_m = model->voltage_V / model->thinnest_m;
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
-  out->min_tension_N_per_m = extremes.min_tension_N_per_m;
+  out->min_tension_N_per_m =
+      isinf(extremes.min_tension_N_per_m) ? NAN : extremes.min_tension_N_per_m; // without a film
+  out->locking_share = extremes.reach.locking_share;
+  out->range_share = extremes.reach.range_share;
+  out->compression_ratio = extremes.compression_ratio;
+  out->told |= (unsigned)model->left_a_state << DEA_FLAG_STATES;
+  out->told |= (unsigned)model->mesh.membrane << DEA_FLAG_PREVIEW;
   out->energy_J = model->report.energy_J - model->rest_energy_J;
   out->capacitance_F = capacitance_F;
   out->unstable_modes = model->report.unstable_modes;
@@ -596,6 +604,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
     }
     model->voltage_V = next;
     if (model->report.snapped) {
+      model->left_a_state = true;
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                    "model 3d: the state on the way to %.4g kV is unstable "
                                    "(buckling or snapping); the sweep goes on from the stable one "
