@@ -1,35 +1,5 @@
 #include "model/model.h"
 
-#include "model/model_list.h"
-
-#include <string.h>
-
-#define MODEL_DECLARE(name) extern const struct dea_model_type name;
-DEA_MODEL_LIST(MODEL_DECLARE)
-#undef MODEL_DECLARE
-
-static const struct dea_model_type *const models[] = {
-#define MODEL_ROW(name) &name,
-    DEA_MODEL_LIST(MODEL_ROW)
-#undef MODEL_ROW
-};
-
-const struct dea_model_type *const *dea_model_all(size_t *count)
-{
-  *count = sizeof models / sizeof models[0];
-  return models;
-}
-
-const struct dea_model_type *dea_model_find(const char *name)
-{
-  for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
-    if (strcmp(models[i]->name, name) == 0) {
-      return models[i];
-    }
-  }
-  return NULL;
-}
-
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 {
   return (struct dea_model_settings){

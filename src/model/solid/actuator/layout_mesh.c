@@ -1,5 +1,6 @@
 #include "model/solid/actuator/layout_mesh.h"
 
+#include "geometry/boolean.h"
 #include "model/solid/mesh/gmsh.h"
 
 #include <math.h>
@@ -9,9 +10,9 @@
  * of the largest ply; and how much finer they are along the edges of what changes the film's
  * stretch: electrodes, bodies, and plies that others carry. */
 static const double size_share = 0.09, edge_share = 0.4;
-/* A narrow region has elements across: their size over its area by its boundary, which is half its
- * width. */
-static const double across_share = 1.2;
+/* A narrow region has an element across: its size over the region's area by its boundary, which is
+ * half its width. */
+static const double across_share = 2;
 static const double near_share = 1e-6; // of the size of all: a node on a boundary
 
 // Plane ------------------------------------------------------------------------------------------
@@ -80,9 +81,47 @@ static double size_at_edge(const struct dea_layout *l, size_t region, double siz
               across * exp2(1 - fmax(1, refinement)));
 }
 
-/* The layout's regions as shapes; their contours come from `memory`. */
+/* What of each region lies on the plies, into clipped[region_count]; empty where all of it does,
+ * and where none: what a support or a body has beyond them would be meshed for nothing, and badly
+ * where it runs out in a cusp. Without GEOS nothing is clipped. */
+static dea_status clip(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                       struct dea_region *clipped)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_region plies = {.ctx = ctx}, both = {.ctx = ctx};
+  char module[1024];
+  dea_status status = DEA_OK;
+  if (!dea_boolean_find(module, sizeof module)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < l->ply_count && status == DEA_OK; i++) {
+    const struct dea_region *region = &l->regions[l->plies[i].region].region;
+    status = dea_region_combine(ctx, DEA_UNION, region, i > 0 ? &plies : NULL, &both);
+    dea_region_free(&plies);
+    plies = both;
+    both = (struct dea_region){.ctx = ctx};
+  }
+  for (size_t i = 0; i < l->region_count && status == DEA_OK; i++) {
+    const struct dea_region *region = &l->regions[i].region;
+    clipped[i].ctx = ctx;
+    if (mesh->group[i] == DEA_LAYOUT_NONE) {
+      continue;
+    }
+    status = dea_region_combine(ctx, DEA_INTERSECTION, region, &plies, &clipped[i]);
+    if (status == DEA_OK && clipped[i].contour_count > 0 &&
+        dea_region_area_m2(&clipped[i]) > (1 - 1e-6) * dea_region_area_m2(region)) {
+      dea_region_free(&clipped[i]);
+    }
+  }
+  dea_region_free(&plies);
+  return status;
+}
+
+/* The layout's regions as shapes, clipped ones in their place; their contours come from `memory`.
+ */
 static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_mesh *mesh,
-                            const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
+                            const struct dea_model_settings *settings,
+                            const struct dea_region *clipped, struct dea_gmsh_plan *plan)
 {
   const struct dea_layout *l = mesh->layout;
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
@@ -93,7 +132,8 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
                                  .order = settings->order == 1 ? 1 : 2,
                                  .size_m = size_of_all(l, settings->refinement)};
   for (size_t i = 0; i < l->region_count; i++) {
-    const struct dea_region *region = &l->regions[i].region;
+    const struct dea_region *region =
+        clipped[i].contour_count > 0 ? &clipped[i] : &l->regions[i].region;
     if (mesh->group[i] == DEA_LAYOUT_NONE) {
       continue;
     }
@@ -127,9 +167,16 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   for (size_t i = 0; i < l->region_count; i++) {
     mesh->group[i] = used[i] ? groups++ : DEA_LAYOUT_NONE;
   }
-  dea_status status = fill_plan(&memory, mesh, settings, &plan);
+  struct dea_region *clipped = dea_arena_alloc(&memory, l->region_count, sizeof *clipped);
+  dea_status status = clipped != NULL ? clip(ctx, mesh, clipped) : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = fill_plan(&memory, mesh, settings, clipped, &plan);
+  }
   if (status == DEA_OK) {
     status = dea_gmsh_mesh(ctx, &plan, &mesh->plane);
+  }
+  for (size_t i = 0; clipped != NULL && i < l->region_count; i++) {
+    dea_region_free(&clipped[i]);
   }
   dea_arena_free(&memory);
   return status;
@@ -156,32 +203,28 @@ static size_t ply_below(const struct dea_layout_mesh *mesh, size_t plane_region,
   return DEA_LAYOUT_NONE;
 }
 
-/* How many plies of the list each one passes over. */
+/* How many plies of the list each one passes over. It may span what is open below it, as a film
+ * does in its frame, but not lie on two. */
 static dea_status find_skips(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                              size_t *skips)
 {
   const struct dea_layout *l = mesh->layout;
   for (size_t p = 0; p < l->ply_count; p++) {
-    bool first = true;
     size_t on = DEA_LAYOUT_NONE;
     for (size_t r = 0; r < mesh->plane->region_count; r++) {
       size_t here = ply_below(mesh, r, p);
-      if (!mesh->present[r * l->ply_count + p] || (!first && here == on)) {
+      if (!mesh->present[r * l->ply_count + p] || here == DEA_LAYOUT_NONE || here == on) {
         continue;
       }
-      if (!first) {
-        size_t a = on != DEA_LAYOUT_NONE ? on : here, b = on != DEA_LAYOUT_NONE ? here : on;
-        DEA_TRY(ctx,
-                dea_finding_add(
-                    ctx, DEA_ERROR, l->plies[p].location,
-                    "the ply '%s' lies partly on '%s' and partly on %s%s%s: it has to be flat; "
-                    "fill the step with a ply of that thickness, or make two plies of it",
-                    l->plies[p].name, l->plies[a].name, b != DEA_LAYOUT_NONE ? "'" : "nothing",
-                    b != DEA_LAYOUT_NONE ? l->plies[b].name : "", b != DEA_LAYOUT_NONE ? "'" : ""));
+      if (on != DEA_LAYOUT_NONE) {
+        DEA_TRY(ctx, dea_finding_add(
+                         ctx, DEA_ERROR, l->plies[p].location,
+                         "the ply '%s' lies partly on '%s' and partly on '%s': it has to be flat; "
+                         "fill the step with a ply of that thickness, or make two plies of it",
+                         l->plies[p].name, l->plies[on].name, l->plies[here].name));
         return dea_fail(ctx, DEA_E_DESIGN, "the ply '%s' is not flat", l->plies[p].name);
       }
       on = here;
-      first = false;
     }
     skips[p] = on != DEA_LAYOUT_NONE ? p - 1 - on : p;
   }
