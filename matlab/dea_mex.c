@@ -1118,6 +1118,13 @@ static void get_of_solid(struct call *call)
   }
 }
 
+static void get_solid_mesh(struct call *call)
+{
+  const dea_mesh *mesh;
+  check(dea_solid_mesh(ctx, get_handle(call, 1, SOLID), &mesh));
+  call->out[0] = from_mesh(mesh);
+}
+
 static void get_settings(struct call *call)
 {
   const char *names[] = {"name", "unit", "meaning", "value"};
@@ -1210,6 +1217,7 @@ static const struct {
     {"solid_path_begin", 4, begin_path},
     {"solid_path_step", 1, step_path},
     {"solid_get", 2, get_of_solid},
+    {"solid_mesh", 1, get_solid_mesh},
     {"solid_settings", 1, get_settings},
     {"solid_set", 3, set_setting},
 };

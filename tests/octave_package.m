@@ -138,6 +138,9 @@ for s = {bar, other}
   assert(unit, 'm');
 end
 assert(bar.get('energy_J'), other.get('energy_J'), -1e-9);
+m = other.mesh();
+assert(m.fields.principal_stress_Pa(:, 1), mu * (2.25 - 1 / 1.5) * ones(size(X, 1), 1), -1e-5);
+assert(m.fields.region, [1; 1]);
 bar.pull([0 0 -mu * (1.5 - 1.5^-2)], 'low_m', [0 0 0.04]);
 bar.solve();
 bar.modes(1);

@@ -64,6 +64,17 @@ static dea_part rubber(const double *mu)
   return part;
 }
 
+static const dea_array *field(const dea_mesh *mesh, const char *name)
+{
+  for (size_t i = 0; i < mesh->field_count; i++) {
+    if (strcmp(mesh->fields[i]->array->name, name) == 0) {
+      return mesh->fields[i]->array;
+    }
+  }
+  fail_msg("there is no field %s", name);
+  return NULL;
+}
+
 /* Pulled by a dead load: the stretch where mu (l - 1/l^2) is the traction. */
 static void test_pull(void **state)
 {
@@ -88,6 +99,18 @@ static void test_pull(void **state)
   double W = 0.5 * mu * (stretch * stretch + 2 / stretch - 3);
   double V = size[0] * size[1] * size[2];
   assert_close(number(solid, "energy_J"), V * (W - traction[2] * (stretch - 1)), 1e-5, 0);
+  const dea_mesh *mesh;
+  good(dea_solid_mesh(ctx, solid, &mesh)); // once more takes the place of the last one
+  good(dea_solid_mesh(ctx, solid, &mesh));
+  assert_int_equal(mesh->point_count, X->shape[0]);
+  assert_int_equal(mesh->cells[0]->count, 2);
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    const double *stress = field(mesh, "principal_stress_Pa")->data + 3 * i;
+    assert_close(stress[0], traction[2] * stretch, 1e-5, 0);
+    assert_close(stress[1], 0, 0, 1e-5 * mu);
+    assert_close(field(mesh, "principal_stretch")->data[3 * i], stretch, 1e-6, 0);
+    assert_close(field(mesh, "energy_J_per_m3")->data[i], W, 1e-5, 0);
+  }
   dea_solid_free(solid);
 }
 

@@ -153,6 +153,13 @@ classdef Solid < dea.Object
       dea_mex('solid_path_step', self.id);
     end
 
+    function found = mesh(self)
+      % Stretches, stresses, tension, field, energy and error of volume at the last equilibrium, as
+      % dea.Result.mesh has them. A point is one node in one ply and part; region is a cell's part
+      % less 1.
+      found = dea_mex('solid_mesh', self.id);
+    end
+
     function all = settings(self)
       % Tolerances and limits of the solvers: array of structs with name, unit, meaning, value.
       all = dea_mex('solid_settings', self.id);

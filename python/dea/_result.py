@@ -107,6 +107,14 @@ class Mesh:
             self.fields[values.name] = Field(values.name, values, bool(field.of_cells),
                                              _KINDS[field.kind])
 
+    def _copied(self) -> Mesh:
+        """This mesh, in memory of its own."""
+        self.points = self.points.copy()
+        self._cells = [(a, b, nodes.copy()) for a, b, nodes in self._cells]
+        self.fields = {name: Field(name, f.values.copy(), f.of_cells, f.kind)
+                       for name, f in self.fields.items()}
+        return self
+
     def __getitem__(self, name: str) -> Array:
         """Values of a field."""
         return self.fields[name].values
@@ -350,9 +358,4 @@ class Actuator:
         """All fields in the volume at the last point: a copy."""
         out = ffi.new("dea_mesh **")
         self._context.check(lib.dea_actuator_mesh(self._context.handle, self._handle.pointer, out))
-        mesh = Mesh(out[0], self._handle)
-        mesh.points = mesh.points.copy()  # the library's own go with the next call
-        mesh._cells = [(a, b, nodes.copy()) for a, b, nodes in mesh._cells]
-        mesh.fields = {name: Field(name, f.values.copy(), f.of_cells, f.kind)
-                       for name, f in mesh.fields.items()}
-        return mesh
+        return Mesh(out[0], self._handle)._copied()  # the library's own goes with the next call

@@ -10,7 +10,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from ._door import Context, ffi, lib, text
-from ._result import Array, Path, _array
+from ._result import Array, Mesh, Path, _array
 
 Numbers = Union[Sequence[float], np.ndarray]
 Components = Union[str, Sequence[str]]
@@ -366,6 +366,13 @@ class Solid:
     def path_step(self) -> None:
         """The next point of the path: load, arc, voltage_V, unstable_modes."""
         self._call(lib.dea_solid_path_step)
+
+    def mesh(self) -> Mesh:
+        """Stretches, stresses, tension, field, energy and error of volume at the last equilibrium:
+        a copy. A point is one node in one ply and part; "region" of a cell is its part."""
+        out = ffi.new("dea_mesh **")
+        self._call(lib.dea_solid_mesh, out)
+        return Mesh(out[0], self._handle)._copied()
 
     @property
     def settings(self) -> Mapping[str, Setting]:

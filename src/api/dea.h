@@ -503,6 +503,10 @@ dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid);
  * next solve, step or modes. DEA_E_ARGUMENT for another name, or when there are none. */
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out);
+/* Stretches, stresses, tension, field, energy and error of volume at the last equilibrium, on
+ * meshes of hexahedra: a point is one node in one ply and part, cells have the number of their part
+ * as "region". Lent until the next call of this function with this solid. */
+dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **out);
 /* voltage_V, energy_J, unstable_modes, iterations, load, arc. */
 dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char *name,
                             double *out);

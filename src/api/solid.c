@@ -17,6 +17,7 @@ struct dea_solid_handle {
   struct dea_solid_object *object;
   dea_array shown; // what dea_solid_array lends
   char name[32];
+  struct door_mesh *mesh; // what dea_solid_mesh lends
 };
 
 const dea_law_info *dea_law_at(dea_context *ctx, size_t index)
@@ -231,6 +232,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
 void dea_solid_free(dea_solid *solid)
 {
   if (solid != NULL) {
+    door_mesh_free(solid->ctx->inner, solid->mesh);
     solid->access->destroy(solid->ctx->inner, solid->object);
     dea_free(solid->ctx->inner, solid);
   }
@@ -415,6 +417,21 @@ dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
     solid->shown.shape[i] = shape[i] > 0 ? shape[i] : 1;
   }
   *out = &solid->shown;
+  return DEA_OK;
+}
+
+dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **out)
+{
+  struct dea_field_mesh *mesh;
+  double voltage_V = NAN;
+  *out = NULL;
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  door_mesh_free(ctx->inner, solid->mesh);
+  solid->mesh = NULL;
+  (void)solid->access->number(solid->object, "voltage_V", &voltage_V);
+  DEA_TRY(ctx->inner, solid->access->mesh(ctx->inner, solid->object, &mesh));
+  DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
+  *out = &solid->mesh->shown;
   return DEA_OK;
 }
 

@@ -69,6 +69,7 @@ struct dea_spring_spec {
 };
 
 struct dea_solid_object;
+struct dea_field_mesh;
 
 /* Where nodes or the middles of faces are looked for: low_m <= X <= high_m, with a little more. */
 struct dea_solid_place {
@@ -123,6 +124,9 @@ struct dea_solid_access {
   /* An array by its name: its unit, its shape (0 beyond its rank); NULL when there is none. */
   const double *(*array)(struct dea_solid_object *object, const char *name, const char **unit,
                          size_t shape[3]);
+  /* All fields at the last equilibrium. *out: owned by the caller, NULL on failure. */
+  dea_status (*mesh)(struct dea_context *ctx, const struct dea_solid_object *object,
+                     struct dea_field_mesh **out);
   /* A number by its name; false when there is none. */
   bool (*number)(const struct dea_solid_object *object, const char *name, double *out);
 };

@@ -238,6 +238,10 @@ class Solids(unittest.TestCase):
         np.testing.assert_allclose(moved[end, 2], 0.02, rtol=1e-6)
         self.assertEqual((moved.name, moved.unit, bar["unstable_modes"]),
                          ("displacement_m", "m", 0))
+        mesh = bar.mesh()
+        stress = mesh["principal_stress_Pa"]
+        np.testing.assert_allclose(stress[:, 0], mu * (stretch**2 - 1 / stretch), rtol=1e-5)
+        self.assertEqual((stress.unit, mesh.linear()[0]["hexahedron"].shape), ("Pa", (16, 8)))
         bar = self.bar()
         bar.hold("z", (0, 0, 0.04), nodes=end)
         bar.solve()

@@ -2,6 +2,7 @@
 #include "model/solid_access.h"
 
 #include "base/module.h"
+#include "model/solid/adapter/fields.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/continuation.h"
@@ -826,6 +827,13 @@ static const double *array(struct dea_solid_object *object, const char *name, co
   return NULL;
 }
 
+static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *object,
+                       struct dea_field_mesh **out)
+{
+  DEA_TRY(ctx, dea_solid_volume(ctx, object->solid, out));
+  return DEA_OK;
+}
+
 static bool number(const struct dea_solid_object *object, const char *name, double *out)
 {
   const struct {
@@ -867,4 +875,5 @@ const struct dea_solid_access dea_solid_access = {.create = create,
                                                   .path = path,
                                                   .step = step,
                                                   .array = array,
+                                                  .mesh = mesh,
                                                   .number = number};
