@@ -280,10 +280,10 @@ static dea_status find_statistics(struct work *w)
 }
 
 /* Growth of chi2, in units of what one standard uncertainty should give, with p_j moved by it. */
-static dea_status growth(struct work *w, const struct dea_lsq_problem *problem, size_t j, double by,
-                         double unit, double *out)
+static dea_status growth(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                         const struct dea_lsq_fit *fit, size_t j, double by, double unit,
+                         double *out)
 {
-  const struct dea_lsq_fit *fit = &w->fit->least_squares;
   double p[DEA_LSQ_PARAMS_MAX];
   bool held[DEA_LSQ_PARAMS_MAX];
   struct dea_lsq_fit moved;
@@ -292,35 +292,34 @@ static dea_status growth(struct work *w, const struct dea_lsq_problem *problem, 
   p[j] += by;
   held[j] = true;
   *out = NAN;
-  dea_status status = dea_lsq_solve(w->ctx, problem, p, held, &moved);
+  dea_status status = dea_lsq_solve(ctx, problem, p, held, &moved);
   if (status == DEA_OK) {
     *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit);
     dea_lsq_free(&moved);
-  } else if (status != DEA_E_MEMORY) {
-    dea_context_clear(w->ctx);
+  } else if (status != DEA_E_MEMORY && status != DEA_E_INTERRUPTED) {
+    dea_context_clear(ctx);
     status = DEA_OK;
   }
   return status;
 }
 
-static dea_status profile(struct work *w, const struct dea_lsq_problem *problem, size_t j, bool all)
+dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                           const struct dea_lsq_fit *fit,
+                           const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
+                           bool all, struct dea_fit_value *value)
 {
-  struct dea_fit *fit = w->fit;
-  struct dea_fit_value *value = &fit->values[j];
-  const double std = fit->statistics.std[j], naive = fit->statistics.naive_std[j];
-  const bool logarithmic = fit->model.params[j].logarithmic;
+  const double std = statistics->std[j], naive = statistics->naive_std[j];
   if (!(std > 0) || isinf(std)) {
     return DEA_OK;
   }
   const double unit = (std / naive) * (std / naive); // correlated, widened
   double below, above;
-  DEA_TRY(w->ctx, growth(w, problem, j, -std, unit, &below));
-  DEA_TRY(w->ctx, growth(w, problem, j, std, unit, &above));
+  DEA_TRY(ctx, growth(ctx, problem, fit, j, -std, unit, &below));
+  DEA_TRY(ctx, growth(ctx, problem, fit, j, std, unit, &above));
   value->bends = !(fabs(below - 1) < 0.15 && fabs(above - 1) < 0.15);
   if (value->bends || all) {
     struct dea_lsq_interval interval;
-    DEA_TRY(w->ctx, dea_lsq_profile(w->ctx, problem, &fit->least_squares, j, 1, unit, 0.7 * std,
-                                    &interval));
+    DEA_TRY(ctx, dea_lsq_profile(ctx, problem, fit, j, 1, unit, 0.7 * std, &interval));
     value->low = logarithmic ? exp(interval.low) : interval.low;
     value->high = logarithmic ? exp(interval.high) : interval.high;
   }
@@ -343,7 +342,8 @@ static dea_status fill_values(struct work *w, bool all_profiles)
                                             .fixed = param->fixed,
                                             .at_bound = fit->least_squares.at_bound[j]};
     dea_progress(w->ctx, "profiles", j, fit->model.count);
-    DEA_TRY(w->ctx, profile(w, &problem, j, all_profiles));
+    DEA_TRY(w->ctx, dea_fit_profile(w->ctx, &problem, &fit->least_squares, &fit->statistics, j,
+                                    param->logarithmic, all_profiles, &fit->values[j]));
   }
   return DEA_OK;
 }

@@ -8,6 +8,7 @@
 #include "calibrate/fit_model.h"
 
 enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4 };
+enum { DEA_FIT_WEAK_CONDITION = 1000 }; // singular values that far below the largest are told
 
 /* A parameter as found, in its unit. */
 struct dea_fit_value {
@@ -83,8 +84,18 @@ dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
                        const struct dea_fit_options *options, struct dea_fit **out);
 void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit);
 
-// Parts (fit_tell.c) ------------------------------------------------------------------------------
+// Parts -------------------------------------------------------------------------------------------
 
+/* The interval of parameter j by its profile, where the normal form is poor or for `all`: sets
+ * bends, low and high of the value. */
+dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                           const struct dea_lsq_fit *fit,
+                           const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
+                           bool all, struct dea_fit_value *value);
+/* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
+ * one unit what they do hold, else the direction in units of the scales. */
+void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
+                            bool open, const char *what, char out[200]);
 /* The weak combinations in words, where the law ends to be stable, and the next test. */
 void dea_fit_tell_weak(struct dea_fit *fit);
 void dea_fit_tell_stability(struct dea_fit *fit);

@@ -265,6 +265,16 @@ static const struct dea_field fit_fields[] = {
 const struct dea_record dea_fit_record = {
     "fit file", "measurements of a material and what is fitted", fit_fields, COUNT(fit_fields)};
 
+dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name)
+{
+  return strlen(name->text) < DEA_NAME_SIZE && strpbrk(name->text, "/\\ \t:#'\"") == NULL
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_ERROR, name->location,
+                               "'%.80s' cannot be the name of a file: letters, digits and -, at "
+                               "most %d",
+                               name->text, DEA_NAME_SIZE - 1);
+}
+
 /* What the table cannot say of a test. */
 static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test *test)
 {
@@ -304,13 +314,7 @@ static dea_status check(struct dea_context *ctx, const struct dea_fit_file *fit)
             dea_finding_add(ctx, DEA_ERROR, fit->parameters[0].name.location,
                             "parameters are those of one law; %zu laws are given", fit->law_count));
   }
-  if (strlen(fit->name.text) >= DEA_NAME_SIZE || strpbrk(fit->name.text, "/\\ \t:#'\"") != NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->name.location,
-                                 "'%.80s' cannot be the name of a file: letters, digits and -, at "
-                                 "most %d",
-                                 fit->name.text, DEA_NAME_SIZE - 1));
-  }
-  return DEA_OK;
+  return dea_fit_name_check(ctx, &fit->name);
 }
 
 static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,

@@ -73,6 +73,8 @@ extern const struct dea_record dea_fit_record;
 /* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
  * failure. */
 dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
+/* A finding where the name of what a fit writes cannot be that of a file. */
+dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name);
 void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);
 
 #endif

@@ -51,7 +51,9 @@ static dea_status read_number(struct dea_context *ctx, const struct dea_label *l
                               const char *unit, double *out)
 {
   char why[DEA_WHY_SIZE] = "";
-  const struct dea_measure due = {unit, strcmp(unit, "Pa") == 0 ? "100 kPa" : "1.5"};
+  const struct dea_measure due = {unit, strcmp(unit, "Pa") == 0  ? "100 kPa"
+                                        : strcmp(unit, "m") == 0 ? "100 um"
+                                                                 : "1.5"};
   if (label->text[0] == '\0' || dea_units_read(ctx, label->text, due, out, why)) {
     return DEA_OK;
   }
@@ -61,8 +63,8 @@ static dea_status read_number(struct dea_context *ctx, const struct dea_label *l
   return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s': %s", label->text, why);
 }
 
-static dea_status take_text(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
-                            struct dea_fit_param *param)
+dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                              struct dea_fit_param *param)
 {
   double low = NAN, high = NAN;
   DEA_TRY(ctx, read_number(ctx, &text->start, param->unit, &param->start));
@@ -104,7 +106,7 @@ static dea_status take_texts(struct dea_context *ctx, const struct dea_fit_file 
     }
     if (j < model->law_count) {
       model->params[j].fixed = false;
-      DEA_TRY(ctx, take_text(ctx, text, &model->params[j]));
+      DEA_TRY(ctx, dea_fit_param_take(ctx, text, &model->params[j]));
       continue;
     }
     const char *nearest = dea_nearest_name(text->name.text, names, j);

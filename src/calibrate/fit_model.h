@@ -17,6 +17,11 @@ struct dea_fit_param {
   double prior, prior_std; // NAN: none
 };
 
+/* What a fit file says of a parameter, over what stands in it already (unit, limits, scale). Errors
+ * are findings at the text's places. */
+dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                              struct dea_fit_param *param);
+
 /* The first law_count parameters are the law's, in its order; then modulus and time of each branch.
  */
 struct dea_fit_model {

@@ -6,44 +6,39 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double weak_condition = 1e3; // singular values that far below the largest are told
-
 /* ---- combinations ---- */
 
-/* Adds the parts of a direction: of two parameters what the tests do hold, else the direction. */
-static void add_combination(const struct dea_fit *fit, const double *direction, bool open,
-                            char out[200])
+void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
+                            bool open, const char *what, char out[200])
 {
   size_t index[DEA_LSQ_PARAMS_MAX], count = 0;
   double most = 0;
-  const size_t n = fit->model.count;
   for (size_t j = 0; j < n; j++) {
-    most = fmax(most, fabs(direction[j] / fit->model.params[j].scale));
+    most = fmax(most, fabs(direction[j] / params[j].scale));
   }
   for (size_t j = 0; j < n; j++) {
-    if (fabs(direction[j] / fit->model.params[j].scale) > 0.05 * most) {
+    if (fabs(direction[j] / params[j].scale) > 0.05 * most) {
       index[count++] = j;
     }
   }
   const char *hold = open ? "determine only" : "hold little more than";
   if (count == 1) {
-    snprintf(out, 200, "the tests hardly determine %s", fit->model.params[index[0]].name);
+    snprintf(out, 200, "the %s hardly determine %s", what, params[index[0]].name);
     return;
   }
-  if (count == 2 &&
-      strcmp(fit->model.params[index[0]].unit, fit->model.params[index[1]].unit) == 0) {
+  if (count == 2 && strcmp(params[index[0]].unit, params[index[1]].unit) == 0) {
     const double share = -direction[index[0]] / direction[index[1]]; // a + share b stays
-    snprintf(out, 200, "the tests %s %s %c %.3g %s", hold, fit->model.params[index[0]].name,
-             share > 0 ? '+' : '-', fabs(share), fit->model.params[index[1]].name);
+    snprintf(out, 200, "the %s %s %s %c %.3g %s", what, hold, params[index[0]].name,
+             share > 0 ? '+' : '-', fabs(share), params[index[1]].name);
     return;
   }
   size_t used =
-      (size_t)snprintf(out, 200, "the tests %s notice a change of", open ? "do not" : "hardly");
+      (size_t)snprintf(out, 200, "the %s %s notice a change of", what, open ? "do not" : "hardly");
   for (size_t k = 0; k < count && used < 160; k++) {
     const double part = direction[index[k]] / direction[index[0]];
-    const double ratio = fit->model.params[index[k]].scale / fit->model.params[index[0]].scale;
+    const double ratio = params[index[k]].scale / params[index[0]].scale;
     used += (size_t)snprintf(out + used, 200 - used, "%s %+.2g x %s", k > 0 ? "," : "",
-                             part / ratio, fit->model.params[index[k]].name);
+                             part / ratio, params[index[k]].name);
   }
 }
 
@@ -51,11 +46,10 @@ void dea_fit_tell_weak(struct dea_fit *fit)
 {
   const struct dea_lsq_statistics *s = &fit->statistics;
   for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
-    if (s->singular[k] * weak_condition < s->singular[0]) {
-      char text[200];
-      add_combination(fit, s->direction + k * s->params, s->singular[k] <= 1e-9 * s->singular[0],
-                      text);
-      memcpy(fit->weak[fit->weak_count++], text, sizeof text);
+    if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
+      dea_fit_tell_direction(fit->model.params, fit->model.count, s->direction + k * s->params,
+                             s->singular[k] <= 1e-9 * s->singular[0], "tests",
+                             fit->weak[fit->weak_count++]);
     }
   }
 }

@@ -22,16 +22,34 @@ static dea_status shifted(const struct dea_lsq_problem *problem, double *p, size
   return status;
 }
 
+/* dr/dp_j by one central difference. */
+static dea_status difference(const struct dea_lsq_problem *problem, double *p, size_t j, double h,
+                             double *work, double *column)
+{
+  const size_t m = problem->rows;
+  dea_status status = shifted(problem, p, j, h, work);
+  status = status == DEA_OK ? shifted(problem, p, j, -h, work + m) : status;
+  for (size_t i = 0; i < m && status == DEA_OK; i++) {
+    column[i] = (work[i] - work[m + i]) / (2 * h);
+  }
+  return status;
+}
+
 /* dr/dp_j into column; work: [2 x rows]. */
 static dea_status differentiate(const struct dea_lsq_problem *problem, double *p, size_t j,
                                 double *work, double *column)
 {
   const size_t m = problem->rows;
   double *plus = work, *minus = work + m;
-  double h = step_share * problem->scale[j];
-  dea_status status = shifted(problem, p, j, 2 * h, plus);
-  status = status == DEA_OK ? shifted(problem, p, j, -2 * h, minus) : status;
-  if (status == DEA_OK) {
+  const double h = (problem->step > 0 ? problem->step : step_share) * problem->scale[j];
+  dea_status status;
+  if (problem->second_order) {
+    status = difference(problem, p, j, h, work, column);
+  } else {
+    status = shifted(problem, p, j, 2 * h, plus);
+    status = status == DEA_OK ? shifted(problem, p, j, -2 * h, minus) : status;
+  }
+  if (status == DEA_OK && !problem->second_order) {
     for (size_t i = 0; i < m; i++) {
       column[i] = -(plus[i] - minus[i]) / (12 * h);
     }
@@ -41,16 +59,9 @@ static dea_status differentiate(const struct dea_lsq_problem *problem, double *p
       column[i] += 8 * (plus[i] - minus[i]) / (12 * h);
     }
   }
-  if (status != DEA_E_DOMAIN) {
-    return status;
-  }
-  h = short_share * problem->scale[j]; // close to where the model ends
-  status = shifted(problem, p, j, h, plus);
-  status = status == DEA_OK ? shifted(problem, p, j, -h, minus) : status;
-  for (size_t i = 0; i < m && status == DEA_OK; i++) {
-    column[i] = (plus[i] - minus[i]) / (2 * h);
-  }
-  return status;
+  return status != DEA_E_DOMAIN // close to where the model ends
+             ? status
+             : difference(problem, p, j, short_share * problem->scale[j], work, column);
 }
 
 dea_status dea_lsq_jacobian(struct dea_context *ctx, const struct dea_lsq_problem *problem,
@@ -147,9 +158,10 @@ static dea_status search_minimum(struct dea_context *ctx, struct search *s, doub
     x[k] = s->p[s->index[k]];
   }
   s->status = DEA_OK;
-  int info =
-      lmder(evaluate, s, m, n, x, r, J, m, 1e-15, 1e-12, 0.0, EVALUATIONS_PER_PARAM * (n + 1), diag,
-            1, 10.0, 0, &evaluations, &derivatives, pivot, qtf, wa1, wa2, wa3, wa4);
+  const double tolerance = s->problem->tolerance;
+  int info = lmder(evaluate, s, m, n, x, r, J, m, tolerance > 0 ? tolerance : 1e-15,
+                   tolerance > 0 ? tolerance : 1e-12, 0.0, EVALUATIONS_PER_PARAM * (n + 1), diag, 1,
+                   10.0, 0, &evaluations, &derivatives, pivot, qtf, wa1, wa2, wa3, wa4);
   dea_arena_free(&memory);
   spread(s, x);
   if (info < 0) {

@@ -17,7 +17,11 @@ enum { DEA_LSQ_PARAMS_MAX = 24 };
 struct dea_lsq_problem {
   size_t rows, params;
   const double *low, *high; // [params] bounds, infinite for none
-  const double *scale; // [params] > 0, a change that matters; steps of derivatives are 1e-3 of it
+  const double
+      *scale;        // [params] > 0, a change that matters; steps of derivatives are a share of it
+  double step;       // that share; 0: 1e-3
+  bool second_order; // derivatives by two evaluations in place of four
+  double tolerance;  // relative, of chi2 and parameters at the end; 0: as far as numbers go
   /* DEA_E_DOMAIN where the model has no answer; any other failure ends the work. */
   dea_status (*residual)(void *user, const double *p, double *r);
   void *user;
@@ -37,7 +41,8 @@ struct dea_lsq_fit {
 
 /* Derivatives by central differences of fourth order: exact but for rounding (about 1e-13 of the
  * values) where the model is linear in p, as all laws are in their moduli; else with an error of
- * about 1e-12 (step / scale)^4. Where the model ends within the step, a shorter one. */
+ * about 1e-12 (step / scale)^4; of second order 1e-6. Where the model ends within the step, a
+ * shorter one. */
 dea_status dea_lsq_jacobian(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                             const double *p, double *J);
 

@@ -1,5 +1,7 @@
 #include "cli/cli.h"
-
+#include "cli/print_device_fit.h"
+#include "job/device_fit.h"
+#include "output/device_fit_files.h"
 #include "output/fit_files.h"
 
 #include <math.h>
@@ -134,18 +136,12 @@ static dea_status fit_file(struct dea_cli *cli, const struct request *request,
   return dea_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static int fit_material(struct dea_cli *cli, const struct request *request)
 {
-  struct request *request = user;
   struct dea_fit_file *file = NULL;
   struct dea_fit_tests tests = {.count = 0};
   struct dea_fit *fit = NULL;
-  struct dea_text folder = {.ctx = cli->ctx};
-  if (request->output == NULL) {
-    cli_folder_name(request->file, "fit", &folder);
-    request->output = dea_text_get(&folder);
-  }
-  dea_status status = folder.failed ? DEA_E_MEMORY : fit_file(cli, request, &file, &tests, &fit);
+  dea_status status = fit_file(cli, request, &file, &tests, &fit);
   if (fit != NULL && request->json) {
     cli_print_json(dea_fit_json(cli->ctx, fit, cli->command_line));
   } else if (fit != NULL) {
@@ -162,6 +158,53 @@ static int run(struct dea_cli *cli, void *user)
   dea_fit_destroy(cli->ctx, fit);
   dea_fit_tests_free(&tests);
   dea_fit_file_destroy(cli->ctx, file);
+  return code;
+}
+
+static dea_status fit_device_file(struct dea_cli *cli, const struct request *request,
+                                  struct dea_device_file **file, struct dea_device_fit **fit)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, dea_device_file_read(ctx, request->file, file));
+  DEA_TRY(ctx, dea_device_fit_run(ctx, *file, &request->options, fit));
+  DEA_TRY(ctx, dea_device_fit_folder(ctx, *file, request->output, request->force));
+  return dea_device_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
+}
+
+static int fit_device(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_device_file *file = NULL;
+  struct dea_device_fit *fit = NULL;
+  dea_status status = fit_device_file(cli, request, &file, &fit);
+  if (fit != NULL && request->json) {
+    cli_print_json(dea_device_fit_json(fit, cli->command_line));
+  } else if (fit != NULL) {
+    cli_print_device_fit(fit);
+    if (status == DEA_OK) {
+      printf("\nwritten to %s\n", request->output);
+    }
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_device_fit_destroy(cli->ctx, fit);
+  dea_device_file_destroy(cli->ctx, file);
+  return code;
+}
+
+static int run(struct dea_cli *cli, void *user)
+{
+  struct request *request = user;
+  struct dea_text folder = {.ctx = cli->ctx};
+  bool of_device = false;
+  if (request->output == NULL) {
+    cli_folder_name(request->file, "fit", &folder);
+    request->output = dea_text_get(&folder);
+  }
+  dea_status status =
+      folder.failed ? DEA_E_MEMORY : dea_device_file_is(cli->ctx, request->file, &of_device);
+  int code = status != DEA_OK ? cli_report(cli, status)
+             : of_device      ? fit_device(cli, request)
+                              : fit_material(cli, request);
   dea_text_free(&folder);
   return code;
 }
@@ -182,9 +225,12 @@ static const struct cli_option options[] = {
 
 const struct dea_command cmd_fit = {
     .name = "fit",
-    .summary = "Fit a material to measurements, with error bars and what they cannot tell",
-    .about = "Writes the material as NAME.yaml, fit.csv (measurements, law, band, residuals), "
-             "fit.json and figures. What a fit file holds says 'dea schema --fit'.",
+    .summary = "Fit a material or a device to measurements, with error bars and what they cannot "
+               "tell",
+    .about = "Writes the material, or the design of the device as it was built, as NAME.yaml, "
+             "fit.csv (measurements, model, band), fit.json and figures. What a fit file holds "
+             "says 'dea schema --fit', that of a device (with the key design) 'dea schema "
+             "--fit-device'.",
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,

@@ -1,12 +1,12 @@
 #include "cli/cli.h"
 
-#include "calibrate/fit_file.h"
+#include "calibrate/device_file.h"
 #include "lab/import/import.h"
 #include "lab/instrument/instrument.h"
 #include "study/design_file.h"
 
 struct request {
-  bool json, markdown, material, protocol, mapping, fit;
+  bool json, markdown, material, protocol, mapping, fit, fit_device;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -16,11 +16,12 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_protocol_schema protocol;
   dea_design_file_schema(&design);
   dea_instrument_protocol_schema(&protocol);
-  const struct dea_record *record = request->material   ? &dea_material_file_record
-                                    : request->protocol ? &protocol.record
-                                    : request->mapping  ? &dea_mapping_record
-                                    : request->fit      ? &dea_fit_record
-                                                        : &design.disc.record;
+  const struct dea_record *record = request->material     ? &dea_material_file_record
+                                    : request->protocol   ? &protocol.record
+                                    : request->mapping    ? &dea_mapping_record
+                                    : request->fit        ? &dea_fit_record
+                                    : request->fit_device ? &dea_device_file_record
+                                                          : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   if (request->json) {
@@ -43,6 +44,8 @@ static const struct cli_option options[] = {
      CLI_AT(mapping), .or_before = true},
     {"fit", 0, CLI_FLAG, NULL, "the keys of a fit file for `dea fit` instead", CLI_AT(fit),
      .or_before = true},
+    {"fit-device", 0, CLI_FLAG, NULL, "the keys of a fit file of a device instead",
+     CLI_AT(fit_device), .or_before = true},
     {0}};
 
 const struct dea_command cmd_schema = {

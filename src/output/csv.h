@@ -40,6 +40,7 @@ void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESUL
 struct dea_measurement {
   struct dea_curve curve;     // model "measurement", kind "sweep"
   struct dea_load_point *std; // [curve.count] uncertainty (1 sigma) of each, NAN: not given
+  size_t *line;               // [curve.count] where each row stands
   const char *file;           // interned
 };
 

@@ -271,26 +271,29 @@ static bool read_row(struct reader *r, const char *line, struct dea_load_point *
   return r->errors == before;
 }
 
-static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *std_room,
+static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *room_now,
                           const struct dea_load_point *point, const struct dea_load_point *std)
 {
-  if (m->curve.count == *std_room) {
-    size_t room = *std_room > 0 ? 2 * *std_room : 64;
+  if (m->curve.count == *room_now) {
+    size_t room = *room_now > 0 ? 2 * *room_now : 64;
     void *moved = dea_resize(r->ctx, m->std, room, sizeof *m->std);
-    if (moved == NULL) {
+    m->std = moved != NULL ? moved : m->std;
+    void *lines = moved != NULL ? dea_resize(r->ctx, m->line, room, sizeof *m->line) : NULL;
+    if (lines == NULL) {
       return DEA_E_MEMORY;
     }
-    m->std = moved;
-    *std_room = room;
+    m->line = lines;
+    *room_now = room;
   }
   m->std[m->curve.count] = *std;
+  m->line[m->curve.count] = r->line;
   return dea_curve_add_point(r->ctx, &m->curve, point);
 }
 
 /* Takes the lines of text one by one (they are cut in place). */
 static dea_status read_lines(struct reader *r, char *text, struct dea_measurement *m)
 {
-  size_t std_room = 0;
+  size_t room = 0;
   bool has_header = false;
   for (char *line; (line = dea_csv_line(&text, &r->line)) != NULL;) {
     if (!has_header) {
@@ -303,7 +306,7 @@ static dea_status read_lines(struct reader *r, char *text, struct dea_measuremen
     }
     struct dea_load_point point, std;
     if (read_row(r, line, &point, &std)) {
-      DEA_TRY(r->ctx, add_row(r, m, &std_room, &point, &std));
+      DEA_TRY(r->ctx, add_row(r, m, &room, &point, &std));
     }
   }
   if (m->curve.count == 0 && r->errors == 0 && one_more_error(r)) {
@@ -364,6 +367,7 @@ void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *me
   if (measurement != NULL) {
     dea_free(ctx, measurement->curve.points);
     dea_free(ctx, measurement->std);
+    dea_free(ctx, measurement->line);
     dea_free(ctx, measurement);
   }
 }

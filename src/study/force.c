@@ -125,6 +125,12 @@ size_t dea_force_stops(const struct dea_design *design)
   return force != NULL ? force->depth_count + force->preload_count : 0;
 }
 
+double dea_force_first_depth_m(const struct dea_design *design)
+{
+  const struct settings *force = settings_of(design);
+  return force != NULL && force->depth_count > 0 ? force->depths_m[0].si : 0;
+}
+
 struct dea_probe dea_force_indenter(const struct dea_design *design)
 {
   const struct settings *force = settings_of(design);

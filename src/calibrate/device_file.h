@@ -1,0 +1,47 @@
+/* A fit file of a device: a design, the keys of it that are fitted, and measured curves. */
+#ifndef DEA_CALIBRATE_DEVICE_FILE_H
+#define DEA_CALIBRATE_DEVICE_FILE_H
+
+#include "calibrate/fit_file.h"
+
+enum {
+  DEA_DEVICE_PARAMS_MAX = 12,
+  DEA_DEVICE_FILES_MAX = 16,
+  DEA_DEVICE_QUANTITIES_MAX = 8,
+};
+
+enum dea_device_kind { DEA_DEVICE_SWEEP, DEA_DEVICE_FORCE };
+enum dea_device_slack { DEA_DEVICE_SLACK_CUT, DEA_DEVICE_SLACK_KEEP };
+
+/* Curves of one file as written. */
+struct dea_device_curve_text {
+  struct dea_label name, file, absolute;
+  struct dea_label quantities[DEA_DEVICE_QUANTITIES_MAX];
+  size_t quantity_count;
+  struct dea_choice kind, use, slack; // enum dea_device_kind, dea_fit_use, dea_device_slack
+  struct dea_quantity relative;
+};
+
+struct dea_device_file {
+  const char *file; // interned
+  char sha256[65];
+  struct dea_quantity version;
+  struct dea_label name, title, source, design, model;
+  struct dea_fit_parameter_text parameters[DEA_DEVICE_PARAMS_MAX];
+  size_t parameter_count;
+  struct dea_device_curve_text curves[DEA_DEVICE_FILES_MAX];
+  size_t curve_count;
+  struct dea_yaml *document; // owned
+};
+
+extern const struct dea_record dea_device_file_record;
+
+/* Whether a fit file is one of a device: it has the key `design`. Status as of reading. */
+dea_status dea_device_file_is(struct dea_context *ctx, const char *file, bool *out);
+/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
+ * failure. */
+dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
+                                struct dea_device_file **out);
+void dea_device_file_destroy(struct dea_context *ctx, struct dea_device_file *fit);
+
+#endif

@@ -1,0 +1,295 @@
+/* Measured curves of a device, and the points of the model that they ask for. */
+#include "job/device_fit_parts.h"
+
+#include "base/file.h"
+#include "base/units.h"
+#include "base/write_file.h"
+#include "output/csv.h"
+#include "output/measured.h"
+#include "result/provenance.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FILE_MAX = 100000000 };
+
+struct reading {
+  struct dea_context *ctx;
+  struct dea_device_fit *fit;
+  const struct dea_device_curve_text *text;
+  const struct dea_measurement *table;
+  char sha256[65];
+};
+
+static dea_status no_memory(const struct dea_device_fit *fit)
+{
+  return dea_arena_status(&fit->memory);
+}
+
+/* Whether a quantity is wanted of a file; what is wanted but no quantity is a finding. */
+static bool is_wanted(const struct dea_device_curve_text *text, int column)
+{
+  for (size_t k = 0; k < text->quantity_count; k++) {
+    if (dea_point_column_find(text->quantities[k].text) == column) {
+      return true;
+    }
+  }
+  return text->quantity_count == 0;
+}
+
+static dea_status check_quantities(struct reading *r)
+{
+  const char *keys[DEA_LOAD_POINT_COLUMNS];
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    keys[c] = dea_point_columns[c].key;
+  }
+  for (size_t k = 0; k < r->text->quantity_count; k++) {
+    const struct dea_label *label = &r->text->quantities[k];
+    const int column = dea_point_column_find(label->text);
+    const char *nearest = dea_nearest_name(label->text, keys, DEA_LOAD_POINT_COLUMNS);
+    if (column < 0) {
+      DEA_TRY(r->ctx,
+              dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.60s' is not a quantity%s%s%s",
+                              label->text, nearest != NULL ? "; did you mean '" : "",
+                              nearest != NULL ? nearest : "", nearest != NULL ? "'?" : ""));
+    } else if (!dea_points_have(r->table->curve.points, r->table->curve.count, column)) {
+      DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.80s' has no %s",
+                                      r->table->file, label->text));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Standard uncertainty of a value: its column's, or what the fit file says. */
+static dea_status take_std(struct reading *r, const struct dea_device_curve *curve, double absolute,
+                           double given, size_t line, double value, double *out)
+{
+  const struct dea_device_curve_text *text = r->text;
+  const bool said = text->relative.origin != DEA_ABSENT || text->absolute.text[0] != '\0';
+  const double share = isnan(text->relative.si) ? 0 : text->relative.si;
+  *out = !isnan(given) ? given : said ? hypot(share * value, absolute) : NAN;
+  if (*out <= 0) {
+    const struct dea_location location = {curve->file, line, 1};
+    return dea_finding_add(r->ctx, DEA_ERROR, location,
+                           "the uncertainty of %s is %g here: it has to be above 0 "
+                           "(uncertainty_absolute)",
+                           dea_point_columns[curve->column].key, *out);
+  }
+  return DEA_OK;
+}
+
+/* The absolute uncertainty in SI, 0 without. */
+static dea_status read_absolute(struct reading *r, int column, double *out)
+{
+  const struct dea_label *label = &r->text->absolute;
+  const struct dea_column *of = &dea_point_columns[column];
+  char why[DEA_WHY_SIZE] = "", example[32];
+  snprintf(example, sizeof example, "2%s%s", strcmp(of->display_unit, "1") == 0 ? "" : " ",
+           strcmp(of->display_unit, "1") == 0 ? "" : of->display_unit);
+  *out = 0;
+  if (label->text[0] == '\0' ||
+      dea_units_read(r->ctx, label->text, (struct dea_measure){of->si_unit, example}, out, why)) {
+    return DEA_OK;
+  }
+  return why[0] == '\0'
+             ? dea_context_status(r->ctx)
+             : dea_finding_add(r->ctx, DEA_ERROR, label->location, "%s: %s", of->key, why);
+}
+
+static dea_status add_curve(struct reading *r, int column)
+{
+  struct dea_device_fit *fit = r->fit;
+  const struct dea_curve *from = &r->table->curve;
+  double absolute;
+  if (fit->curve_count == DEA_DEVICE_CURVES_MAX) {
+    return dea_fail(r->ctx, DEA_E_UNSUPPORTED, "more than %d measured curves",
+                    DEA_DEVICE_CURVES_MAX);
+  }
+  struct dea_device_curve *curve = &fit->curves[fit->curve_count++];
+  *curve = (struct dea_device_curve){
+      .text = r->text, .file = r->table->file, .column = column, .lag = NAN, .effective = NAN};
+  memcpy(curve->sha256, r->sha256, sizeof curve->sha256);
+  double **arrays[] = {&curve->voltage_V, &curve->depth_m,   &curve->value,   &curve->std,
+                       &curve->model,     &curve->model_std, &curve->designed};
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) {
+    *arrays[k] = dea_arena_alloc(&fit->memory, from->count, sizeof(double));
+  }
+  curve->line = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->line);
+  curve->stop = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->stop);
+  curve->used = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->used);
+  DEA_TRY(r->ctx, no_memory(fit));
+  DEA_TRY(r->ctx, read_absolute(r, column, &absolute));
+  for (size_t i = 0; i < from->count; i++) {
+    const double value = dea_point_get(&from->points[i], column);
+    const size_t n = curve->rows;
+    if (isnan(value)) {
+      continue;
+    }
+    curve->line[n] = r->table->line[i];
+    curve->voltage_V[n] = from->points[i].voltage_V;
+    curve->depth_m[n] = from->points[i].tip_depth_m;
+    curve->value[n] = value;
+    DEA_TRY(r->ctx, take_std(r, curve, absolute, dea_point_get(&r->table->std[i], column),
+                             curve->line[n], value, &curve->std[n]));
+    curve->rows++;
+  }
+  return DEA_OK;
+}
+
+static dea_status read_table(struct reading *r, const char *path)
+{
+  char *bytes;
+  size_t length;
+  struct dea_measurement *table;
+  DEA_TRY(r->ctx, dea_file_read(r->ctx, path, FILE_MAX, &bytes, &length));
+  dea_sha256_hex(bytes, length, r->sha256);
+  dea_free(r->ctx, bytes);
+  DEA_TRY(r->ctx, dea_measurement_read(r->ctx, path, &table));
+  r->table = table;
+  dea_status status = check_quantities(r);
+  size_t taken = 0;
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && status == DEA_OK; c++) {
+    const bool axis = c == dea_point_column_find("voltage_V") ||
+                      c == dea_point_column_find("time_s") ||
+                      c == dea_point_column_find("tip_depth_m");
+    if (!axis && is_wanted(r->text, c) &&
+        dea_points_have(table->curve.points, table->curve.count, c)) {
+      status = add_curve(r, c);
+      taken++;
+    }
+  }
+  if (status == DEA_OK && taken == 0 && r->text->quantity_count == 0) {
+    status = dea_finding_add(r->ctx, DEA_ERROR, r->text->file.location,
+                             "'%.80s' has no quantity beside the voltage", table->file);
+  }
+  if (status == DEA_OK && taken > 1 && r->text->absolute.text[0] != '\0') {
+    status = dea_finding_add(r->ctx, DEA_ERROR, r->text->absolute.location,
+                             "'%.60s' has %zu quantities: an absolute uncertainty is that of one "
+                             "(quantities)",
+                             r->text->name.text, taken);
+  }
+  dea_measurement_destroy(r->ctx, table);
+  r->table = NULL;
+  return status;
+}
+
+dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit *fit)
+{
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  dea_status worst = DEA_OK;
+  for (size_t k = 0; k < fit->file->curve_count; k++) { // all of them, for all that is wrong
+    struct reading r = {.ctx = ctx, .fit = fit, .text = &fit->file->curves[k]};
+    char *path = dea_path_beside(ctx, fit->file->file, r.text->file.text), *inside = NULL;
+    if (path != NULL && dea_path_is_folder(path)) {
+      inside = dea_path_join(ctx, path, "measurement.csv");
+    }
+    const char *name = path != NULL && dea_path_is_folder(path) ? inside : path;
+    dea_status status = name != NULL ? read_table(&r, name) : DEA_E_MEMORY;
+    worst = status != DEA_OK ? status : worst;
+    dea_free(ctx, inside);
+    dea_free(ctx, path);
+  }
+  DEA_TRY(ctx, worst);
+  return dea_finding_count(ctx, DEA_ERROR) == errors
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "the curves of '%s' have errors", fit->file->file);
+}
+
+// Points of the model -----------------------------------------------------------------------------
+
+static bool is_held(const struct dea_device_curve *curve)
+{
+  return curve->text->kind.value == DEA_DEVICE_FORCE;
+}
+
+static double depth_of(const struct dea_device_curve *curve, size_t i)
+{
+  return is_held(curve) && !isnan(curve->depth_m[i]) ? curve->depth_m[i] : 0;
+}
+
+static struct dea_device_group *find_group(struct dea_device_model *model, bool held, double depth)
+{
+  for (size_t g = 0; g < model->group_count; g++) {
+    if (model->groups[g].held == held && model->groups[g].depth_m == depth) {
+      return &model->groups[g];
+    }
+  }
+  if (model->group_count == DEA_DEVICE_GROUPS_MAX) {
+    return NULL;
+  }
+  model->groups[model->group_count] = (struct dea_device_group){.held = held, .depth_m = depth};
+  return &model->groups[model->group_count++];
+}
+
+static int rising(const void *a, const void *b)
+{
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Voltages of one group, sorted, each once, at the end of model->voltage_V. */
+static void add_stops(const struct dea_device_fit *fit, struct dea_device_model *model,
+                      struct dea_device_group *group)
+{
+  double *to = model->voltage_V + model->stop_count;
+  size_t n = 0, kept = 0;
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    const struct dea_device_curve *curve = &fit->curves[c];
+    for (size_t i = 0; i < curve->rows; i++) {
+      if (is_held(curve) == group->held && depth_of(curve, i) == group->depth_m) {
+        to[n++] = curve->voltage_V[i];
+      }
+    }
+  }
+  qsort(to, n, sizeof *to, rising);
+  for (size_t i = 0; i < n; i++) {
+    if (kept == 0 || to[i] != to[kept - 1]) {
+      to[kept++] = to[i];
+    }
+  }
+  group->first = model->stop_count;
+  group->count = kept;
+  model->stop_count += kept;
+}
+
+static size_t stop_of(const struct dea_device_model *model, const struct dea_device_group *group,
+                      double voltage_V)
+{
+  size_t k = group->first;
+  while (model->voltage_V[k] != voltage_V) {
+    k++;
+  }
+  return k;
+}
+
+dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit *fit,
+                                 struct dea_device_model *model)
+{
+  size_t rows = 0;
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    rows += fit->curves[c].rows;
+    for (size_t i = 0; i < fit->curves[c].rows; i++) {
+      const struct dea_device_curve *curve = &fit->curves[c];
+      if (find_group(model, is_held(curve), depth_of(curve, i)) == NULL) {
+        return dea_fail(ctx, DEA_E_UNSUPPORTED, "more than %d depths of a tip",
+                        DEA_DEVICE_GROUPS_MAX);
+      }
+    }
+  }
+  model->voltage_V = dea_arena_alloc(&fit->memory, rows, sizeof *model->voltage_V);
+  model->wanted = dea_arena_alloc(&fit->memory, rows, sizeof *model->wanted);
+  DEA_TRY(ctx, no_memory(fit));
+  for (size_t g = 0; g < model->group_count; g++) {
+    add_stops(fit, model, &model->groups[g]);
+  }
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    struct dea_device_curve *curve = &fit->curves[c];
+    for (size_t i = 0; i < curve->rows; i++) {
+      const struct dea_device_group *group = find_group(model, is_held(curve), depth_of(curve, i));
+      curve->stop[i] = stop_of(model, group, curve->voltage_V[i]);
+    }
+  }
+  return DEA_OK;
+}

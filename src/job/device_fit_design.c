@@ -1,0 +1,205 @@
+/* The design of a device as it was fitted, as a file that every command takes. */
+#include "job/device_fit_parts.h"
+
+#include "base/file.h"
+#include "base/version.h"
+#include "base/write_file.h"
+#include "base/yaml_write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Adds a comment of one line; sources and titles may hold anything. */
+static void add_comment(struct dea_text *out, const char *text)
+{
+  dea_text_add(out, "# ");
+  for (const char *c = text; *c != '\0'; c++) {
+    dea_text_add(out, "%c", (unsigned char)*c < 0x20 ? ' ' : *c);
+  }
+  dea_text_add(out, "\n");
+}
+
+static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
+{
+  const struct dea_device_file *file = fit->file;
+  dea_text_add(out, "# Written by dea %s fit: %s as it was built, by its measured curves.\n",
+               DEA_VERSION, dea_path_name(fit->design_file));
+  if (file->source.text[0] != '\0') {
+    add_comment(out, file->source.text);
+  }
+  dea_text_add(out, "# Fit file %s (SHA-256 %s), design %s (%s), model %s\n",
+               dea_path_name(file->file), file->sha256, dea_path_name(fit->design_file),
+               fit->design_sha256, fit->model);
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    if (fit->curves[c].text->use.value == DEA_FIT_USED) {
+      dea_text_add(out, "# %s of %s (%s)\n", dea_point_columns[fit->curves[c].column].key,
+                   dea_path_name(fit->curves[c].file), fit->curves[c].sha256);
+    }
+  }
+  for (size_t j = 0; j < fit->param_count; j++) {
+    const struct dea_device_param *param = &fit->params[j];
+    const struct dea_fit_value *value = &fit->values[j];
+    const char *unit = strcmp(param->param.unit, "1") == 0 ? "" : param->param.unit;
+    dea_text_add(out, "#   %s = %.6g", param->param.name, value->value);
+    if (value->fixed || value->at_bound || isinf(value->std)) {
+      dea_text_add(out, " %s%s (%s)\n", unit, param->state,
+                   value->fixed      ? "fixed"
+                   : value->at_bound ? "at its bound"
+                                     : "not determined");
+    } else {
+      dea_text_add(out, " +- %.2g%s%s%s\n", value->std, unit[0] != '\0' ? " " : "", unit,
+                   param->state);
+    }
+  }
+}
+
+/* Ends a section with its source, in lines of their own. */
+static void add_source(struct dea_text *out, const char *indent, const struct dea_material *film)
+{
+  dea_text_add(out, "%ssource: \"this fit; what it did not free is that of %s\"\n", indent,
+               film->name);
+}
+
+static void add_rest(struct dea_text *out, const struct dea_material *film)
+{
+  if (film->density_kg_per_m3 > 0) {
+    dea_text_add(out, "    density:\n      value: %.10g kg/m^3\n", film->density_kg_per_m3);
+    add_source(out, "      ", film);
+  }
+  if (film->breakdown.known) {
+    dea_text_add(out, "    breakdown:\n      - id: fit\n        at_rest: %.10g V/m\n",
+                 film->breakdown.at_rest_V_per_m);
+    if (film->breakdown.exponent_known) {
+      dea_text_add(out, "        exponent: %.10g\n", film->breakdown.exponent);
+    }
+    add_source(out, "        ", film);
+  }
+  if (film->resistivity_ohm_m > 0) {
+    dea_text_add(out, "    resistivity:\n      value: %.10g ohm m\n", film->resistivity_ohm_m);
+    add_source(out, "      ", film);
+  }
+  if (film->branch_count > 0) {
+    dea_text_add(out, "    viscosity:\n      - id: fit\n        assumed: %s\n        branches:\n",
+                 film->viscosity_assumed ? "yes" : "no");
+    for (size_t b = 0; b < film->branch_count; b++) {
+      dea_text_add(out, "          - {modulus: %.10g Pa, time: %.10g s}\n",
+                   film->branches[b].modulus_Pa, film->branches[b].time_s);
+    }
+    add_source(out, "        ", film);
+  }
+}
+
+/* The film's material with what was fitted, as an item of `materials`. */
+static void add_material(struct dea_text *out, const struct dea_device_fit *fit,
+                         const struct dea_material *film)
+{
+  const struct dea_law *law = film->law;
+  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", fit->file->name.text);
+  dea_text_add(out, "    laws:\n      - id: fit\n        law: %s\n        parameters: {",
+               law->name);
+  for (size_t i = 0; i < law->param_count; i++) {
+    const bool bare = strcmp(law->params[i].unit, "1") == 0;
+    dea_text_add(out, "%s%s: %.10g%s%s", i > 0 ? ", " : "", law->params[i].key, film->param[i],
+                 bare ? "" : " ", bare ? "" : law->params[i].unit);
+  }
+  dea_text_add(out, "}\n");
+  if (law->anisotropic) {
+    dea_text_add(out, "        fibre_angle: %.10g radian\n", film->fibre_angle_rad);
+  }
+  add_source(out, "        ", film);
+  if (film->permittivity.at_rest > 0) {
+    dea_text_add(out, "    permittivity:\n      - id: fit\n        at_rest: %.10g\n",
+                 film->permittivity.at_rest);
+    dea_text_add(out, "        slope: %.10g\n", film->permittivity.slope);
+    add_source(out, "        ", film);
+  }
+  add_rest(out, film);
+}
+
+/* Adds the material behind "materials:" of the written design, or with it at the end. */
+static void add_with_material(struct dea_text *out, const char *design, const char *material)
+{
+  static const char key[] = "\nmaterials:\n";
+  const char *at = strstr(design, key);
+  if (at == NULL) {
+    dea_text_add(out, "%smaterials:\n%s", design, material);
+  } else {
+    at += strlen(key);
+    dea_text_add(out, "%.*s%s%s", (int)(at - design), design, material, at);
+  }
+}
+
+/* Puts the fitted values of keys into the document, and takes the film's material from `materials`
+ * where it was fitted. */
+static dea_status put_values(struct dea_context *ctx, const struct dea_device_fit *fit,
+                             struct dea_yaml *document, struct dea_material *film,
+                             bool *of_material)
+{
+  char text[DEA_TITLE_SIZE + 8];
+  for (size_t j = 0; j < fit->param_count; j++) {
+    const struct dea_device_param *param = &fit->params[j];
+    const double value = fit->values[j].value;
+    if (param->kind == DEA_DEVICE_KEY) {
+      dea_device_param_text(param, value, 10, text);
+      DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
+    } else if (param->kind == DEA_DEVICE_LAW) {
+      film->param[param->index] = value;
+    } else if (param->index == 0) {
+      film->permittivity.at_rest = value;
+    } else {
+      film->permittivity.slope = value;
+    }
+    *of_material = *of_material || param->kind != DEA_DEVICE_KEY;
+  }
+  if (*of_material) {
+    static const char *const gone[] = {"film.law", "film.permittivity", "film.breakdown"};
+    snprintf(text, sizeof text, "%.63s-film", fit->file->name.text);
+    DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.material", text));
+    for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
+      DEA_TRY(ctx, dea_yaml_override(ctx, document, gone[k], "null"));
+    }
+    DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.viscosity",
+                                   film->branch_count > 0 ? "null" : "none"));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
+                                  const struct dea_device_model *model,
+                                  const struct dea_device *device)
+{
+  struct dea_material film = device->film;
+  struct dea_text design = {.ctx = ctx}, material = {.ctx = ctx};
+  struct dea_yaml *document;
+  bool of_material = false;
+  DEA_TRY(ctx, dea_yaml_parse(ctx, model->name, model->bytes, model->length, &document));
+  dea_status status = put_values(ctx, fit, document, &film, &of_material);
+  if (status == DEA_OK && fit->file->title.text[0] != '\0') {
+    dea_text_add(&material, "\"");
+    for (const char *c = fit->file->title.text; *c != '\0'; c++) {
+      dea_text_add(&material, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+    }
+    dea_text_add(&material, "\"");
+    status = dea_yaml_override(ctx, document, "title", dea_text_get(&material));
+    dea_text_free(&material);
+    material = (struct dea_text){.ctx = ctx};
+  }
+  void *before = dea_c_locale_enter();
+  if (status == DEA_OK) {
+    dea_yaml_write(dea_yaml_root(document), &design);
+    add_head(&fit->design, fit);
+    if (of_material) {
+      add_material(&material, fit, &film);
+      add_with_material(&fit->design, dea_text_get(&design), dea_text_get(&material));
+    } else {
+      dea_text_add(&fit->design, "%s", dea_text_get(&design));
+    }
+    status = design.failed || material.failed || fit->design.failed ? DEA_E_MEMORY : DEA_OK;
+  }
+  dea_c_locale_leave(before);
+  dea_text_free(&material);
+  dea_text_free(&design);
+  dea_yaml_destroy(ctx, document);
+  return status;
+}

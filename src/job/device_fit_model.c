@@ -1,0 +1,216 @@
+#include "job/device_fit_model.h"
+
+#include "base/write_file.h"
+#include "study/design_file.h"
+#include "study/force.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
+                           char out[80])
+{
+  const bool unit = strcmp(param->param.unit, "1") != 0;
+  void *before = dea_c_locale_enter();
+  snprintf(out, 80, "%s%.*g%s%s%s%s", param->list ? "[" : "", digits, value, unit ? " " : "",
+           unit ? param->param.unit : "", param->state, param->list ? "]" : "");
+  dea_c_locale_leave(before);
+}
+
+/* ---- one evaluation ---- */
+
+/* Design and device with p in place of the design's values. */
+static dea_status build(const struct dea_device_model *model, const double *p,
+                        struct dea_design **design, struct dea_device **device)
+{
+  struct dea_override overrides[DEA_DEVICE_PARAMS_MAX];
+  char texts[DEA_DEVICE_PARAMS_MAX][80];
+  size_t count = 0;
+  for (size_t j = 0; j < model->param_count; j++) {
+    if (model->params[j].kind == DEA_DEVICE_KEY) {
+      dea_device_param_text(&model->params[j], p[j], 17, texts[count]);
+      overrides[count] = (struct dea_override){model->params[j].param.name, texts[count]};
+      count++;
+    }
+  }
+  DEA_TRY(model->ctx, dea_design_read_memory(model->ctx, model->name, model->bytes, model->length,
+                                             overrides, count, design));
+  DEA_TRY(model->ctx, dea_device_build(model->ctx, *design, device));
+  for (size_t j = 0; j < model->param_count; j++) {
+    const struct dea_device_param *param = &model->params[j];
+    if (param->kind == DEA_DEVICE_LAW) {
+      (*device)->film.param[param->index] = p[j];
+    } else if (param->kind == DEA_DEVICE_PERMITTIVITY && param->index == 0) {
+      (*device)->film.permittivity.at_rest = p[j];
+    } else if (param->kind == DEA_DEVICE_PERMITTIVITY) {
+      (*device)->film.permittivity.slope = p[j];
+    }
+  }
+  return DEA_OK;
+}
+
+/* Statuses after which the work cannot go on. */
+static bool is_fatal(dea_status status)
+{
+  return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED || status == DEA_E_TOOL ||
+         status == DEA_E_UNSUPPORTED;
+}
+
+/* Copies the state of the last point, for the next evaluation to start from. */
+static dea_status keep_state(struct dea_device_model *model, struct dea_model *m, size_t stop)
+{
+  struct dea_context *ctx = model->ctx;
+  struct dea_state now = {0}, *kept = &model->states[stop];
+  DEA_TRY(ctx, dea_model_save(ctx, model->type, m, &now));
+  dea_state_free_values(ctx, kept);
+  *kept = (struct dea_state){0};
+  for (size_t a = 0; a < now.array_count; a++) {
+    double *values = dea_alloc(ctx, now.arrays[a].count, sizeof *values);
+    if (values == NULL) {
+      return DEA_E_MEMORY;
+    }
+    memcpy(values, now.arrays[a].values, now.arrays[a].count * sizeof *values);
+    kept->arrays[kept->array_count++] =
+        (struct dea_state_array){now.arrays[a].name, now.arrays[a].count, values};
+  }
+  return DEA_OK;
+}
+
+/* One point: near the one that the last evaluation found there while the film was taut, else on
+ * the way from the last voltage. */
+static dea_status solve(struct dea_device_model *model, struct dea_model *m, size_t stop,
+                        struct dea_load_point *out)
+{
+  struct dea_context *ctx = model->ctx;
+  if (model->states != NULL && model->states[stop].array_count > 0 &&
+      dea_model_load(ctx, model->type, m, &model->states[stop]) != DEA_OK) {
+    dea_context_clear(ctx); // another mesh
+  }
+  DEA_TRY(ctx, model->type->solve(ctx, m, model->voltage_V[stop], out));
+  if (model->states == NULL) {
+    return DEA_OK;
+  }
+  if (out->min_tension_N_per_m <= 0) { // more than one state: those are gone to from rest
+    dea_state_free_values(ctx, &model->states[stop]);
+    model->states[stop] = (struct dea_state){0};
+    return DEA_OK;
+  }
+  return keep_state(model, m, stop);
+}
+
+static dea_status follow(struct dea_device_model *model, const struct dea_design *design,
+                         const struct dea_device *device, const struct dea_device_group *group,
+                         struct dea_load_point *points)
+{
+  struct dea_context *ctx = model->ctx;
+  struct dea_model *m;
+  size_t last = group->count;
+  while (last > 0 && !model->wanted[group->first + last - 1]) {
+    last--;
+  }
+  DEA_TRY(ctx, dea_model_create(ctx, model->type, design, device, &m));
+  dea_status status = DEA_OK;
+  if (group->held) {
+    struct dea_probe tip = dea_force_indenter(design);
+    struct dea_load_point touched;
+    status = dea_model_indent(ctx, model->type, m, &tip,
+                              dea_force_first_depth_m(design) + group->depth_m, &touched);
+  }
+  for (size_t k = 0; k < last && status == DEA_OK; k++) {
+    struct dea_load_point point;
+    if (dea_interrupted(ctx)) {
+      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted");
+      break;
+    }
+    status = solve(model, m, group->first + k, &point);
+    if (status == DEA_OK) {
+      points[group->first + k] = point;
+    }
+  }
+  model->type->destroy(ctx, m);
+  if (status != DEA_OK && !is_fatal(status)) {
+    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+static dea_status evaluate(struct dea_device_model *model, const double *p,
+                           struct dea_load_point *points)
+{
+  struct dea_context *ctx = model->ctx;
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  for (size_t k = 0; k < model->stop_count; k++) {
+    points[k] = dea_load_point_empty();
+  }
+  const size_t errors = dea_finding_trial_begin(ctx);
+  dea_status status = build(model, p, &design, &device);
+  if (status == DEA_E_DESIGN) {
+    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
+    dea_context_clear(ctx);
+    status = DEA_E_DOMAIN;
+  }
+  for (size_t g = 0; g < model->group_count && status == DEA_OK; g++) {
+    status = follow(model, design, device, &model->groups[g], points);
+  }
+  dea_finding_trial_end(ctx, errors);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  dea_progress(ctx, "sweeps of the device", ++model->evaluations, 0);
+  return status;
+}
+
+/* ---- evaluations that are kept ---- */
+
+dea_status dea_device_model_begin(struct dea_device_model *model)
+{
+  for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
+    model->memo[k].points = NULL;
+  }
+  model->states = NULL;
+  if (model->type->load != NULL) {
+    model->states = dea_alloc(model->ctx, model->stop_count, sizeof *model->states);
+    return model->states != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  return DEA_OK;
+}
+
+void dea_device_model_end(struct dea_device_model *model)
+{
+  for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
+    dea_free(model->ctx, model->memo[k].points);
+    model->memo[k].points = NULL;
+  }
+  for (size_t k = 0; model->states != NULL && k < model->stop_count; k++) {
+    dea_state_free_values(model->ctx, &model->states[k]);
+  }
+  dea_free(model->ctx, model->states);
+  model->states = NULL;
+}
+
+dea_status dea_device_model_points(struct dea_device_model *model, const double *p,
+                                   const struct dea_load_point **out)
+{
+  for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
+    if (model->memo[k].points != NULL &&
+        memcmp(model->memo[k].p, p, model->param_count * sizeof *p) == 0) {
+      *out = model->memo[k].points;
+      return DEA_OK;
+    }
+  }
+  struct dea_load_point *points = dea_alloc(model->ctx, model->stop_count, sizeof *points);
+  dea_status status = points != NULL ? evaluate(model, p, points) : DEA_E_MEMORY;
+  if (status != DEA_OK) {
+    dea_free(model->ctx, points);
+    return status;
+  }
+  struct dea_device_memo *memo = &model->memo[model->memo_next++ % DEA_DEVICE_MEMO];
+  dea_free(model->ctx, memo->points);
+  memcpy(memo->p, p, model->param_count * sizeof *p);
+  memo->points = points;
+  *out = points;
+  return DEA_OK;
+}

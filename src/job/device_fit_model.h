@@ -1,0 +1,61 @@
+/* A device as a function of numbers of its design: load points at given voltages, for a fit. */
+#ifndef DEA_JOB_DEVICE_FIT_MODEL_H
+#define DEA_JOB_DEVICE_FIT_MODEL_H
+
+#include "calibrate/device_fit.h"
+#include "model/model.h"
+
+enum { DEA_DEVICE_MEMO = 48, DEA_DEVICE_GROUPS_MAX = 64 };
+
+/* Points of one path: voltages that rise, freely or with a tip held `depth_m` beyond the design's
+ * first depth. */
+struct dea_device_group {
+  bool held;
+  double depth_m;
+  size_t first, count;
+};
+
+/* Points at parameters that were asked for before. */
+struct dea_device_memo {
+  double p[DEA_DEVICE_PARAMS_MAX];
+  struct dea_load_point *points; // [stop_count]; NULL: empty
+};
+
+struct dea_device_model {
+  struct dea_context *ctx;
+  const char *name, *bytes; // the design file; lent
+  size_t length;
+  const struct dea_model_type *type;
+  const struct dea_device_param *params; // lent
+  size_t param_count;
+  struct dea_device_group groups[DEA_DEVICE_GROUPS_MAX];
+  size_t group_count;
+  size_t stop_count;
+  double *voltage_V; // [stop_count], in the arena of who fills it
+  bool *wanted;      // [stop_count]: the others are not computed while they come last in a group
+  struct dea_device_memo memo[DEA_DEVICE_MEMO];
+  size_t memo_next;
+  struct dea_state *states; // [stop_count] of the last evaluation, owned; NULL: no warm starts
+  size_t evaluations;
+  char why[200]; // of the last point that could not be had
+};
+
+/* Starts that need the above to be set from name to stop_count. */
+dea_status dea_device_model_begin(struct dea_device_model *model);
+void dea_device_model_end(struct dea_device_model *model);
+/* Points [stop_count] at p, NAN where there is no equilibrium (model->why says of the last one);
+ * lent until DEA_DEVICE_MEMO others were asked for. DEA_E_DOMAIN where the design cannot be built
+ * with p. */
+dea_status dea_device_model_points(struct dea_device_model *model, const double *p,
+                                   const struct dea_load_point **out);
+/* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
+void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
+                           char out[80]);
+
+/* Parameters of a fit file with what the design says of them: unit, limits, value. Errors are
+ * findings; DEA_E_DESIGN then. */
+dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_device_file *file,
+                                  const struct dea_design *design, const struct dea_device *device,
+                                  struct dea_device_param *out);
+
+#endif

@@ -1,0 +1,149 @@
+#define _GNU_SOURCE
+/* dea fit of a device, as a user runs it: the example, its files, what may be wrong. */
+#include "command.h"
+
+static const char curve[] = "V (kV),u electrode edge (um),capacitance (pF)\n"
+                            "1,14,24.9\n2,56,26.1\n3,130,28.4\n4,240,32.1\n";
+
+/* A fit file with these parameters and curves. */
+static void write_fit(const char *model, const char *parameters, const char *curves)
+{
+  static char text[4096];
+  snprintf(text, sizeof text,
+           "dea_fit: 1\nname: mine\ndesign: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\nmodel: %s\n"
+           "parameters: [%s]\ncurves:\n  - {%s}\n",
+           model, parameters, curves);
+  command_write("mine.yaml", text);
+}
+
+/* Runs it; the exit code and one message are wanted. */
+static void expect(const char *model, const char *parameters, const char *curves, int code,
+                   const char *message)
+{
+  write_fit(model, parameters, curves);
+  const int found = command_run("fit mine.yaml --force");
+  if (found != code || strstr(command_err, message) == NULL) {
+    fail_msg("exit code %d, wanted %d with '%s':\n%s", found, code, message, command_err);
+  }
+}
+
+static const char one[] = "name: s, file: sweep.csv, quantities: [electrode_edge_u_m]";
+
+static void test_parameters(void **state)
+{
+  (void)state;
+  command_write("sweep.csv", curve);
+  expect("lumped", "{name: film.thicknes}", one, 3,
+         "mine.yaml:5:21: error: 'film.thicknes' is no key of the design; did you mean "
+         "'film.thickness'?");
+  expect("lumped", "{name: fibres.count}", one, 3, "'fibres.count' is a whole number");
+  expect("lumped", "{name: fibres.outer_end}", one, 3, "is no number that could be fitted");
+  expect("lumped", "{name: report.width}", one, 3, "does not change what the device does");
+  expect("lumped", "{name: film.law.c9}", one, 3, "is no parameter of the law");
+  expect("lumped", "{name: film.permittivity.at}", one, 3, "is none of film.permittivity.at_rest");
+  expect("lumped", "{name: film.thickness, low: 110 um}", one, 3,
+         "film.thickness starts at 0.0001 m, outside of its bounds 0.00011 and 0.01 m");
+  expect("lumped", "{name: film.thickness, prior: 100, prior_std: 2 um}", one, 3,
+         "mine.yaml:5:44: error: '100': ");
+  expect("lumped", "{name: fibres.overlap}", one, 3, "give low and high");
+  expect("lumped", "{name: fibres.overlap, low: -1 mm unstretched, high: 1 mm}", one, 3,
+         "fibres.overlap is a length stretched in the design");
+  expect("lumped", "{name: compute.force.depth}", one, 3, "has no single value");
+  expect("lumped", "{name: film.permittivity.at_rest, prior: elastosil-2030}", one, 3,
+         "gives no uncertainty of film.permittivity.at_rest");
+  expect("lumped", "{name: film.thickness, prior: pet, prior_std: 1 um}", one, 3,
+         "the material 'pet' says nothing of film.thickness");
+  expect("lumped", "{name: film.thickness, fixed: yes}", one, 3, "nothing is left to be fitted");
+  expect("lumped", "{name: pre_stretch}, {name: pre_stretch}", one, 3,
+         "'pre_stretch' is a parameter in line 5 already");
+}
+
+static void test_curves(void **state)
+{
+  (void)state;
+  static const char free_one[] = "{name: film.thickness}";
+  command_write("sweep.csv", curve);
+  expect("lumpet", free_one, one, 3, "there is no model 'lumpet'; did you mean 'lumped'?");
+  expect("lumped", free_one, "name: s, file: none.csv", 5, "none.csv");
+  expect("lumped", free_one, "name: s, file: sweep.csv", 3,
+         "several quantities can only be weighed");
+  expect("lumped", free_one, "name: s, file: sweep.csv, quantities: [capacitance]", 3,
+         "'capacitance' is not a quantity; did you mean 'capacitance_F'?");
+  expect("lumped", free_one, "name: s, file: sweep.csv, quantities: [force_N]", 3,
+         "sweep.csv' has no force_N");
+  expect("lumped", free_one, "name: s, file: sweep.csv, uncertainty_absolute: 2 um", 3,
+         "an absolute uncertainty is that of one");
+  expect("lumped", free_one,
+         "name: s, file: sweep.csv, quantities: [electrode_edge_u_m], uncertainty_absolute: 2", 3,
+         "electrode_edge_u_m: ");
+  expect("lumped", free_one,
+         "name: s, file: sweep.csv, quantities: [electrode_edge_u_m], kind: force", 3,
+         "mine.yaml:7:72: error: the model lumped knows no tip");
+  command_write("z.csv", "V (kV),z centre (um)\n1,1\n2,2\n");
+  expect("axisymmetric", free_one, "name: s, file: z.csv", 3,
+         "the model axisymmetric does not know centre_z_m");
+  command_write("z.csv", "V (kV),capacitance\n1,1\n2,2\n");
+  expect("lumped", free_one, "name: s, file: z.csv", 5, "z.csv:1:8: error:");
+  command_write("z.csv", "V (kV),capacitance (pF)\n1,25\n");
+  expect("lumped", "{name: film.thickness}, {name: pre_stretch}", "name: s, file: z.csv", 3,
+         "1 measured value, priors included, where 2 parameters are sought");
+  command_write("z.csv", "V (kV),capacitance (pF),capacitance std (pF)\n1,25,0\n2,26,1\n");
+  expect("lumped", free_one, "name: s, file: z.csv", 3, "z.csv:2:1: error: the uncertainty of");
+  command_write("z.csv", "V (kV)\n1\n2\n");
+  expect("lumped", free_one, "name: s, file: z.csv", 3, "has no quantity beside the voltage");
+}
+
+/* The example of docs/fit.md, its files, a folder of dea reduce, and the keys of that page. */
+static void test_example(void **state)
+{
+  (void)state;
+  static char page[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
+  assert_non_null(file);
+  page[fread(page, 1, sizeof page - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("schema --fit-device --markdown"), 0);
+  assert_contains(page, command_out);
+  assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 0);
+  static const char line[] = "pre_stretch                           1.5 ->     1.4209 +- 0.0032";
+  assert_contains(command_out, line);
+  assert_contains(page, line);
+  assert_contains(command_out,
+                  "film.thickness and film.permittivity.at_rest are hardly told apart");
+  assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 5);
+  assert_contains(command_err, "--force");
+  command_read("device/fit.csv", page);
+  assert_contains(page, "sweep,electrode_edge_u_m,fit,2,yes,0,,-3.7,3,");
+  command_read("device/fit_capacitance_F.svg", page);
+  assert_contains(page, "<svg");
+  assert_int_equal(command_run("run device/sample-3.yaml --model lumped --no-figures -o run"), 0);
+  command_run("fit @/examples/fit/device.yaml -o device --force --json --profile");
+  assert_contains(command_out, "\"interval_low\"");
+  assert_contains(command_out, "\"not_told_apart\"");
+}
+
+static void test_folder(void **state)
+{
+  (void)state;
+  command_write("sweep.csv", curve);
+  char text[700];
+  snprintf(text, sizeof text, "%s/reduced", command_folder);
+  assert_int_equal(mkdir(text, 0777), 0);
+  command_write("reduced/measurement.csv",
+                "V (kV),capacitance (pF),capacitance std (pF)\n1,14.9,.1\n2,16.1,.1\n3,18.1,.1\n"
+                "6,40,.1\n");
+  expect("axisymmetric", "{name: film.thickness}, {name: pre_stretch, start: 1.1, fixed: yes}",
+         "name: s, file: reduced", 0, "");
+  assert_contains(command_out, "1 of them, from 6 kV on, are left out: the model's film is slack");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_parameters),
+      cmocka_unit_test(test_curves),
+      cmocka_unit_test(test_example),
+      cmocka_unit_test(test_folder),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
