@@ -127,6 +127,13 @@ static void test_materials(void **state)
   assert_contains(command_out, "elastosil-2030");
   assert_int_equal(command_run("materials elastosil-2030"), 0);
   assert_contains(command_out, "c1             178.4 kPa");
+  static char document[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/materials.md", "rb");
+  assert_non_null(file);
+  document[fread(document, 1, sizeof document - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("materials --markdown"), 0);
+  assert_contains(document, command_out);
   json_t *json = run_json("materials --json", 0);
   assert_true(json_array_size(json) >= 5);
   json_decref(json);

@@ -24,6 +24,10 @@ extern const struct dea_model_type dea_model_lumped, dea_model_axisymmetric; // 
   X(permittivity_slope)                                                                            \
   X(breakdown_V_per_m)                                                                             \
   X(breakdown_exponent)                                                                            \
+  X(breakdown_thickness_exponent)                                                                  \
+  X(breakdown_thickness_m)                                                                         \
+  X(breakdown_shape)                                                                               \
+  X(breakdown_area_m2)                                                                             \
   X(fibre_angle_rad)
 
 enum {
@@ -99,9 +103,14 @@ static struct dea_material make_film(void)
       .fibre_angle_rad = inputs[IN_fibre_angle_rad],
       .permittivity = {inputs[IN_permittivity], inputs[IN_permittivity_slope]},
       .breakdown = {.known = inputs[IN_breakdown_V_per_m] > 0,
-                    .at_rest_V_per_m = inputs[IN_breakdown_V_per_m],
-                    .exponent = inputs[IN_breakdown_exponent],
-                    .exponent_known = true},
+                    .exponent_known = true,
+                    .law = {.at_rest_V_per_m = inputs[IN_breakdown_V_per_m],
+                            .exponent = inputs[IN_breakdown_exponent],
+                            .thickness_exponent = inputs[IN_breakdown_thickness_exponent],
+                            .thickness_m = inputs[IN_breakdown_thickness_m],
+                            .shape = inputs[IN_breakdown_shape],
+                            .area_m2 = inputs[IN_breakdown_area_m2],
+                            .electrode_factor = 1}},
   };
   memcpy(m.param, inputs + IN_FILM_PARAM, sizeof m.param);
   strcpy(m.name, "film");
@@ -123,6 +132,7 @@ static void fill_device(void)
       .fibre_count = (int)inputs[IN_fibre_count],
       .fibre_tip_radius_m = inputs[IN_fibre_tip_radius_m],
   };
+  dea_device_fit_breakdown(&device);
   device.fibre_length_m = device.frame_radius_m - device.fibre_tip_radius_m;
   device.fibre_overlap_m = device.electrode_radius_m - device.fibre_tip_radius_m;
   device.electrode.law = dea_law_find(electrode_law);

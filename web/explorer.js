@@ -89,6 +89,10 @@
       permittivity_slope: film.permittivity_slope,
       breakdown_V_per_m: film.breakdown_V_per_m,
       breakdown_exponent: film.breakdown_exponent,
+      breakdown_thickness_exponent: film.breakdown_thickness_exponent,
+      breakdown_thickness_m: film.breakdown_thickness_m,
+      breakdown_shape: film.breakdown_shape,
+      breakdown_area_m2: film.breakdown_area_m2,
       fibre_angle_rad: film.fibre_angle_rad,
     };
   };

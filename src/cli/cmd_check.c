@@ -83,9 +83,17 @@ static void print_material(const char *what, const struct dea_material *material
     printf(" %+g (s - 1)", material->permittivity.slope);
   }
   if (material->breakdown.known) {
-    printf(", E_b %g V/um", 1e-6 * material->breakdown.at_rest_V_per_m);
-    if (material->breakdown.exponent != 0) {
-      printf(" s^%g", material->breakdown.exponent);
+    const struct dea_breakdown *b = &material->breakdown;
+    printf(", E_b %.4g V/um", 1e-6 * b->at_rest_V_per_m);
+    if (b->exponent != 0) {
+      printf(" s^%g", b->exponent);
+    }
+    if (b->law.high > b->law.low) {
+      printf(" (%.4g to %.4g by source)", 1e-6 * b->law.low * b->at_rest_V_per_m,
+             1e-6 * b->law.high * b->at_rest_V_per_m);
+    }
+    if (b->law.shape > 0) {
+      printf(", Weibull shape %g", b->law.shape);
     }
   }
   if (material->young_modulus_Pa > 0) {

@@ -8,7 +8,7 @@
 
 struct request {
   const char *name; // NULL: all
-  bool json;
+  bool json, markdown;
 };
 
 static const char *const kind_names[] = {"elastomer", "plastic", "electrode"};
@@ -31,6 +31,91 @@ static void print_line(const struct dea_material_data *data)
            i == 0 && data->permittivity_count > 1 ? ", default" : "");
   }
 }
+
+// The table of docs/materials.md -----------------------------------------------------------------
+
+static void add_band(struct dea_text *out, double value, const struct dea_data_range *values,
+                     double factor)
+{
+  dea_text_add(out, "%.4g", factor * value);
+  if (values->count == 2 && values->limits[0].si < values->limits[1].si) {
+    dea_text_add(out, " (%.4g to %.4g)", factor * values->limits[0].si,
+                 factor * values->limits[1].si);
+  }
+}
+
+/* Shear moduli at rest of all laws [kPa] with the stretch to which each has data, or Young's. */
+static void add_stiffness(struct dea_text *out, const struct dea_material_data *data)
+{
+  for (size_t i = 0; i < data->law_count; i++) {
+    const struct dea_law_set *set = &data->laws[i];
+    double param[DEA_LAW_PARAM_MAX];
+    for (size_t j = 0; j < DEA_LAW_PARAM_MAX; j++) {
+      param[j] = isnan(set->param[j].si) ? 0 : set->param[j].si;
+    }
+    dea_text_add(out, "%s%s %.4g kPa", i > 0 ? "; " : "", set->law_name.text,
+                 1e-3 * set->law->shear_modulus(param));
+    if (set->range.count == 2) {
+      dea_text_add(out, " to %g", set->range.limits[1].si);
+    }
+  }
+  if (data->has_elastic) {
+    dea_text_add(out, "E ");
+    add_band(out, data->elastic.young_modulus_Pa.si, &data->elastic.values, 1e-9);
+    dea_text_add(out, " GPa");
+  }
+  dea_text_add(out, data->law_count == 0 && !data->has_elastic ? "unknown" : "");
+}
+
+static void add_breakdown(struct dea_text *out, const struct dea_material_data *data)
+{
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    const struct dea_breakdown_set *set = &data->breakdown[i];
+    dea_text_add(out, "%s", i > 0 ? "; " : "");
+    add_band(out, set->at_rest_V_per_m.si, &set->values, 1e-6 * set->electrode_factor.si);
+    if (!isnan(set->exponent.si) && set->exponent.si != 0) {
+      dea_text_add(out, " s^%g", set->exponent.si);
+    }
+    if (!isnan(set->thickness_exponent.si)) {
+      dea_text_add(out, " (h / %g um)^%g", 1e6 * set->thickness_m.si, set->thickness_exponent.si);
+    }
+    if (!isnan(set->weibull_shape.si)) {
+      dea_text_add(out, ", Weibull %g", set->weibull_shape.si);
+    }
+  }
+  dea_text_add(out, data->breakdown_count == 0 ? "unknown" : "");
+}
+
+static void add_table_row(struct dea_text *out, const struct dea_material_data *data)
+{
+  dea_text_add(out, "| `%s` | ", data->name.text);
+  if (data->has_density) {
+    add_band(out, data->density.value_kg_per_m3.si, &data->density.values, 1);
+  }
+  dea_text_add(out, "%s | ", data->has_density ? "" : "unknown");
+  add_stiffness(out, data);
+  dea_text_add(out, " | ");
+  for (size_t i = 0; i < data->viscosity_count; i++) {
+    const struct dea_viscosity_set *set = &data->viscosity[i];
+    dea_text_add(out, "%s%zu to %.3g s%s", i > 0 ? "; " : "", set->branch_count,
+                 set->branches[set->branch_count - 1].time_s.si,
+                 set->assumed.value == 1 ? " (assumed)" : "");
+  }
+  dea_text_add(out, "%s | ", data->viscosity_count > 0 ? "" : "unknown");
+  for (size_t i = 0; i < data->permittivity_count; i++) {
+    dea_text_add(out, "%s", i > 0 ? "; " : "");
+    add_band(out, data->permittivity[i].at_rest.si, &data->permittivity[i].values, 1);
+  }
+  dea_text_add(out, "%s | ", data->permittivity_count > 0 ? "" : "unknown");
+  add_breakdown(out, data);
+  dea_text_add(out, " | ");
+  if (data->has_resistivity) {
+    add_band(out, data->resistivity.value_ohm_m.si, &data->resistivity.values, 1);
+  }
+  dea_text_add(out, "%s |\n", data->has_resistivity ? "" : "unknown");
+}
+
+// One material ------------------------------------------------------------------------------------
 
 /* Last key of a path: "laws[0].parameters.c1" -> "c1". */
 static const char *leaf(const char *path)
@@ -126,32 +211,41 @@ static json_t *material_json(const struct dea_catalogue_entry *entry)
                    "values", values);
 }
 
-/* Prints one material or adds it to an array. */
-static dea_status show(struct dea_cli *cli, const char *name, bool whole, json_t *array)
+/* How a material is shown; in JSON it goes to the array. */
+enum form { FORM_LINES, FORM_WHOLE, FORM_TABLE, FORM_JSON };
+
+static dea_status show(struct dea_cli *cli, const char *name, enum form form, json_t *array)
 {
   struct dea_text out = {.ctx = cli->ctx};
   struct dea_catalogue_entry *entry;
   DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_location){0}, &entry));
-  if (array != NULL) {
+  switch (form) {
+  case FORM_JSON:
     json_array_append_new(array, material_json(entry));
-  } else if (whole) {
+    break;
+  case FORM_WHOLE:
     add_material(&out, entry);
-  } else {
+    break;
+  case FORM_TABLE:
+    add_table_row(&out, &entry->data);
+    break;
+  case FORM_LINES:
     print_line(&entry->data);
+    break;
   }
   dea_catalogue_destroy(cli->ctx, entry);
   return cli_print_text(DEA_OK, &out);
 }
 
 /* Shows all; one file with errors does not hide the others. */
-static dea_status show_all(struct dea_cli *cli, json_t *array)
+static dea_status show_all(struct dea_cli *cli, enum form form, json_t *array)
 {
   const char **names;
   size_t count;
   dea_status worst = DEA_OK;
   DEA_TRY(cli->ctx, dea_catalogue_names(cli->ctx, &names, &count));
   for (size_t i = 0; i < count; i++) {
-    dea_status status = show(cli, names[i], false, array);
+    dea_status status = show(cli, names[i], form, array);
     worst = status != DEA_OK ? status : worst;
   }
   dea_free(cli->ctx, names);
@@ -162,8 +256,16 @@ static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   json_t *array = request->json ? json_array() : NULL;
+  enum form form = request->json           ? FORM_JSON
+                   : request->markdown     ? FORM_TABLE
+                   : request->name != NULL ? FORM_WHOLE
+                                           : FORM_LINES;
+  if (form == FORM_TABLE) {
+    puts("| material | density (kg/m3) | stiffness | branches | permittivity | breakdown (V/um) | "
+         "resistivity (ohm m) |\n|---|---|---|---|---|---|---|");
+  }
   dea_status status =
-      request->name != NULL ? show(cli, request->name, true, array) : show_all(cli, array);
+      request->name != NULL ? show(cli, request->name, form, array) : show_all(cli, form, array);
   if (request->json) {
     cli_print_json(array);
   }
@@ -174,6 +276,8 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     {NULL, 0, CLI_MATERIAL, "NAME", "this material with all that is known of it", CLI_AT(name)},
     CLI_JSON_ROW("as JSON"),
+    {"markdown", 0, CLI_FLAG, NULL, "as a table: values, bands and what is unknown",
+     CLI_AT(markdown)},
     {0}};
 
 const struct dea_command cmd_materials = {

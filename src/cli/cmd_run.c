@@ -144,7 +144,21 @@ static void print_cell(double value, double factor, int width, int digits)
   }
 }
 
-static void print_event(const struct dea_event *event)
+/* The field at which the film breaks down, with the band of its sources and the chance there. */
+static void print_breakdown(const struct dea_load_point *p, const struct dea_breakdown *film)
+{
+  double field = 1e-6 * p->true_field_V_per_m;
+  printf("the field reaches the film's breakdown field, %.4g V/um (margin 0", field);
+  if (film->law.high > film->law.low) {
+    printf("; by source %.4g to %.4g V/um", film->law.low * field, film->law.high * field);
+  }
+  if (!isnan(p->breakdown_probability)) {
+    printf("; breaks down by here with at most %.0f %%", 100 * p->breakdown_probability);
+  }
+  puts(")");
+}
+
+static void print_event(const struct dea_event *event, const struct dea_breakdown *film)
 {
   const struct dea_load_point *p = &event->point;
   printf("  at %.4g kV, electrode stretch %.5g: ", 1e-3 * p->voltage_V, p->electrode_stretch);
@@ -159,8 +173,7 @@ static void print_event(const struct dea_event *event)
     puts("the film goes slack");
     break;
   case DEA_EVENT_BREAKDOWN:
-    printf("the field reaches the film's breakdown field, %.4g V/um (margin 0)\n",
-           1e-6 * p->true_field_V_per_m);
+    print_breakdown(p, film);
     break;
   }
 }
@@ -228,7 +241,7 @@ static void print_model(const struct dea_result *result, const char *model)
   }
   const struct dea_curve *limits = path != NULL ? path : sweep;
   for (size_t i = 0; i < limits->event_count; i++) {
-    print_event(&limits->events[i]);
+    print_event(&limits->events[i], &result->device->film.breakdown);
   }
   if (sweep != NULL && dea_verdict_of(sweep->status)[0] != '\0') {
     printf("  stopped, %s: %s\n", dea_verdict_of(sweep->status), sweep->stopped);

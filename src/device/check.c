@@ -1,4 +1,5 @@
 #include "device/device.h"
+#include "material/plane.h"
 
 #include <math.h>
 
@@ -34,4 +35,14 @@ dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *d)
     }
   }
   return DEA_OK;
+}
+
+void dea_device_fit_breakdown(struct dea_device *device)
+{
+  static const double pi = 3.14159265358979323846;
+  double radius_m = device->electrode_radius_m / device->pre_stretch; // unstretched
+  if (device->film.breakdown.known) {
+    dea_breakdown_specialise(device->film_thickness_unstretched_m, pi * radius_m * radius_m,
+                             &device->film.breakdown);
+  }
 }

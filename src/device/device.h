@@ -46,6 +46,9 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
  * device, and for one that was filled by hand DEA_E_DESIGN with the number that none can have, such
  * as a coverage that is not between 0 and 1. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
+/* Fits the breakdown field of the film, if it is known, to its thickness and to the area of the
+ * electrodes, by the law of its material. */
+void dea_device_fit_breakdown(struct dea_device *device);
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);
 
 #endif

@@ -26,6 +26,7 @@ static dea_status build_film(struct dea_context *ctx, const struct dea_design *d
       .pre_stretch_place = design->pre_stretch.location,
   };
   DEA_TRY(ctx, dea_generator_material(ctx, design, &design->film.material, &choice, &device->film));
+  dea_device_fit_breakdown(device);
   DEA_TRY(ctx, dea_generator_check_film(ctx, &film));
   return dea_generator_check_film_in_time(ctx, design, &film);
 }

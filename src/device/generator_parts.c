@@ -3,6 +3,7 @@
 #include "device/layout_check.h"
 #include "device/part_names.h"
 #include "device/shape_regions.h"
+#include "material/plane.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,6 +97,7 @@ static dea_status add_plies(struct maker *m)
     to->location = from->name.location;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
+    dea_breakdown_specialise(to->thickness_unstretched_m, 0, &to->material.breakdown);
   }
   return DEA_OK;
 }

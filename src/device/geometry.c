@@ -77,6 +77,7 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   if (design->has_fibres) {
     fill_fibres(design, device);
   }
+  dea_device_fit_breakdown(device);
 }
 
 /* The ends of a fibre are cut along circles (docs/theory/mesh.md): one of width w on the circle r

@@ -2,6 +2,7 @@
 #include "material/catalogue.h"
 
 #include "base/file.h"
+#include "material/plane.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -254,6 +255,31 @@ static void take_law(const struct dea_law_set *set, struct dea_material *out)
   }
 }
 
+static double given_or(const struct dea_quantity *value, double otherwise)
+{
+  return isnan(value->si) ? otherwise : value->si;
+}
+
+static void take_breakdown(const struct dea_breakdown_set *set, struct dea_breakdown *out)
+{
+  double at_rest = set->at_rest_V_per_m.si;
+  bool band = set->values.count == 2;
+  *out = (struct dea_breakdown){
+      .known = true,
+      .exponent_known = !isnan(set->exponent.si),
+      .law = {.at_rest_V_per_m = at_rest,
+              .exponent = given_or(&set->exponent, 0),
+              .thickness_exponent = given_or(&set->thickness_exponent, 0),
+              .thickness_m = given_or(&set->thickness_m, 0),
+              .shape = given_or(&set->weibull_shape, 0),
+              .area_m2 = given_or(&set->area_m2, 0),
+              .electrode_factor = set->electrode_factor.si,
+              .low = band ? set->values.limits[0].si / at_rest : 1,
+              .high = band ? set->values.limits[1].si / at_rest : 1},
+  };
+  dea_breakdown_specialise(0, 0, out);
+}
+
 /* Branches as moduli; a ratio is of the law's shear modulus at rest. */
 static dea_status take_viscosity(struct dea_context *ctx, const struct dea_viscosity_set *set,
                                  struct dea_material *out)
@@ -305,10 +331,7 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
     out->permittivity = (struct dea_permittivity){set->at_rest.si, set->slope.si};
   }
   if (data->breakdown_count > 0) {
-    const struct dea_breakdown_set *set = &data->breakdown[breakdown];
-    bool known = !isnan(set->exponent.si);
-    out->breakdown =
-        (struct dea_breakdown){true, set->at_rest_V_per_m.si, known ? set->exponent.si : 0, known};
+    take_breakdown(&data->breakdown[breakdown], &out->breakdown);
   }
   if (viscous && data->viscosity_count > 0) {
     DEA_TRY(ctx, take_viscosity(ctx, &data->viscosity[viscosity], out));

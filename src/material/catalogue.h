@@ -16,8 +16,9 @@ struct dea_data_notes {
   const char *uncertainty, *range, *source, *note;
 };
 
-/* Range of stretch that the data cover. count is 0 when it is not known, else 2. */
-struct dea_stretch_range {
+/* Range of stretch that the data cover, or of values that the sources give. count is 0 when it is
+ * not known, else 2. */
+struct dea_data_range {
   struct dea_quantity limits[2];
   size_t count;
 };
@@ -34,21 +35,27 @@ struct dea_law_set {
   struct dea_quantity correlations[DEA_LAW_PARAM_MAX * (DEA_LAW_PARAM_MAX - 1) / 2];
   size_t correlation_count; // 0: not given
   struct dea_quantity fibre_angle_rad;
-  struct dea_stretch_range range;
+  struct dea_data_range range;
   struct dea_data_notes notes;
 };
 
 struct dea_permittivity_set {
   struct dea_label id;
   struct dea_quantity at_rest, slope;
-  struct dea_stretch_range range;
+  struct dea_data_range values; // of at_rest
+  struct dea_data_range range;
   struct dea_data_notes notes;
 };
 
 struct dea_breakdown_set {
   struct dea_label id;
-  struct dea_quantity at_rest_V_per_m, exponent; // exponent: NAN when unknown
-  struct dea_stretch_range range;
+  struct dea_quantity at_rest_V_per_m;
+  struct dea_data_range values;                        // of at_rest
+  struct dea_quantity exponent;                        // NAN when unknown; so the next two pairs
+  struct dea_quantity thickness_exponent, thickness_m; // thickness that at_rest belongs to
+  struct dea_quantity weibull_shape, area_m2;          // area that at_rest belongs to
+  struct dea_quantity electrode_factor;                // 1 when not given
+  struct dea_data_range range;
   struct dea_data_notes notes;
 };
 
@@ -75,16 +82,19 @@ struct dea_material_data {
   bool has_density;
   struct {
     struct dea_quantity value_kg_per_m3;
+    struct dea_data_range values;
     struct dea_data_notes notes;
   } density;
   bool has_elastic;
   struct {
     struct dea_quantity young_modulus_Pa, poisson_ratio;
+    struct dea_data_range values; // of young_modulus
     struct dea_data_notes notes;
   } elastic;
   bool has_resistivity;
   struct {
     struct dea_quantity value_ohm_m;
+    struct dea_data_range values;
     struct dea_data_notes notes;
   } resistivity;
   struct dea_viscosity_set viscosity[DEA_MATERIAL_SETS_MAX];

@@ -39,6 +39,15 @@
     .doc = "smallest and largest stretch that the data cover", .example = "[1, 2]"                 \
   }
 
+/* Smallest and largest value that sources give; checked to hold the value itself. */
+#define VALUE_RANGE_FIELD(name, type, member, si)                                                  \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_NUMBER, .offset = offsetof(type, member.limits), .unit = si,    \
+    .max = 1e30, .list_min = 2, .list_max = 2, .element_size = sizeof(struct dea_quantity),        \
+    .count_offset = offsetof(type, member.count),                                                  \
+    .doc = "smallest and largest value that sources give"                                          \
+  }
+
 #define ID_FIELD(type, what)                                                                       \
   {                                                                                                \
     .key = "id", .kind = DEA_FIELD_LABEL, .offset = offsetof(type, id), .required = true,          \
@@ -99,6 +108,7 @@ static const struct dea_field permittivity_fields[] = {
      .required = true,
      .doc = "relative permittivity of the unstretched film",
      .example = "2.8"},
+    VALUE_RANGE_FIELD("value_range", struct dea_permittivity_set, values, "1"),
     {.key = "slope",
      .kind = DEA_FIELD_NUMBER,
      .offset = offsetof(struct dea_permittivity_set, slope),
@@ -119,8 +129,11 @@ static const struct dea_field breakdown_fields[] = {
      .above_min = true,
      .max = 1e10,
      .required = true,
-     .doc = "breakdown field of the unstretched film",
+     .doc =
+         "breakdown field of the unstretched film; with weibull_shape the one at which 63.2 % of "
+         "films have broken",
      .example = "80 V/um"},
+    VALUE_RANGE_FIELD("value_range", struct dea_breakdown_set, values, "V/m"),
     {.key = "exponent",
      .kind = DEA_FIELD_NUMBER,
      .offset = offsetof(struct dea_breakdown_set, exponent),
@@ -130,6 +143,51 @@ static const struct dea_field breakdown_fields[] = {
      .absent_text = "unknown",
      .doc = "power of the mean in-plane stretch with which the field grows",
      .example = "1.13"},
+    {.key = "thickness_exponent",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, thickness_exponent),
+     .unit = "1",
+     .min = -2,
+     .max = 2,
+     .absent_text = "unknown",
+     .doc = "power of the film's thickness as it is (stretched) with which the field changes",
+     .example = "-0.25"},
+    {.key = "reference_thickness",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, thickness_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 1,
+     .absent_text = "not given",
+     .doc = "thickness that at_rest belongs to; with thickness_exponent",
+     .example = "100 um"},
+    {.key = "weibull_shape",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, weibull_shape),
+     .unit = "1",
+     .above_min = true,
+     .max = 1e3,
+     .absent_text = "unknown",
+     .doc = "shape of Weibull's distribution of the field; gives probability and area law",
+     .example = "12"},
+    {.key = "reference_area",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, area_m2),
+     .unit = "m^2",
+     .above_min = true,
+     .max = 100,
+     .absent_text = "not given",
+     .doc = "unstretched area under electrodes that at_rest belongs to; with weibull_shape",
+     .example = "1 cm^2"},
+    {.key = "electrode_factor",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = offsetof(struct dea_breakdown_set, electrode_factor),
+     .unit = "1",
+     .above_min = true,
+     .max = 10,
+     .default_text = "1",
+     .doc = "field with the electrodes that are meant over the field that at_rest is",
+     .example = "0.8"},
     STRETCH_RANGE_FIELD(struct dea_breakdown_set),
     NOTE_FIELDS(struct dea_breakdown_set, notes),
 };
@@ -144,6 +202,7 @@ static const struct dea_field density_fields[] = {
      .required = true,
      .doc = "mass density",
      .example = "970 kg/m^3"},
+    VALUE_RANGE_FIELD("value_range", struct dea_material_data, density.values, "kg/m^3"),
     NOTE_FIELDS(struct dea_material_data, density.notes),
 };
 
@@ -157,6 +216,7 @@ static const struct dea_field resistivity_fields[] = {
      .required = true,
      .doc = "volume resistivity",
      .example = "1e12 ohm m"},
+    VALUE_RANGE_FIELD("value_range", struct dea_material_data, resistivity.values, "ohm m"),
     NOTE_FIELDS(struct dea_material_data, resistivity.notes),
 };
 
@@ -247,6 +307,7 @@ static const struct dea_field elastic_fields[] = {
      .required = true,
      .doc = "Young's modulus",
      .example = "2950 MPa"},
+    VALUE_RANGE_FIELD("young_modulus_range", struct dea_material_data, elastic.values, "Pa"),
     {.key = "poisson_ratio",
      .kind = DEA_FIELD_NUMBER,
      .offset = offsetof(struct dea_material_data, elastic.poisson_ratio),
@@ -266,8 +327,8 @@ static const struct dea_record permittivity_record = {
     "permittivity", "eps_r = at_rest + slope (s - 1), s the mean in-plane stretch",
     permittivity_fields, COUNT(permittivity_fields)};
 static const struct dea_record breakdown_record = {
-    "breakdown field", "E_b = at_rest s^exponent, s the mean in-plane stretch", breakdown_fields,
-    COUNT(breakdown_fields)};
+    "breakdown field", "docs/theory/breakdown.md; s^exponent: s the mean in-plane stretch",
+    breakdown_fields, COUNT(breakdown_fields)};
 static const struct dea_record viscosity_record = {"viscosity",
                                                    "generalised Maxwell model at finite strain",
                                                    viscosity_fields, COUNT(viscosity_fields)};
@@ -452,8 +513,7 @@ static dea_status check_length(const struct dea_reader *reader, const struct dea
                           label->text, DEA_NAME_SIZE - 1);
 }
 
-static dea_status check_range(const struct dea_reader *reader,
-                              const struct dea_stretch_range *range)
+static dea_status check_range(const struct dea_reader *reader, const struct dea_data_range *range)
 {
   if (range->count != 2 || !(range->limits[0].si >= range->limits[1].si)) {
     return DEA_OK;
@@ -463,9 +523,57 @@ static dea_status check_range(const struct dea_reader *reader,
                           range->limits[0].si);
 }
 
+/* The range of what sources give holds what was taken. */
+static dea_status check_values(const struct dea_reader *reader, const struct dea_quantity *value,
+                               const struct dea_data_range *values)
+{
+  if (values->count != 2 || isnan(value->si) ||
+      (values->limits[0].si <= value->si && value->si <= values->limits[1].si)) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, values->limits[0].location,
+                          "the range %g to %g does not hold the value %g", values->limits[0].si,
+                          values->limits[1].si, value->si);
+}
+
+/* Two numbers of which neither says anything alone. */
+static dea_status check_pair(const struct dea_reader *reader, const struct dea_quantity *a,
+                             const struct dea_quantity *b, const char *name_a, const char *name_b)
+{
+  bool has_a = a->origin != DEA_ABSENT, has_b = b->origin != DEA_ABSENT;
+  if (has_a == has_b) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, has_a ? a->location : b->location,
+                          "%s belongs to %s, which lacks", has_a ? name_a : name_b,
+                          has_a ? name_b : name_a);
+}
+
+static dea_status check_breakdown(const struct dea_reader *reader,
+                                  const struct dea_material_data *data)
+{
+  struct dea_context *ctx = reader->ctx;
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    const struct dea_breakdown_set *set = &data->breakdown[i];
+    DEA_TRY(ctx, check_range(reader, &set->range));
+    DEA_TRY(ctx, check_values(reader, &set->at_rest_V_per_m, &set->values));
+    DEA_TRY(ctx, check_pair(reader, &set->thickness_exponent, &set->thickness_m,
+                            "thickness_exponent", "reference_thickness"));
+    DEA_TRY(ctx, check_pair(reader, &set->weibull_shape, &set->area_m2, "weibull_shape",
+                            "reference_area"));
+    for (size_t j = 0; j < i; j++) {
+      DEA_TRY(ctx, check_id(reader, &set->id, &data->breakdown[j].id));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_sets(const struct dea_reader *reader, const struct dea_material_data *data)
 {
   struct dea_context *ctx = reader->ctx;
+  DEA_TRY(ctx, check_values(reader, &data->density.value_kg_per_m3, &data->density.values));
+  DEA_TRY(ctx, check_values(reader, &data->elastic.young_modulus_Pa, &data->elastic.values));
+  DEA_TRY(ctx, check_values(reader, &data->resistivity.value_ohm_m, &data->resistivity.values));
   DEA_TRY(ctx, check_length(reader, &data->name));
   for (size_t i = 0; i < data->law_count; i++) {
     DEA_TRY(ctx, check_length(reader, &data->laws[i].id));
@@ -476,6 +584,8 @@ static dea_status check_sets(const struct dea_reader *reader, const struct dea_m
   }
   for (size_t i = 0; i < data->permittivity_count; i++) {
     DEA_TRY(ctx, check_range(reader, &data->permittivity[i].range));
+    DEA_TRY(ctx,
+            check_values(reader, &data->permittivity[i].at_rest, &data->permittivity[i].values));
     for (size_t j = 0; j < i; j++) {
       DEA_TRY(ctx, check_id(reader, &data->permittivity[i].id, &data->permittivity[j].id));
     }
@@ -485,10 +595,7 @@ static dea_status check_sets(const struct dea_reader *reader, const struct dea_m
       DEA_TRY(ctx, check_id(reader, &data->viscosity[i].id, &data->viscosity[j].id));
     }
   }
-  for (size_t i = 0; i < data->breakdown_count; i++) {
-    DEA_TRY(ctx, check_range(reader, &data->breakdown[i].range));
-  }
-  return DEA_OK;
+  return check_breakdown(reader, data);
 }
 
 dea_status dea_material_data_finish(const struct dea_reader *reader, const char *path,

@@ -18,12 +18,30 @@ struct dea_permittivity {
   double slope;   // per unit of s; 0 for a constant permittivity
 };
 
-/* True breakdown field E_b = at_rest * s^exponent; known is false when no value was sourced. */
+/* Breakdown as it was measured (docs/theory/breakdown.md): at the mean in-plane stretch s, in a
+ * film that then is h thick, under electrodes of an unstretched area A,
+ *
+ *   E_b = factor at_rest s^exponent (h / thickness_m)^thickness_exponent (area_m2 / A)^(1 / shape)
+ */
+struct dea_breakdown_law {
+  double at_rest_V_per_m;
+  double exponent;           // 0 where a dependence on stretch is unknown
+  double thickness_exponent; // 0: unknown
+  double thickness_m;        // that at_rest belongs to; 0 with an unknown exponent
+  double shape;              // of Weibull's distribution of E_b; 0: unknown
+  double area_m2;            // that at_rest belongs to, unstretched; 0 with an unknown shape
+  double electrode_factor;   // of the electrodes upon E_b, 1 when none is given
+  double low, high; // smallest and largest at_rest of the sources, over at_rest; 1: no band
+};
+
+/* True breakdown field of the film of a device, E_b = at_rest s^exponent; known is false when no
+ * value was sourced. dea_breakdown_specialise makes the two numbers from the law. */
 struct dea_breakdown {
   bool known;
   double at_rest_V_per_m;
   double exponent; // 0 where a dependence on stretch is unknown
   bool exponent_known;
+  struct dea_breakdown_law law;
 };
 
 /* A spring in series with a dashpot beside the law (docs/theory/time.md, section 1). */

@@ -141,4 +141,35 @@ void dea_reach_take(struct dea_reach *reach, struct dea_reach other)
   reach->locking_share = fmax(reach->locking_share, other.locking_share);
   reach->range_share = fmax(reach->range_share, other.range_share);
 }
+
+void dea_breakdown_specialise(double thickness_m, double area_m2, struct dea_breakdown *breakdown)
+{
+  const struct dea_breakdown_law *law = &breakdown->law;
+  if (law->at_rest_V_per_m == 0) {
+    return; // two numbers given by hand
+  }
+  double at_rest = law->electrode_factor * law->at_rest_V_per_m;
+  if (law->thickness_m > 0 && thickness_m > 0) { // h = H / s^2
+    at_rest *= pow(thickness_m / law->thickness_m, law->thickness_exponent);
+  }
+  if (law->shape > 0 && area_m2 > 0) {
+    at_rest *= pow(law->area_m2 / area_m2, 1 / law->shape);
+  }
+  breakdown->at_rest_V_per_m = at_rest;
+  breakdown->exponent = law->exponent - 2 * law->thickness_exponent;
+}
+
+double dea_breakdown_probability(const struct dea_breakdown *breakdown, double margin)
+{
+  if (!breakdown->known || !(breakdown->law.shape > 0) || isnan(margin)) {
+    return NAN;
+  }
+  return -expm1(-pow(fmax(1 - margin, 0), breakdown->law.shape));
+}
+
+double dea_breakdown_margin_band(const struct dea_breakdown *breakdown, double margin, bool low)
+{
+  double ratio = low ? breakdown->law.low : breakdown->law.high;
+  return ratio > 0 ? 1 - (1 - margin) / ratio : margin;
+}
 #endif

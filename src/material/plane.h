@@ -41,4 +41,17 @@ struct dea_reach dea_material_reach(const struct dea_material *material, double 
 /* *reach becomes the larger of the two, share by share; NAN counts as nothing. */
 void dea_reach_take(struct dea_reach *reach, struct dea_reach other);
 
+/* Makes at_rest and exponent from the law for a film of an unstretched thickness > 0 under
+ * electrodes of an unstretched area > 0; 0 for either: that of the law (docs/theory/breakdown.md).
+ * Without a law the two numbers stay as they are. */
+void dea_breakdown_specialise(double thickness_m, double area_m2, struct dea_breakdown *breakdown);
+
+/* Probability that the film breaks down on the way to a state of that margin 1 - E/E_b, its
+ * smallest: exact for a uniform field, else an upper bound. NAN without Weibull's shape or a
+ * margin. */
+double dea_breakdown_probability(const struct dea_breakdown *breakdown, double margin);
+
+/* The margin by the smallest (low) or largest breakdown field that the sources give. */
+double dea_breakdown_margin_band(const struct dea_breakdown *breakdown, double margin, bool low);
+
 #endif

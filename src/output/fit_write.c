@@ -150,11 +150,50 @@ static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
   }
 }
 
+/* The range of what sources give, where it is known. unit: with a space in front. */
+static void add_values(struct dea_text *out, const char *indent,
+                       const struct dea_data_range *values, const char *unit)
+{
+  if (values->count == 2) {
+    dea_text_add(out, "%svalue_range: [%.10g%s, %.10g%s]\n", indent, values->limits[0].si, unit,
+                 values->limits[1].si, unit);
+  }
+}
+
+static void add_given(struct dea_text *out, const char *key, const struct dea_quantity *value,
+                      const char *unit)
+{
+  if (!isnan(value->si)) {
+    dea_text_add(out, "    %s: %.10g%s\n", key, value->si, unit);
+  }
+}
+
+static void add_breakdown(struct dea_text *out, const struct dea_material_data *data)
+{
+  dea_text_add(out, data->breakdown_count > 0 ? "breakdown:\n" : "");
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    const struct dea_breakdown_set *set = &data->breakdown[i];
+    dea_text_add(out, "  - id: %s\n    at_rest: %.10g V/m\n", set->id.text,
+                 set->at_rest_V_per_m.si);
+    add_values(out, "    ", &set->values, " V/m");
+    add_given(out, "exponent", &set->exponent, "");
+    add_given(out, "thickness_exponent", &set->thickness_exponent, "");
+    add_given(out, "reference_thickness", &set->thickness_m, " m");
+    add_given(out, "weibull_shape", &set->weibull_shape, "");
+    add_given(out, "reference_area", &set->area_m2, " m^2");
+    if (set->electrode_factor.origin != DEA_DEFAULT) {
+      add_given(out, "electrode_factor", &set->electrode_factor, "");
+    }
+    add_notes(out, "    ", &set->notes);
+  }
+}
+
 /* What was not fitted, as the catalogue has it. */
 static void add_rest(struct dea_text *out, const struct dea_material_data *data)
 {
   if (data->has_density) {
     dea_text_add(out, "density:\n  value: %.10g kg/m^3\n", data->density.value_kg_per_m3.si);
+    add_values(out, "  ", &data->density.values, " kg/m^3");
     add_notes(out, "  ", &data->density.notes);
   }
   dea_text_add(out, data->permittivity_count > 0 ? "permittivity:\n" : "");
@@ -162,20 +201,13 @@ static void add_rest(struct dea_text *out, const struct dea_material_data *data)
     const struct dea_permittivity_set *set = &data->permittivity[i];
     dea_text_add(out, "  - id: %s\n    at_rest: %.10g\n    slope: %.10g\n", set->id.text,
                  set->at_rest.si, set->slope.si);
+    add_values(out, "    ", &set->values, "");
     add_notes(out, "    ", &set->notes);
   }
-  dea_text_add(out, data->breakdown_count > 0 ? "breakdown:\n" : "");
-  for (size_t i = 0; i < data->breakdown_count; i++) {
-    const struct dea_breakdown_set *set = &data->breakdown[i];
-    dea_text_add(out, "  - id: %s\n    at_rest: %.10g V/m\n", set->id.text,
-                 set->at_rest_V_per_m.si);
-    if (!isnan(set->exponent.si)) {
-      dea_text_add(out, "    exponent: %.10g\n", set->exponent.si);
-    }
-    add_notes(out, "    ", &set->notes);
-  }
+  add_breakdown(out, data);
   if (data->has_resistivity) {
     dea_text_add(out, "resistivity:\n  value: %.10g ohm m\n", data->resistivity.value_ohm_m.si);
+    add_values(out, "  ", &data->resistivity.values, " ohm m");
     add_notes(out, "  ", &data->resistivity.notes);
   }
 }

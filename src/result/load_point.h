@@ -31,6 +31,8 @@
   X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \
   X(breakdown_margin, "1", "%", 100.0, "breakdown margin",                                         \
     "1 - true field / breakdown field: 1 without field, 0 at breakdown")                           \
+  X(breakdown_probability, "1", "%", 100.0, "breakdown probability",                               \
+    "at most; only where the distribution of the breakdown field is known")                        \
   X(min_tension_N_per_m, "N/m", "N/m", 1.0, "smallest tension",                                    \
     "smallest principal tension (true stress x current thickness); below 0 the film is slack")     \
   X(compression_ratio, "1", "1", 1.0, "compression ratio",                                         \

@@ -25,7 +25,9 @@ struct dea_bench_model {
 /* The film at one voltage. */
 struct dea_bench_point {
   struct dea_load_point point;
-  double breakdown_V_per_m; // true field that the material stands as it is stretched; NAN: unknown
+  // true field that the material stands as it is stretched, by the smallest value of its sources; NAN:
+  // unknown
+  double breakdown_V_per_m;
   double leakage_s;         // resistivity times permittivity; INFINITY: nothing leaks
 };
 

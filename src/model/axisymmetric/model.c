@@ -85,6 +85,8 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
   if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
     out->breakdown_margin = NAN;
   }
+  out->breakdown_probability =
+      dea_breakdown_probability(&disc->film.material->breakdown, out->breakdown_margin);
   return DEA_OK;
 }
 

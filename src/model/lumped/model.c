@@ -81,6 +81,8 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   out->nominal_field_V_per_m = field;
   out->true_field_V_per_m = field * l_A * l_A; // paper eq 4
   out->breakdown_margin = dea_film_breakdown_margin(film, field, l_A, l_A);
+  out->breakdown_probability =
+      dea_breakdown_probability(&film->material->breakdown, out->breakdown_margin);
   out->min_tension_N_per_m = fmin(smallest_tension(film, &balance.active, l_A),
                                   smallest_tension(film, &balance.passive, l_P));
   struct dea_reach reach = dea_material_reach(film->material, l_A, l_A);

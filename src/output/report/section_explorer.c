@@ -29,8 +29,14 @@ static void add_material(struct dea_text *out, const struct dea_material *m, con
   add_word(out, "law", m->law->name);
   add_number(out, "permittivity", m->permittivity.at_rest);
   add_number(out, "permittivity_slope", m->permittivity.slope);
-  add_number(out, "breakdown_V_per_m", m->breakdown.known ? m->breakdown.at_rest_V_per_m : 0);
-  add_number(out, "breakdown_exponent", m->breakdown.exponent);
+  const struct dea_breakdown_law *law = &m->breakdown.law;
+  bool known = m->breakdown.known;
+  add_number(out, "breakdown_V_per_m", known ? law->electrode_factor * law->at_rest_V_per_m : 0);
+  add_number(out, "breakdown_exponent", law->exponent);
+  add_number(out, "breakdown_thickness_exponent", law->thickness_exponent);
+  add_number(out, "breakdown_thickness_m", law->thickness_m);
+  add_number(out, "breakdown_shape", law->shape);
+  add_number(out, "breakdown_area_m2", law->area_m2);
   add_number(out, "fibre_angle_rad", m->fibre_angle_rad);
   dea_text_add(out, "\"param\":[");
   for (int i = 0; i < DEA_LAW_PARAM_MAX; i++) {

@@ -39,6 +39,7 @@ static void add_cards(struct dea_report *report, const struct dea_load_point *p,
   add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", 3);
   add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", 3);
   add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", 3);
+  add_card(out, "breakdown probability, at most", 100 * p->breakdown_probability, "%", 2);
   dea_text_add(out, "</dl>");
 }
 

@@ -205,6 +205,8 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   out->nominal_field_V_per_m = model->voltage_V / d->film_thickness_unstretched_m;
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
+  out->breakdown_probability =
+      dea_breakdown_probability(&d->film.breakdown, extremes.breakdown_margin);
   out->min_tension_N_per_m = extremes.min_tension_N_per_m;
   out->locking_share = extremes.reach.locking_share;
   out->range_share = extremes.reach.range_share;
