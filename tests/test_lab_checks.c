@@ -43,6 +43,28 @@ static double field_at(const char *design_file, double voltage_V, double most, d
   return voltage_V / thickness_m;
 }
 
+/* What a new user copies needs no override: the margin of the material holds. */
+static void test_first_example_is_inside_the_margin(void **state)
+{
+  (void)state;
+  struct dea_protocol *p;
+  double stretch;
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
+                                     DEA_SOURCE_DIR "/examples/bench/first.yaml", NULL, 0, &p),
+                   DEA_OK);
+  assert_true(p->safety.largest_field_V_per_m.origin == DEA_ABSENT);
+  assert_true(p->safety.field_reason.text[0] == '\0' && p->safety.field_margin.si == 1.2);
+  assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_OK);
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 0);
+  double field = field_at(DEA_SOURCE_DIR "/examples/frdea-4.yaml", 2500, 10, &stretch);
+  assert_close(plan.largest_field_V_per_m, field, 1e-6, 0);
+  assert_close(plan.breakdown_field_V_per_m, 80e6, 1e-12, 0); // the least of 80 to 100 V/um
+  assert_true(field < 80e6 / 1.2);
+  assert_true(isnan(plan.breakdown_probability)); // nobody measured this film's scatter
+  dea_protocol_destroy(ctx, p);
+}
+
 /* The paper's protocol may be played once its field is allowed. */
 static void test_example_passes(void **state)
 {
@@ -439,6 +461,7 @@ static void test_export_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_first_example_is_inside_the_margin),
       cmocka_unit_test(test_example_passes),
       cmocka_unit_test(test_refusals),
       cmocka_unit_test(test_allowed_voltage),

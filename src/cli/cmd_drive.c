@@ -57,6 +57,24 @@ static void print_sequence(const struct dea_protocol *protocol)
   }
 }
 
+/* Whoever overrides the interlock sees by how much. */
+static void print_breakdown(const struct dea_protocol_plan *plan)
+{
+  double times = plan->largest_field_V_per_m / plan->breakdown_field_V_per_m;
+  if (isnan(times)) {
+    return;
+  }
+  printf("  %-16s  %.4g V/um by the film's material, ", "breakdown field",
+         1e-6 * plan->breakdown_field_V_per_m);
+  printf(times > 1 ? "%.3g times exceeded; probability " : "%.0f %% of it used; probability ",
+         times > 1 ? times : 100 * times);
+  if (isnan(plan->breakdown_probability)) {
+    puts("unknown");
+  } else {
+    printf("%.2g %%\n", 100 * plan->breakdown_probability);
+  }
+}
+
 static void print_film(const struct dea_protocol_plan *plan)
 {
   if (!isnan(plan->largest_field_V_per_m)) {
@@ -65,6 +83,7 @@ static void print_film(const struct dea_protocol_plan *plan)
       printf(" of %.4g V/um that are allowed", 1e-6 * plan->allowed_field_V_per_m);
     }
     putchar('\n');
+    print_breakdown(plan);
   }
   if (!isnan(plan->pull_in_V)) {
     printf("  %-16s  %.4g kV\n", "pull-in", 1e-3 * plan->pull_in_V);
@@ -128,6 +147,8 @@ static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_p
   dea_json_put(json, "highest_V", plan->highest_V);
   dea_json_put(json, "largest_field_V_per_m", plan->largest_field_V_per_m);
   dea_json_put(json, "allowed_field_V_per_m", plan->allowed_field_V_per_m);
+  dea_json_put(json, "breakdown_field_V_per_m", plan->breakdown_field_V_per_m);
+  dea_json_put(json, "breakdown_probability", plan->breakdown_probability);
   dea_json_put(json, "pull_in_V", plan->pull_in_V);
   dea_json_put(json, "capacitance_F", plan->capacitance_F);
   dea_json_put(json, "stored_energy_J", plan->stored_energy_J);

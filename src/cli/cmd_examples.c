@@ -57,7 +57,7 @@ static int list_examples(struct dea_cli *cli, const struct cli_data_list *list)
   if (!cli->quiet) {
     fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n"
                     "Those in bench are protocols and name a design:  dea examples --copy DIR && "
-                    "dea drive DIR/bench/cyclic.yaml\n");
+                    "dea drive DIR/bench/first.yaml\n");
   }
   return 0;
 }

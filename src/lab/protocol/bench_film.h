@@ -25,10 +25,10 @@ struct dea_bench_model {
 /* The film at one voltage. */
 struct dea_bench_point {
   struct dea_load_point point;
-  // true field that the material stands as it is stretched, by the smallest value of its sources; NAN:
-  // unknown
+  // true field that the material stands as it is stretched, by the smallest value of its sources;
+  // NAN: unknown
   double breakdown_V_per_m;
-  double leakage_s;         // resistivity times permittivity; INFINITY: nothing leaks
+  double leakage_s; // resistivity times permittivity; INFINITY: nothing leaks
 };
 
 /* How the simulated amplifier drives the film. */

@@ -324,6 +324,8 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
       .highest_V = high.voltage_V,
       .largest_field_V_per_m = NAN,
       .allowed_field_V_per_m = NAN,
+      .breakdown_field_V_per_m = NAN,
+      .breakdown_probability = NAN,
       .pull_in_V = NAN,
       .capacitance_F = NAN,
       .stored_energy_J = NAN,
