@@ -180,9 +180,6 @@ static void test_breakdown_of_the_weakest_link(void **state)
   }
   assert_close(survives[0], exp(-pow(field / 100e6, 9)), 1e-12, 0); // Weibull, with the electrodes
   assert_close(survives[1], pow(survives[0], 7), 1e-12, 0);
-  assert_close(dea_breakdown_margin_band(&device.film.breakdown, 0.1, true), 1 - 0.9 / 0.9, 0,
-               1e-15);
-  assert_true(dea_breakdown_margin_band(&device.film.breakdown, 0.1, false) > 0.1);
 }
 
 static void test_elastosil_has_the_numbers_of_the_paper(void **state)

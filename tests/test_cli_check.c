@@ -65,6 +65,13 @@ static void test_check_lists_values_and_what_follows(void **state)
   assert_contains(command_out, "film thickness (stretched)        88.8889 um");
 }
 
+static void test_check_shows_the_band_of_the_breakdown_field(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
+  assert_contains(command_out, "E_b 80 V/um (80 to 100 by source)");
+}
+
 static json_t *run_json(const char *arguments, int code)
 {
   json_error_t error;
@@ -144,6 +151,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_bad_file_has_its_exit_code),
       cmocka_unit_test(test_check_lists_values_and_what_follows),
+      cmocka_unit_test(test_check_shows_the_band_of_the_breakdown_field),
       cmocka_unit_test(test_check_as_json),
       cmocka_unit_test(test_schema),
       cmocka_unit_test(test_reference_is_that_of_the_table),

@@ -102,6 +102,19 @@ static void test_breakdown_without_a_known_exponent_is_noted(void **state)
   assert_false(has_note("pessimistic")); // the film is not pre-stretched
 }
 
+/* 51 V/um h^-0.25 s^0.63 of a 1 mm film, for 100 um: with h = H/s^2 a power of 0.63 + 0.5. */
+static void test_breakdown_fits_the_film(void **state)
+{
+  (void)state;
+  const struct dea_override huang[] = {{"film.material", "vhb-4910"},
+                                       {"film.law", "arruda-boyce-2016"},
+                                       {"film.permittivity", "constant"},
+                                       {"film.breakdown", "huang-2012"}};
+  read_good(GOOD_DESIGN, huang, 4);
+  assert_close(device->film.breakdown.at_rest_V_per_m, 51e6 * pow(0.1, -0.25), 1e-13, 0);
+  assert_close(device->film.breakdown.exponent, 1.13, 1e-13, 0);
+}
+
 static void test_first_set_is_the_default(void **state)
 {
   (void)state;
@@ -455,6 +468,7 @@ int main(void)
       TEST(test_lengths_are_those_of_the_stretched_film),
       TEST(test_materials_of_the_file),
       TEST(test_breakdown_without_a_known_exponent_is_noted),
+      TEST(test_breakdown_fits_the_film),
       TEST(test_first_set_is_the_default),
       TEST(test_every_default_is_listed),
       TEST(test_default_sweep),

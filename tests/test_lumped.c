@@ -44,6 +44,37 @@ static void test_benchmark_3(void **state)
   dea_model_find("lumped")->destroy(ctx, model);
 }
 
+/* Weibull at the smallest margin, which is 63.2 % at the breakdown field; nothing without a shape.
+ */
+static void test_probability_of_breakdown(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"lumped", "axisymmetric"};
+  for (size_t i = 0; i < 2; i++) {
+    const struct dea_model_type *type = dea_model_find(names[i]);
+    for (int shape = 0; shape <= 8; shape += 8) {
+      struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 0);
+      struct dea_model *model;
+      struct dea_load_point p;
+      device.film.breakdown.law = (struct dea_breakdown_law){
+          .at_rest_V_per_m = 80e6, .shape = shape, .area_m2 = 1e-4, .electrode_factor = 1};
+      dea_device_fit_breakdown(&device);
+      double area_m2 = 3.14159265358979 * 25e-6 / 2.25; // unstretched
+      double strength = shape > 0 ? 80e6 * pow(1e-4 / area_m2, 1.0 / shape) : 80e6;
+      assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
+      assert_int_equal(type->solve(ctx, model, 3e3, &p), DEA_OK);
+      assert_close(p.breakdown_margin, 1 - p.true_field_V_per_m / strength, 1e-9, 0);
+      if (shape > 0) {
+        double survives = exp(-pow(p.true_field_V_per_m / 80e6, shape) * area_m2 / 1e-4);
+        assert_close(1 - p.breakdown_probability, survives, 1e-9, 0);
+      } else {
+        assert_true(isnan(p.breakdown_probability));
+      }
+      type->destroy(ctx, model);
+    }
+  }
+}
+
 static void test_without_fibres_there_is_no_lift(void **state)
 {
   (void)state;
@@ -265,6 +296,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_benchmark_3),
       cmocka_unit_test(test_devices_that_cannot_be),
+      cmocka_unit_test(test_probability_of_breakdown),
       cmocka_unit_test(test_without_fibres_there_is_no_lift),
       cmocka_unit_test(test_rest_state),
       cmocka_unit_test(test_balance_derivatives),

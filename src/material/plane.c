@@ -166,10 +166,4 @@ double dea_breakdown_probability(const struct dea_breakdown *breakdown, double m
   }
   return -expm1(-pow(fmax(1 - margin, 0), breakdown->law.shape));
 }
-
-double dea_breakdown_margin_band(const struct dea_breakdown *breakdown, double margin, bool low)
-{
-  double ratio = low ? breakdown->law.low : breakdown->law.high;
-  return ratio > 0 ? 1 - (1 - margin) / ratio : margin;
-}
 #endif

@@ -51,7 +51,4 @@ void dea_breakdown_specialise(double thickness_m, double area_m2, struct dea_bre
  * margin. */
 double dea_breakdown_probability(const struct dea_breakdown *breakdown, double margin);
 
-/* The margin by the smallest (low) or largest breakdown field that the sources give. */
-double dea_breakdown_margin_band(const struct dea_breakdown *breakdown, double margin, bool low);
-
 #endif

@@ -126,6 +126,27 @@ static void add_viscosity(struct dea_text *out, const struct dea_viscosity_set *
   }
 }
 
+/* What was measured, and what follows for a film of this thickness under these electrodes. */
+static void add_breakdown(struct dea_text *out, const struct dea_breakdown_set *set,
+                          const struct dea_breakdown *used)
+{
+  static const char unit[] = "V/\302\265m";
+  char what[128] = "breakdown field";
+  if (set->values.count == 2) {
+    snprintf(what, sizeof what, "breakdown field, by source %.4g to %.4g",
+             1e-6 * set->values.limits[0].si, 1e-6 * set->values.limits[1].si);
+  }
+  add_row(out, what, 1e-6 * set->at_rest_V_per_m.si, unit);
+  add_notes(out, &set->notes);
+  if (used->at_rest_V_per_m != set->at_rest_V_per_m.si || used->exponent != used->law.exponent) {
+    snprintf(what, sizeof what, "of this film; grows with the stretch to the power %.3g",
+             used->exponent);
+    add_row(out, what, 1e-6 * used->at_rest_V_per_m, unit);
+    dea_text_add(out, "<td></td><td></td><td>by thickness, electrodes and area, from the row "
+                      "above</td></tr>");
+  }
+}
+
 /* Index of the set of that id, the first for "". */
 #define FIND_SET(sets, count, wanted, found)                                                       \
   size_t found = 0;                                                                                \
@@ -157,8 +178,7 @@ static void add_material(struct dea_report *report, const struct dea_material_da
   }
   if (data->breakdown_count > 0) {
     FIND_SET(data->breakdown, data->breakdown_count, breakdown, set)
-    add_row(out, "breakdown field", 1e-6 * data->breakdown[set].at_rest_V_per_m.si, "V/\302\265m");
-    add_notes(out, &data->breakdown[set].notes);
+    add_breakdown(out, &data->breakdown[set], &used->breakdown);
   }
   if (used->viscosity_id[0] != '\0' && data->viscosity_count > 0) { // "" for none
     FIND_SET(data->viscosity, data->viscosity_count, used->viscosity_id, set)
