@@ -47,6 +47,25 @@ static void test_killed(void **state)
   }
 }
 
+/* A second program neither arms the supply nor disturbs the first. */
+static void test_one_supply_one_program(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 5, SUPPLY_MEASURES);
+  pid_t first = supply_arm("first.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  assert_int_equal(supply_wait(supply_arm("second.h5"), 10), 6);
+  assert_contains(command_err, "another program drives this supply");
+  assert_contains(command_err, "armed by process");
+  assert_true(supply_reaches(&s, 1500, 10));
+  assert_int_equal(supply_wait(first, 20), 0);
+  assert_true(supply_volts(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
 /* The guard is not in the way of a clean end, nor of Ctrl-C of a terminal. */
 static void test_interrupted(void **state)
 {
@@ -172,11 +191,9 @@ static void test_watchdog_of_the_supply(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_killed),
-      cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_stopped),
-      cmocka_unit_test(test_stall_is_no_jump),
-      cmocka_unit_test(test_watchdog_of_the_supply),
+      cmocka_unit_test(test_killed),           cmocka_unit_test(test_one_supply_one_program),
+      cmocka_unit_test(test_interrupted),      cmocka_unit_test(test_stopped),
+      cmocka_unit_test(test_stall_is_no_jump), cmocka_unit_test(test_watchdog_of_the_supply),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -1,0 +1,112 @@
+/* One supply, one program: what is kept of a supply on this computer, and its lock. */
+#define _GNU_SOURCE // mkdtemp, kill
+#include "lab/drive/supply.h"
+#include "own_folder.h"
+#include "testing.h"
+
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
+
+static const char address[] = "scpi 127.0.0.1 5025";
+
+/* Another program that has the supply, after it has written that down. */
+static pid_t other_program(const char *left)
+{
+  int ready[2];
+  char byte;
+  assert_int_equal(pipe(ready), 0);
+  fflush(NULL);
+  pid_t child = fork();
+  assert_true(child >= 0);
+  if (child == 0) {
+    struct dea_supply supply;
+    bool good = dea_supply_open(ctx, folder, address, &supply) == DEA_OK &&
+                dea_supply_leave(ctx, &supply, left) == DEA_OK;
+    if (write(ready[1], good ? "y" : "n", 1) == 1) {
+      pause(); // until it is killed
+    }
+    _exit(1);
+  }
+  close(ready[1]);
+  assert_int_equal(read(ready[0], &byte, 1), 1);
+  assert_int_equal(byte, 'y');
+  close(ready[0]);
+  return child;
+}
+
+static void kill_program(pid_t child)
+{
+  assert_int_equal(kill(child, SIGKILL), 0);
+  assert_int_equal(waitpid(child, NULL, 0), child);
+}
+
+static void test_second_program_is_refused(void **state)
+{
+  (void)state;
+  struct dea_supply supply;
+  pid_t child = other_program("armed by somebody");
+  for (int i = 0; i < 2; i++) { // to be refused takes nothing away
+    assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_E_INTERLOCK);
+    assert_non_null(strstr(dea_context_message(ctx), "another program drives this supply"));
+    assert_non_null(strstr(dea_context_message(ctx), address));
+    assert_non_null(strstr(dea_context_message(ctx), "armed by somebody"));
+    assert_int_equal(supply.file, -1);
+    dea_context_clear(ctx);
+  }
+  // what one that was refused does changes nothing of the other's
+  assert_int_equal(dea_supply_leave(ctx, &supply, ""), DEA_OK);
+  dea_supply_close(&supply);
+  kill_program(child);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_non_null(strstr(supply.left, "armed by somebody"));
+  dea_supply_close(&supply);
+}
+
+/* A lock ends with its program, however that ends; what it left stays until somebody clears it. */
+static void test_next_program(void **state)
+{
+  (void)state;
+  struct dea_supply supply;
+  kill_program(other_program("armed by the dead"));
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_non_null(strstr(supply.left, "armed by the dead"));
+  assert_int_equal(dea_supply_leave(ctx, &supply, ""), DEA_OK);
+  dea_supply_close(&supply);
+  dea_supply_close(&supply);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_string_equal(supply.left, "");
+  dea_supply_close(&supply);
+}
+
+static void test_supplies_are_apart(void **state)
+{
+  (void)state;
+  struct dea_supply same, other;
+  assert_int_equal(dea_supply_open(ctx, folder, address, &same), DEA_OK);
+  assert_int_equal(dea_supply_open(ctx, folder, "scpi 127.0.0.1 5026", &other), DEA_OK);
+  assert_string_not_equal(same.path, other.path);
+  dea_supply_close(&other);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &other), DEA_E_INTERLOCK); // here too
+  dea_context_clear(ctx);
+  dea_supply_close(&same);
+  // an address is a name, not a path
+  assert_int_equal(dea_supply_open(ctx, folder, "scpi ../../x", &other), DEA_OK);
+  assert_null(strchr(other.path + strlen(folder) + 1, '/'));
+  dea_supply_close(&other);
+  // and without a folder nothing is kept
+  assert_int_equal(dea_supply_open(ctx, NULL, address, &same), DEA_OK);
+  assert_int_equal(dea_supply_open(ctx, NULL, address, &other), DEA_OK);
+  dea_supply_close(&same);
+  dea_supply_close(&other);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_second_program_is_refused),
+      cmocka_unit_test(test_next_program),
+      cmocka_unit_test(test_supplies_are_apart),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
