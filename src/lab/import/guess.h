@@ -1,13 +1,19 @@
-/* What a column may be, by its name and unit. */
+/* What a column may be, by its name and unit; the words of names are a table, guess_list.h. */
 #ifndef DEA_LAB_IMPORT_GUESS_H
 #define DEA_LAB_IMPORT_GUESS_H
 
 #include "lab/import/import.h"
+#include "lab/import/slices.h"
 
 enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2 }; // beside enum dea_channel_kind
 
 int dea_guess_by_name(const char *name);
 /* si: SI unit of the column's unit. */
 int dea_guess_by_unit(const char *name, const char *si);
+/* What a single number of that name says of the clock: 1 a rate [Hz], -1 an interval [s], 0
+ * nothing. */
+int dea_guess_clock(const char *name);
+/* Whether 'A' behind that name is a unit without brackets: "channel_A" is no current. */
+bool dea_guess_takes_ampere(struct dea_slice name);
 
 #endif

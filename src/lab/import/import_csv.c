@@ -2,6 +2,7 @@
 #include "lab/import/import.h"
 
 #include "base/text.h"
+#include "lab/import/guess.h"
 #include "lab/import/text_file.h"
 #include "lab/import/text_rows.h"
 #include "lab/import/titles.h"
@@ -96,7 +97,7 @@ static dea_status take_clock(struct dea_context *ctx, struct dea_slice line, cha
   }
   dea_title_split(ctx, name, &name, &unit);
   snprintf(key, sizeof key, "%.*s", (int)name.length, name.text);
-  if (dea_title_clock(key) == 0) {
+  if (dea_guess_clock(key) == 0) {
     return DEA_OK;
   }
   rest = (struct dea_slice){line.text + n + 1, line.length - n - 1};

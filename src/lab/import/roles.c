@@ -194,7 +194,7 @@ static void guess_times(struct work *work)
       role->why = odd_unit;
       continue;
     }
-    int clock = dea_title_clock(column->name);
+    int clock = dea_guess_clock(column->name);
     const char *si = dea_title_unit(work->ctx, column->unit, &factor);
     if (column->count == 1 && clock != 0) {
       bool good =
@@ -308,7 +308,7 @@ static double lone_interval(const struct work *work)
     const struct dea_table_column *column = &work->table->columns[k];
     if (work->roles[k].use == DEA_USE_CLOCK) {
       double value = column->values[0] * work->roles[k].factor;
-      double interval = dea_title_clock(column->name) > 0 ? 1 / value : value;
+      double interval = dea_guess_clock(column->name) > 0 ? 1 / value : value;
       if (isfinite(interval) && interval > 0) {
         return interval;
       }

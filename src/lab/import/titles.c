@@ -1,7 +1,7 @@
 #include "lab/import/titles.h"
 
-#include "base/csv_line.h"
 #include "base/units.h"
+#include "lab/import/guess.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -106,10 +106,7 @@ static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
       known = known || strcmp(text, units[i]) == 0;
     }
   }
-  // "channel_A" is no current
-  return known || (unit.length == 1 && unit.text[0] == 'A' &&
-                   (dea_slice_is(name, "i") || dea_slice_is(name, "current") ||
-                    dea_slice_is(name, "strom")));
+  return known || (unit.length == 1 && unit.text[0] == 'A' && dea_guess_takes_ampere(name));
 }
 
 /* How many letters part name and unit there: '/', '_' or " in "; weak: ':', ',', and a blank before
@@ -294,36 +291,4 @@ bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct
     n++;
   }
   return n == count || n == count + 1;
-}
-
-int dea_title_clock(const char *name)
-{
-  static const char *const rates[] = {"fs",
-                                      "rate",
-                                      "sample rate",
-                                      "samplerate",
-                                      "sampling rate",
-                                      "sampling frequency",
-                                      "sample frequency",
-                                      "samples per second",
-                                      "abtastrate",
-                                      "samplingrate",
-                                      "sr"};
-  static const char *const intervals[] = {
-      "dt",        "ts",       "sample interval", "sampling interval", "delta t",
-      "tinterval", "interval", "sample period",   "sampling period",   "abtastintervall"};
-  char folded[DEA_CSV_FIELD_MAX];
-  const char *dot = strrchr(name, '.'); // of a struct: data.fs
-  dea_csv_fold(dot != NULL ? dot + 1 : name, folded);
-  for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-    if (strcmp(folded, rates[i]) == 0) {
-      return 1;
-    }
-  }
-  for (size_t i = 0; i < sizeof intervals / sizeof intervals[0]; i++) {
-    if (strcmp(folded, intervals[i]) == 0) {
-      return -1;
-    }
-  }
-  return 0;
 }

@@ -22,8 +22,4 @@ bool dea_title_has_odd_unit(const char *name);
  * where no bracket is open, or by the end of a bracket. false when there are more or less. */
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out);
 
-/* What a single number of that name says of the clock: 1 a rate [Hz], -1 an interval [s], 0
- * nothing. */
-int dea_title_clock(const char *name);
-
 #endif
