@@ -20,7 +20,7 @@ endif()
 if(DEA_WASM_WORKS)
   set(core_sources ${PROJECT_SOURCE_DIR}/web/explorer.c ${PROJECT_SOURCE_DIR}/web/dense.c)
   foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane device/check model/film model/make
-      result/load_point model/path model/alpha model/circuit material/branch model/lumped/balance model/lumped/history
+      result/load_point model/path model/alpha model/circuit material/branch model/lumped/balance model/lumped/motion
       model/lumped/lift model/lumped/model)
     list(APPEND core_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()

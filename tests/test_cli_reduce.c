@@ -178,15 +178,15 @@ static void test_history_keeps_edges(void **state)
   (void)state;
   struct dea_recording r = bench();
   struct dea_reduction *reduction;
-  struct dea_history_table all, few;
+  struct dea_reduced_series all, few;
   assert_int_equal(dea_reduce(own, &r, NULL, &reduction), DEA_OK);
-  assert_int_equal(dea_history_table_fill(own, &r, reduction, 1000000, &all), DEA_OK);
-  assert_int_equal(dea_history_table_fill(own, &r, reduction, 600, &few), DEA_OK);
+  assert_int_equal(dea_reduced_series_fill(own, &r, reduction, 1000000, &all), DEA_OK);
+  assert_int_equal(dea_reduced_series_fill(own, &r, reduction, 600, &few), DEA_OK);
   assert_false(all.thinned);
   assert_true(few.thinned);
   assert_true(few.rows <= 600 && few.rows > 300);
   size_t edges[2] = {0, 0};
-  const struct dea_history_table *tables[2] = {&all, &few};
+  const struct dea_reduced_series *tables[2] = {&all, &few};
   for (int t = 0; t < 2; t++) {
     bool on = false;
     for (size_t i = 0; i < tables[t]->rows; i++) {
@@ -200,8 +200,8 @@ static void test_history_keeps_edges(void **state)
   }
   assert_int_equal(edges[0], 24); // of 12 cycles
   assert_int_equal(edges[1], edges[0]);
-  dea_history_table_free(own, &few);
-  dea_history_table_free(own, &all);
+  dea_reduced_series_free(own, &few);
+  dea_reduced_series_free(own, &all);
   dea_reduction_destroy(own, reduction);
   signal_free(&r);
 }

@@ -51,16 +51,17 @@ static void test_uncertainty_of_profiles(void **state)
   struct dea_reduce_options options = plain;
   options.film_radius_m = b.film_m;
   options.electrode_radius_m = b.electrode_m;
-  options.tip_radius_m = 6e-3;
+  options.fibre_tip_radius_m = 6e-3;
   double tip_truth = 300e-6 * signal_shape(&b, 6e-3);
   for (uint64_t seed = 1; seed <= 120; seed++) {
     struct dea_recording r = signal_record(&b, seed);
     struct dea_reduction *out = reduced(&r, &options);
     assert_true(out->levelling.by_frame);
-    const struct dea_reduced_level *level = &out->levels[0];
+    const struct dea_voltage_level *level = &out->levels[0];
     signal_pull(&centre, level->mean[DEA_REDUCED_CENTRE], 300e-6,
                 level->uncertainty[DEA_REDUCED_CENTRE]);
-    signal_pull(&tip, level->mean[DEA_REDUCED_TIP], tip_truth, level->uncertainty[DEA_REDUCED_TIP]);
+    signal_pull(&tip, level->mean[DEA_REDUCED_FIBRE_TIP], tip_truth,
+                level->uncertainty[DEA_REDUCED_FIBRE_TIP]);
     dea_reduction_destroy(ctx, out);
     signal_free(&r);
   }
@@ -127,7 +128,7 @@ static void test_without_frame_the_outer_film_levels(void **state)
   b.drift_per_s = 0.0;
   b.points = 500;
   struct dea_reduce_options options = plain;
-  options.tip_radius_m = 6e-3;
+  options.fibre_tip_radius_m = 6e-3;
   struct dea_recording r = signal_record(&b, 5);
   struct dea_reduction *out = reduced(&r, &options);
   assert_false(out->levelling.by_frame);
@@ -153,7 +154,7 @@ static void test_shape(void **state)
     options.electrode_radius_m = b.electrode_m;
     struct dea_recording r = signal_record(&b, 11);
     struct dea_reduction *out = reduced(&r, &options);
-    const struct dea_reduced_level *level = &out->levels[0];
+    const struct dea_voltage_level *level = &out->levels[0];
     assert_true(level->shape_uncertainty > 0.0 && level->shape_uncertainty < 0.08);
     assert_close(level->shape, b.cone, 0.0, 4.0 * level->shape_uncertainty + 0.01);
     dea_reduction_destroy(ctx, out);
@@ -167,7 +168,7 @@ static void check_levels(const struct signal_bench *b, const struct dea_reductio
 {
   assert_int_equal(out->level_count, b->level_count);
   for (size_t l = 0; l < out->level_count; l++) {
-    const struct dea_reduced_level *level = &out->levels[l];
+    const struct dea_voltage_level *level = &out->levels[l];
     double V = b->levels_V[l];
     assert_int_equal(level->cycles, b->cycles);
     assert_close(level->voltage_V, V, 0.0, 5.0);
@@ -287,7 +288,7 @@ static void test_other_waveforms(void **state)
     struct dea_reduction *out = reduced(&r, &plain);
     assert_int_equal(out->level_count, all[k].levels);
     assert_int_equal(out->cycle_count, all[k].cycles);
-    const struct dea_reduced_level *last = &out->levels[out->level_count - 1];
+    const struct dea_voltage_level *last = &out->levels[out->level_count - 1];
     assert_close(last->voltage_V, all[k].largest_V, all[k].within, 0.0);
     if (k != 2 && k != 3) { // those of a peak rest where the voltage is not yet 0
       assert_close(last->mean[DEA_REDUCED_DISPLACEMENT], 1e-9 * all[k].largest_V, 1e-9, 1e-15);
@@ -314,7 +315,7 @@ static void test_creep_and_fast_rise(void **state)
     z->values[i] += since >= 0.0 && since < 1.0 ? 20e-6 * since : 0.0;
   }
   struct dea_reduction *out = reduced(&r, &plain);
-  const struct dea_reduced_level *level = &out->levels[0];
+  const struct dea_voltage_level *level = &out->levels[0];
   assert_true(isnan(level->rise_s[DEA_REDUCED_DISPLACEMENT]));            // faster than the samples
   assert_close(level->creep[DEA_REDUCED_DISPLACEMENT], 16e-6, 0.03, 0.0); // 20 um/s for 0.8 s
   dea_reduction_destroy(ctx, out);

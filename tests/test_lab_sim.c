@@ -268,8 +268,8 @@ static void test_noise_is_what_was_asked(void **state)
       double x = r.x_m[i], radius = fabs(x);
       double film = radius >= 0.015 ? 2e-3
                     : radius > 0.00375
-                        ? s->tip_z_m * (0.015 - radius) / (0.015 - 0.00375)
-                        : s->centre_z_m + (s->tip_z_m - s->centre_z_m) * radius / 0.00375;
+                        ? s->fibre_tip_z_m * (0.015 - radius) / (0.015 - 0.00375)
+                        : s->centre_z_m + (s->fibre_tip_z_m - s->centre_z_m) * radius / 0.00375;
       double due = film + x * tan(0.5 * 3.14159265358979 / 180) + 1e-6 * r.frame_s[f];
       double error = r.z_m[f * r.points + i] - due;
       missing += isnan(error) ? 1U : 0U;

@@ -1,6 +1,6 @@
 /* lumped in time: closed forms, an independent integration at high order, order, energy. */
 #include "devices.h"
-#include "model/lumped/history.h"
+#include "model/lumped/motion.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above

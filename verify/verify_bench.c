@@ -34,7 +34,7 @@ static const struct {
   double factor;
 } quantities[] = {
     {DEA_REDUCED_CENTRE, -1, "centre, profile", "um", 1e6},
-    {DEA_REDUCED_TIP, -2, "fibre tips, profile", "um", 1e6},
+    {DEA_REDUCED_FIBRE_TIP, -2, "fibre tips, profile", "um", 1e6},
     {DEA_REDUCED_DISPLACEMENT, -1, "centre, point laser", "um", 1e6},
     {DEA_REDUCED_FORCE, -3, "force cell", "mN", 1e3},
 };
@@ -222,7 +222,7 @@ static struct dea_reduction *measure(struct dea_context *ctx, const struct measu
   verify_ok(ctx, dea_recording_read(ctx, file, &recording));
   const struct dea_device *device = truth->device;
   const struct dea_reduce_options radii = {
-      .tip_radius_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : (double)NAN,
+      .fibre_tip_radius_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : (double)NAN,
       .film_radius_m = device->frame_radius_m,
       .electrode_radius_m = device->electrode_radius_m,
       .force_offset_N = NAN,
@@ -253,7 +253,7 @@ static void print_quantity(const struct measurement *m, const struct dea_curve *
          "uncertainty |\n|---|---|---|---|---|---|---|\n",
          quantities[q].title, quantities[q].unit, quantities[q].unit);
   for (size_t l = 0; l < r->level_count; l++) {
-    const struct dea_reduced_level *level = &r->levels[l];
+    const struct dea_voltage_level *level = &r->levels[l];
     size_t number = (size_t)lround(1e-3 * level->voltage_V);
     double want = amplitude_of(truth, m, number, quantities[q].column);
     double pull = (level->mean[kind] - want) / level->uncertainty[kind];

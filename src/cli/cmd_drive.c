@@ -318,9 +318,9 @@ static void print_report(const struct dea_drive_report *report, const char *file
 // The command ------------------------------------------------------------------------------------
 
 /* Reads and checks; *protocol is owned by the caller, also after a failure. */
-static dea_status look(struct dea_cli *cli, const struct request *request,
-                       struct dea_protocol **protocol, struct dea_protocol_plan *plan,
-                       bool *planned)
+static dea_status read_and_check(struct dea_cli *cli, const struct request *request,
+                                 struct dea_protocol **protocol, struct dea_protocol_plan *plan,
+                                 bool *planned)
 {
   struct dea_context *ctx = cli->ctx;
   DEA_TRY(ctx, dea_protocol_read(ctx, &dea_film_of_design, request->protocol, request->overrides.at,
@@ -355,7 +355,7 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_drive_report report = {.largest_current_A = NAN};
   struct dea_text name = {.ctx = cli->ctx};
   bool planned = false, played = false;
-  dea_status status = look(cli, request, &protocol, &plan, &planned);
+  dea_status status = read_and_check(cli, request, &protocol, &plan, &planned);
   if (request->zero && planned) {
     return zero(cli, request, protocol);
   }

@@ -50,7 +50,8 @@ static dea_status complete_options(struct dea_context *ctx, const struct request
   dea_status status = design != NULL ? dea_device_build(ctx, design, &device) : DEA_OK;
   if (device != NULL) {
     double tip_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : NAN;
-    options->tip_radius_m = isnan(options->tip_radius_m) ? tip_m : options->tip_radius_m;
+    options->fibre_tip_radius_m =
+        isnan(options->fibre_tip_radius_m) ? tip_m : options->fibre_tip_radius_m;
     options->film_radius_m =
         isnan(options->film_radius_m) ? device->frame_radius_m : options->film_radius_m;
     options->electrode_radius_m = isnan(options->electrode_radius_m) ? device->electrode_radius_m
@@ -77,8 +78,8 @@ static void print_levelling(const struct dea_levelling *l)
   printf("%-12s %zu, %.2g %% of the points invalid, %.2g %% outliers; averaged over %.2f mm",
          "profiles", l->frames, 100.0 * (double)l->invalid / fmax(1.0, (double)l->total),
          100.0 * (double)l->outliers / fmax(1.0, (double)l->total), 1e3 * l->width_m);
-  if (!isnan(l->tip_radius_m)) {
-    printf("; fibre tips at %.2f mm", 1e3 * l->tip_radius_m);
+  if (!isnan(l->fibre_tip_radius_m)) {
+    printf("; fibre tips at %.2f mm", 1e3 * l->fibre_tip_radius_m);
   }
   putchar('\n');
 }
@@ -128,7 +129,7 @@ static void print_table(const struct dea_reduction *r)
   }
   printf(" %10s %10s %11s %15s\n", "rise (ms)", "fall (ms)", creep, "shape");
   for (size_t l = 0; l < r->level_count; l++) {
-    const struct dea_reduced_level *level = &r->levels[l];
+    const struct dea_voltage_level *level = &r->levels[l];
     printf("%8.3f %6zu", fabs(level->voltage_V) < 0.5 ? 0.0 : 1e-3 * level->voltage_V,
            level->cycles);
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
@@ -248,8 +249,8 @@ static const struct cli_option options[] = {
                  "m", "15 mm", true),
     QUANTITY_ROW("electrode-radius", "R", "radius of the electrode", electrode_radius_m, "m",
                  "3.75 mm", true),
-    QUANTITY_ROW("tip-radius", "R", "distance of the fibre tips from the centre", tip_radius_m, "m",
-                 "3 mm", true),
+    QUANTITY_ROW("tip-radius", "R", "distance of the fibre tips from the centre",
+                 fibre_tip_radius_m, "m", "3 mm", true),
     QUANTITY_ROW(
         "force-offset", "F",
         "reading of the unloaded force cell, such as '1.5 mN'; else the mean of its first readings",

@@ -80,7 +80,7 @@ static dea_status build(struct dea_context *ctx, bool moves, struct film_model *
   }
   m->base.material = device->film.name;
   m->base.frame_radius_m = device->frame_radius_m;
-  m->base.tip_radius_m =
+  m->base.fibre_tip_radius_m =
       device->fibre_count > 0 ? device->fibre_tip_radius_m : device->electrode_radius_m;
   return moves ? dea_model_create(ctx, m->type, m->design, device, &m->model)
                : m->type->create(ctx, device, NULL, &m->model);

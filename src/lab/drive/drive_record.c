@@ -14,7 +14,7 @@ static dea_status wrong_bench(struct dea_context *ctx, const char *what)
 }
 
 /* Takes a role; false when another one has it. */
-static bool take(struct dea_instrument *instrument, unsigned role, struct dea_instrument **who)
+static bool take_role(struct dea_instrument *instrument, unsigned role, struct dea_instrument **who)
 {
   if ((instrument->roles & role) == 0) {
     return true;
@@ -33,13 +33,13 @@ dea_status dea_drive_find_roles(struct dea_context *ctx, const struct dea_protoc
   }
   for (size_t i = 0; i < bench->count; i++) {
     struct dea_instrument *instrument = bench->instruments[i];
-    if (!take(instrument, DEA_PLAYS_OUTPUT, &out->player)) {
+    if (!take_role(instrument, DEA_PLAYS_OUTPUT, &out->player)) {
       return wrong_bench(ctx, "two of them play the output");
     }
-    if (!take(instrument, DEA_READS_INPUTS, &out->reader)) {
+    if (!take_role(instrument, DEA_READS_INPUTS, &out->reader)) {
       return wrong_bench(ctx, "two of them read the inputs");
     }
-    if (!take(instrument, DEA_SENDS_PROFILES, &out->sensor)) {
+    if (!take_role(instrument, DEA_SENDS_PROFILES, &out->sensor)) {
       return wrong_bench(ctx, "two of them send profiles; a recording has one profile sensor");
     }
   }

@@ -64,7 +64,8 @@ static dea_status take_sample(struct sample *sample, struct dea_slice text)
 }
 
 /* Looks at one line: which fields are text, how many are numbers. */
-static size_t look(struct dea_slice line, const struct candidate *c, bool *text, size_t *count)
+static size_t classify_fields(struct dea_slice line, const struct candidate *c, bool *text,
+                              size_t *count)
 {
   struct dea_slice field;
   double value;
@@ -86,7 +87,7 @@ static void judge(const struct sample *sample, size_t last, struct candidate *c,
                   bool *other)
 {
   c->rows = 0;
-  c->numeric = look(sample->lines[last], c, text, &c->count);
+  c->numeric = classify_fields(sample->lines[last], c, text, &c->count);
   if (c->numeric == 0 || c->count > DEA_TABLE_COLUMNS_MAX) {
     return;
   }
@@ -94,7 +95,7 @@ static void judge(const struct sample *sample, size_t last, struct candidate *c,
   c->first = last;
   c->rows = 1;
   for (size_t i = last; i-- > 0;) {
-    size_t count, numeric = look(sample->lines[i], c, other, &count);
+    size_t count, numeric = classify_fields(sample->lines[i], c, other, &count);
     bool same = count == c->count;
     for (size_t k = 0; same && k < count; k++) {
       same = !other[k] || text[k];
@@ -215,7 +216,7 @@ static dea_status check_above(const struct sample *sample, const struct candidat
   const struct dea_slice model = sample->lines[best->first];
   size_t alone = 0;
   for (size_t i = 0; i < best->first; i++) {
-    size_t count, numeric = look(sample->lines[i], best, flags, &count);
+    size_t count, numeric = classify_fields(sample->lines[i], best, flags, &count);
     bool numbers =
         numeric > 0 && count <= DEA_TABLE_COLUMNS_MAX && memchr(flags, true, count) == NULL;
     alone = numbers && count == 1 ? alone + 1 : 0;
@@ -294,7 +295,7 @@ static dea_status fill(const struct sample *sample, struct dea_slice text,
   }
   const struct candidate chosen = {.separator = out->separator, .decimal = out->decimal};
   size_t count;
-  look(sample->lines[best->first + best->rows - 1], &chosen, out->text, &count);
+  classify_fields(sample->lines[best->first + best->rows - 1], &chosen, out->text, &count);
   return DEA_OK;
 }
 
@@ -329,8 +330,8 @@ static dea_status check_last_title(struct dea_context *ctx, const char *file,
   return dea_fail(ctx, DEA_E_IO, "'%s' has a line that is neither titles nor numbers", file);
 }
 
-static dea_status find(struct sample *sample, struct dea_slice text, bool *flags,
-                       struct dea_csv_dialect *out)
+static dea_status find_dialect(struct sample *sample, struct dea_slice text, bool *flags,
+                               struct dea_csv_dialect *out)
 {
   struct candidate best;
   bool found = false;
@@ -358,7 +359,7 @@ dea_status dea_csv_dialect_find(struct dea_context *ctx, const char *file, struc
   struct sample sample = {.ctx = ctx, .file = file};
   *out = (struct dea_csv_dialect){0};
   bool *flags = dea_alloc(ctx, 2 * (size_t)DEA_TABLE_COLUMNS_MAX, sizeof *flags);
-  dea_status status = flags != NULL ? find(&sample, text, flags, out) : DEA_E_MEMORY;
+  dea_status status = flags != NULL ? find_dialect(&sample, text, flags, out) : DEA_E_MEMORY;
   dea_free(ctx, sample.lines);
   dea_free(ctx, sample.numbers);
   dea_free(ctx, flags);

@@ -13,7 +13,7 @@ enum {
   IS_CURRENT = DEA_CHANNEL_CURRENT,
   IS_DISPLACEMENT = DEA_CHANNEL_DISPLACEMENT,
   IS_FORCE = DEA_CHANNEL_FORCE,
-  IS_PLACE = DEA_CHANNEL_KINDS,
+  IS_POSITION = DEA_CHANNEL_KINDS,
   IS_RATE,
   IS_INTERVAL,
   IS_AMPERE,
@@ -74,7 +74,7 @@ int dea_guess_by_unit(const char *name, const char *si)
   if (strcmp(si, "s") == 0) {
     return DEA_GUESS_TIME;
   }
-  if (find_word(name, IS_PLACE, IS_PLACE) != NULL) {
+  if (find_word(name, IS_POSITION, IS_POSITION) != NULL) {
     return DEA_GUESS_NOTHING; // where something is, not how it moves
   }
   for (int k = DEA_CHANNEL_VOLTAGE; k < DEA_CHANNEL_OTHER; k++) {

@@ -5,8 +5,8 @@
 
 // X(language, word in lower case, where it stands in a name, what that then is)
 // where: PART anywhere; WORD as a word of its own; WHOLE it is the whole name
-// what: TIME; RATE [Hz] or INTERVAL [s] between samples, of a single number; PLACE where something
-// is, not how it moves; AMPERE a bare 'A' behind it is a unit; else a kind of channel
+// what: TIME; RATE [Hz] or INTERVAL [s] between samples, of a single number; POSITION where
+// something is, not how it moves; AMPERE a bare 'A' behind it is a unit; else a kind of channel
 #define DEA_GUESS_LIST(X)                                                                          \
   X(ENGLISH, "timestamp", PART, TIME)                                                              \
   X(ENGLISH, "time", PART, TIME)                                                                   \
@@ -48,9 +48,9 @@
   X(SYMBOL, "v", WORD, VOLTAGE)                                                                    \
   X(SYMBOL, "u", WORD, VOLTAGE)                                                                    \
   X(SYMBOL, "v0", WORD, VOLTAGE)                                                                   \
-  X(SYMBOL, "x", WORD, PLACE)                                                                      \
-  X(SYMBOL, "y", WORD, PLACE)                                                                      \
-  X(SYMBOL, "r", WORD, PLACE)                                                                      \
+  X(SYMBOL, "x", WORD, POSITION)                                                                   \
+  X(SYMBOL, "y", WORD, POSITION)                                                                   \
+  X(SYMBOL, "r", WORD, POSITION)                                                                   \
   X(SYMBOL, "fs", WHOLE, RATE)                                                                     \
   X(SYMBOL, "sr", WHOLE, RATE)                                                                     \
   X(ENGLISH, "rate", WHOLE, RATE)                                                                  \

@@ -67,12 +67,12 @@ extern const struct dea_record dea_mapping_record;
 
 /* What is made of a column. */
 enum dea_column_use {
-  DEA_USE_LEFT,    // nothing
-  DEA_USE_TIME,    // times of others
-  DEA_USE_CLOCK,   // one number that is the rate or the interval of others
-  DEA_USE_CHANNEL, // a channel
-  DEA_USE_PROFILE, // a point of all frames of a profile sensor
-  DEA_USE_PLACE,   // where these points are
+  DEA_USE_LEFT,     // nothing
+  DEA_USE_TIME,     // times of others
+  DEA_USE_CLOCK,    // one number that is the rate or the interval of others
+  DEA_USE_CHANNEL,  // a channel
+  DEA_USE_PROFILE,  // a point of all frames of a profile sensor
+  DEA_USE_POSITION, // where these points are
 };
 struct dea_column_role {
   enum dea_column_use use;

@@ -177,12 +177,12 @@ static dea_status read_rows(struct dea_context *ctx, const struct dea_lines *lin
 
 // Sectionwise ------------------------------------------------------------------------------------
 
-/* Title of a section's columns: the places of "Coordinates", or what "Data (w (um))" holds. */
+/* Title of a section's columns: the positions of "Coordinates", or what "Data (w (um))" holds. */
 static struct dea_slice section_titles(struct dea_slice line, size_t count)
 {
-  static const char *const places[] = {"x", "x  y", "x  y  z"};
+  static const char *const positions[] = {"x", "x  y", "x  y  z"};
   if (dea_slice_is(line, "Coordinates") && count >= 1 && count <= 3) {
-    return (struct dea_slice){places[count - 1], strlen(places[count - 1])};
+    return (struct dea_slice){positions[count - 1], strlen(positions[count - 1])};
   }
   size_t open = dea_slice_find(line, "(");
   if (open < line.length && line.text[line.length - 1] == ')') {

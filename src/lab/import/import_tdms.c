@@ -31,9 +31,9 @@ static dea_status read_lead_in(struct dea_tdms *tdms, const unsigned char *start
                                struct segment *out)
 {
   struct dea_tdms_bytes bytes = {start, at + 4, end, false, false};
-  size_t place = (size_t)(at - start);
+  size_t position = (size_t)(at - start);
   if (memcmp(at, "TDSm", 4) != 0) {
-    return refuse(tdms, place,
+    return refuse(tdms, position,
                   memcmp(at, "TDSh", 4) == 0 ? "it is an index file; give the .tdms file itself"
                                              : "no segment begins here");
   }
@@ -48,7 +48,7 @@ static dea_status read_lead_in(struct dea_tdms *tdms, const unsigned char *start
   }
   length = out->open ? left : length;
   if (raw > length) {
-    return refuse(tdms, place, "the values of a segment begin behind its end");
+    return refuse(tdms, position, "the values of a segment begin behind its end");
   }
   if ((out->contents & DEA_TDMS_DAQMX) != 0 && (out->contents & DEA_TDMS_RAW) != 0) {
     return dea_fail(tdms->ctx, DEA_E_IO,
@@ -167,9 +167,9 @@ static dea_status read_segments(struct dea_tdms *tdms, const unsigned char *star
     }
     DEA_TRY(tdms->ctx, read_raw(tdms, table, &segment));
     if (segment.open && table == NULL) {
-      const struct dea_location place = {.file = tdms->file};
+      const struct dea_location location = {.file = tdms->file};
       DEA_TRY(tdms->ctx, dea_finding_add(
-                             tdms->ctx, DEA_WARNING, place,
+                             tdms->ctx, DEA_WARNING, location,
                              "the file was not closed: its last segment, from byte %zu on, is read "
                              "as far as it goes",
                              (size_t)(at - start)));
@@ -241,22 +241,22 @@ static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
     }
     column->start = object->start_offset;
     column->interval = object->increment;
-    const struct dea_location place = {.file = tdms->file};
+    const struct dea_location location = {.file = tdms->file};
     if (dea_tdms_is_linear(object)) {
       DEA_TRY(tdms->ctx,
-              dea_finding_add(tdms->ctx, DEA_NOTE, place,
+              dea_finding_add(tdms->ctx, DEA_NOTE, location,
                               "'%.60s' has raw values, which become raw x %.9g + %.9g as "
                               "the file says",
                               name, object->slope, object->intercept));
     } else if (object->scales > 0 && !object->applied) {
-      DEA_TRY(tdms->ctx, dea_finding_add(tdms->ctx, DEA_WARNING, place,
+      DEA_TRY(tdms->ctx, dea_finding_add(tdms->ctx, DEA_WARNING, location,
                                          "'%.60s' has raw values with a scale that is not applied: "
                                          "say per_unit and at_zero in a mapping",
                                          name));
     }
     if (object->type == DEA_TDMS_TIME) {
       DEA_TRY(tdms->ctx,
-              dea_finding_add(tdms->ctx, DEA_NOTE, place,
+              dea_finding_add(tdms->ctx, DEA_NOTE, location,
                               "'%.60s' holds times of day: they become seconds after the "
                               "first one",
                               name));

@@ -10,8 +10,8 @@ struct table_clock {
   bool known;
 };
 
-static dea_status find(struct dea_context *ctx, const struct dea_table *table,
-                       struct table_clock *out)
+static dea_status find_clock(struct dea_context *ctx, const struct dea_table *table,
+                             struct table_clock *out)
 {
   *out = (struct table_clock){.column = table->column_count};
   struct dea_column_role *roles = dea_alloc(ctx, table->column_count, sizeof *roles);
@@ -71,9 +71,9 @@ static dea_status move(struct dea_context *ctx, struct dea_table *table, struct 
 dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, struct dea_table *other)
 {
   struct table_clock a = {0}, b = {0};
-  dea_status status = find(ctx, table, &a);
+  dea_status status = find_clock(ctx, table, &a);
   if (status == DEA_OK) {
-    status = find(ctx, other, &b);
+    status = find_clock(ctx, other, &b);
   }
   if (status == DEA_OK) {
     bool same = a.known && b.known   ? dea_clock_same(&a.clock, &b.clock)

@@ -238,19 +238,19 @@ static dea_status place_points(struct work *work, size_t points, bool *falling)
   struct dea_profiles *profiles = &work->recording->profiles;
   const struct dea_mapping *mapping = work->mapping;
   double from = mapping->profile.x_from_m.si, to = mapping->profile.x_to_m.si;
-  size_t place = work->table->column_count;
+  size_t position = work->table->column_count;
   for (size_t i = 0; i < work->table->column_count; i++) {
-    place = work->roles[i].use == DEA_USE_PLACE ? i : place;
+    position = work->roles[i].use == DEA_USE_POSITION ? i : position;
   }
   const struct dea_table_column *x =
-      place < work->table->column_count ? &work->table->columns[place] : NULL;
+      position < work->table->column_count ? &work->table->columns[position] : NULL;
   if (x != NULL && x->count != points) {
     return dea_fail(work->ctx, DEA_E_IO,
                     "'%s' has %zu columns of the profile, but %zu places '%.60s'",
                     work->table->file, points, x->count, x->name);
   }
   for (size_t i = 0; i < points; i++) {
-    profiles->x_m[i] = x != NULL ? x->values[i] * work->roles[place].factor
+    profiles->x_m[i] = x != NULL ? x->values[i] * work->roles[position].factor
                                  : from + (to - from) * (double)i / (double)(points - 1);
   }
   *falling = profiles->x_m[points - 1] < profiles->x_m[0];

@@ -31,7 +31,7 @@ const char *dea_role_name(const struct dea_column_role *role)
     return dea_channel_names[role->kind];
   case DEA_USE_PROFILE:
     return "profile";
-  case DEA_USE_PLACE:
+  case DEA_USE_POSITION:
     return "place";
   default:
     return "left";
@@ -68,8 +68,8 @@ static dea_status find_column(struct work *work, const struct dea_label *wanted,
 }
 
 /* Gives a column a use; an error when it has another one. */
-static dea_status take(struct work *work, size_t column, enum dea_column_use use,
-                       struct dea_location location)
+static dea_status take_column(struct work *work, size_t column, enum dea_column_use use,
+                              struct dea_location location)
 {
   struct dea_column_role *role = &work->roles[column];
   if (role->use != DEA_USE_LEFT && role->use != use) {
@@ -105,7 +105,7 @@ static dea_status take_time(struct work *work, const struct dea_label *name, siz
     return DEA_OK;
   }
   *clock = column + 1;
-  DEA_TRY(work->ctx, take(work, column, DEA_USE_TIME, name->location));
+  DEA_TRY(work->ctx, take_column(work, column, DEA_USE_TIME, name->location));
   return scale(work, column, "s", &text, name->location);
 }
 
@@ -117,7 +117,7 @@ static dea_status take_channel(struct work *work, const struct dea_mapped *mappe
   if (column == work->table->column_count) {
     return DEA_OK;
   }
-  DEA_TRY(work->ctx, take(work, column, DEA_USE_CHANNEL, mapped->column.location));
+  DEA_TRY(work->ctx, take_column(work, column, DEA_USE_CHANNEL, mapped->column.location));
   struct dea_column_role *role = &work->roles[column];
   role->kind = (enum dea_channel_kind)mapped->as.value;
   DEA_TRY(work->ctx, scale(work, column, dea_channel_meanings[role->kind].si_unit, &text,
@@ -140,7 +140,7 @@ static dea_status take_profile(struct work *work)
     size_t column;
     DEA_TRY(work->ctx, find_column(work, &mapping->profile.x, &column));
     if (column < work->table->column_count) {
-      DEA_TRY(work->ctx, take(work, column, DEA_USE_PLACE, mapping->profile.x.location));
+      DEA_TRY(work->ctx, take_column(work, column, DEA_USE_POSITION, mapping->profile.x.location));
       DEA_TRY(work->ctx, scale(work, column, "m", &x_text, mapping->profile.x.location));
     }
   }
@@ -148,7 +148,7 @@ static dea_status take_profile(struct work *work)
     // a column that another key names is none of its points
     if (work->roles[i].use == DEA_USE_LEFT &&
         dea_mapping_matches(work->table->columns[i].name, pattern->text, true)) {
-      DEA_TRY(work->ctx, take(work, i, DEA_USE_PROFILE, pattern->location));
+      DEA_TRY(work->ctx, take_column(work, i, DEA_USE_PROFILE, pattern->location));
       DEA_TRY(work->ctx, scale(work, i, "m", &text, pattern->location));
       work->roles[i].clock = clock;
       found++;

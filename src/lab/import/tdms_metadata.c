@@ -44,7 +44,7 @@ static uint64_t integer(const unsigned char *at, size_t size, bool big)
 }
 
 /* Takes `size` bytes; NULL when there are less. */
-static const unsigned char *take(struct dea_tdms_bytes *bytes, uint64_t size)
+static const unsigned char *take_bytes(struct dea_tdms_bytes *bytes, uint64_t size)
 {
   if (bytes->failed || size > (uint64_t)(bytes->end - bytes->next)) {
     bytes->failed = true;
@@ -57,13 +57,13 @@ static const unsigned char *take(struct dea_tdms_bytes *bytes, uint64_t size)
 
 uint32_t dea_tdms_u32(struct dea_tdms_bytes *bytes)
 {
-  const unsigned char *at = take(bytes, 4);
+  const unsigned char *at = take_bytes(bytes, 4);
   return at != NULL ? (uint32_t)integer(at, 4, bytes->big) : 0;
 }
 
 uint64_t dea_tdms_u64(struct dea_tdms_bytes *bytes)
 {
-  const unsigned char *at = take(bytes, 8);
+  const unsigned char *at = take_bytes(bytes, 8);
   return at != NULL ? integer(at, 8, bytes->big) : 0;
 }
 
@@ -110,7 +110,7 @@ double dea_tdms_value(const unsigned char *at, uint32_t type, bool big)
 static struct dea_tdms_text take_text(struct dea_tdms_bytes *bytes)
 {
   uint32_t length = dea_tdms_u32(bytes);
-  const unsigned char *at = take(bytes, length);
+  const unsigned char *at = take_bytes(bytes, length);
   return (struct dea_tdms_text){at != NULL ? (const char *)at : "", at != NULL ? length : 0};
 }
 
@@ -266,7 +266,7 @@ static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *
     text = take_text(bytes);
   } else {
     size_t size = dea_tdms_size(type);
-    const unsigned char *at = size > 0 ? take(bytes, size) : NULL;
+    const unsigned char *at = size > 0 ? take_bytes(bytes, size) : NULL;
     value = at != NULL ? dea_tdms_value(at, type, bytes->big) : NAN;
     bytes->failed = bytes->failed || at == NULL;
   }

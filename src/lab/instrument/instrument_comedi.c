@@ -340,7 +340,7 @@ static struct dea_zero zero(struct dea_context *ctx, const void *data,
 }
 
 /* Inputs first, so that none of the output is missed. */
-static dea_status go(struct dea_context *ctx, struct comedi *c)
+static dea_status start_commands(struct dea_context *ctx, struct comedi *c)
 {
   bool measures = c->input.count > 0;
   c->daq.running = true;
@@ -361,11 +361,11 @@ static dea_status go(struct dea_context *ctx, struct comedi *c)
                   : DEA_OK;
 }
 
-static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
+static dea_status start_comedi(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct comedi *c = (struct comedi *)instrument;
   c->daq.asked_to_start = true;
-  return c->daq.queued > 0 ? go(ctx, c) : DEA_OK; // else with the first sample
+  return c->daq.queued > 0 ? start_commands(ctx, c) : DEA_OK; // else with the first sample
 }
 
 /* Waits until the queue has room. DEA_E_INSTRUMENT when that takes too long. */
@@ -438,7 +438,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
     volts += part;
     count -= part;
     if (c->daq.asked_to_start && !c->daq.running && c->daq.queued > 0) {
-      DEA_TRY(ctx, go(ctx, c));
+      DEA_TRY(ctx, start_commands(ctx, c));
     }
   }
   return DEA_OK;
@@ -496,7 +496,7 @@ const struct dea_instrument_type dea_instrument_comedi = {
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
     .check = check,
     .open = open_it,
-    .start = start,
+    .start = start_comedi,
     .put = put,
     .get = get,
     .stop = stop,

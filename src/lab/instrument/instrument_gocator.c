@@ -449,7 +449,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   return DEA_OK;
 }
 
-static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
+static dea_status start_gocator(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct gocator *g = (struct gocator *)instrument;
   size_t length = 1;
@@ -486,7 +486,7 @@ const struct dea_instrument_type dea_instrument_gocator = {
     .roles = DEA_SENDS_PROFILES | DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,
-    .start = start,
+    .start = start_gocator,
     .get = get,
     .stop = stop,
     .close = close_it,

@@ -259,7 +259,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 }
 
 /* Inputs first: they wait for the output's trigger. */
-static dea_status go(struct dea_context *ctx, struct nidaqmx *n)
+static dea_status start_tasks(struct dea_context *ctx, struct nidaqmx *n)
 {
   n->daq.running = true;
   if (n->input != NULL) {
@@ -269,11 +269,11 @@ static dea_status go(struct dea_context *ctx, struct nidaqmx *n)
   return DEA_OK;
 }
 
-static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
+static dea_status start_nidaqmx(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   n->daq.asked_to_start = true;
-  return n->daq.queued > 0 ? go(ctx, n) : DEA_OK; // else with the first sample
+  return n->daq.queued > 0 ? start_tasks(ctx, n) : DEA_OK; // else with the first sample
 }
 
 static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
@@ -295,7 +295,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
     volts += written;
     count -= (size_t)written;
     if (n->daq.asked_to_start && !n->daq.running) {
-      DEA_TRY(ctx, go(ctx, n));
+      DEA_TRY(ctx, start_tasks(ctx, n));
     }
   }
   return DEA_OK;
@@ -347,7 +347,7 @@ const struct dea_instrument_type dea_instrument_nidaqmx = {
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
     .check = check,
     .open = open_it,
-    .start = start,
+    .start = start_nidaqmx,
     .put = put,
     .get = get,
     .stop = stop,

@@ -1,5 +1,5 @@
-/* Instrument "scpi": what answers SCPI on a TCP port, such as an electrometer, a force display or a
- * laboratory supply. Its readings are queries, asked one after the other at their interval; its
+/* Instrument "scpi": what speaks SCPI on a TCP port, such as an electrometer, a force display or
+ * a laboratory supply. Its readings are queries, asked one after the other at their interval; its
  * output is a command with a number in it, sent by the computer's clock. */
 #include "base/clock.h"
 #include "base/schema_value.h"
@@ -194,10 +194,10 @@ static dea_status check(const struct dea_reader *reader, const void *data,
 /* Whether it took its setup: looks at its error queue, which was empty before. */
 static dea_status look_for_error(struct dea_context *ctx, struct dea_scpi *s)
 {
-  const char *answer, *text;
+  const char *response, *text;
   int code;
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "SYST:ERR?", &answer));
-  if (answer == NULL || !dea_scpi_error(answer, &code, &text)) {
+  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "SYST:ERR?", &response));
+  if (response == NULL || !dea_scpi_error(response, &code, &text)) {
     return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                            "%s does not answer SYST:ERR?, so that its setup is not checked",
                            s->name);
@@ -211,17 +211,17 @@ static dea_status look_for_error(struct dea_context *ctx, struct dea_scpi *s)
 
 static dea_status identify(struct dea_context *ctx, struct dea_scpi *s)
 {
-  const char *answer, *wanted = s->raw.identity.text;
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "*IDN?", &answer));
-  if (answer == NULL) {
-    return dea_scpi_no_answer(ctx, s, "*IDN?", s->raw.timeout_s.si);
+  const char *response, *wanted = s->raw.identity.text;
+  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "*IDN?", &response));
+  if (response == NULL) {
+    return dea_scpi_no_response(ctx, s, "*IDN?", s->raw.timeout_s.si);
   }
-  if (strstr(answer, wanted) == NULL) {
+  if (strstr(response, wanted) == NULL) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.120s', not a '%.60s'; look at its address",
-                    s->name, answer, wanted);
+                    s->name, response, wanted);
   }
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0}, "%s is a '%.120s'", s->name,
-                         answer);
+                         response);
 }
 
 static dea_status set_up(struct dea_context *ctx, struct dea_scpi *s)
@@ -307,7 +307,7 @@ static void address(const void *data, char *out, size_t size)
   }
 }
 
-static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
+static dea_status start_scpi(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   s->start_s = dea_clock_s();
@@ -323,13 +323,13 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   return dea_scpi_output_put(ctx, (struct dea_scpi *)instrument, volts, count);
 }
 
-/* Whether an answer's unit, or state, is that of the first one. One that changes its range from mN
- * to N would be wrong by a thousand, one that says overflow by anything. */
+/* Whether a response's unit, or state, is that of the first one. One that changes its range from
+ * mN to N would be wrong by a thousand, one that says overflow by anything. */
 static dea_status check_suffix(struct dea_context *ctx, struct dea_scpi *s, size_t reading,
-                               const char *answer, bool *same)
+                               const char *response, bool *same)
 {
   char suffix[DEA_SCPI_SUFFIX_SIZE];
-  dea_scpi_suffix(answer, suffix);
+  dea_scpi_suffix(response, suffix);
   if (!s->known[reading]) {
     memcpy(s->suffix[reading], suffix, sizeof suffix);
     s->known[reading] = true;
@@ -342,12 +342,13 @@ static dea_status check_suffix(struct dea_context *ctx, struct dea_scpi *s, size
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "%s answered '%.60s' to '%.60s', where '%s' stood behind the number "
                          "before: such answers are left out; fix its range",
-                         s->name, answer, s->raw.readings[reading].query.text, s->suffix[reading]);
+                         s->name, response, s->raw.readings[reading].query.text,
+                         s->suffix[reading]);
 }
 
-/* An answer to what was asked: to the output, or the value of a reading. */
-static dea_status take_answer(struct dea_context *ctx, struct dea_scpi *s, const char *answer,
-                              const struct dea_sink *sink)
+/* A response to what was asked: to the output, or the value of a reading. */
+static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, const char *response,
+                                const struct dea_sink *sink)
 {
   size_t reading = s->asked_reading;
   double value, now_s = dea_clock_s();
@@ -356,11 +357,11 @@ static dea_status take_answer(struct dea_context *ctx, struct dea_scpi *s, const
     return DEA_OK;
   }
   if (s->asked != DEA_SCPI_READING) {
-    return dea_scpi_output_answer(ctx, s, answer);
+    return dea_scpi_output_response(ctx, s, response);
   }
-  bool good = dea_scpi_number(answer, &value);
+  bool good = dea_scpi_number(response, &value);
   if (good && !isnan(value)) {
-    DEA_TRY(ctx, check_suffix(ctx, s, reading, answer, &good));
+    DEA_TRY(ctx, check_suffix(ctx, s, reading, response, &good));
   }
   if (!good) {
     value = NAN;
@@ -369,7 +370,7 @@ static dea_status take_answer(struct dea_context *ctx, struct dea_scpi *s, const
   }
   const struct dea_scpi_raw_reading *r = &s->raw.readings[reading];
   s->asked = DEA_SCPI_NOTHING;
-  // It was measured between question and answer.
+  // It was measured between question and response.
   return sink->reading(sink->user, reading, 0.5 * (s->asked_s + now_s) - s->start_s,
                        value * r->factor.si + r->offset.si);
 }
@@ -383,7 +384,7 @@ static dea_status ask_next(struct dea_context *ctx, struct dea_scpi *s, double *
   if (s->asked == DEA_SCPI_READING) {
     const char *query = s->raw.readings[s->asked_reading].query.text;
     *next_s = s->asked_s + s->raw.timeout_s.si;
-    return now_s < *next_s ? DEA_OK : dea_scpi_no_answer(ctx, s, query, s->raw.timeout_s.si);
+    return now_s < *next_s ? DEA_OK : dea_scpi_no_response(ctx, s, query, s->raw.timeout_s.si);
   }
   if (s->asked != DEA_SCPI_NOTHING || s->raw.reading_count == 0) {
     return DEA_OK;
@@ -415,18 +416,18 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     char bytes[1024];
     size_t length, dropped = s->link.lines.dropped;
     double play_s, ask_s;
-    const char *at = bytes, *answer;
+    const char *at = bytes, *response;
     DEA_TRY(ctx, dea_scpi_output_play(ctx, s, &play_s));
     DEA_TRY(ctx, ask_next(ctx, s, &ask_s));
     double next_s = fmin(until_s, fmin(play_s, ask_s));
     DEA_TRY(ctx, dea_socket_read(ctx, &s->link.socket, next_s - dea_clock_s(), bytes, sizeof bytes,
                                  &length));
-    while ((answer = dea_line_next(&s->link.lines, &at, &length)) != NULL) {
+    while ((response = dea_line_next(&s->link.lines, &at, &length)) != NULL) {
       came = true;
-      DEA_TRY(ctx, take_answer(ctx, s, answer, sink));
+      DEA_TRY(ctx, take_response(ctx, s, response, sink));
     }
     if (s->link.lines.dropped > dropped) {
-      DEA_TRY(ctx, take_answer(ctx, s, "", sink)); // what came makes no sense
+      DEA_TRY(ctx, take_response(ctx, s, "", sink)); // what came makes no sense
     }
     left_s = until_s - dea_clock_s();
   } while (!came && left_s > 0);
@@ -440,7 +441,7 @@ const struct dea_instrument_type dea_instrument_scpi = {
     .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,
-    .start = start,
+    .start = start_scpi,
     .put = put,
     .get = get,
     .hold = dea_scpi_output_hold,

@@ -269,7 +269,7 @@ static dea_status open_sim(struct dea_context *ctx, const void *data,
 
 // Playing ----------------------------------------------------------------------------------------
 
-static dea_status start(struct dea_context *ctx, struct dea_instrument *instrument)
+static dea_status start_sim(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   (void)ctx;
   ((struct sim *)instrument)->started_s = dea_clock_s();
@@ -377,7 +377,7 @@ const struct dea_instrument_type dea_instrument_sim = {
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS | DEA_SENDS_PROFILES,
     .check = check,
     .open = open_sim,
-    .start = start,
+    .start = start_sim,
     .put = put,
     .get = get,
     .stop = stop,

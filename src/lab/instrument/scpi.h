@@ -1,6 +1,6 @@
 /* Inside of the instrument "scpi": its keys, its connection, and its output.
  *
- * At most one question is open at a time, so that an answer can belong to nothing else. A voltage
+ * At most one question is open at a time, so that a response can belong to nothing else. A voltage
  * of the output counts as set once the question `confirm`, which is sent behind it, was answered;
  * until then no other is sent. So a supply can never have more to do than one voltage, and one that
  * takes longer than `behind` for it has failed. */
@@ -73,7 +73,7 @@ struct dea_scpi {
   enum dea_scpi_question asked; // what is waited for
   size_t asked_reading;
   double asked_s;
-  bool broken; // an answer made no sense: which question the next one belongs to is not known
+  bool broken; // a response made no sense: which question the next one belongs to is not known
   struct dea_scpi_output output;
 };
 
@@ -86,17 +86,17 @@ void dea_scpi_send_if_possible(const struct dea_scpi_link *link, const char *com
 /* Waits for a line, *out, lent until the next; NULL: none in time. */
 dea_status dea_scpi_wait(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
                          const char **out);
-/* Sends a question and waits for its answer. */
+/* Sends a question and waits for its response. */
 dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
                         const char *question, const char **out);
-dea_status dea_scpi_no_answer(struct dea_context *ctx, const struct dea_scpi *s,
-                              const char *question, double timeout_s);
+dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,
+                                const char *question, double timeout_s);
 
 /* The output's command with a control voltage in it; numbers have a point in any locale. */
 void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
                              char out[DEA_SCPI_COMMAND_SIZE]);
-/* Whether an answer confirms that what was sent before is done. */
-bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *answer);
+/* Whether a response confirms that what was sent before is done. */
+bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response);
 dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s);
 /* Sets 0 V before anything is played and looks whether it is there. */
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s);
@@ -108,8 +108,9 @@ dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, cons
 dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, double *next_s);
 dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *instrument,
                                 double *volts);
-/* An answer to the open question of the output. */
-dea_status dea_scpi_output_answer(struct dea_context *ctx, struct dea_scpi *s, const char *answer);
+/* A response to the open question of the output. */
+dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
+                                    const char *response);
 
 /* Of the instrument's type. */
 struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument);

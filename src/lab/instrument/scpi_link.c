@@ -56,8 +56,8 @@ dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_scpi_link *link, dou
   return dea_scpi_wait(ctx, link, timeout_s, out);
 }
 
-dea_status dea_scpi_no_answer(struct dea_context *ctx, const struct dea_scpi *s,
-                              const char *question, double timeout_s)
+dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,
+                                const char *question, double timeout_s)
 {
   return dea_fail(ctx, DEA_E_INSTRUMENT,
                   "%s did not answer '%.100s' within %g s; look at whether it knows that question",

@@ -24,11 +24,11 @@ void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
            number, hole + 2);
 }
 
-bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *answer)
+bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response)
 {
   double value;
-  bool number = dea_scpi_number(answer, &value);
-  return strcmp(raw->confirm.text, "*OPC?") == 0 ? number && value == 1 : answer[0] != '\0';
+  bool number = dea_scpi_number(response, &value);
+  return strcmp(raw->confirm.text, "*OPC?") == 0 ? number && value == 1 : response[0] != '\0';
 }
 
 // What is set ------------------------------------------------------------------------------------
@@ -81,14 +81,14 @@ dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)
 
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
 {
-  const char *answer;
+  const char *response;
   double timeout_s = s->raw.timeout_s.si, value, gain = s->protocol->amplifier.gain.si;
   char command[DEA_SCPI_COMMAND_SIZE];
   dea_scpi_output_command(&s->raw, 0, command);
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, timeout_s, command));
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.confirm.text, &answer));
-  if (answer == NULL || !dea_scpi_confirms(&s->raw, answer)) {
-    return dea_scpi_no_answer(ctx, s, s->raw.confirm.text, timeout_s);
+  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.confirm.text, &response));
+  if (response == NULL || !dea_scpi_confirms(&s->raw, response)) {
+    return dea_scpi_no_response(ctx, s, s->raw.confirm.text, timeout_s);
   }
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                "%s plays by the computer's clock, at most %.3g voltages a second",
@@ -99,9 +99,9 @@ dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
                            "at 0 V will not be known",
                            s->name);
   }
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.measure.text, &answer));
-  if (answer == NULL || !dea_scpi_number(answer, &value) || isnan(value)) {
-    return dea_scpi_no_answer(ctx, s, s->raw.measure.text, timeout_s);
+  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.measure.text, &response));
+  if (response == NULL || !dea_scpi_number(response, &value) || isnan(value)) {
+    return dea_scpi_no_response(ctx, s, s->raw.measure.text, timeout_s);
   }
   value *= gain / s->raw.output_factor.si;
   return fabs(value) <= s->protocol->safety.at_zero_V.si
@@ -177,10 +177,10 @@ dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, dou
   }
   double behind_s = raw->behind_s.si;
   if (s->asked == DEA_SCPI_CONFIRM && now_s > s->asked_s + behind_s) {
-    return dea_scpi_no_answer(ctx, s, raw->confirm.text, behind_s);
+    return dea_scpi_no_response(ctx, s, raw->confirm.text, behind_s);
   }
   if (s->asked == DEA_SCPI_MEASURE && now_s > s->asked_s + behind_s) {
-    return dea_scpi_no_answer(ctx, s, raw->measure.text, behind_s);
+    return dea_scpi_no_response(ctx, s, raw->measure.text, behind_s);
   }
   if (!isnan(o->waiting_s) && now_s > o->waiting_s + behind_s + raw->output_interval_s.si) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is more than %g s behind with its voltage", s->name,
@@ -205,10 +205,10 @@ dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, dou
   return DEA_OK;
 }
 
-/* Plays, and takes the answers that belong to it, until there is something else to do. */
+/* Plays, and takes the responses that belong to it, until there is something else to do. */
 static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double until_s)
 {
-  const char *answer;
+  const char *response;
   double next_s;
   DEA_TRY(ctx, dea_scpi_output_play(ctx, s, &next_s));
   double wait_s = fmin(next_s, until_s) - dea_clock_s();
@@ -216,8 +216,8 @@ static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double unti
     dea_clock_wait(wait_s);
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_scpi_wait(ctx, &s->link, wait_s, &answer));
-  return answer != NULL ? dea_scpi_output_answer(ctx, s, answer) : DEA_OK;
+  DEA_TRY(ctx, dea_scpi_wait(ctx, &s->link, wait_s, &response));
+  return response != NULL ? dea_scpi_output_response(ctx, s, response) : DEA_OK;
 }
 
 dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
@@ -247,7 +247,7 @@ dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *
   o->first = o->count = 0;
   o->wanted_V = o->sent_V;
   o->waiting_s = NAN;
-  o->turned_s = s->asked_s = dea_clock_s(); // an answer may wait since then
+  o->turned_s = s->asked_s = dea_clock_s(); // a response may wait since then
   o->clock_s = o->turned_s - (double)o->played / o->rate_Hz;
   *volts = o->sent_V;
   return DEA_OK;
@@ -273,18 +273,19 @@ static dea_status check_measured(struct dea_context *ctx, struct dea_scpi *s, do
                         s->name, 1e-3 * gain * volts, 1e-3 * gain * o->sent_V, gain * error_V);
 }
 
-dea_status dea_scpi_output_answer(struct dea_context *ctx, struct dea_scpi *s, const char *answer)
+dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
+                                    const char *response)
 {
   double value;
   bool confirms = s->asked == DEA_SCPI_CONFIRM;
   s->asked = DEA_SCPI_NOTHING;
-  if (confirms && dea_scpi_confirms(&s->raw, answer)) {
+  if (confirms && dea_scpi_confirms(&s->raw, response)) {
     return DEA_OK;
   }
-  if (!confirms && dea_scpi_number(answer, &value) && !isnan(value)) {
+  if (!confirms && dea_scpi_number(response, &value) && !isnan(value)) {
     return check_measured(ctx, s, value / s->raw.output_factor.si);
   }
   s->broken = true;
   return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.60s' to '%.60s', which makes no sense",
-                  s->name, answer, confirms ? s->raw.confirm.text : s->raw.measure.text);
+                  s->name, response, confirms ? s->raw.confirm.text : s->raw.measure.text);
 }

@@ -1,4 +1,4 @@
-/* Commands and answers of SCPI instruments (SCPI 1999, IEEE 488.2). */
+/* Commands and responses of SCPI instruments (SCPI 1999, IEEE 488.2). */
 #ifndef DEA_LAB_INSTRUMENT_SCPI_PARSE_H
 #define DEA_LAB_INSTRUMENT_SCPI_PARSE_H
 
@@ -6,16 +6,16 @@
 
 enum { DEA_SCPI_SUFFIX_SIZE = 24 };
 
-/* The first number of an answer such as "+1.04E-11", "1.2E-9A,+3.1E+2secs" or " 5". NAN for the
+/* The first number of a response such as "+1.04E-11", "1.2E-9A,+3.1E+2secs" or " 5". NAN for the
  * numbers that SCPI has for infinity, its negative and no number: 9.9E37, -9.9E37 and 9.91E37
  * (larger ones too). false when it does not begin with a number. */
-bool dea_scpi_number(const char *answer, double *value);
+bool dea_scpi_number(const char *response, double *value);
 /* What stands behind that number up to the next comma, without blanks: a unit, "mN", or a state,
  * "NADC"; cut off when it is long. "" when it does not begin with a number. */
-void dea_scpi_suffix(const char *answer, char out[DEA_SCPI_SUFFIX_SIZE]);
+void dea_scpi_suffix(const char *response, char out[DEA_SCPI_SUFFIX_SIZE]);
 /* An entry of the error queue: -113,"Undefined header". The code, 0 for none; *text: from the comma
  * on, lent. false when it is none. */
-bool dea_scpi_error(const char *answer, int *code, const char **text);
+bool dea_scpi_error(const char *response, int *code, const char **text);
 /* Whether a number can be put in place of the one %g of a command, and nothing around it changes
  * what the number means: no digit, sign or unit beside it, no second command. */
 bool dea_scpi_output_is_plain(const char *output);

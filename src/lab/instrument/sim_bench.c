@@ -141,13 +141,13 @@ static void report(struct dea_sim_bench *b, double interval_s)
     s->current_A = copysign(fmin(fabs(b->source_V) / short_circuit_ohm, most_A), b->source_V);
     s->film_V = s->current_A * short_circuit_ohm;
     s->output_V = s->film_V;
-    s->centre_z_m = s->tip_z_m = s->force_N = 0;
+    s->centre_z_m = s->fibre_tip_z_m = s->force_N = 0;
     return;
   }
   double series_V = b->settings.series_resistance_ohm * or_zero(b->point.current_A);
   s->output_V = b->settings.series_resistance_ohm > 0 ? s->film_V + series_V : s->film_V;
-  s->tip_z_m = or_zero(b->point.fibre_tip_z_m);
-  s->centre_z_m = isfinite(b->point.centre_z_m) ? b->point.centre_z_m : s->tip_z_m;
+  s->fibre_tip_z_m = or_zero(b->point.fibre_tip_z_m);
+  s->centre_z_m = isfinite(b->point.centre_z_m) ? b->point.centre_z_m : s->fibre_tip_z_m;
   s->force_N = or_zero(b->point.force_N);
 }
 
@@ -196,15 +196,15 @@ static bool model_height(struct dea_sim_bench *b, double radius_m, double *z_m)
 double dea_sim_bench_height(struct dea_sim_bench *bench, double radius_m)
 {
   const struct dea_sim_state *s = &bench->state;
-  double z_m, frame = bench->model->frame_radius_m, tip = bench->model->tip_radius_m;
+  double z_m, frame = bench->model->frame_radius_m, tip = bench->model->fibre_tip_radius_m;
   if (radius_m >= frame) {
     return 0;
   }
   if (model_height(bench, radius_m, &z_m)) {
     return z_m;
   }
-  return radius_m >= tip ? s->tip_z_m * (frame - radius_m) / (frame - tip)
-                         : s->centre_z_m + (s->tip_z_m - s->centre_z_m) * radius_m / tip;
+  return radius_m >= tip ? s->fibre_tip_z_m * (frame - radius_m) / (frame - tip)
+                         : s->centre_z_m + (s->fibre_tip_z_m - s->centre_z_m) * radius_m / tip;
 }
 
 static dea_status begin(struct dea_sim_bench *b)

@@ -18,13 +18,13 @@ struct dea_sim_settings {
 /* Truth at one sample. */
 struct dea_sim_state {
   double time_s;
-  double output_V;   // of the amplifier
-  double film_V;     // on the film
-  double current_A;  // of the amplifier, mean since the last sample, as its monitor shows it
-  double centre_z_m; // positive to the fibres; 0 for a model that stays flat
-  double tip_z_m;    // at the fibre tips
-  double force_N;    // as the model answers it, 0 when it does not
-  bool broken;       // the film broke down: a short circuit from then on
+  double output_V;      // of the amplifier
+  double film_V;        // on the film
+  double current_A;     // of the amplifier, mean since the last sample, as its monitor shows it
+  double centre_z_m;    // positive to the fibres; 0 for a model that stays flat
+  double fibre_tip_z_m; // at the fibre tips
+  double force_N;       // as the model answers it, 0 when it does not
+  bool broken;          // the film broke down: a short circuit from then on
 };
 
 struct dea_sim_bench;

@@ -57,7 +57,7 @@ static bool feed(struct source *source)
 }
 
 /* Takes n bytes; false when there are less. */
-static bool take(struct source *source, unsigned char *out, size_t n)
+static bool take_bytes(struct source *source, unsigned char *out, size_t n)
 {
   if (!source->zipped) {
     if (n > source->left || fread(out, 1, n, source->stream) != n) {
@@ -93,7 +93,7 @@ static bool skip(struct source *source, uint64_t n)
   }
   while (n > 0) {
     size_t now = n < CHUNK ? (size_t)n : CHUNK;
-    if (!take(source, scratch, now)) {
+    if (!take_bytes(source, scratch, now)) {
       return false;
     }
     n -= now;
@@ -111,7 +111,7 @@ struct tag {
 static bool take_tag(struct source *source, uint64_t *room, struct tag *tag)
 {
   unsigned char bytes[TAG_SIZE];
-  if (*room < TAG_SIZE || !take(source, bytes, TAG_SIZE)) {
+  if (*room < TAG_SIZE || !take_bytes(source, bytes, TAG_SIZE)) {
     return false;
   }
   *room -= TAG_SIZE;
@@ -136,7 +136,7 @@ static bool take_data(struct source *source, uint64_t *room, const struct tag *t
     memcpy(out, tag->data, tag->length);
     return true;
   }
-  if (tag->padded > size || tag->padded > *room || !take(source, out, (size_t)tag->padded)) {
+  if (tag->padded > size || tag->padded > *room || !take_bytes(source, out, (size_t)tag->padded)) {
     return false;
   }
   *room -= tag->padded;

@@ -16,10 +16,10 @@ struct dea_bench_film {
 /* A model of the film, which begins with this too. Texts are lent. */
 struct dea_bench_model {
   const struct dea_bench_film_type *type;
-  const char *name;      // "lumped"
-  const char *material;  // of the film
-  double frame_radius_m; // inner radius of the frame; radii are in the stretched flat film
-  double tip_radius_m;   // of the fibre tips; of the electrode where there are no fibres
+  const char *name;          // "lumped"
+  const char *material;      // of the film
+  double frame_radius_m;     // inner radius of the frame; radii are in the stretched flat film
+  double fibre_tip_radius_m; // of the fibre tips; of the electrode where there are no fibres
 };
 
 /* The film at one voltage. */

@@ -9,7 +9,7 @@ static const double few_samples = 20, too_few_samples = 4; // a cycle
 
 // Places -----------------------------------------------------------------------------------------
 
-static struct dea_location step_place(const struct dea_protocol *protocol, size_t step)
+static struct dea_location step_location(const struct dea_protocol *protocol, size_t step)
 {
   return protocol->steps[step].section->location;
 }
@@ -47,7 +47,8 @@ static dea_status check_voltage(struct dea_context *ctx, const struct dea_protoc
   double limit_V = low ? protocol->amplifier.lowest_V.si : protocol->amplifier.highest_V.si;
   double control_V = fabs(peak->voltage_V) / protocol->amplifier.gain.si;
   char step[DEA_STEP_NAME_SIZE], amplifier[DEA_STEP_NAME_SIZE];
-  struct dea_location location = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
+  struct dea_location location =
+      dea_protocol_voltage_location(protocol, peak->step, peak->voltage_V);
   dea_protocol_step_name(protocol, peak->step, step);
   amplifier_name(protocol, amplifier);
   if (fabs(peak->voltage_V) > fabs(limit_V) * (1 + rounding)) {
@@ -79,7 +80,7 @@ static dea_status check_specimen(struct dea_context *ctx, const struct dea_proto
   }
   dea_protocol_step_name(protocol, peak->step, step);
   return dea_finding_add(
-      ctx, DEA_ERROR, dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V),
+      ctx, DEA_ERROR, dea_protocol_voltage_location(protocol, peak->step, peak->voltage_V),
       "refused: the sequence asks for %g kV at %s, the specimen '%.60s' stands "
       "%g kV by line %zu of %.200s, which no option changes",
       1e-3 * peak->voltage_V, step, specimen->name.text, 1e-3 * specimen->highest_V.si,
@@ -135,7 +136,7 @@ static dea_status check_rise(struct dea_context *ctx, const struct dea_protocol 
   }
   format_time(plan->rise_s, time);
   struct dea_location location =
-      dea_protocol_voltage_place(protocol, slopes->jump_step, slopes->jump_V);
+      dea_protocol_voltage_location(protocol, slopes->jump_step, slopes->jump_V);
   DEA_TRY(ctx,
           by_current > by_slew
               ? dea_finding_add(ctx, DEA_NOTE, location,
@@ -165,7 +166,7 @@ static dea_status check_slopes(struct dea_context *ctx, const struct dea_protoco
   char step[DEA_STEP_NAME_SIZE];
   double current_A = plan->capacitance_F * slopes->slope_V_per_s; // or NAN
   dea_protocol_step_name(protocol, slopes->slope_step, step);
-  struct dea_location location = step_place(protocol, slopes->slope_step);
+  struct dea_location location = step_location(protocol, slopes->slope_step);
   if (slew->origin != DEA_ABSENT && slopes->slope_V_per_s > slew->si) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, location,
                                  "%s changes with %.3g V/us, the amplifier follows with %.3g V/us "

@@ -26,8 +26,8 @@ enum { DEA_STEP_NAME_SIZE = 320 };
 void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
                             char out[DEA_STEP_NAME_SIZE]);
 /* Where the file says that voltage of a step: the value itself, else what comes nearest to it. */
-struct dea_location dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
-                                               double voltage_V);
+struct dea_location dea_protocol_voltage_location(const struct dea_protocol *protocol, size_t step,
+                                                  double voltage_V);
 
 /* Adds what would switch an interlock off: `safety`, and what it depends on. */
 dea_status dea_protocol_check_interlocks(struct dea_context *ctx,

@@ -47,7 +47,8 @@ static dea_status refuse_field(const struct film *film, const struct dea_protoco
   DEA_TRY(film->ctx, allowed_voltage(film, fabs(peak->voltage_V), &voltage_V));
   dea_context_clear(film->ctx);
   dea_protocol_step_name(protocol, peak->step, step);
-  struct dea_location location = dea_protocol_voltage_place(protocol, peak->step, peak->voltage_V);
+  struct dea_location location =
+      dea_protocol_voltage_location(protocol, peak->step, peak->voltage_V);
   if (protocol->safety.largest_field_V_per_m.origin != DEA_ABSENT) {
     return dea_finding_add(film->ctx, DEA_ERROR, location,
                            "refused: %g kV at %s makes a true field of %.4g V/um in the film, but "
@@ -94,7 +95,7 @@ static dea_status report_pull_in(const struct film *film, const struct dea_proto
     snprintf(where, sizeof where, " at %.4g kV", 1e-3 * pull_in_V);
   }
   return dea_finding_add(film->ctx, refused ? DEA_ERROR : DEA_WARNING,
-                         dea_protocol_voltage_place(film->protocol, peak->step, peak->voltage_V),
+                         dea_protocol_voltage_location(film->protocol, peak->step, peak->voltage_V),
                          "%sthe film pulls in%s on its way to %g kV at %s, by the model %s%s",
                          refused ? "refused: " : "", where, 1e-3 * peak->voltage_V, step,
                          film->model->name,

@@ -27,7 +27,7 @@ double dea_protocol_duration_s(const struct dea_protocol *protocol)
   return step_end(last) + last->pause_s.si;
 }
 
-static struct spot find(const struct dea_protocol *protocol, double time_s)
+static struct spot find_spot(const struct dea_protocol *protocol, double time_s)
 {
   size_t low = 0, high = protocol->step_count;
   while (high - low > 1) {
@@ -56,7 +56,7 @@ static struct spot find(const struct dea_protocol *protocol, double time_s)
 
 double dea_protocol_value(const struct dea_protocol *protocol, double time_s)
 {
-  struct spot spot = find(protocol, time_s);
+  struct spot spot = find_spot(protocol, time_s);
   return spot.repetition < spot.step->repeat.si && spot.local_s < spot.step->waveform->end_s
              ? dea_waveform_value(spot.step->waveform, spot.local_s)
              : 0;
@@ -67,7 +67,7 @@ double dea_protocol_corner(const struct dea_protocol *protocol, double time_s)
   if (time_s >= dea_protocol_duration_s(protocol)) {
     return INFINITY;
   }
-  struct spot spot = find(protocol, time_s);
+  struct spot spot = find_spot(protocol, time_s);
   if (spot.repetition < spot.step->repeat.si) {
     double end_s = start_of(spot.step, spot.repetition + 1);
     double next = dea_waveform_corner(spot.step->waveform, spot.local_s);

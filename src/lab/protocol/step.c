@@ -13,8 +13,8 @@ void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
            label[0] != '\0' ? ")" : "");
 }
 
-struct dea_location dea_protocol_voltage_place(const struct dea_protocol *protocol, size_t step,
-                                               double voltage_V)
+struct dea_location dea_protocol_voltage_location(const struct dea_protocol *protocol, size_t step,
+                                                  double voltage_V)
 {
   char path[64];
   const struct dea_node *section = protocol->steps[step].section;

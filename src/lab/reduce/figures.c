@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-enum { SHOWN_MAX = 8, HISTORY_POINTS = 4000, FIGURES_MAX = 8 };
+enum { SHOWN_MAX = 8, SERIES_POINTS = 4000, FIGURES_MAX = 8 };
 
 static const enum dea_colour colours[SHOWN_MAX] = {DEA_GREY, DEA_BLACK, DEA_PURPLE, DEA_BLUE,
                                                    DEA_SKY,  DEA_GREEN, DEA_ORANGE, DEA_VERMILLION};
@@ -86,7 +86,7 @@ static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)
   struct dea_panel *panel = &plot->panels[0];
   size_t levels[SHOWN_MAX], count = r->points > 0 ? shown_levels(r, levels) : 0;
   for (size_t k = 0; k < count; k++) {
-    const struct dea_reduced_level *level = &r->levels[levels[k]];
+    const struct dea_voltage_level *level = &r->levels[levels[k]];
     struct dea_series *series;
     char title[32];
     title_of(level->voltage_V, title);
@@ -107,9 +107,9 @@ static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)
 
 // In time ----------------------------------------------------------------------------------------
 
-static dea_status add_history(const struct drawing *d, struct dea_panel *panel,
-                              const struct dea_history_table *table, const double *values,
-                              double factor, const char *title, enum dea_colour colour)
+static dea_status add_time_series(const struct drawing *d, struct dea_panel *panel,
+                                  const struct dea_reduced_series *table, const double *values,
+                                  double factor, const char *title, enum dea_colour colour)
 {
   struct dea_series *series;
   size_t n = 0;
@@ -126,7 +126,7 @@ static dea_status add_history(const struct drawing *d, struct dea_panel *panel,
   return DEA_OK;
 }
 
-static void time_axis(const struct dea_history_table *table, struct dea_panel *panel)
+static void time_axis(const struct dea_reduced_series *table, struct dea_panel *panel)
 {
   panel->x_min = table->rows > 0 ? table->time_s[0] : 0.0;
   panel->x_max = table->rows > 1 ? table->time_s[table->rows - 1] : 1.0;
@@ -137,27 +137,27 @@ static void time_axis(const struct dea_history_table *table, struct dea_panel *p
 }
 
 /* Voltage above what is measured: displacements, or force. */
-static dea_status fill_history(const struct drawing *d, const struct dea_history_table *table,
-                               bool force, struct dea_plot *plot)
+static dea_status fill_time_series(const struct drawing *d, const struct dea_reduced_series *table,
+                                   bool force, struct dea_plot *plot)
 {
   static const struct {
     enum dea_reduced_kind kind;
     const char *title;
     enum dea_colour colour;
   } shown[] = {{DEA_REDUCED_CENTRE, "centre", DEA_BLUE},
-               {DEA_REDUCED_TIP, "fibre tips", DEA_VERMILLION},
+               {DEA_REDUCED_FIBRE_TIP, "fibre tips", DEA_VERMILLION},
                {DEA_REDUCED_DISPLACEMENT, "point laser", DEA_GREEN},
                {DEA_REDUCED_FORCE, "", DEA_BLUE}};
   struct dea_panel *upper = &plot->panels[0], *lower = &plot->panels[1];
   plot->panel_count = 2;
   plot->second_height = 1.4;
-  DEA_TRY(d->ctx, add_history(d, upper, table, table->voltage_V, 1e-3, "", DEA_BLACK));
+  DEA_TRY(d->ctx, add_time_series(d, upper, table, table->voltage_V, 1e-3, "", DEA_BLACK));
   for (size_t k = 0; k < sizeof shown / sizeof shown[0]; k++) {
     const double *values = table->values[shown[k].kind];
     if (values != NULL && force == (shown[k].kind == DEA_REDUCED_FORCE)) {
       DEA_TRY(d->ctx,
-              add_history(d, lower, table, values, dea_reduced_meanings[shown[k].kind].factor,
-                          shown[k].title, shown[k].colour));
+              add_time_series(d, lower, table, values, dea_reduced_meanings[shown[k].kind].factor,
+                              shown[k].title, shown[k].colour));
     }
   }
   if (lower->series_count == 0) {
@@ -174,20 +174,20 @@ static dea_status fill_history(const struct drawing *d, const struct dea_history
 
 static dea_status build_times(const struct drawing *d, bool force, struct dea_plot *plot)
 {
-  struct dea_history_table table;
+  struct dea_reduced_series table;
   DEA_TRY(d->ctx,
-          dea_history_table_fill(d->ctx, d->recording, d->reduction, HISTORY_POINTS, &table));
-  dea_status status = fill_history(d, &table, force, plot);
-  dea_history_table_free(d->ctx, &table);
+          dea_reduced_series_fill(d->ctx, d->recording, d->reduction, SERIES_POINTS, &table));
+  dea_status status = fill_time_series(d, &table, force, plot);
+  dea_reduced_series_free(d->ctx, &table);
   return status;
 }
 
-static dea_status build_history(const struct drawing *d, struct dea_plot *plot)
+static dea_status build_time_series(const struct drawing *d, struct dea_plot *plot)
 {
   return build_times(d, false, plot);
 }
 
-static dea_status build_history_force(const struct drawing *d, struct dea_plot *plot)
+static dea_status build_time_series_force(const struct drawing *d, struct dea_plot *plot)
 {
   return build_times(d, true, plot);
 }
@@ -220,7 +220,7 @@ static dea_status build_amplitude(const struct drawing *d, struct dea_plot *plot
 {
   struct dea_panel *panel = &plot->panels[0], *force = panel;
   DEA_TRY(d->ctx, add_amplitudes(d, panel, DEA_REDUCED_CENTRE, "centre", DEA_BLUE, 0));
-  DEA_TRY(d->ctx, add_amplitudes(d, panel, DEA_REDUCED_TIP, "fibre tips", DEA_VERMILLION, 1));
+  DEA_TRY(d->ctx, add_amplitudes(d, panel, DEA_REDUCED_FIBRE_TIP, "fibre tips", DEA_VERMILLION, 1));
   DEA_TRY(d->ctx, add_amplitudes(d, panel, DEA_REDUCED_DISPLACEMENT, "point laser", DEA_GREEN, 2));
   if (panel->series_count > 0) {
     snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");
@@ -253,8 +253,8 @@ static dea_status add_cycles(const struct drawing *d, struct dea_panel *panel, s
 {
   const struct dea_reduction *r = d->reduction;
   struct dea_reduced_row row = dea_reduced_row_at(r, first);
-  const struct dea_reduced_level *low = &r->levels[first];
-  const struct dea_reduced_level *high = &r->levels[first + row.levels - 1];
+  const struct dea_voltage_level *low = &r->levels[first];
+  const struct dea_voltage_level *high = &r->levels[first + row.levels - 1];
   double slack_V = 0.005 * fabs(r->levels[r->level_count - 1].voltage_V), low_V, high_V;
   struct dea_series *series;
   char title[32];
@@ -329,8 +329,8 @@ dea_status dea_reduction_draw(struct dea_context *ctx, const struct dea_recordin
                       .format = format,
                       .directory = directory};
   DEA_TRY(ctx, draw_one(&d, "profiles", "mean profiles of the film against rest", build_profiles));
-  DEA_TRY(ctx, draw_one(&d, "history", "voltage and displacement in time", build_history));
-  DEA_TRY(ctx, draw_one(&d, "history_force", "voltage and force in time", build_history_force));
+  DEA_TRY(ctx, draw_one(&d, "history", "voltage and displacement in time", build_time_series));
+  DEA_TRY(ctx, draw_one(&d, "history_force", "voltage and force in time", build_time_series_force));
   DEA_TRY(ctx, draw_one(&d, "amplitude",
                         "amplitudes against voltage, with the standard deviation of one cycle",
                         build_amplitude));

@@ -90,7 +90,7 @@ static void level_profile(struct worker *w, const struct dea_cycle_parts *parts,
                           const size_t *level_of, size_t index, struct dea_reduction *reduction,
                           double *n)
 {
-  struct dea_reduced_level *level = &reduction->levels[index];
+  struct dea_voltage_level *level = &reduction->levels[index];
   const struct dea_levelling *l = &w->levelling;
   size_t points = reduction->points, shapes = 0;
   double shape = 0.0, squares = 0.0, one_uncertainty = NAN, unused;
@@ -142,7 +142,7 @@ dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profile
   reduction->radius_m = dea_alloc(ctx, points, sizeof *reduction->radius_m);
   bool good = room != NULL && reduction->radius_m != NULL;
   for (size_t l = 0; l < reduction->level_count && good; l++) {
-    struct dea_reduced_level *level = &reduction->levels[l];
+    struct dea_voltage_level *level = &reduction->levels[l];
     level->z_m = dea_alloc(ctx, points, sizeof *level->z_m);
     level->z_std_m = dea_alloc(ctx, points, sizeof *level->z_std_m);
     good = level->z_m != NULL && level->z_std_m != NULL;

@@ -26,8 +26,8 @@ static size_t samples_in(const struct dea_channel *series, struct dea_span span,
 
 /* Copies the samples of a span, outliers as NAN: beyond 6 of their own spreads, or, where they are
  * too few to tell that, beyond a given limit. scratch: [2 x samples]. */
-static size_t take(const struct dea_channel *series, struct dea_span span, double limit,
-                   double *scratch)
+static size_t copy_span(const struct dea_channel *series, struct dea_span span, double limit,
+                        double *scratch)
 {
   size_t first, n = samples_in(series, span, &first), numbers = 0;
   double *sorted = scratch + n;
@@ -67,7 +67,7 @@ struct dea_window dea_window_mean(const struct dea_channel *series, struct dea_s
   size_t first;
   double sum = 0.0, times = 0.0;
   samples_in(series, span, &first);
-  w.all = take(series, span, limit, scratch);
+  w.all = copy_span(series, span, limit, scratch);
   for (size_t i = 0; i < w.all; i++) {
     if (!isnan(scratch[i])) {
       sum += scratch[i];
@@ -238,7 +238,7 @@ static double usual_limit(const struct dea_channel *series, const struct dea_spa
 {
   size_t known = 0;
   for (size_t w = 0; w < count; w++) {
-    size_t n = take(series, spans[w], INFINITY, scratch), numbers = 0;
+    size_t n = copy_span(series, spans[w], INFINITY, scratch), numbers = 0;
     for (size_t i = 0; i < n; i++) {
       numbers += isnan(scratch[i]) ? 0U : 1U;
     }
@@ -271,7 +271,7 @@ dea_status dea_noise_estimate(struct dea_context *ctx, const struct dea_channel 
   out->block = 1 + (longest > 0 ? longest - 1 : 0) / PER_WINDOW;
   for (size_t w = 0; w < count; w++) {
     double blocks[DEA_NOISE_BLOCKS];
-    size_t n = take(series, spans[w], out->limit, scratch);
+    size_t n = copy_span(series, spans[w], out->limit, scratch);
     size_t m = blocks_of(scratch, n, out->block, blocks);
     if (m > 2 && take_line_off(blocks, m) > 2) {
       add_window(&sums, blocks, m);

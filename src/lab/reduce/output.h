@@ -7,7 +7,7 @@
 #include "lab/reduce/reduce.h"
 #include "plot/plot.h"
 
-enum { DEA_REDUCTION_SCHEMA = 1, DEA_HISTORY_ROWS_MAX = 20000 };
+enum { DEA_REDUCTION_SCHEMA = 1, DEA_REDUCED_SERIES_MAX = 20000 };
 
 /* What is reduced of a cycle, in words and display units. */
 struct dea_reduced_meaning {
@@ -39,16 +39,16 @@ struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction,
 
 /* Voltage and all series at common times, from every sample where they are few, else from the
  * smallest and the largest sample of each of even stretches of time, so that edges stay. */
-struct dea_history_table {
+struct dea_reduced_series {
   size_t rows;
   bool thinned;
   double *time_s, *voltage_V;        // [rows], owned
   double *values[DEA_REDUCED_KINDS]; // [rows], owned; NULL: not measured
 };
-dea_status dea_history_table_fill(struct dea_context *ctx, const struct dea_recording *recording,
-                                  const struct dea_reduction *reduction, size_t most,
-                                  struct dea_history_table *out);
-void dea_history_table_free(struct dea_context *ctx, struct dea_history_table *table);
+dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_recording *recording,
+                                   const struct dea_reduction *reduction, size_t most,
+                                   struct dea_reduced_series *out);
+void dea_reduced_series_free(struct dea_context *ctx, struct dea_reduced_series *table);
 
 /* Writes measurement.csv, levels.csv, cycles.csv, discharges.csv, profiles.csv and history.csv;
  * those that would hold nothing are left out. */

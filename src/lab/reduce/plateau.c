@@ -1,11 +1,13 @@
 #include "lab/reduce/reduce_parts.h"
 
-enum { LOOK_MAX = 100000 }; // values that quantiles are taken of; evenly chosen of longer channels
+enum {
+  THINNED_MAX = 100000
+}; // values that quantiles are taken of; evenly chosen of longer channels
 
 /* Every n-th number of a channel (operation 0), or of its second differences (1). */
-static size_t look(const struct dea_channel *voltage, bool differences, double *out)
+static size_t thin_values(const struct dea_channel *voltage, bool differences, double *out)
 {
-  size_t every = 1 + voltage->count / LOOK_MAX, n = 0;
+  size_t every = 1 + voltage->count / THINNED_MAX, n = 0;
   const double *u = voltage->values;
   for (size_t i = 0; i < voltage->count; i += every) {
     double value = !differences                      ? u[i]
@@ -39,15 +41,15 @@ dea_status dea_voltage_scale_find(struct dea_context *ctx, const struct dea_chan
                                   struct dea_voltage_scale *out)
 {
   *out = (struct dea_voltage_scale){0};
-  size_t room = voltage->count < LOOK_MAX ? voltage->count : LOOK_MAX;
+  size_t room = voltage->count < THINNED_MAX ? voltage->count : THINNED_MAX;
   double *values = dea_alloc(ctx, room + 1, sizeof *values);
   if (values == NULL) {
     return DEA_E_MEMORY;
   }
-  size_t n = look(voltage, true, values);
+  size_t n = thin_values(voltage, true, values);
   double noise = dea_spread(values, n, 0.0) / sqrt(6.0); // variance of 1, -2, 1 is 6
   out->noise_V = isnan(noise) ? 0.0 : noise;
-  n = look(voltage, false, values);
+  n = thin_values(voltage, false, values);
   if (n > 0) {
     double low_V = dea_quantile(values, n, 0.001), high_V = dea_quantile(values, n, 0.999);
     out->largest_V = fmax(fabs(low_V), fabs(high_V));

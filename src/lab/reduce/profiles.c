@@ -124,7 +124,7 @@ static dea_status fill_series(struct dea_context *ctx, const struct dea_profiles
                               double *centre, double *tip)
 {
   size_t points = profiles->points, both = 0;
-  double *z = work + 2 * points, tip_m = l->tip_radius_m;
+  double *z = work + 2 * points, tip_m = l->fibre_tip_radius_m;
   for (int pass = 0; pass < 2; pass++) { // the second with one side, when there never are both
     bool one = pass == 1;
     for (size_t f = 0; f < profiles->count; f++) {
@@ -227,7 +227,7 @@ dea_status dea_profiles_reduce(struct dea_context *ctx, const struct dea_profile
   }
   if (status == DEA_OK) {
     status = keep_series(ctx, profiles, marks, "fibre tips", tip, work,
-                         &reduction->series[DEA_REDUCED_TIP]);
+                         &reduction->series[DEA_REDUCED_FIBRE_TIP]);
     tip = NULL;
   }
   if (status == DEA_OK) {

@@ -167,7 +167,7 @@ static dea_status note_profiles(struct dea_context *ctx, const struct dea_levell
          "line passes about %.2g mm beside the centre",
          1e3 * (l->edges_m[1] - l->edges_m[0]), 2e3 * l->film_radius_m, 1e3 * l->beside_m);
   }
-  if (isnan(l->tip_radius_m)) {
+  if (isnan(l->fibre_tip_radius_m)) {
     NOTE(ctx, "no displacement at the fibre tips: their radius is not known (give --tip-radius, "
               "or a design with fibres)");
   }
@@ -396,7 +396,7 @@ static void take_options(const struct dea_reduce_options *options, struct dea_re
                                           .edges_m = {NAN, NAN},
                                           .beside_m = NAN,
                                           .width_m = NAN,
-                                          .tip_radius_m = options->tip_radius_m,
+                                          .fibre_tip_radius_m = options->fibre_tip_radius_m,
                                           .film_radius_m = options->film_radius_m,
                                           .electrode_radius_m = options->electrode_radius_m};
   out->settle = options->settle > 0.0 && options->settle <= 1.0 ? options->settle : 0.2;

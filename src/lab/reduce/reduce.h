@@ -23,7 +23,7 @@ struct dea_cycle_value {
 /* What can be formed of a cycle. */
 enum dea_reduced_kind {
   DEA_REDUCED_CENTRE,       // centre of the profile [m]
-  DEA_REDUCED_TIP,          // mean of both sides at the fibre tips [m]
+  DEA_REDUCED_FIBRE_TIP,    // mean of both sides at the fibre tips [m]
   DEA_REDUCED_DISPLACEMENT, // point laser [m]
   DEA_REDUCED_FORCE,        // [N]
   DEA_REDUCED_KINDS
@@ -38,7 +38,7 @@ struct dea_reduced_cycle {
 
 /* All cycles of one voltage and step, and their statistics: mean, standard deviation from cycle to
  * cycle, and standard uncertainty of the mean. */
-struct dea_reduced_level {
+struct dea_voltage_level {
   double voltage_V;
   size_t step, cycles;
   double mean[DEA_REDUCED_KINDS], std[DEA_REDUCED_KINDS], uncertainty[DEA_REDUCED_KINDS];
@@ -68,10 +68,10 @@ struct dea_levelling {
   double edges_m[2];         // inner edges of the frame, on the sensor's x
   double beside_m;           // how far the line passes beside the film's centre, from its chord
   bool by_frame;             // false: by the film's outer part
-  double tip_radius_m, film_radius_m, electrode_radius_m; // that were used
-  double width_m;                                         // that centre and tips are averaged over
-  size_t frames, frames_at_rest;                          // those that the levelling is fitted to
-  size_t invalid, outliers, total;                        // points on the film
+  double fibre_tip_radius_m, film_radius_m, electrode_radius_m; // that were used
+  double width_m;                  // that centre and tips are averaged over
+  size_t frames, frames_at_rest;   // those that the levelling is fitted to
+  size_t invalid, outliers, total; // points on the film
 };
 
 /* Of the current: what a discharge has to exceed, and how long it is not looked for after a corner
@@ -88,7 +88,7 @@ struct dea_reduction {
   size_t points;
   struct dea_reduced_cycle *cycles; // owned
   size_t cycle_count;
-  struct dea_reduced_level *levels; // owned, ascending voltage
+  struct dea_voltage_level *levels; // owned, ascending voltage
   size_t level_count;
   struct dea_discharge *discharges; // owned
   size_t discharge_count;
@@ -100,7 +100,7 @@ struct dea_reduction {
 };
 
 struct dea_reduce_options {
-  double tip_radius_m, film_radius_m, electrode_radius_m; // NAN: not known
+  double fibre_tip_radius_m, film_radius_m, electrode_radius_m; // NAN: not known
   double settle;         // last share of each part of a cycle that is averaged; 0: 0.2
   double force_offset_N; // reading of the unloaded cell; NAN: the first samples' mean
 };

@@ -133,7 +133,7 @@ void dea_line_fit(const double *x, const double *y, size_t count, double *slope,
 /* Groups cycles of one step whose voltages differ by less than tolerance_V, and fills what can be
  * told of each level. level_of: [count], of each cycle. out: owned by the caller. */
 dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cycle *cycles,
-                           size_t count, double tolerance_V, struct dea_reduced_level **out,
+                           size_t count, double tolerance_V, struct dea_voltage_level **out,
                            size_t *level_count, size_t *level_of);
 
 // saturation.c -----------------------------------------------------------------------------------

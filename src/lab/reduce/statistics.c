@@ -216,7 +216,7 @@ struct gathered {
 
 /* Mean, scatter and their uncertainty. Neighbours share a rest, so that their amplitudes are
  * correlated: each pair adds twice their covariance. */
-static void amplitude_of(const struct gathered *g, int kind, struct dea_reduced_level *level)
+static void amplitude_of(const struct gathered *g, int kind, struct dea_voltage_level *level)
 {
   double sum = 0.0, squares = 0.0, noise = 0.0, shared = 0.0;
   size_t n = 0;
@@ -265,7 +265,7 @@ static double summary_of(const struct gathered *g, int kind, size_t member, bool
   return n == 0 ? NAN : median ? dea_median(g->y, n) : sum / (double)n;
 }
 
-static void drift_of(const struct gathered *g, int kind, struct dea_reduced_level *level)
+static void drift_of(const struct gathered *g, int kind, struct dea_voltage_level *level)
 {
   size_t n = 0;
   for (size_t i = 0; i < g->count; i++) {
@@ -278,7 +278,7 @@ static void drift_of(const struct gathered *g, int kind, struct dea_reduced_leve
   dea_line_fit(g->x, g->y, n, &level->drift[kind], &level->drift_uncertainty[kind]);
 }
 
-static void level_fill(const struct gathered *g, struct dea_reduced_level *level)
+static void level_fill(const struct gathered *g, struct dea_voltage_level *level)
 {
   level->cycles = g->count;
   level->step = g->cycles[0]->cycle.step;
@@ -317,14 +317,14 @@ static int by_time(const void *a, const void *b)
 
 static int by_level_voltage(const void *a, const void *b)
 {
-  const struct dea_reduced_level *x = a, *y = b;
+  const struct dea_voltage_level *x = a, *y = b;
   double d = x->voltage_V - y->voltage_V;
   return d != 0.0 ? (d > 0.0) - (d < 0.0) : (x->step > y->step) - (x->step < y->step);
 }
 
 /* Fills the levels from the sorted list of cycles; how many. */
 static size_t fill_levels(const struct dea_reduced_cycle **sorted, size_t count, double tolerance_V,
-                          double *x, double *y, struct dea_reduced_level *levels)
+                          double *x, double *y, struct dea_voltage_level *levels)
 {
   size_t n = 0;
   for (size_t i = 0, j; i < count; i = j) {
@@ -340,7 +340,7 @@ static size_t fill_levels(const struct dea_reduced_cycle **sorted, size_t count,
 
 /* The level that a cycle belongs to: of its step, and nearest. */
 static size_t nearest_level(const struct dea_reduced_cycle *cycle,
-                            const struct dea_reduced_level *levels, size_t count)
+                            const struct dea_voltage_level *levels, size_t count)
 {
   size_t best = 0;
   double least = INFINITY;
@@ -355,12 +355,12 @@ static size_t nearest_level(const struct dea_reduced_cycle *cycle,
 }
 
 dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cycle *cycles,
-                           size_t count, double tolerance_V, struct dea_reduced_level **out,
+                           size_t count, double tolerance_V, struct dea_voltage_level **out,
                            size_t *level_count, size_t *level_of)
 {
   const struct dea_reduced_cycle **sorted = dea_alloc(ctx, count, sizeof *sorted);
   double *xy = dea_alloc(ctx, count, 2 * sizeof *xy);
-  struct dea_reduced_level *levels = dea_alloc(ctx, count, sizeof *levels);
+  struct dea_voltage_level *levels = dea_alloc(ctx, count, sizeof *levels);
   dea_status status = sorted != NULL && xy != NULL && levels != NULL ? DEA_OK : DEA_E_MEMORY;
   *out = NULL;
   *level_count = 0;

@@ -43,7 +43,7 @@ static json_t *levelling_json(const struct dea_levelling *l)
   dea_json_put(object, "left_edge_m", l->edges_m[0]);
   dea_json_put(object, "right_edge_m", l->edges_m[1]);
   dea_json_put(object, "beside_centre_m", l->beside_m);
-  dea_json_put(object, "tip_radius_m", l->tip_radius_m);
+  dea_json_put(object, "tip_radius_m", l->fibre_tip_radius_m);
   dea_json_put(object, "film_radius_m", l->film_radius_m);
   dea_json_put(object, "electrode_radius_m", l->electrode_radius_m);
   dea_json_put(object, "averaging_width_m", l->width_m);
@@ -55,7 +55,7 @@ static json_t *levelling_json(const struct dea_levelling *l)
   return object;
 }
 
-static json_t *level_json(const struct dea_reduced_level *level)
+static json_t *level_json(const struct dea_voltage_level *level)
 {
   json_t *object = json_object();
   dea_json_put(object, "voltage_V", level->voltage_V);

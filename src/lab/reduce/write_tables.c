@@ -6,7 +6,7 @@
 
 const struct dea_reduced_meaning dea_reduced_meanings[DEA_REDUCED_KINDS] = {
     [DEA_REDUCED_CENTRE] = {"z centre", "centre", "m", "um", 1e6},
-    [DEA_REDUCED_TIP] = {"z fibre tip", "fibre_tip", "m", "um", 1e6},
+    [DEA_REDUCED_FIBRE_TIP] = {"z fibre tip", "fibre_tip", "m", "um", 1e6},
     [DEA_REDUCED_DISPLACEMENT] = {"z point laser", "point_laser", "m", "um", 1e6},
     [DEA_REDUCED_FORCE] = {"force", "force", "N", "mN", 1e3},
 };
@@ -49,8 +49,8 @@ enum dea_reduced_kind dea_reduced_timed(const struct dea_reduction *reduction)
 
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level)
 {
-  const struct dea_reduced_level *first = &reduction->levels[level];
-  const struct dea_reduced_level *last = &reduction->levels[reduction->level_count - 1];
+  const struct dea_voltage_level *first = &reduction->levels[level];
+  const struct dea_voltage_level *last = &reduction->levels[reduction->level_count - 1];
   double within_V = 0.01 * fmax(fabs(reduction->levels[0].voltage_V), fabs(last->voltage_V));
   struct dea_reduced_row row = {0};
   while (first + row.levels <= last && first[row.levels].voltage_V - first->voltage_V <= within_V) {
@@ -132,8 +132,8 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
       kinds[count++] = measured_centre[k];
     }
   }
-  if (dea_reduced_has(r, DEA_REDUCED_TIP)) {
-    kinds[count++] = DEA_REDUCED_TIP;
+  if (dea_reduced_has(r, DEA_REDUCED_FIBRE_TIP)) {
+    kinds[count++] = DEA_REDUCED_FIBRE_TIP;
   }
   if (dea_reduced_has(r, DEA_REDUCED_FORCE)) {
     kinds[count++] = DEA_REDUCED_FORCE;
@@ -190,7 +190,7 @@ static dea_status write_levels(struct dea_context *ctx, const struct dea_reducti
     }
   }
   for (size_t l = 0; l < r->level_count; l++) {
-    const struct dea_reduced_level *level = &r->levels[l];
+    const struct dea_voltage_level *level = &r->levels[l];
     dea_text_add(&text, "\n%.10g,%zu,%zu", 1e-3 * level->voltage_V, level->step, level->cycles);
     add(&text, level->shape);
     add(&text, level->shape_uncertainty);
@@ -278,7 +278,7 @@ static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduc
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "V (kV),x (mm),z (um),z std (um)\n");
   for (size_t l = 0; l < r->level_count; l++) {
-    const struct dea_reduced_level *level = &r->levels[l];
+    const struct dea_voltage_level *level = &r->levels[l];
     for (size_t i = 0; i < r->points; i++) {
       if (!isnan(level->z_m[i])) {
         dea_text_add(&text, "%.10g", 1e-3 * level->voltage_V);
@@ -292,18 +292,18 @@ static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduc
   return write(ctx, &text, before, directory, "profiles.csv");
 }
 
-static dea_status write_history(struct dea_context *ctx, const struct dea_recording *recording,
-                                const struct dea_reduction *r, const char *directory)
+static dea_status write_time_series(struct dea_context *ctx, const struct dea_recording *recording,
+                                    const struct dea_reduction *r, const char *directory)
 {
-  struct dea_history_table table;
-  DEA_TRY(ctx, dea_history_table_fill(ctx, recording, r, DEA_HISTORY_ROWS_MAX, &table));
+  struct dea_reduced_series table;
+  DEA_TRY(ctx, dea_reduced_series_fill(ctx, recording, r, DEA_REDUCED_SERIES_MAX, &table));
   const bool profile = table.values[DEA_REDUCED_CENTRE] != NULL;
   const double *columns[] = {
       table.values[measured_centre[profile ? 0 : 1]],
-      table.values[DEA_REDUCED_TIP],
+      table.values[DEA_REDUCED_FIBRE_TIP],
       table.values[DEA_REDUCED_FORCE],
   };
-  static const enum dea_reduced_kind named[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_TIP,
+  static const enum dea_reduced_kind named[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_FIBRE_TIP,
                                                 DEA_REDUCED_FORCE};
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
@@ -329,7 +329,7 @@ static dea_status write_history(struct dea_context *ctx, const struct dea_record
     }
   }
   dea_text_add(&text, "\n");
-  dea_history_table_free(ctx, &table);
+  dea_reduced_series_free(ctx, &table);
   return write(ctx, &text, before, directory, "history.csv");
 }
 
@@ -348,5 +348,5 @@ dea_status dea_reduction_write_tables(struct dea_context *ctx,
   if (reduction->current.samples > 0) {
     DEA_TRY(ctx, write_discharges(ctx, reduction, directory));
   }
-  return write_history(ctx, recording, reduction, directory);
+  return write_time_series(ctx, recording, reduction, directory);
 }

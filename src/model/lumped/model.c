@@ -1,6 +1,6 @@
 /* Model "lumped" behind the common interface. */
-#include "model/lumped/history.h"
 #include "model/lumped/lumped.h"
+#include "model/lumped/motion.h"
 #include "model/make.h"
 #include "model/path.h"
 
@@ -15,7 +15,7 @@ struct dea_model {
   double modulus_Pa, rest_energy_Pa;
   double max_stretch; // total; where a search for a snapped state gives up
   struct dea_path *path;
-  struct dea_lumped_history history;
+  struct dea_lumped_motion motion;
 };
 
 static double disc_volume_m3(const struct dea_model *model)
@@ -203,7 +203,7 @@ static dea_status moment_point(const struct dea_model *model,
 {
   const struct dea_circuit_state *circuit = &moment->circuit;
   double rate = moment->rate_per_s;
-  const struct dea_lumped frozen = dea_lumped_frozen(&model->history, moment);
+  const struct dea_lumped frozen = dea_lumped_frozen(&model->motion, moment);
   dea_status status =
       fill_point(model, &frozen, moment->electrode_stretch, circuit->voltage_V, out);
   out->time_s = moment->time_s;
@@ -213,8 +213,8 @@ static dea_status moment_point(const struct dea_model *model,
   // that of the branches as it is, not as the step had it
   out->stored_energy_J = moment->stored_energy_J - model->rest_energy_Pa * disc_volume_m3(model);
   out->energy_J = out->stored_energy_J - circuit->charge_C * circuit->voltage_V;
-  if (model->history.options.inertia) {
-    out->kinetic_energy_J = 0.5 * model->history.mass_kg_m2 * rate * rate;
+  if (model->motion.options.inertia) {
+    out->kinetic_energy_J = 0.5 * model->motion.mass_kg_m2 * rate * rate;
   }
   out->dissipated_J = moment->branch_loss_J + circuit->resistance_loss_J + circuit->leakage_loss_J;
   out->supply_work_J = circuit->supply_work_J;
@@ -225,9 +225,9 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
   struct dea_load_point last;
-  struct dea_lumped_history *history = &model->history;
+  struct dea_lumped_motion *motion = &model->motion;
   DEA_TRY(ctx, dea_path_point(ctx, model->path, &last));
-  *history = (struct dea_lumped_history){
+  *motion = (struct dea_lumped_motion){
       .lumped = model->lumped,
       .options = *options,
       .volume_m3 = disc_volume_m3(model),
@@ -237,8 +237,8 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the density of '%s', which is unknown",
                     model->device->film.name);
   }
-  dea_status status = dea_lumped_begin(history, last.electrode_stretch, last.voltage_V);
-  status = status == DEA_OK ? moment_point(model, &history->now, out) : status;
+  dea_status status = dea_lumped_begin(motion, last.electrode_stretch, last.voltage_V);
+  status = status == DEA_OK ? moment_point(model, &motion->now, out) : status;
   return status == DEA_OK ? status
                           : dea_fail(ctx, status, "the last state lies beyond the film's law");
 }
@@ -247,13 +247,13 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  struct dea_lumped_history *history = &model->history;
-  dea_status status = dea_lumped_advance(history, step, error);
-  status = status == DEA_OK ? moment_point(model, &history->trial, out) : status;
+  struct dea_lumped_motion *motion = &model->motion;
+  dea_status status = dea_lumped_advance(motion, step, error);
+  status = status == DEA_OK ? moment_point(model, &motion->trial, out) : status;
   if (status == DEA_OK) {
     return DEA_OK;
   }
-  double end_s = history->now.time_s + step->length_s;
+  double end_s = motion->now.time_s + step->length_s;
   return status == DEA_E_NO_EQUILIBRIUM
              ? dea_fail(ctx, status, "no equilibrium near the last one at %.6g s", end_s)
              : dea_fail(ctx, status, "no solution at %.6g s", end_s);
@@ -261,7 +261,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
 
 static void accept(struct dea_model *model)
 {
-  dea_lumped_accept(&model->history);
+  dea_lumped_accept(&model->motion);
 }
 
 const struct dea_model_type dea_model_lumped = {

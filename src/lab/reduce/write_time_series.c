@@ -1,4 +1,4 @@
-/* Voltage and series at common times (dea_history_table_fill). */
+/* Voltage and series at common times (dea_reduced_series_fill). */
 #include "lab/reduce/output.h"
 
 #include <stdlib.h>
@@ -99,7 +99,7 @@ static double value_at(const struct dea_channel *channel, double time_s, double 
 }
 
 static dea_status fill_values(struct dea_context *ctx, const struct dea_channel *channel,
-                              const struct dea_history_table *table, double finest_s,
+                              const struct dea_reduced_series *table, double finest_s,
                               double **values)
 {
   *values = dea_alloc(ctx, table->rows, sizeof **values);
@@ -121,13 +121,13 @@ static const struct dea_channel *voltage_of(const struct dea_recording *recordin
              : dea_recording_kind(recording, DEA_CHANNEL_COMMAND);
 }
 
-dea_status dea_history_table_fill(struct dea_context *ctx, const struct dea_recording *recording,
-                                  const struct dea_reduction *reduction, size_t most,
-                                  struct dea_history_table *out)
+dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_recording *recording,
+                                   const struct dea_reduction *reduction, size_t most,
+                                   struct dea_reduced_series *out)
 {
   struct columns columns = {0};
   const struct dea_channel *voltage = voltage_of(recording);
-  *out = (struct dea_history_table){0};
+  *out = (struct dea_reduced_series){0};
   add_column(&columns, voltage); // there is one, or there were no reduction
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     if (reduction->series[kind].count > 0) {
@@ -158,17 +158,17 @@ dea_status dea_history_table_fill(struct dea_context *ctx, const struct dea_reco
     }
   }
   if (status != DEA_OK) {
-    dea_history_table_free(ctx, out);
+    dea_reduced_series_free(ctx, out);
   }
   return status;
 }
 
-void dea_history_table_free(struct dea_context *ctx, struct dea_history_table *table)
+void dea_reduced_series_free(struct dea_context *ctx, struct dea_reduced_series *table)
 {
   dea_free(ctx, table->time_s);
   dea_free(ctx, table->voltage_V);
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     dea_free(ctx, table->values[kind]);
   }
-  *table = (struct dea_history_table){0};
+  *table = (struct dea_reduced_series){0};
 }

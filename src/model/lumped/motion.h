@@ -1,6 +1,6 @@
 /* The lumped model in time (docs/theory/time.md, section 5). */
-#ifndef DEA_MODEL_LUMPED_HISTORY_H
-#define DEA_MODEL_LUMPED_HISTORY_H
+#ifndef DEA_MODEL_LUMPED_MOTION_H
+#define DEA_MODEL_LUMPED_MOTION_H
 
 #include "model/lumped/lumped.h"
 #include "model/model.h"
@@ -16,8 +16,8 @@ struct dea_lumped_moment {
   double branch_loss_J;
 };
 
-/* What does not change during a history. */
-struct dea_lumped_history {
+/* What does not change in time, and the state. */
+struct dea_lumped_motion {
   struct dea_lumped lumped; // with the branches of the step
   struct dea_time_options options;
   double volume_m3;  // unstretched, of the electrode disc
@@ -31,14 +31,14 @@ struct dea_lumped_history {
 double dea_lumped_mass(const struct dea_device *device);
 
 /* Starts at a stretch in equilibrium at a voltage. DEA_E_DOMAIN beyond the law's domain. */
-dea_status dea_lumped_begin(struct dea_lumped_history *history, double electrode_stretch,
+dea_status dea_lumped_begin(struct dea_lumped_motion *motion, double electrode_stretch,
                             double voltage_V);
 /* The lumped model with the branches as they are at a moment, as it is felt by what is fast. */
-struct dea_lumped dea_lumped_frozen(const struct dea_lumped_history *history,
+struct dea_lumped dea_lumped_frozen(const struct dea_lumped_motion *motion,
                                     const struct dea_lumped_moment *moment);
 /* From `now` to `trial`, as advance of struct dea_model_type; no message is recorded. */
-dea_status dea_lumped_advance(struct dea_lumped_history *history, const struct dea_time_step *step,
+dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea_time_step *step,
                               double *error);
-void dea_lumped_accept(struct dea_lumped_history *history);
+void dea_lumped_accept(struct dea_lumped_motion *motion);
 
 #endif

@@ -4,7 +4,7 @@
  *
  * (paper eq 16 with branches and inertia). Each step is made once whole and once in two halves; the
  * halves count, a third of the difference is the estimate of their error. */
-#include "model/lumped/history.h"
+#include "model/lumped/motion.h"
 
 #include "model/alpha.h"
 
@@ -27,30 +27,30 @@ double dea_lumped_mass(const struct dea_device *device)
 }
 
 /* Everything at l_a. */
-struct sight {
+struct evaluation {
   double imbalance_Pa, slope_Pa; // total, along the circuit's V(l_a)
   double voltage_V;
   struct dea_circuit_film film;
   double energy_Pa; // as in struct dea_lumped_balance, without the branches
 };
 
-static dea_status look(const struct dea_lumped *lumped, const struct dea_lumped_history *history,
-                       const struct dea_circuit_state *circuit, const struct dea_time_step *step,
-                       double l, struct sight *out)
+static dea_status evaluate(const struct dea_lumped *lumped, const struct dea_lumped_motion *motion,
+                           const struct dea_circuit_state *circuit,
+                           const struct dea_time_step *step, double l, struct evaluation *out)
 {
   const struct dea_film *film = &lumped->film;
   double l_pre = lumped->pre_stretch, H0 = film->thickness_m, l_A = l * l_pre;
   struct dea_plane unit; // at 1 V/m: -(1/2) eps l_A^4
-  double scale = -2 * history->volume_m3 / (H0 * H0), dV, resistivity;
+  double scale = -2 * motion->volume_m3 / (H0 * H0), dV, resistivity;
   dea_plane_electric(film->material, 1, l_A, l_A, &unit);
   out->film = (struct dea_circuit_film){.capacitance_F = scale * unit.W,
                                         .capacitance_slope = scale * l_pre * (unit.s1 + unit.s2)};
   resistivity = film->material->resistivity_ohm_m;
   if (resistivity > 0) { // R_l = rho d^2/vol, d = H0/l_A^2
-    out->film.conductance_S = history->volume_m3 * pow(l_A, 4) / (resistivity * H0 * H0);
+    out->film.conductance_S = motion->volume_m3 * pow(l_A, 4) / (resistivity * H0 * H0);
     out->film.conductance_slope = 4 * out->film.conductance_S / l;
   }
-  out->voltage_V = dea_circuit_voltage(&history->options.circuit, circuit, step, &out->film, &dV);
+  out->voltage_V = dea_circuit_voltage(&motion->options.circuit, circuit, step, &out->film, &dV);
   struct dea_lumped_balance balance;
   dea_status status = dea_lumped_balance_eval(lumped, l, out->voltage_V / H0, &balance);
   if (status != DEA_OK) {
@@ -64,54 +64,54 @@ static dea_status look(const struct dea_lumped *lumped, const struct dea_lumped_
 
 /* Residual of a step: r = inertia (l - l*) + weight s(l) + known. */
 struct equation {
-  const struct dea_lumped_history *history;
+  const struct dea_lumped_motion *motion;
   const struct dea_circuit_state *circuit;
   const struct dea_time_step *step;
   const struct dea_lumped *lumped; // with the branches of the step
   double inertia_Pa, start, weight, known_Pa;
 };
 
-static dea_status residual(const struct equation *e, double l, struct sight *sight, double *r,
+static dea_status residual(const struct equation *e, double l, struct evaluation *at, double *r,
                            double *slope)
 {
-  dea_status status = look(e->lumped, e->history, e->circuit, e->step, l, sight);
-  *r = e->inertia_Pa * (l - e->start) + e->weight * sight->imbalance_Pa + e->known_Pa;
-  *slope = e->inertia_Pa + e->weight * sight->slope_Pa;
+  dea_status status = evaluate(e->lumped, e->motion, e->circuit, e->step, l, at);
+  *r = e->inertia_Pa * (l - e->start) + e->weight * at->imbalance_Pa + e->known_Pa;
+  *slope = e->inertia_Pa + e->weight * at->slope_Pa;
   return status;
 }
 
 /* The stable root that one comes to from l downhill. Newton, kept between where the residual still
  * has the sign of the start and where it has not, or is no longer stable. */
-static dea_status find_root(const struct equation *e, double *l, struct sight *sight)
+static dea_status find_root(const struct equation *e, double *l, struct evaluation *at)
 {
   enum { TRIALS = 200 };
   static const double longest = 0.03, close = 1e-14;
   double r, slope, x = *l, near = *l, far = NAN;
   bool wall = false; // far is where stability ends, not beyond a root
-  if (residual(e, x, sight, &r, &slope) != DEA_OK) {
+  if (residual(e, x, at, &r, &slope) != DEA_OK) {
     return DEA_E_DOMAIN;
   }
-  double side = copysign(1, r);
+  double sign = copysign(1, r);
   for (int i = 0; i < TRIALS; i++) {
     if (r == 0 || (slope > 0 && fabs(r) <= close * slope * x)) {
       *l = x;
       return DEA_OK;
     }
     double next = x - r / slope;
-    double within = isnan(far) ? near - side * longest : far;
-    bool good = slope > 0 && (near - next) * side > 0 && (next - within) * side >= 0;
+    double within = isnan(far) ? near - sign * longest : far;
+    bool good = slope > 0 && (near - next) * sign > 0 && (next - within) * sign >= 0;
     next = good ? next : isnan(far) ? within : 0.5 * (near + far);
     if (!isnan(far) && fabs(far - near) <= 4e-16 * fabs(near)) {
       *l = x;
       return wall || !(slope > 0) ? DEA_E_NO_EQUILIBRIUM : DEA_OK;
     }
     x = next;
-    dea_status status = residual(e, x, sight, &r, &slope);
-    if (status != DEA_OK || (side * r > 0 && !(slope > 0))) {
+    dea_status status = residual(e, x, at, &r, &slope);
+    if (status != DEA_OK || (sign * r > 0 && !(slope > 0))) {
       far = x;
       wall = true;
       slope = -1; // the next trial is half way
-    } else if (side * r > 0) {
+    } else if (sign * r > 0) {
       near = x;
     } else {
       far = x;
@@ -127,11 +127,11 @@ static double passive_stretch(const struct dea_lumped *lumped, double l) // pape
 }
 
 /* What follows once the stretch is known: branches, charge, energies. */
-static void finish(const struct dea_lumped_history *history, const struct dea_lumped_moment *from,
-                   const struct dea_time_step *step, const struct sight *sight,
-                   struct dea_lumped_moment *to)
+static void fill_moment(const struct dea_lumped_motion *motion,
+                        const struct dea_lumped_moment *from, const struct dea_time_step *step,
+                        const struct evaluation *at, struct dea_lumped_moment *to)
 {
-  const struct dea_lumped *lumped = &history->lumped;
+  const struct dea_lumped *lumped = &motion->lumped;
   const struct dea_material *material = lumped->film.material;
   double R = lumped->coverage, l_pre = lumped->pre_stretch, h = step->length_s;
   double passive = (1 - R) / R; // volume of the passive film over that of the active
@@ -147,23 +147,23 @@ static void finish(const struct dea_lumped_history *history, const struct dea_lu
   W[1] = dea_equal_energy(material, to->passive, l_P[1]);
   D[0] = dea_equal_loss(material, from->active, h, l_A[0], l_A[1]);
   D[1] = dea_equal_loss(material, from->passive, h, l_P[0], l_P[1]);
-  dea_circuit_advance(&history->options.circuit, &from->circuit, step, &sight->film, &to->circuit);
+  dea_circuit_advance(&motion->options.circuit, &from->circuit, step, &at->film, &to->circuit);
   to->time_s = from->time_s + h;
-  to->branch_loss_J = from->branch_loss_J + history->volume_m3 * (D[0] + passive * D[1]);
+  to->branch_loss_J = from->branch_loss_J + motion->volume_m3 * (D[0] + passive * D[1]);
   // The electric part of the energy is -Q V/2; what the field holds is +Q V/2.
-  to->stored_energy_J = history->volume_m3 * (sight->energy_Pa + W[0] + passive * W[1]) +
+  to->stored_energy_J = motion->volume_m3 * (at->energy_Pa + W[0] + passive * W[1]) +
                         to->circuit.charge_C * to->circuit.voltage_V;
-  if (h == 0 && dea_circuit_is_ideal(&history->options.circuit)) {
+  if (h == 0 && dea_circuit_is_ideal(&motion->options.circuit)) {
     to->circuit.supply_work_J += to->stored_energy_J - from->stored_energy_J;
   }
-  to->imbalance_Pa = sight->imbalance_Pa; // that of A: it differs from B by a pressure
+  to->imbalance_Pa = at->imbalance_Pa; // that of A: it differs from B by a pressure
 }
 
 /* The lumped model in a step from a moment. */
-static struct dea_lumped with_branches(const struct dea_lumped_history *history,
+static struct dea_lumped with_branches(const struct dea_lumped_motion *motion,
                                        const struct dea_lumped_moment *from, double length_s)
 {
-  struct dea_lumped lumped = history->lumped;
+  struct dea_lumped lumped = motion->lumped;
   const struct dea_material *material = lumped.film.material;
   double l = from->electrode_stretch;
   lumped.active_known = dea_equal_known(material, from->active, length_s, l * lumped.pre_stretch);
@@ -172,23 +172,23 @@ static struct dea_lumped with_branches(const struct dea_lumped_history *history,
   return lumped;
 }
 
-struct dea_lumped dea_lumped_frozen(const struct dea_lumped_history *history,
+struct dea_lumped dea_lumped_frozen(const struct dea_lumped_motion *motion,
                                     const struct dea_lumped_moment *moment)
 {
-  return with_branches(history, moment, 0);
+  return with_branches(motion, moment, 0);
 }
 
 /* One step, whole; generalised-alpha where there is inertia. */
-static dea_status step_once(const struct dea_lumped_history *history,
+static dea_status step_once(const struct dea_lumped_motion *motion,
                             const struct dea_lumped_moment *from, const struct dea_time_step *step,
                             struct dea_lumped_moment *to)
 {
-  const struct dea_lumped lumped = with_branches(history, from, step->length_s);
+  const struct dea_lumped lumped = with_branches(motion, from, step->length_s);
   double h = step->length_s, l = from->electrode_stretch;
-  const struct dea_alpha alpha = dea_alpha_of(history->options.rho_inf);
-  bool inertia = history->options.inertia;
-  double mass_Pa_s2 = history->mass_kg_m2 / (2 * lumped.pre_stretch * history->volume_m3);
-  struct equation e = {history, &from->circuit, step, &lumped, 0, 0, 1, 0};
+  const struct dea_alpha alpha = dea_alpha_of(motion->options.rho_inf);
+  bool inertia = motion->options.inertia;
+  double mass_Pa_s2 = motion->mass_kg_m2 / (2 * lumped.pre_stretch * motion->volume_m3);
+  struct equation e = {motion, &from->circuit, step, &lumped, 0, 0, 1, 0};
   if (inertia && h > 0) {
     double acceleration = from->acceleration_per_s2;
     e.start = l + h * from->rate_per_s + h * h * (0.5 - alpha.beta) * acceleration;
@@ -196,19 +196,19 @@ static dea_status step_once(const struct dea_lumped_history *history,
     e.weight = 1 - alpha.f;
     e.known_Pa = alpha.m * mass_Pa_s2 * acceleration + alpha.f * from->imbalance_Pa;
   }
-  struct sight sight;
+  struct evaluation at;
   dea_status status;
   *to = *from;
   if (inertia && !(h > 0)) { // the film stays, its charge may jump
-    status = look(&lumped, history, &from->circuit, step, l, &sight);
+    status = evaluate(&lumped, motion, &from->circuit, step, l, &at);
   } else {
-    status = find_root(&e, &l, &sight);
+    status = find_root(&e, &l, &at);
   }
   if (status != DEA_OK) {
     return status;
   }
   to->electrode_stretch = l;
-  finish(history, from, step, &sight, to);
+  fill_moment(motion, from, step, &at, to);
   if (inertia && h > 0) {
     // from the forces: (l - l*)/(beta h^2) would be the same, but for the rounding of l
     to->acceleration_per_s2 =
@@ -226,86 +226,86 @@ static double loss(const struct dea_lumped_moment *moment)
   return moment->branch_loss_J + moment->circuit.leakage_loss_J;
 }
 
-dea_status dea_lumped_begin(struct dea_lumped_history *history, double electrode_stretch,
+dea_status dea_lumped_begin(struct dea_lumped_motion *motion, double electrode_stretch,
                             double voltage_V)
 {
   const struct dea_time_step none = {0, voltage_V};
-  const struct dea_circuit ideal = {0, INFINITY}, given = history->options.circuit;
+  const struct dea_circuit ideal = {0, INFINITY}, given = motion->options.circuit;
   struct dea_lumped_moment rest = {.electrode_stretch = electrode_stretch};
-  struct dea_lumped lumped = history->lumped;
-  struct sight sight;
+  struct dea_lumped lumped = motion->lumped;
+  struct evaluation at;
   for (size_t i = 0; i < lumped.film.material->branch_count; i++) {
     rest.active[i] = dea_equal_inverse(electrode_stretch * lumped.pre_stretch);
     rest.passive[i] = dea_equal_inverse(passive_stretch(&lumped, electrode_stretch));
   }
-  lumped = with_branches(history, &rest, 0);
-  history->options.circuit = ideal; // however it was charged: that was long ago
-  dea_status status = look(&lumped, history, &rest.circuit, &none, electrode_stretch, &sight);
+  lumped = with_branches(motion, &rest, 0);
+  motion->options.circuit = ideal; // however it was charged: that was long ago
+  dea_status status = evaluate(&lumped, motion, &rest.circuit, &none, electrode_stretch, &at);
   if (status == DEA_OK) {
-    history->now = rest;
-    finish(history, &rest, &none, &sight, &history->now);
-    history->now.circuit.supply_work_J = 0;
+    motion->now = rest;
+    fill_moment(motion, &rest, &none, &at, &motion->now);
+    motion->now.circuit.supply_work_J = 0;
   }
-  history->options.circuit = given;
-  history->largest_motion = smallest_motion;
-  history->largest_voltage_V = smallest_voltage * dea_film_voltage_scale(&history->lumped.film);
-  history->largest_work_J =
-      smallest_energy * dea_film_modulus(&history->lumped.film) * history->volume_m3;
+  motion->options.circuit = given;
+  motion->largest_motion = smallest_motion;
+  motion->largest_voltage_V = smallest_voltage * dea_film_voltage_scale(&motion->lumped.film);
+  motion->largest_work_J =
+      smallest_energy * dea_film_modulus(&motion->lumped.film) * motion->volume_m3;
   return status;
 }
 
 /* A sum along the step, from that of the whole and that of the halves: Simpson's rule out of two
  * trapezoidal ones. */
-static void sharpen(const double *whole, double *halves)
+static void extrapolate(const double *whole, double *halves)
 {
   *halves += (*halves - *whole) / 3;
 }
 
-dea_status dea_lumped_advance(struct dea_lumped_history *history, const struct dea_time_step *step,
+dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea_time_step *step,
                               double *error)
 {
-  const struct dea_lumped_moment *now = &history->now;
-  struct dea_lumped_moment whole, half, *end = &history->trial;
+  const struct dea_lumped_moment *now = &motion->now;
+  struct dea_lumped_moment whole, half, *end = &motion->trial;
   double h = step->length_s;
   *error = 0;
   if (!(h > 0)) {
-    return step_once(history, now, step, end);
+    return step_once(motion, now, step, end);
   }
-  double longest = dea_circuit_longest_step(&history->options.circuit, &now->circuit, step,
-                                            history->largest_voltage_V);
+  double longest = dea_circuit_longest_step(&motion->options.circuit, &now->circuit, step,
+                                            motion->largest_voltage_V);
   if (h > longest) { // whatever the answer, it is not to be relied on
     *error = h / longest;
-    return step_once(history, now, step, end);
+    return step_once(motion, now, step, end);
   }
   double V_s = now->circuit.source_voltage_V;
   const struct dea_time_step first = {0.5 * h, V_s + 0.5 * (step->source_voltage_V - V_s)};
   const struct dea_time_step second = {0.5 * h, step->source_voltage_V};
-  dea_status status = step_once(history, now, step, &whole);
-  status = status == DEA_OK ? step_once(history, now, &first, &half) : status;
-  status = status == DEA_OK ? step_once(history, &half, &second, end) : status;
+  dea_status status = step_once(motion, now, step, &whole);
+  status = status == DEA_OK ? step_once(motion, now, &first, &half) : status;
+  status = status == DEA_OK ? step_once(motion, &half, &second, end) : status;
   if (status != DEA_OK) {
     return status;
   }
   end->time_s = now->time_s + h;
-  double motion = fmax(history->largest_motion, fabs(end->electrode_stretch - 1));
-  double voltage = fmax(history->largest_voltage_V, fabs(end->circuit.voltage_V));
-  double work = fmax(history->largest_work_J, fabs(end->circuit.supply_work_J));
-  *error = fabs(whole.electrode_stretch - end->electrode_stretch) / motion;
+  double change = fmax(motion->largest_motion, fabs(end->electrode_stretch - 1));
+  double voltage = fmax(motion->largest_voltage_V, fabs(end->circuit.voltage_V));
+  double work = fmax(motion->largest_work_J, fabs(end->circuit.supply_work_J));
+  *error = fabs(whole.electrode_stretch - end->electrode_stretch) / change;
   *error = fmax(*error, fabs(whole.circuit.voltage_V - end->circuit.voltage_V) / voltage);
   *error = fmax(*error, fabs(loss(&whole) - loss(end)) / work);
   *error = fmax(*error, fabs(whole.circuit.supply_work_J - end->circuit.supply_work_J) / work) / 3;
-  sharpen(&whole.branch_loss_J, &end->branch_loss_J);
-  sharpen(&whole.circuit.supply_work_J, &end->circuit.supply_work_J);
-  sharpen(&whole.circuit.resistance_loss_J, &end->circuit.resistance_loss_J);
-  sharpen(&whole.circuit.leakage_loss_J, &end->circuit.leakage_loss_J);
+  extrapolate(&whole.branch_loss_J, &end->branch_loss_J);
+  extrapolate(&whole.circuit.supply_work_J, &end->circuit.supply_work_J);
+  extrapolate(&whole.circuit.resistance_loss_J, &end->circuit.resistance_loss_J);
+  extrapolate(&whole.circuit.leakage_loss_J, &end->circuit.leakage_loss_J);
   return DEA_OK;
 }
 
-void dea_lumped_accept(struct dea_lumped_history *history)
+void dea_lumped_accept(struct dea_lumped_motion *motion)
 {
-  const struct dea_lumped_moment *now = &history->now;
-  history->now = history->trial;
-  history->largest_motion = fmax(history->largest_motion, fabs(now->electrode_stretch - 1));
-  history->largest_voltage_V = fmax(history->largest_voltage_V, fabs(now->circuit.voltage_V));
-  history->largest_work_J = fmax(history->largest_work_J, fabs(now->circuit.supply_work_J));
+  const struct dea_lumped_moment *now = &motion->now;
+  motion->now = motion->trial;
+  motion->largest_motion = fmax(motion->largest_motion, fabs(now->electrode_stretch - 1));
+  motion->largest_voltage_V = fmax(motion->largest_voltage_V, fabs(now->circuit.voltage_V));
+  motion->largest_work_J = fmax(motion->largest_work_J, fabs(now->circuit.supply_work_J));
 }
