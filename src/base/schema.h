@@ -67,6 +67,28 @@ struct dea_field {
   const char *elsewhere;
 };
 
+/* Rows of a table; what else there is to say of a field comes last, by its member. */
+#define DEA_LABEL_ROW(name, at, sample, text, ...)                                                 \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_LABEL, .offset = at, .example = sample, .doc = text,            \
+    __VA_ARGS__                                                                                    \
+  }
+#define DEA_NUMBER_ROW(name, at, si, sample, text, ...)                                            \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_NUMBER, .offset = at, .unit = si, .example = sample,            \
+    .doc = text, __VA_ARGS__                                                                       \
+  }
+#define DEA_INTEGER_ROW(name, at, sample, text, ...)                                               \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_INTEGER, .offset = at, .unit = "1", .example = sample,          \
+    .doc = text, __VA_ARGS__                                                                       \
+  }
+#define DEA_CHOICE_ROW(name, at, names, sample, text, ...)                                         \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_CHOICE, .offset = at, .choices = names, .example = sample,      \
+    .doc = text, __VA_ARGS__                                                                       \
+  }
+
 /* Whether the keys of a section are those of the field's record. */
 bool dea_field_has_record(const struct dea_field *field);
 

@@ -32,7 +32,7 @@ static inline void fuzz_table(struct dea_context *ctx, const char *name, const c
   }
   table->file = "fuzz";
   table->format = name;
-  dea_status status = fuzz_importer(name)->read(ctx, file, data, size, table);
+  dea_status status = dea_importer_read(ctx, fuzz_importer(name), file, data, size, table);
   if (status == DEA_OK && table->column_count > 0) {
     status = dea_table_record(ctx, table, NULL, &recording);
   }

@@ -5,6 +5,7 @@
 #define DEA_LAB_IMPORT_IMPORT_H
 
 #include "base/schema.h"
+#include "lab/import/slices.h"
 #include "lab/recording/recording.h"
 
 enum { DEA_TABLE_COLUMNS_MAX = 8192 };
@@ -32,14 +33,20 @@ struct dea_importer {
   const char *formats; // "CSV with any separator", for help
   /* Whether a file looks like this format: its name, and its first bytes. */
   bool (*recognise)(const char *file, const unsigned char *head, size_t length);
-  /* Reads the file's bytes (NULL with `whole` false, then from the file). Errors are findings with
-   * line and column, or byte offset; DEA_E_IO then. */
-  bool whole;
-  dea_status (*read)(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                     size_t length, struct dea_table *out);
+  /* One of these reads: the file's text (text_file.h), its bytes, or the file itself. Errors are
+   * findings with line and column, or byte offset; DEA_E_IO then. */
+  dea_status (*read_text)(struct dea_context *ctx, struct dea_slice text, struct dea_table *out);
+  dea_status (*read_bytes)(struct dea_context *ctx, const char *file, const unsigned char *bytes,
+                           size_t length, struct dea_table *out);
+  dea_status (*read_file)(struct dea_context *ctx, const char *file, struct dea_table *out);
 };
 
 const struct dea_importer *const *dea_importer_all(size_t *count);
+/* Reads with one of them; bytes: of the file, not looked at by one that reads the file itself. out:
+ * empty, filled also after a failure. */
+dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer *importer,
+                             const char *file, const unsigned char *bytes, size_t length,
+                             struct dea_table *out);
 /* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
 bool dea_name_ends(const char *file, const char *ending);
 /* Adds an empty column with room for `room` values; NULL on failure. Name and unit become UTF-8. */

@@ -241,17 +241,9 @@ static dea_status read_text(struct dea_context *ctx, struct dea_slice text, stru
   return read_rows(ctx, &lines, rest, &header, out);
 }
 
-static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                       size_t length, struct dea_table *out)
-{
-  (void)file;
-  return dea_text_file_read(ctx, bytes, length, read_text, out);
-}
-
 const struct dea_importer dea_import_comsol = {
     .name = "comsol",
     .formats = "COMSOL's text export",
     .recognise = recognise,
-    .whole = true,
-    .read = read,
+    .read_text = read_text,
 };

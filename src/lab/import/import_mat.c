@@ -126,11 +126,8 @@ static dea_status find_units(struct dea_context *ctx, struct dea_table *table)
   return DEA_OK;
 }
 
-static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                       size_t length, struct dea_table *out)
+static dea_status read_mat(struct dea_context *ctx, const char *file, struct dea_table *out)
 {
-  (void)bytes;
-  (void)length;
   DEA_TRY(ctx, check_file(ctx, file));
   DEA_TRY(ctx, dea_mat_read(ctx, file, out));
   return find_units(ctx, out);
@@ -140,6 +137,5 @@ const struct dea_importer dea_import_mat = {
     .name = "mat",
     .formats = "MATLAB's .mat files",
     .recognise = recognise,
-    .whole = false,
-    .read = read,
+    .read_file = read_mat,
 };

@@ -296,8 +296,8 @@ static void scale_values(const struct dea_tdms *tdms, struct dea_table *table)
   }
 }
 
-static dea_status read(struct dea_context *ctx, const char *file, const unsigned char *bytes,
-                       size_t length, struct dea_table *out)
+static dea_status read_tdms(struct dea_context *ctx, const char *file, const unsigned char *bytes,
+                            size_t length, struct dea_table *out)
 {
   struct dea_tdms tdms = {.ctx = ctx, .file = file};
   dea_status status = read_segments(&tdms, bytes, length, NULL);
@@ -320,6 +320,5 @@ const struct dea_importer dea_import_tdms = {
     .name = "tdms",
     .formats = "LabVIEW's binary measurements (.tdms)",
     .recognise = recognise,
-    .whole = true,
-    .read = read,
+    .read_bytes = read_tdms,
 };

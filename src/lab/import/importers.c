@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "lab/import/import_list.h"
+#include "lab/import/text_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -94,18 +95,28 @@ static dea_status unknown_format(struct dea_context *ctx, const char *file)
   return dea_fail(ctx, DEA_E_IO, "'%s' is of no format that is known; %s", file, advice);
 }
 
+dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer *importer,
+                             const char *file, const unsigned char *bytes, size_t length,
+                             struct dea_table *out)
+{
+  if (importer->read_file != NULL) {
+    return importer->read_file(ctx, file, out);
+  }
+  return importer->read_text != NULL
+             ? dea_text_file_read(ctx, bytes, length, importer->read_text, out)
+             : importer->read_bytes(ctx, file, bytes, length, out);
+}
+
 /* out: filled also after a failure. */
 static dea_status read_table(struct dea_context *ctx, const char *file,
                              const struct dea_importer *importer, struct dea_table *out)
 {
-  if (!importer->whole) {
-    return importer->read(ctx, file, NULL, 0, out);
-  }
-  char *bytes;
-  size_t length;
-  dea_status status = dea_file_read(ctx, file, size_max, &bytes, &length);
+  char *bytes = NULL;
+  size_t length = 0;
+  dea_status status =
+      importer->read_file == NULL ? dea_file_read(ctx, file, size_max, &bytes, &length) : DEA_OK;
   if (status == DEA_OK) {
-    status = importer->read(ctx, file, (const unsigned char *)bytes, length, out);
+    status = dea_importer_read(ctx, importer, file, (const unsigned char *)bytes, length, out);
   } else if (status == DEA_E_DESIGN) {
     status = dea_fail(ctx, DEA_E_IO, "'%s' is larger than 4 GB; split it", file);
   }

@@ -16,30 +16,16 @@ enum { DEA_INSTRUMENT_READINGS_MAX = 8 };
 
 /* Rows of the kinds' tables; raw: struct that they are read into. */
 #define DEA_INSTRUMENT_KIND(raw, usual)                                                            \
-  {                                                                                                \
-    .key = "kind", .kind = DEA_FIELD_LABEL, .offset = offsetof(raw, kind), .required = true,       \
-    .doc = "kind of instrument", .example = usual                                                  \
-  }
+  DEA_LABEL_ROW("kind", offsetof(raw, kind), usual, "kind of instrument", .required = true)
 #define DEA_INSTRUMENT_LABEL(raw, member, name, text, sample, ...)                                 \
-  {                                                                                                \
-    .key = name, .kind = DEA_FIELD_LABEL, .offset = offsetof(raw, member), .doc = text,            \
-    .example = sample, __VA_ARGS__                                                                 \
-  }
+  DEA_LABEL_ROW(name, offsetof(raw, member), sample, text, __VA_ARGS__)
 #define DEA_INSTRUMENT_TIME(raw, member, name, text, usual, most)                                  \
-  {                                                                                                \
-    .key = name, .kind = DEA_FIELD_NUMBER, .offset = offsetof(raw, member), .unit = "s",           \
-    .above_min = true, .max = most, .doc = text, .default_text = usual, .example = usual           \
-  }
+  DEA_NUMBER_ROW(name, offsetof(raw, member), "s", usual, text, .above_min = true, .max = most,    \
+                 .default_text = usual)
 #define DEA_INSTRUMENT_NUMBER(raw, member, name, text, least, most, sample, ...)                   \
-  {                                                                                                \
-    .key = name, .kind = DEA_FIELD_INTEGER, .offset = offsetof(raw, member), .unit = "1",          \
-    .min = least, .max = most, .doc = text, .example = sample, __VA_ARGS__                         \
-  }
+  DEA_INTEGER_ROW(name, offsetof(raw, member), sample, text, .min = least, .max = most, __VA_ARGS__)
 #define DEA_INSTRUMENT_CHOICE(raw, member, name, text, names, usual)                               \
-  {                                                                                                \
-    .key = name, .kind = DEA_FIELD_CHOICE, .offset = offsetof(raw, member), .choices = names,      \
-    .doc = text, .default_text = usual, .example = usual                                           \
-  }
+  DEA_CHOICE_ROW(name, offsetof(raw, member), names, usual, text, .default_text = usual)
 #define DEA_INSTRUMENT_PORT(raw, member, name, text, ...)                                          \
   DEA_INSTRUMENT_NUMBER(raw, member, name, text, 1, 65535, "5025", __VA_ARGS__)
 /* A list of sections or texts of at most `most`. */
@@ -48,10 +34,8 @@ enum { DEA_INSTRUMENT_READINGS_MAX = 8 };
   .count_offset = offsetof(raw, counter)
 /* How a quantity is called, as in a section of single readings. */
 #define DEA_INSTRUMENT_QUANTITY(raw, member)                                                       \
-  {                                                                                                \
-    .key = "quantity", .kind = DEA_FIELD_CHOICE, .offset = offsetof(raw, member),                  \
-    .choices = dea_channel_names, .default_text = "other", .doc = "what it is", .example = "force" \
-  }
+  DEA_CHOICE_ROW("quantity", offsetof(raw, member), dea_channel_names, "force", "what it is",      \
+                 .default_text = "other")
 
 /* Adds an error when the names of readings are too long, twice there, or an input's. */
 dea_status dea_instrument_check_reading(const struct dea_reader *reader,
