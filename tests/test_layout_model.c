@@ -1,85 +1,9 @@
 /* Model 3d of devices of any layout, against closed forms and tables. */
 // ctest: solid
-#include "device/device.h"
 #include "devices.h"
 #include "model/model.h"
-#include "testing.h"
 
-#include "context_fixture.h" // after: its context shadows no name of the headers above
-
-static const struct dea_location nowhere = {0};
-
-static struct dea_material silicone(void)
-{
-  struct dea_material m = {
-      .name = "silicone", .law = dea_law_find("yeoh"), .param = {178.4e3, -6e3, 4.2e3}};
-  m.permittivity.at_rest = 2.8;
-  m.density_kg_per_m3 = 1080;
-  return m;
-}
-
-/* Lists of a layout, with room for what the tests need. */
-static struct dea_device *device_new(void)
-{
-  struct dea_device *device = dea_alloc(ctx, 1, sizeof *device);
-  assert_non_null(device);
-  assert_int_equal(dea_layout_create(ctx, &device->layout), DEA_OK);
-  struct dea_layout *l = device->layout;
-  enum { ROOM = 8 };
-  device->general = true;
-  l->regions = dea_arena_alloc(&l->memory, ROOM, sizeof *l->regions);
-  l->plies = dea_arena_alloc(&l->memory, ROOM, sizeof *l->plies);
-  l->electrodes = dea_arena_alloc(&l->memory, ROOM, sizeof *l->electrodes);
-  l->channels = dea_arena_alloc(&l->memory, ROOM, sizeof *l->channels);
-  l->supports = dea_arena_alloc(&l->memory, ROOM, sizeof *l->supports);
-  l->bodies = dea_arena_alloc(&l->memory, ROOM, sizeof *l->bodies);
-  l->springs = dea_arena_alloc(&l->memory, ROOM, sizeof *l->springs);
-  l->pressures = dea_arena_alloc(&l->memory, ROOM, sizeof *l->pressures);
-  l->monitors = dea_arena_alloc(&l->memory, ROOM, sizeof *l->monitors);
-  assert_false(l->memory.failed);
-  l->channels[0].name = "ground";
-  l->channels[1] = (struct dea_layout_channel){.name = "drive", .ratio = 1};
-  l->channel_count = 2;
-  return device;
-}
-
-static struct dea_region *add_region(struct dea_device *device, const char *name)
-{
-  struct dea_layout_region *region = &device->layout->regions[device->layout->region_count++];
-  region->name = name;
-  region->region.ctx = ctx;
-  return &region->region;
-}
-
-static size_t add_rectangle(struct dea_device *device, const char *name, double x_m, double y_m,
-                            double width_m, double height_m)
-{
-  struct dea_vertex corners[4] = {{.x_m = x_m, .y_m = y_m},
-                                  {.x_m = x_m + width_m, .y_m = y_m},
-                                  {.x_m = x_m + width_m, .y_m = y_m + height_m},
-                                  {.x_m = x_m, .y_m = y_m + height_m}};
-  dea_region_add(add_region(device, name), corners, 4);
-  return device->layout->region_count - 1;
-}
-
-static void add_film(struct dea_device *device, size_t region, double l1, double l2)
-{
-  struct dea_layout *l = device->layout;
-  l->plies[l->ply_count++] = (struct dea_layout_ply){.name = "film",
-                                                     .material = silicone(),
-                                                     .region = region,
-                                                     .thickness_m = 100e-6 / (l1 * l2),
-                                                     .thickness_unstretched_m = 100e-6,
-                                                     .pre_stretch = {l1, l2}};
-}
-
-static void add_electrode(struct dea_device *device, size_t ply, bool top, size_t region,
-                          size_t channel)
-{
-  struct dea_layout *l = device->layout;
-  l->electrodes[l->electrode_count++] = (struct dea_layout_electrode){
-      .name = "electrode", .region = region, .ply = ply, .top = top, .channel = channel};
-}
+#include "layout_device.h"
 
 static struct dea_model *model_of(const struct dea_device *device, enum dea_solid_film film,
                                   double refinement)
@@ -112,22 +36,9 @@ static void test_cone(void **state)
     double kV, force_mN;
   } table[] = {{0, 216.559}, {3, 187.545}, {5, 135.930}};
   (void)state;
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  struct dea_region *film = add_region(device, "film");
-  dea_region_add_circle(film, 0, 0, 20e-3, false, nowhere);
-  dea_region_add_circle(film, 0, 0, 5e-3, true, nowhere);
-  dea_region_add_circle(add_region(device, "hub"), 0, 0, 5e-3, false, nowhere);
-  dea_region_add_circle(add_region(device, "frame"), 0, 0, 20e-3, false, nowhere);
-  add_film(device, 0, 1.2, 1.2);
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 2, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->bodies[l->body_count++] =
-      (struct dea_layout_body){.name = "hub", .region = 1, .moved = 4, .shift_m = {0, 0, 2e-3}};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "hub", .kind = DEA_MONITOR_BODY, .body = 0};
+  struct dea_device *device = cone_new();
+  device->layout->bodies[0].moved = 4;
+  device->layout->bodies[0].shift_m[2] = 2e-3;
   struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE, 1);
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
     struct dea_load_point point;

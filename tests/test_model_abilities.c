@@ -38,6 +38,7 @@ static void test_bare_model(void **state)
       dea_model_path(ctx, &bare, NULL, &path, NULL, NULL, NULL),
       dea_model_profile(ctx, &bare, NULL, &profile),
       dea_model_indent(ctx, &bare, NULL, NULL, 0, &point),
+      dea_model_move(ctx, &bare, NULL, NULL, 0, &point),
       dea_model_hold(ctx, &bare, NULL, 1, 0, &error),
       dea_model_modes(ctx, &bare, NULL, NULL, 1, &point, &mesh),
       dea_model_respond(ctx, &bare, NULL, NULL, NULL, NULL, 1, &point),

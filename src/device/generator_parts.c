@@ -1,5 +1,6 @@
 /* Any device of flat layers, of its parts: the general form of a design. */
 #include "device/generator.h"
+#include "device/geometry.h"
 #include "device/layout_check.h"
 #include "device/part_names.h"
 #include "device/shape_regions.h"
@@ -483,6 +484,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   }
   DEA_TRY(ctx, check_dielectrics(&m));
   DEA_TRY(ctx, dea_layout_check(ctx, m.out));
+  DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));
   return dea_layout_find_symmetry(ctx, m.out);
 }
 

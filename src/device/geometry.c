@@ -165,6 +165,18 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
   return check_neighbours(ctx, design, device);
 }
 
+dea_status dea_geometry_fit_studies(struct dea_context *ctx, const struct dea_design *design,
+                                    const struct dea_device *device)
+{
+  for (size_t i = 0; i < design->compute.settings_count; i++) {
+    const struct dea_settings *settings = &design->compute.settings[i];
+    if (settings->section->fit != NULL) {
+      DEA_TRY(ctx, settings->section->fit(ctx, settings, device));
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device)
 {
@@ -175,11 +187,6 @@ dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *
                            "frame of %.4g mm inner radius",
                            1e3 * r_a, 1e3 * frame);
   }
-  for (size_t i = 0; i < design->compute.settings_count; i++) {
-    const struct dea_settings *settings = &design->compute.settings[i];
-    if (settings->section->fit != NULL) {
-      DEA_TRY(ctx, settings->section->fit(ctx, settings, device));
-    }
-  }
+  DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));
   return design->has_fibres ? check_fibres(ctx, design, device) : DEA_OK;
 }

@@ -56,6 +56,14 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
                               : lacks(ctx, type, "indenter");
 }
 
+dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_control *control, double value,
+                          struct dea_load_point *out)
+{
+  return type->move != NULL ? type->move(ctx, model, control, value, out)
+                            : lacks(ctx, type, "bodies or pressures that are moved");
+}
+
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
                           const struct dea_model *model, double voltage_V, double height_m,
                           double *force_N)

@@ -49,6 +49,18 @@ struct dea_probe {
   bool from_fibre_side; // comes from +z
 };
 
+/* What a device of the general form is brought to beside its voltage. */
+enum dea_control_kind {
+  DEA_CONTROL_PLACE,    // a component of a body is held at a shift [m] or a turn [rad]
+  DEA_CONTROL_FORCE,    // dead force [N] or moment [N m] on it, in place of the layout's
+  DEA_CONTROL_PRESSURE, // all pressures of the layout times a factor
+};
+struct dea_control {
+  enum dea_control_kind kind;
+  size_t body;   // of the layout; like the component not asked for with pressures
+  int component; // 0 to 2: along x, y, z; 3 to 5: about them
+};
+
 /* A small excitation of the voltage upon a bias, and the viscous damping of what it moves: a share
  * of the critical damping of each mode, and shares of mass and stiffness. */
 struct dea_ac_excitation {
@@ -85,8 +97,8 @@ struct dea_model_type {
   dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_path_options *options, dea_point_sink points,
                      dea_event_sink events, void *user);
-  /* Monitors and channels of the device's layout at the last point solved; out lends from the model
-   * until the next call. NULL when the model knows none. */
+  /* Monitors, bodies and channels of the device's layout at the last point solved; out lends from
+   * the model until the next call. NULL when the model knows none. */
   dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,
                         struct dea_observation *out);
   /* Profile at the last point solved; NULL when the model has none. */
@@ -96,6 +108,11 @@ struct dea_model_type {
    * tip of the first call stays. NULL when the model knows no tips. */
   dea_status (*indent)(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_probe *tip, double depth_m, struct dea_load_point *out);
+  /* Brings a control to a value at the last voltage solved, in smaller steps where the whole way
+   * fails; later solves keep it there. Where there is no equilibrium on the way the model stays at
+   * the last one, with the control that belongs to it. NULL when the model knows no bodies. */
+  dea_status (*move)(struct dea_context *ctx, struct dea_model *model,
+                     const struct dea_control *control, double value, struct dea_load_point *out);
   /* Force [N] out of the plane that holds the fibre tips at a height [m] at a voltage, whatever was
    * solved last; NULL when the model has no load line. */
   dea_status (*hold)(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
@@ -167,6 +184,9 @@ dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_typ
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out);
+dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_control *control, double value,
+                          struct dea_load_point *out);
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
                           const struct dea_model *model, double voltage_V, double height_m,
                           double *force_N);

@@ -81,6 +81,13 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status move(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_control *control, double value, struct dea_load_point *out)
+{
+  DEA_TRY(ctx, dea_model_move(ctx, model->type, model->inner, control, value, out));
+  return DEA_OK;
+}
+
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
@@ -165,6 +172,7 @@ const struct dea_model_type dea_model_3d = {
     .solve = solve,
     .observe = observe,
     .indent = indent,
+    .move = move,
     .modes = modes,
     .respond = respond,
     .profile = profile,

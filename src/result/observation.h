@@ -1,4 +1,4 @@
-/* What a model tells of the monitors and channels of a device (docs/theory/devices.md). */
+/* What a model tells of the monitors, bodies and channels of a device (docs/theory/devices.md). */
 #ifndef DEA_RESULT_OBSERVATION_H
 #define DEA_RESULT_OBSERVATION_H
 
@@ -34,8 +34,9 @@ struct dea_channel_values {
 };
 
 struct dea_observation {
-  size_t monitor_count, channel_count; // those of the layout
+  size_t monitor_count, body_count, channel_count; // those of the layout
   const double (*monitor)[DEA_OBSERVED_COUNT];
+  const double (*body)[DEA_OBSERVED_COUNT]; // each body as a monitor of it would tell
   const struct dea_channel_values *channel;
 };
 

@@ -19,6 +19,13 @@ enum dea_cell_kind {
   DEA_CELL_POINTS,   // index of a variant of the result: JSON lists its points
 };
 
+/* A column of numbers. */
+#define DEA_NUMBER_COLUMN(name, si, display, scale, head, what)                                    \
+  {                                                                                                \
+    .key = name, .kind = DEA_CELL_NUMBER, .si_unit = si, .display_unit = display, .factor = scale, \
+    .title = head, .meaning = what                                                                 \
+  }
+
 /* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report. */
 enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4 };
 

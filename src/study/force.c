@@ -94,14 +94,21 @@ static const struct dea_record record = {study_name,
                                          "force on a rigid tip against the middle of the film (3d)",
                                          fields, sizeof fields / sizeof fields[0]};
 
-/* The electrode is the part that moves. */
+/* The electrode of a disc is the part that moves. */
 static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
                       const struct dea_device *device)
 {
   static const double touching = 1e-9; // as in device/geometry.c
   const struct settings *force = given->values;
-  if (force->depth_count + force->preload_count == 0 ||
-      force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
+  if (force->depth_count + force->preload_count == 0) {
+    return DEA_OK;
+  }
+  if (device->general) {
+    return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,
+                           "a tip is pressed against a disc only; compute.loading moves a body of "
+                           "this device");
+  }
+  if (force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
     return DEA_OK;
   }
   return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,

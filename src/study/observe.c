@@ -9,11 +9,6 @@
     .key = "voltage_V", .kind = DEA_CELL_NUMBER, .si_unit = "V", .display_unit = "kV",             \
     .factor = 1e-3, .title = "V", .meaning = "voltage of the sweep"                                \
   }
-#define NUMBER(name, si, display, scale, head, what)                                               \
-  {                                                                                                \
-    .key = name, .kind = DEA_CELL_NUMBER, .si_unit = si, .display_unit = display, .factor = scale, \
-    .title = head, .meaning = what                                                                 \
-  }
 #define NAME(name, what)                                                                           \
   {                                                                                                \
     .key = name, .kind = DEA_CELL_TEXT, .title = name, .meaning = what                             \
@@ -25,22 +20,7 @@ enum { BEFORE = 2 }; // columns before the quantities
 static const struct dea_result_column monitor_columns[] = {
     VOLTAGE,
     NAME("monitor", "name in the design"),
-    NUMBER("x_m", "m", "um", 1e6, "x", "displacement along x"),
-    NUMBER("y_m", "m", "um", 1e6, "y", "displacement along y"),
-    NUMBER("z_m", "m", "um", 1e6, "z", "displacement out of the plane"),
-    NUMBER("turn_x_rad", "rad", "deg", 57.29577951308232, "turn x", "turn of a body about x"),
-    NUMBER("turn_y_rad", "rad", "deg", 57.29577951308232, "turn y", "turn of a body about y"),
-    NUMBER("turn_z_rad", "rad", "deg", 57.29577951308232, "turn z", "turn of a body about z"),
-    NUMBER("stretch", "1", "1", 1, "stretch", "length of a line over its flat one"),
-    NUMBER("stretch_x", "1", "1", 1, "stretch x", "mean stretch of a region along x"),
-    NUMBER("stretch_y", "1", "1", 1, "stretch y", "mean stretch of a region along y"),
-    NUMBER("area_stretch", "1", "1", 1, "area stretch", "area of a region over its flat one"),
-    NUMBER("force_x_N", "N", "mN", 1e3, "force x", "on a body, of what holds or moves it"),
-    NUMBER("force_y_N", "N", "mN", 1e3, "force y", "on a body, of what holds or moves it"),
-    NUMBER("force_z_N", "N", "mN", 1e3, "force z", "on a body, of what holds or moves it"),
-    NUMBER("moment_x_N_m", "N m", "uN m", 1e6, "moment x", "on a body about its centre"),
-    NUMBER("moment_y_N_m", "N m", "uN m", 1e6, "moment y", "on a body about its centre"),
-    NUMBER("moment_z_N_m", "N m", "uN m", 1e6, "moment z", "on a body about its centre"),
+    DEA_OBSERVED_COLUMNS,
 };
 enum { MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0] };
 _Static_assert(MONITOR_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
@@ -48,10 +28,10 @@ _Static_assert(MONITOR_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quant
 static const struct dea_result_column channel_columns[] = {
     VOLTAGE,
     NAME("channel", "name in the design"),
-    NUMBER("channel_voltage_V", "V", "kV", 1e-3, "voltage", "voltage of the channel"),
-    NUMBER("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),
-    NUMBER("capacitance_F", "F", "pF", 1e12, "capacitance",
-           "change of the channel's charge with its voltage, the film held"),
+    DEA_NUMBER_COLUMN("channel_voltage_V", "V", "kV", 1e-3, "voltage", "voltage of the channel"),
+    DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),
+    DEA_NUMBER_COLUMN("capacitance_F", "F", "pF", 1e12, "capacitance",
+                      "change of the channel's charge with its voltage, the film held"),
 };
 enum { CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0] };
 

@@ -6,6 +6,37 @@
 #include "result/figure.h"
 #include "result/result.h"
 
+/* Columns of a table, one for each of enum dea_observed. */
+#define DEA_OBSERVED_COLUMNS                                                                       \
+  DEA_NUMBER_COLUMN("x_m", "m", "um", 1e6, "x", "displacement along x"),                           \
+      DEA_NUMBER_COLUMN("y_m", "m", "um", 1e6, "y", "displacement along y"),                       \
+      DEA_NUMBER_COLUMN("z_m", "m", "um", 1e6, "z", "displacement out of the plane"),              \
+      DEA_NUMBER_COLUMN("turn_x_rad", "rad", "deg", 57.29577951308232, "turn x",                   \
+                        "turn of a body about x"),                                                 \
+      DEA_NUMBER_COLUMN("turn_y_rad", "rad", "deg", 57.29577951308232, "turn y",                   \
+                        "turn of a body about y"),                                                 \
+      DEA_NUMBER_COLUMN("turn_z_rad", "rad", "deg", 57.29577951308232, "turn z",                   \
+                        "turn of a body about z"),                                                 \
+      DEA_NUMBER_COLUMN("stretch", "1", "1", 1, "stretch", "length of a line over its flat one"),  \
+      DEA_NUMBER_COLUMN("stretch_x", "1", "1", 1, "stretch x",                                     \
+                        "mean stretch of a region along x"),                                       \
+      DEA_NUMBER_COLUMN("stretch_y", "1", "1", 1, "stretch y",                                     \
+                        "mean stretch of a region along y"),                                       \
+      DEA_NUMBER_COLUMN("area_stretch", "1", "1", 1, "area stretch",                               \
+                        "area of a region over its flat one"),                                     \
+      DEA_NUMBER_COLUMN("force_x_N", "N", "mN", 1e3, "force x",                                    \
+                        "on a body, of what holds or moves it"),                                   \
+      DEA_NUMBER_COLUMN("force_y_N", "N", "mN", 1e3, "force y",                                    \
+                        "on a body, of what holds or moves it"),                                   \
+      DEA_NUMBER_COLUMN("force_z_N", "N", "mN", 1e3, "force z",                                    \
+                        "on a body, of what holds or moves it"),                                   \
+      DEA_NUMBER_COLUMN("moment_x_N_m", "N m", "uN m", 1e6, "moment x",                            \
+                        "on a body about its centre"),                                             \
+      DEA_NUMBER_COLUMN("moment_y_N_m", "N m", "uN m", 1e6, "moment y",                            \
+                        "on a body about its centre"),                                             \
+      DEA_NUMBER_COLUMN("moment_z_N_m", "N m", "uN m", 1e6, "moment z",                            \
+                        "on a body about its centre")
+
 /* Adds a row for each monitor and channel at the last point solved to the model's tables "monitors"
  * and "channels", which are made by the first. Nothing for a device that has none, and for a model
  * that knows none. */

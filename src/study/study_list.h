@@ -5,6 +5,7 @@
   X(dea_study_path)                                                                                \
   X(dea_study_sweep)                                                                               \
   X(dea_study_force)                                                                               \
+  X(dea_study_loading)                                                                             \
   X(dea_study_transient)                                                                           \
   X(dea_study_modal)                                                                               \
   X(dea_study_frequency)                                                                           \

@@ -23,6 +23,7 @@ struct dea_model {
   struct dea_constituent *constituents; // [ply_count]
   struct dea_solid_film_data *films;    // [ply_count]
   struct dea_solid_body *bodies;        // [body_count]
+  double (*push)[6];                    // [body_count] dead force and moment
   struct dea_spring **springs;          // [spring_count]
   struct dea_pressure **pressures;      // [pressure_count]
   struct dea_surface **surfaces;        // [pressure_count]
@@ -34,7 +35,8 @@ struct dea_model {
   size_t film;            // the first dielectric ply, or the first of all
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
   double voltage_V, rest_energy_J;
-  bool left_a_state; // on the way an unstable state was left: there are several
+  bool left_a_state;      // on the way an unstable state was left: there are several
+  double pressure_factor; // on all pressures
   struct dea_solid_report report;
 };
 
@@ -294,7 +296,9 @@ static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
 {
   for (size_t i = 0; i < model->layout->body_count; i++) {
     const struct dea_layout_body *body = &model->layout->bodies[i];
-    dea_solid_body_push(model->solid, i, body->force_N, body->moment_N_m);
+    memcpy(model->push[i], body->force_N, sizeof body->force_N);
+    memcpy(model->push[i] + 3, body->moment_N_m, sizeof body->moment_N_m);
+    dea_solid_body_push(model->solid, i, model->push[i], model->push[i] + 3);
     if (body->moved != 0) {
       DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i, body->moved, body->shift_m,
                                             body->turn_rad));
@@ -434,6 +438,7 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
   const struct dea_layout *l = model->layout;
   double *point_mass, *share = dea_arena_alloc(&model->memory, l->channel_count, sizeof *share);
   model->bodies = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->bodies);
+  model->push = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->push);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->mesh_node_count = model->mesh.grid->node_count;
   DEA_TRY(ctx, add_bodies(ctx, model, &point_mass));
@@ -484,6 +489,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->layout = device->layout;
   model->settings = *settings;
   model->memory.ctx = ctx;
+  model->pressure_factor = 1;
   if (settings->field == DEA_FIELD_COUPLED) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "compute.solid.field: coupled is known of the disc with one pair of electrodes "
@@ -616,6 +622,86 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
   return DEA_OK;
 }
 
+// Controls beside the voltage ---------------------------------------------------------------------
+
+static dea_status check_control(struct dea_context *ctx, const struct dea_model *model,
+                                const struct dea_control *control, double value)
+{
+  const struct dea_layout *l = model->layout;
+  bool pressure = control->kind == DEA_CONTROL_PRESSURE;
+  if (pressure
+          ? l->pressure_count == 0
+          : control->body >= l->body_count || control->component < 0 || control->component > 5) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the device has no such %s to be moved",
+                    pressure ? "pressure" : "body");
+  }
+  return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a control has to be a number");
+}
+
+static double where_control_is(const struct dea_model *model, const struct dea_control *control)
+{
+  double place[6];
+  if (control->kind == DEA_CONTROL_PRESSURE) {
+    return model->pressure_factor;
+  }
+  dea_solid_body_place(model->solid, control->body, place, place + 3);
+  return control->kind == DEA_CONTROL_PLACE ? place[control->component]
+                                            : model->push[control->body][control->component];
+}
+
+/* What the next solve goes to. */
+static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
+                              const struct dea_control *control, double value)
+{
+  const struct dea_layout *l = model->layout;
+  size_t body = control->body;
+  double place[6] = {0};
+  switch (control->kind) {
+  case DEA_CONTROL_PLACE:
+    place[control->component] = value;
+    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, body, 1 << control->component, place,
+                                          place + 3));
+    break;
+  case DEA_CONTROL_FORCE:
+    model->push[body][control->component] = value;
+    dea_solid_body_push(model->solid, body, model->push[body], model->push[body] + 3);
+    break;
+  case DEA_CONTROL_PRESSURE:
+    model->pressure_factor = value;
+    for (size_t i = 0; i < l->pressure_count; i++) {
+      dea_pressure_set(model->pressures[i], value * l->pressures[i].pressure_Pa);
+    }
+    break;
+  }
+  return DEA_OK;
+}
+
+static dea_status move(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_control *control, double value, struct dea_load_point *out)
+{
+  char why[200];
+  DEA_TRY(ctx, check_control(ctx, model, control, value));
+  double from = where_control_is(model, control);
+  DEA_TRY(ctx, set_control(ctx, model, control, value));
+  dea_status status = dea_load_steps_solve(ctx, model->solid, model->voltage_V, &model->report);
+  if (status != DEA_OK) {
+    double reached = from + model->report.way * (value - from);
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    DEA_TRY(ctx, set_control(ctx, model, control, reached));
+    return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
+                    model->report.way, why);
+  }
+  if (model->report.snapped) {
+    model->left_a_state = true;
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: a state at %.4g kV is unstable (buckling or snapping) "
+                                 "under this load; it goes on from the stable one below it",
+                                 1e-3 * model->voltage_V));
+  }
+  DEA_TRY(ctx, report(ctx, model, out));
+  return DEA_OK;
+}
+
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
@@ -648,6 +734,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .destroy = destroy,
     .solve = solve,
     .observe = observe,
+    .move = move,
     .fields = fields,
     .size = size,
 };

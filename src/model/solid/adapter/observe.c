@@ -4,6 +4,7 @@
 #include "model/solid/assembly/channels.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { PLANE_MAX = DEA_ELEMENT_LEVEL_MAX };
 
@@ -19,6 +20,7 @@ struct dea_observer {
   const struct dea_layout_mesh *mesh;
   struct probe (*probes)[2]; // [monitor_count] of points and lines
   double (*monitor)[DEA_OBSERVED_COUNT];
+  double (*body)[DEA_OBSERVED_COUNT];
   struct dea_channel_values *channel;
   double *work; // of channels
 };
@@ -163,6 +165,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh};
   o->probes = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->probes);
   o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
+  o->body = dea_arena_alloc(&o->memory, l->body_count + 1, sizeof *o->body);
   o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
   o->work = dea_arena_alloc(&o->memory, (l->channel_count + 2) * l->channel_count, sizeof(double));
   dea_status status = dea_arena_status(&o->memory);
@@ -186,6 +189,13 @@ void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *o)
 }
 
 // Values -----------------------------------------------------------------------------------------
+
+static void nothing_observed(double *values)
+{
+  for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
+    values[k] = NAN;
+  }
+}
 
 static void displacement_at(const struct probe *probe, const double *u, double out[3])
 {
@@ -291,12 +301,14 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
 {
   const struct dea_layout *l = o->mesh->layout;
   const double *u = dea_solid_displacement(solid);
+  for (size_t i = 0; i < l->body_count; i++) {
+    nothing_observed(o->body[i]);
+    observe_body(solid, i, o->body[i]);
+  }
   for (size_t i = 0; i < l->monitor_count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
     double *values = o->monitor[i];
-    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
-      values[k] = NAN;
-    }
+    nothing_observed(values);
     switch (m->kind) {
     case DEA_MONITOR_POINT:
       displacement_at(&o->probes[i][0], u, values);
@@ -308,12 +320,16 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
       observe_region(o->mesh, m, u, values);
       break;
     case DEA_MONITOR_BODY:
-      observe_body(solid, m->body, values);
+      memcpy(values, o->body[m->body], sizeof o->body[m->body]);
       break;
     }
   }
   DEA_TRY(ctx, observe_channels(ctx, o, solid));
-  *out = (struct dea_observation){l->monitor_count, l->channel_count,
-                                  (const double(*)[DEA_OBSERVED_COUNT])o->monitor, o->channel};
+  *out = (struct dea_observation){.monitor_count = l->monitor_count,
+                                  .body_count = l->body_count,
+                                  .channel_count = l->channel_count,
+                                  .monitor = (const double(*)[DEA_OBSERVED_COUNT])o->monitor,
+                                  .body = (const double(*)[DEA_OBSERVED_COUNT])o->body,
+                                  .channel = o->channel};
   return DEA_OK;
 }

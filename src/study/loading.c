@@ -1,0 +1,723 @@
+/* Study "loading": a body of a device of the general form is moved along a way, pushed by a dead
+ * force, or the pressures on the device change, at some voltages: curves of force against
+ * displacement, and the blocked force. Each voltage starts from rest with a model of its own; a
+ * line that stops leaves its points, and the next one has its turn. */
+#include "base/schema.h"
+#include "study/observe.h"
+#include "study/study.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char study_name[] = "loading";
+
+// Keys -------------------------------------------------------------------------------------------
+
+/* What goes along its values. */
+enum range { SHIFT, TURN, FORCE, PRESSURE, RANGES };
+
+/* Settings of compute.loading; without a range nothing is computed. */
+struct settings {
+  struct dea_label body;
+  struct dea_choice direction; // component of the body
+  struct dea_quantity from[RANGES], to[RANGES], steps;
+  struct dea_choice back;
+  struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: 0 and quarters of the highest
+  size_t voltage_count;
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+static const char *const directions[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
+static const char *const no_yes[] = {"no", "yes", NULL};
+
+#define ENDS(which, begin, end, in, what, first, last)                                             \
+  {.key = begin,                                                                                   \
+   .kind = DEA_FIELD_NUMBER,                                                                       \
+   .offset = AT(from[which]),                                                                      \
+   .unit = in,                                                                                     \
+   .absent_text = "none",                                                                          \
+   .doc = what ", where the line begins",                                                          \
+   .example = first},                                                                              \
+  {                                                                                                \
+    .key = end, .kind = DEA_FIELD_NUMBER, .offset = AT(to[which]), .unit = in,                     \
+    .absent_text = "none", .doc = "where it ends", .example = last                                 \
+  }
+
+static const struct dea_field fields[] = {
+    {.key = "body",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(body),
+     .absent_text = "none",
+     .doc = "name of the body that is moved or pushed; with pressures: that is looked at",
+     .example = "hub"},
+    {.key = "direction",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(direction),
+     .choices = directions,
+     .default_text = "z",
+     .doc = "along which axis, or about which, the body is moved or pushed",
+     .example = "z"},
+    ENDS(SHIFT, "from", "to", "m", "shift at which the body is held", "0 mm", "5 mm"),
+    ENDS(TURN, "turn_from", "turn_to", "radian", "the same of a turn", "0 degree", "10 degree"),
+    ENDS(FORCE, "force_from", "force_to", "N",
+         "dead force on the body, which stays free, in place of its own", "0 mN", "200 mN"),
+    ENDS(PRESSURE, "pressure_from", "pressure_to", "Pa",
+         "largest pressure on the device; all others go in proportion", "0 kPa", "2 kPa"),
+    {.key = "steps",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(steps),
+     .unit = "1",
+     .min = 1,
+     .max = 1000,
+     .default_text = "10",
+     .doc = "equal steps from the first value to the last",
+     .example = "20"},
+    {.key = "back",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(back),
+     .choices = no_yes,
+     .default_text = "no",
+     .doc = "whether each line goes back the same way: snapping shows as hysteresis",
+     .example = "yes"},
+    {.key = "voltage",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(voltages_V),
+     .unit = "V",
+     .max = 1e6,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_STOPS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(voltage_count),
+     .absent_text = "0 V and the quarters of the highest",
+     .doc = "voltages of the lines",
+     .example = "[0 kV, 3 kV, 5 kV]"},
+};
+
+static const struct dea_record record = {
+    study_name,
+    "study of force against displacement of a body, or of pressures, at voltages (3d, devices of "
+    "the general form)",
+    fields, COUNT(fields)};
+
+/* The range that is asked for; RANGES: none. */
+static enum range range_of(const struct settings *settings)
+{
+  int k = 0;
+  while (k < RANGES && isnan(settings->from[k].si) && isnan(settings->to[k].si)) {
+    k++;
+  }
+  return (enum range)k;
+}
+
+static dea_status wrong(struct dea_context *ctx, const struct settings *settings, const char *text)
+{
+  return dea_finding_add(ctx, DEA_ERROR, settings->steps.location, "loading: %s", text);
+}
+
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_settings *given)
+{
+  const struct settings *s = given->values;
+  enum range range = range_of(s);
+  bool turns = s->direction.value >= 3;
+  (void)design;
+  if (!given->written) {
+    return DEA_OK;
+  }
+  if (range == RANGES) {
+    return wrong(ctx, s, "from and to are missing (or turn_, force_, pressure_from and _to)");
+  }
+  if (isnan(s->from[range].si) || isnan(s->to[range].si)) {
+    DEA_TRY(ctx, wrong(ctx, s, "a line needs both where it begins and where it ends"));
+  }
+  for (int k = (int)range + 1; k < RANGES; k++) {
+    if (!isnan(s->from[k].si) || !isnan(s->to[k].si)) {
+      DEA_TRY(ctx, wrong(ctx, s, "shift, turn, force and pressure exclude each other"));
+    }
+  }
+  if (s->from[range].si == s->to[range].si) {
+    DEA_TRY(ctx, wrong(ctx, s, "the line ends where it begins"));
+  }
+  if (range != PRESSURE && s->body.text[0] == '\0') {
+    DEA_TRY(ctx, wrong(ctx, s, "which body? (body: NAME)"));
+  }
+  if (range != PRESSURE && turns != (range == TURN)) {
+    return dea_finding_add(ctx, DEA_ERROR, s->direction.location, "loading: %s",
+                           turns ? "a turn goes from turn_from to turn_to"
+                                 : "turn_from and turn_to need direction: turn_x, turn_y, turn_z");
+  }
+  return DEA_OK;
+}
+
+/* Pressure of the layout that is largest in size; 0: none. */
+static double largest_Pa(const struct dea_layout *layout)
+{
+  double most = 0;
+  for (size_t i = 0; i < layout->pressure_count; i++) {
+    double p = layout->pressures[i].pressure_Pa;
+    most = fabs(p) > fabs(most) ? p : most;
+  }
+  return most;
+}
+
+static dea_status unknown_body(struct dea_context *ctx, const struct settings *settings,
+                               const struct dea_layout *layout)
+{
+  const char *known[DEA_DESIGN_STOPS_MAX];
+  size_t count = layout->body_count < COUNT(known) ? layout->body_count : COUNT(known);
+  for (size_t i = 0; i < count; i++) {
+    known[i] = layout->bodies[i].name;
+  }
+  const char *nearest = dea_nearest_name(settings->body.text, known, count);
+  return dea_finding_add(ctx, DEA_ERROR, settings->body.location,
+                         "loading: the device has no body '%s'%s%s%s", settings->body.text,
+                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                         nearest != NULL ? "'?" : "");
+}
+
+static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
+                      const struct dea_device *device)
+{
+  const struct settings *s = given->values;
+  enum range range = range_of(s);
+  if (range == RANGES) {
+    return DEA_OK;
+  }
+  if (!device->general) {
+    return wrong(ctx, s,
+                 "only devices of the general form have bodies and pressures (key plies); "
+                 "compute.force presses a tip against the disc");
+  }
+  if (s->body.text[0] != '\0' &&
+      dea_layout_find_body(device->layout, s->body.text) == DEA_LAYOUT_NONE) {
+    DEA_TRY(ctx, unknown_body(ctx, s, device->layout));
+  }
+  if (range == PRESSURE && largest_Pa(device->layout) == 0) {
+    return wrong(ctx, s, "the device has no pressure (pressures: ...) that could change");
+  }
+  return DEA_OK;
+}
+
+static const struct dea_design_section section = {.key = study_name,
+                                                  .record = &record,
+                                                  .size = sizeof(struct settings),
+                                                  .check = check,
+                                                  .fit = fit};
+
+static const struct settings *settings_of(const struct dea_design *design)
+{
+  const struct dea_settings *given = dea_design_settings(design, &section);
+  return given != NULL ? given->values : NULL;
+}
+
+static bool asked(const struct dea_design *design)
+{
+  const struct settings *settings = settings_of(design);
+  return settings != NULL && range_of(settings) != RANGES;
+}
+
+// Tables -----------------------------------------------------------------------------------------
+
+#define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the line")
+#define POINT(what)                                                                                \
+  {                                                                                                \
+    .key = "point", .kind = DEA_CELL_COUNT, .title = "point", .meaning = what                      \
+  }
+static const char degree[] = "deg";
+static const double degrees = 57.29577951308232;
+
+/* What a point says beside its voltage; columns in this order. */
+enum value { AT_SHIFT, AT_TURN, OF_FORCE, OF_MOMENT, AT_PRESSURE, VALUES };
+
+static const struct dea_result_column point_columns[] = {
+    VOLTAGE,
+    POINT("number of the point, from 1"),
+    {.key = "back", .kind = DEA_CELL_FLAG, .title = "back", .meaning = "on the way back"},
+    DEA_NUMBER_COLUMN("shift_m", "m", "mm", 1e3, "shift", "of the body along the direction"),
+    DEA_NUMBER_COLUMN("turn_rad", "rad", degree, degrees, "turn", "of the body"),
+    DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force", "of what holds or pushes the body"),
+    DEA_NUMBER_COLUMN("moment_N_m", "N m", "uN m", 1e6, "moment", "of what holds the body"),
+    DEA_NUMBER_COLUMN("pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "the largest on the device"),
+    DEA_NUMBER_COLUMN("highest_z_m", "m", "mm", 1e3, "highest z",
+                      "largest displacement out of the plane"),
+    DEA_NUMBER_COLUMN("lowest_z_m", "m", "mm", 1e3, "lowest z",
+                      "smallest displacement out of the plane"),
+    DEA_NUMBER_COLUMN("energy_J", "J", "uJ", 1e6, "energy",
+                      "potential energy at this voltage, 0 at rest"),
+    DEA_NUMBER_COLUMN("min_tension_N_per_m", "N/m", "N/m", 1, "smallest tension",
+                      "below 0 the film is slack"),
+    {.key = "unstable_modes",
+     .kind = DEA_CELL_COUNT,
+     .title = "unstable modes",
+     .meaning = "of the device as it is held"},
+};
+
+static const struct dea_result_column line_columns[] = {
+    VOLTAGE,
+    DEA_NUMBER_COLUMN("blocked_force_N", "N", "mN", 1e3, "blocked force",
+                      "that holds the body at shift 0, minus that at 0 V"),
+    DEA_NUMBER_COLUMN("blocked_moment_N_m", "N m", "uN m", 1e6, "blocked moment",
+                      "that holds the body at turn 0, minus that at 0 V"),
+    DEA_NUMBER_COLUMN("peak_force_N", "N", "mN", 1e3, "peak force",
+                      "first maximum of the force on the way: a weight above it snaps through"),
+    DEA_NUMBER_COLUMN("peak_shift_m", "m", "mm", 1e3, "at shift", "shift of that maximum"),
+    {.key = "points", .kind = DEA_CELL_COUNT, .title = "points", .meaning = "of the line"},
+    {.key = "complete",
+     .kind = DEA_CELL_FLAG,
+     .title = "complete",
+     .meaning = "whether the line came to its end"},
+    {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it did not"},
+};
+
+static const struct dea_result_column monitor_columns[] = {
+    VOLTAGE,
+    POINT("of table points"),
+    {.key = "monitor", .kind = DEA_CELL_TEXT, .title = "monitor", .meaning = "name in the design"},
+    DEA_OBSERVED_COLUMNS,
+};
+_Static_assert(COUNT(monitor_columns) == 3 + DEA_OBSERVED_COUNT, "a column a quantity");
+
+static const struct dea_result_table_type tables[] = {
+    {.study = study_name,
+     .name = "points",
+     .title = "Loading",
+     .where = DEA_IN_JSON | DEA_IN_CSV,
+     .columns = point_columns,
+     .column_count = COUNT(point_columns)},
+    {.study = study_name,
+     .name = "lines",
+     .title = "Lines of force against displacement",
+     .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+     .columns = line_columns,
+     .column_count = COUNT(line_columns)},
+    {.study = study_name,
+     .name = "monitors",
+     .title = "Monitors on the way",
+     .where = DEA_IN_JSON | DEA_IN_CSV,
+     .columns = monitor_columns,
+     .column_count = COUNT(monitor_columns)},
+};
+enum { POINTS, LINES, MONITORS, TABLES };
+
+// Study ------------------------------------------------------------------------------------------
+
+struct loading {
+  const struct dea_model_type *type;
+  struct dea_model *model; // of the line
+  struct dea_result *result;
+  const struct settings *settings;
+  enum range range;
+  struct dea_control control;
+  size_t body;          // that is looked at; DEA_LAYOUT_NONE
+  double scale;         // of a value for the model
+  size_t table[TABLES]; // of the result
+  size_t curve, point;  // of the result, and the number of the last one
+  size_t done, total;   // points
+  /* Of the line */
+  double voltage_V, blocked[2]; // force or moment at rest and at the voltage
+  double x[3], f[3];            // the last places and forces, the newest first
+  size_t count;
+  double peak_at, peak; // NAN: none so far
+};
+
+static double value_at(const struct loading *l, size_t i)
+{
+  double from = l->settings->from[l->range].si, to = l->settings->to[l->range].si;
+  double steps = l->settings->steps.si;
+  return from + (to - from) * (double)i / steps;
+}
+
+/* Place of the body and what holds or pushes it; NAN without one. */
+static void look_at_body(const struct loading *l, const struct dea_observation *seen, double value,
+                         double out[VALUES])
+{
+  int component = l->control.component;
+  for (int k = 0; k < VALUES; k++) {
+    out[k] = NAN;
+  }
+  if (l->body != DEA_LAYOUT_NONE) {
+    const double *body = seen->body[l->body];
+    out[component < 3 ? AT_SHIFT : AT_TURN] = body[DEA_OBSERVED_X + component];
+    out[component < 3 ? OF_FORCE : OF_MOMENT] = body[DEA_OBSERVED_FORCE_X + component];
+  }
+  if (l->range == FORCE) {
+    out[OF_FORCE] = value;
+  }
+  if (l->range == PRESSURE) {
+    out[AT_PRESSURE] = value;
+  }
+}
+
+/* A maximum of the force on the way out, by a parabola, and a leap of a body that is pushed. */
+static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, double x, double f)
+{
+  memmove(l->x + 1, l->x, 2 * sizeof *l->x);
+  memmove(l->f + 1, l->f, 2 * sizeof *l->f);
+  l->x[0] = x;
+  l->f[0] = f;
+  if (++l->count < 3) {
+    return DEA_OK;
+  }
+  double step[2] = {l->x[1] - l->x[2], l->x[0] - l->x[1]};
+  double slope[2] = {(l->f[1] - l->f[2]) / step[0], (l->f[0] - l->f[1]) / step[1]};
+  if (l->range == SHIFT && !back && isnan(l->peak) && slope[0] > 0 && slope[1] < 0) {
+    double bend = (slope[1] - slope[0]) / (step[0] + step[1]);
+    double rise = slope[0] + bend * step[0]; // at the middle one
+    l->peak_at = l->x[1] - 0.5 * rise / bend;
+    l->peak = l->f[1] - 0.25 * rise * rise / bend;
+  }
+  if (l->range == FORCE && fabs(step[1]) > 5 * fabs(step[0]) && step[0] != 0) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "loading: at %.4g kV the body leaps from %.4g to %.4g mm between %.4g "
+                           "and %.4g mN: it snaps through, or the steps are too long",
+                           1e-3 * l->voltage_V, 1e3 * l->x[1], 1e3 * l->x[0], 1e3 * l->f[1],
+                           1e3 * l->f[0]);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_monitors(struct dea_context *ctx, struct loading *l,
+                               const struct dea_observation *seen)
+{
+  const struct dea_layout *layout = l->result->device->layout;
+  for (size_t i = 0; i < seen->monitor_count; i++) {
+    struct dea_result_table_value row[COUNT(monitor_columns)] = {
+        {.number = l->voltage_V}, {.number = (double)l->point}, {.text = layout->monitors[i].name}};
+    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
+      row[3 + k].number = seen->monitor[i][k];
+    }
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[MONITORS]], row));
+  }
+  return DEA_OK;
+}
+
+/* The control goes to a value; a row of it. */
+static dea_status take(struct dea_context *ctx, struct loading *l, double value, bool back)
+{
+  struct dea_load_point at;
+  struct dea_observation seen;
+  double v[VALUES];
+  char what[DEA_NAME_SIZE + 16];
+  if (dea_interrupted(ctx)) {
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", l->point);
+  }
+  DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, l->scale * value, &at));
+  DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
+  look_at_body(l, &seen, value, v);
+  l->point++;
+  const struct dea_result_table_value row[] = {{.number = l->voltage_V},
+                                               {.number = (double)l->point},
+                                               {.number = back},
+                                               {.number = v[AT_SHIFT]},
+                                               {.number = v[AT_TURN]},
+                                               {.number = v[OF_FORCE]},
+                                               {.number = v[OF_MOMENT]},
+                                               {.number = v[AT_PRESSURE]},
+                                               {.number = at.highest_z_m},
+                                               {.number = at.lowest_z_m},
+                                               {.number = at.energy_J},
+                                               {.number = at.min_tension_N_per_m},
+                                               {.number = at.unstable_modes}};
+  _Static_assert(COUNT(row) == COUNT(point_columns), "a value a column");
+  DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[POINTS]], row));
+  DEA_TRY(ctx, add_monitors(ctx, l, &seen));
+  DEA_TRY(ctx, dea_curve_add_point(ctx, &l->result->curves[l->curve], &at));
+  DEA_TRY(ctx, watch(ctx, l, back, v[AT_SHIFT], v[OF_FORCE]));
+  snprintf(what, sizeof what, "%s %s", l->type->name, study_name);
+  dea_progress(ctx, what, ++l->done, l->total);
+  return DEA_OK;
+}
+
+/* Holds the body at 0 at rest and at the voltage, each with what that takes. */
+static dea_status block(struct dea_context *ctx, struct loading *l)
+{
+  struct dea_load_point at;
+  struct dea_observation seen;
+  for (int i = 0; i < 2; i++) {
+    double v[VALUES];
+    if (i == 0) {
+      DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, 0, &at));
+    } else {
+      DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
+    }
+    DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
+    look_at_body(l, &seen, 0, v);
+    l->blocked[i] = v[l->range == SHIFT ? OF_FORCE : OF_MOMENT];
+  }
+  return DEA_OK;
+}
+
+static dea_status go(struct dea_context *ctx, struct loading *l)
+{
+  size_t steps = (size_t)l->settings->steps.si;
+  struct dea_load_point at;
+  DEA_TRY(ctx, dea_model_create(ctx, l->type, l->result->design, l->result->device, &l->model));
+  if (l->control.kind == DEA_CONTROL_PLACE) {
+    DEA_TRY(ctx, block(ctx, l));
+  } else {
+    DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
+  }
+  for (size_t i = 0; i <= steps; i++) {
+    DEA_TRY(ctx, take(ctx, l, value_at(l, i), false));
+  }
+  for (size_t i = l->settings->back.value == 1 ? steps : 0; i-- > 0;) {
+    DEA_TRY(ctx, take(ctx, l, value_at(l, i), true));
+  }
+  return DEA_OK;
+}
+
+/* A line with its row; its status is why it stopped. */
+static dea_status follow(struct dea_context *ctx, struct loading *l, double voltage_V)
+{
+  size_t before = l->point;
+  char why[256] = "";
+  l->model = NULL;
+  l->voltage_V = voltage_V;
+  l->blocked[0] = l->blocked[1] = l->peak = l->peak_at = NAN;
+  l->count = 0;
+  dea_status stopped = go(ctx, l);
+  if (l->model != NULL) {
+    l->type->destroy(ctx, l->model);
+  }
+  if (stopped != DEA_OK) {
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  }
+  double blocked = l->blocked[1] - l->blocked[0];
+  const struct dea_result_table_value row[] = {{.number = voltage_V},
+                                               {.number = l->range == SHIFT ? blocked : NAN},
+                                               {.number = l->range == TURN ? blocked : NAN},
+                                               {.number = l->peak},
+                                               {.number = l->peak_at},
+                                               {.number = (double)(l->point - before)},
+                                               {.number = stopped == DEA_OK},
+                                               {.text = why}};
+  _Static_assert(COUNT(row) == COUNT(line_columns), "a value a column");
+  dea_status status = dea_result_table_add_row(ctx, &l->result->tables[l->table[LINES]], row);
+  if (status != DEA_OK) {
+    return status;
+  }
+  return stopped == DEA_OK ? DEA_OK
+                           : dea_fail(ctx, stopped, "the line at %.4g kV has %zu points: %s",
+                                      1e-3 * voltage_V, l->point - before, why);
+}
+
+static dea_status follow_all(struct dea_context *ctx, struct loading *l, const double *voltages_V,
+                             size_t count)
+{
+  dea_status first = DEA_OK;
+  char why[256] = "";
+  for (size_t i = 0; i < count; i++) {
+    dea_status status = follow(ctx, l, voltages_V[i]);
+    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+      return status;
+    }
+    if (status != DEA_OK && first == DEA_OK) {
+      first = status;
+      snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    }
+    dea_context_clear(ctx);
+  }
+  return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", why);
+}
+
+static void choose_control(struct loading *l)
+{
+  static const enum dea_control_kind kinds[RANGES] = {DEA_CONTROL_PLACE, DEA_CONTROL_PLACE,
+                                                      DEA_CONTROL_FORCE, DEA_CONTROL_PRESSURE};
+  const struct dea_layout *layout = l->result->device->layout;
+  l->body = l->settings->body.text[0] != '\0' ? dea_layout_find_body(layout, l->settings->body.text)
+                                              : DEA_LAYOUT_NONE;
+  l->scale = l->range == PRESSURE ? 1 / largest_Pa(layout) : 1;
+  l->control = (struct dea_control){kinds[l->range], l->body, l->settings->direction.value};
+}
+
+static dea_status add_tables(struct dea_context *ctx, struct loading *l)
+{
+  struct dea_curve *curve;
+  for (int k = 0; k < TABLES; k++) {
+    struct dea_result_table *table;
+    if (k == MONITORS && l->result->device->layout->monitor_count == 0) {
+      continue;
+    }
+    DEA_TRY(ctx, dea_result_add_table(ctx, l->result, &tables[k], l->type->name, 0, &table));
+    l->table[k] = (size_t)(table - l->result->tables);
+  }
+  DEA_TRY(ctx, dea_result_add_curve(ctx, l->result, l->type->name, study_name, &curve));
+  l->curve = (size_t)(curve - l->result->curves);
+  return DEA_OK;
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  (void)model; // none: each line starts from rest
+  const struct settings *settings = settings_of(result->design);
+  struct loading l = {
+      .type = type, .result = result, .settings = settings, .range = range_of(settings)};
+  double voltages_V[DEA_DESIGN_STOPS_MAX];
+  size_t count = dea_study_stops(result->design, settings->voltages_V, settings->voltage_count,
+                                 true, voltages_V);
+  if (type->move == NULL) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "model %s knows no bodies and pressures: no study '%s'", type->name,
+                           study_name);
+  }
+  choose_control(&l);
+  l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
+  DEA_TRY(ctx, add_tables(ctx, &l));
+  dea_status status = follow_all(ctx, &l, voltages_V, count);
+  DEA_TRY(ctx, dea_curve_end(ctx, &result->curves[l.curve], status));
+  return DEA_OK;
+}
+
+// Figure -----------------------------------------------------------------------------------------
+
+enum { LINES_SHOWN = 8, COLOURS = 6 };
+
+/* The two columns of the figure, and their words. */
+struct axes {
+  const char *x, *y, *x_label, *y_label;
+  double x_factor, y_factor;
+};
+
+static bool has(const struct dea_result_table *table, const char *key)
+{
+  for (size_t i = 0; i < table->row_count; i++) {
+    if (!isnan(dea_result_table_number(table, i, key, 0))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Of the two heights the larger one in size. */
+static const char *height_of(const struct dea_result_table *table)
+{
+  double high = 0, low = 0;
+  for (size_t i = 0; i < table->row_count; i++) {
+    high = fmax(high, dea_result_table_number(table, i, "highest_z_m", 0));
+    low = fmin(low, dea_result_table_number(table, i, "lowest_z_m", 0));
+  }
+  return high >= -low ? "highest_z_m" : "lowest_z_m";
+}
+
+static struct axes axes_of(const struct dea_result_table *table)
+{
+  static const char shift[] = "Displacement of the body (mm)", turn[] = "Turn of the body (deg)";
+  bool turns = has(table, "turn_rad"), shifts = has(table, "shift_m");
+  if (has(table, "pressure_Pa")) {
+    struct axes out = {"pressure_Pa", "shift_m", "Pressure (kPa)", shift, 1e-3, 1e3};
+    if (turns) {
+      out.y = "turn_rad";
+      out.y_label = turn;
+      out.y_factor = degrees;
+    } else if (!shifts) {
+      out.y = height_of(table);
+      out.y_label = "Height of the film (mm)";
+    }
+    return out;
+  }
+  return turns ? (struct axes){"turn_rad", "moment_N_m", turn, "Moment ({/Symbol m}N m)",
+                               degrees,    1e6}
+               : (struct axes){"shift_m", "force_N", shift, "Force {/:Italic F} (mN)", 1e3, 1e3};
+}
+
+/* End of the rows that are of one line and one way. */
+static size_t part_end(const struct dea_result_table *table, size_t first)
+{
+  static const char *const same[] = {"voltage_V", "back"};
+  size_t end = first;
+  bool goes_on = true;
+  while (end < table->row_count && goes_on) {
+    for (size_t k = 0; k < COUNT(same); k++) {
+      goes_on = goes_on && dea_result_table_number(table, end, same[k], 0) ==
+                               dea_result_table_number(table, first, same[k], 0);
+    }
+    end += goes_on;
+  }
+  return end;
+}
+
+/* Rows [first, end) as the number-th line; one back joins the turning point to its rows. */
+static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct dea_result_table *table, const struct axes *axes,
+                           size_t number, size_t first, size_t end)
+{
+  static const enum dea_colour order[COLOURS] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN,
+                                                 DEA_PURPLE, DEA_ORANGE,     DEA_BLACK};
+  bool back = dea_result_table_number(table, first, "back", 0) == 1;
+  struct dea_series *series;
+  first -= back && first > 0;
+  size_t count = end - first;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->style = back ? DEA_DASHED : DEA_LINE_MARKED;
+  series->colour = order[number % COLOURS];
+  series->marker = (int)(number % COLOURS);
+  if (!back) {
+    snprintf(series->title, sizeof series->title, "%.4g kV",
+             1e-3 * dea_result_table_number(table, first, "voltage_V", 0));
+  }
+  for (size_t i = 0; i < count; i++) {
+    series->values[i] = axes->x_factor * dea_result_table_number(table, first + i, axes->x, 0);
+    series->values[count + i] =
+        axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0);
+  }
+  return DEA_OK;
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  const struct dea_result_table *table = NULL;
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX), number = 0;
+  for (size_t m = 0; m < count && table == NULL; m++) {
+    table = dea_result_find_table(result, models[m], study_name, tables[POINTS].name);
+  }
+  if (table == NULL || table->row_count == 0) {
+    return DEA_OK;
+  }
+  const struct axes axes = axes_of(table);
+  for (size_t first = 0; first < table->row_count && number <= LINES_SHOWN;) {
+    size_t end = part_end(table, first);
+    bool back = dea_result_table_number(table, first, "back", 0) == 1;
+    number += !back;
+    if (number <= LINES_SHOWN) {
+      DEA_TRY(ctx, add_line(ctx, panel, table, &axes, number - 1, first, end));
+    }
+    first = end;
+  }
+  snprintf(panel->x_label, sizeof panel->x_label, "%s", axes.x_label);
+  snprintf(panel->y_label, sizeof panel->y_label, "%s", axes.y_label);
+  dea_panel_place_key(panel);
+  return DEA_OK;
+}
+
+static const struct dea_figure figures[] = {
+    {
+        .name = "loading",
+        .study = study_name,
+        .caption = "force that holds or pushes a body against its displacement, or displacement "
+                   "against the pressure, for each voltage; dashed: the way back",
+        .build = build,
+    },
+};
+
+// The study --------------------------------------------------------------------------------------
+
+const struct dea_study dea_study_loading = {
+    .name = study_name,
+    .keys = &section,
+    .asked = asked,
+    .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
+    .own_models = true,
+    .run = run,
+    .figures = figures,
+    .figure_count = COUNT(figures),
+};

@@ -1,0 +1,251 @@
+/* Study "loading" with model 3d: the cone against a table by membrane theory, and against itself
+ * by its energy. */
+// ctest: solid
+#include "design_text.h"
+#include "material/plane.h"
+#include "study/study.h"
+
+#include "layout_device.h"
+
+/* Force [mN] on the hub pushed out by shift_mm at 0, 3 and 5 kV, integrated by another program. */
+static const struct {
+  double shift_mm, force_mN[3];
+} table[] = {{0.5, {53.043, 45.764, 32.823}},    {1, {106.540, 91.994, 66.131}},
+             {2, {216.559, 187.545, 135.930}},   {4, {456.943, 399.248, 296.161}},
+             {6, {731.204, 644.913, 489.486}},   {8, {1040.752, 926.008, 717.192}},
+             {10, {1389.273, 1246.665, 984.208}}};
+
+/* The study's result for a device, whose design is a disc's in all but how it is computed. */
+struct ran {
+  struct dea_design *design;
+  struct dea_result *result;
+  const struct dea_result_table *points, *lines;
+};
+
+static struct ran run(const struct dea_device *device, const char *loading, dea_status wanted)
+{
+  static const char *const names[] = {"loading"};
+  const struct dea_override sets[] = {{"compute.solid", "{film: membrane}"},
+                                      {"compute.loading", loading}};
+  struct ran r;
+  assert_int_equal(dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets,
+                                          2, &r.design),
+                   DEA_OK);
+  assert_int_equal(dea_result_create(ctx, r.design, device, &r.result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, 1, r.result), wanted);
+  r.points = dea_result_find_table(r.result, "3d", "loading", "points");
+  r.lines = dea_result_find_table(r.result, "3d", "loading", "lines");
+  assert_non_null(r.points);
+  assert_non_null(r.lines);
+  return r;
+}
+
+static void end(struct ran *r, struct dea_device *device)
+{
+  dea_result_destroy(ctx, r->result);
+  dea_design_destroy(ctx, r->design);
+  dea_device_destroy(ctx, device);
+}
+
+static double point(const struct ran *r, size_t row, const char *key)
+{
+  return dea_result_table_number(r->points, row, key, 0);
+}
+
+static void test_cone(void **state)
+{
+  enum { STEPS = 20, ROWS = STEPS + 1 };
+  (void)state;
+  struct dea_device *device = cone_new();
+  struct ran r = run(
+      device, "{body: hub, from: 0 mm, to: 10 mm, steps: 20, voltage: [0 kV, 3 kV, 5 kV]}", DEA_OK);
+  assert_int_equal(r.points->row_count, 3 * ROWS);
+  assert_true(dea_result_find(r.result, "3d", "loading")->complete);
+  for (size_t v = 0; v < 3; v++) {
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+      size_t row = v * ROWS + (size_t)(2 * table[i].shift_mm + 0.5);
+      assert_close(1e3 * point(&r, row, "shift_m"), table[i].shift_mm, 1e-12, 0);
+      assert_close(1e3 * point(&r, row, "force_N"), table[i].force_mN[v], 1e-3, 0);
+    }
+    double work = 0; // of the force along the way, by Simpson's rule
+    for (size_t i = 0; i <= STEPS; i++) {
+      double weight = i == 0 || i == STEPS ? 1 : i % 2 == 1 ? 4 : 2;
+      work += weight / 3 * 0.5e-3 * point(&r, v * ROWS + i, "force_N");
+    }
+    double energy = point(&r, v * ROWS + STEPS, "energy_J") - point(&r, v * ROWS, "energy_J");
+    assert_close(work, energy, 1e-6, 0);
+    assert_close(dea_result_table_number(r.lines, v, "blocked_force_N", 0), 0, 0, 1e-9); // flat
+    assert_close(dea_result_table_number(r.lines, v, "complete", 0), 1, 0, 0);
+  }
+  end(&r, device);
+}
+
+/* Place, force and charge with the hub at a shift and a voltage. */
+static void look(struct dea_model *model, double shift_m, double voltage_V, double out[2])
+{
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_control hub = {DEA_CONTROL_PLACE, 0, 2};
+  struct dea_load_point at;
+  struct dea_observation seen;
+  assert_int_equal(type->solve(ctx, model, voltage_V, &at), DEA_OK);
+  assert_int_equal(type->move(ctx, model, &hub, shift_m, &at), DEA_OK);
+  assert_int_equal(type->observe(ctx, model, &seen), DEA_OK);
+  out[0] = seen.body[0][DEA_OBSERVED_FORCE_Z];
+  out[1] = seen.channel[1].charge_C;
+}
+
+/* Of differences with steps h, h/2, h/4 whose errors are in h^2 and h^4. */
+static double extrapolated(const double by[3])
+{
+  double fourth[2] = {(4 * by[1] - by[0]) / 3, (4 * by[2] - by[1]) / 3};
+  return (16 * fourth[1] - fourth[0]) / 15;
+}
+
+/* dF/dV = - d^2 W/dx dV = - dQ/dx: two outputs that know nothing of each other. F holds the hub. */
+static void test_force_and_charge(void **state)
+{
+  (void)state;
+  struct dea_device *device = cone_new();
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
+  struct dea_model *model;
+  double by_V[3], by_x[3];
+  assert_int_equal(dea_model_find("3d")->create(ctx, device, &settings, &model), DEA_OK);
+  for (int i = 0; i < 3; i++) { // central differences, to the sixth order below
+    double dV = 1600 >> i, dx = 1600e-6 / (1 << i), low[2], high[2];
+    look(model, 2e-3, 3e3 - dV, low);
+    look(model, 2e-3, 3e3 + dV, high);
+    by_V[i] = (high[0] - low[0]) / (2 * dV);
+    look(model, 2e-3 - dx, 3e3, low);
+    look(model, 2e-3 + dx, 3e3, high);
+    by_x[i] = (high[1] - low[1]) / (2 * dx);
+  }
+  assert_close(extrapolated(by_V), -extrapolated(by_x), 1e-6, 0);
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* The hub hung with 20 g: shift [mm] at voltages. */
+static const struct {
+  double kV, shift_mm;
+} hung[] = {{0, 1.8179}, {2, 1.9290}, {3, 2.0871}, {4, 2.3529}, {5, 2.7982}};
+static const double rounded = 0.6e-4; // of the table
+
+static void test_hung(void **state)
+{
+  (void)state;
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
+  struct dea_model *model;
+  l->bodies[0].free = 4;
+  l->bodies[0].mass_kg = 20e-3;
+  l->gravity_m_per_s2[2] = 9.80665;
+  l->plies[0].material.density_kg_per_m3 = 1e-3; // the table knows no weight of the film
+  assert_int_equal(dea_model_find("3d")->create(ctx, device, &settings, &model), DEA_OK);
+  for (size_t i = 0; i < sizeof hung / sizeof hung[0]; i++) {
+    struct dea_load_point at;
+    struct dea_observation seen;
+    assert_int_equal(dea_model_find("3d")->solve(ctx, model, 1e3 * hung[i].kV, &at), DEA_OK);
+    assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
+    assert_close(1e3 * seen.body[0][DEA_OBSERVED_Z], hung[i].shift_mm, 1e-4, rounded);
+  }
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* The same by a force that is raised at each voltage. */
+static void test_pushed(void **state)
+{
+  (void)state;
+  struct dea_device *device = cone_new();
+  device->layout->bodies[0].free = 4;
+  struct ran r = run(device,
+                     "{body: hub, force_from: 0 mN, force_to: 196.133 mN, steps: 2,"
+                     " voltage: [0 kV, 2 kV, 3 kV, 4 kV, 5 kV]}",
+                     DEA_OK);
+  for (size_t i = 0; i < sizeof hung / sizeof hung[0]; i++) {
+    assert_close(1e3 * point(&r, 3 * i + 2, "shift_m"), hung[i].shift_mm, 1e-4, rounded);
+    assert_close(point(&r, 3 * i + 2, "force_N"), 0.196133, 1e-12, 0);
+  }
+  end(&r, device);
+}
+
+/* A spring of a table that pushes the hub on from 2 mm to 4 mm: at its points the force is that of
+ * the cone and the table; a body that is pushed leaps past the fall of the force. */
+static void test_bistable(void **state)
+{
+  static const double at[] = {0, 1e-3, 2e-3, 4e-3, 6e-3}, pull[] = {0, 0.2, 0.1, -0.3, -0.4};
+  (void)state;
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  l->bodies[0].free = 4;
+  l->springs[l->spring_count++] =
+      (struct dea_layout_spring){.component = 2, .count = 5, .at = at, .force = pull};
+  struct ran r =
+      run(device, "{body: hub, from: 0 mm, to: 6 mm, steps: 12, voltage: [3 kV]}", DEA_OK);
+  for (size_t i = 0; i < 5; i++) {
+    for (size_t k = 1; k < 5; k++) {
+      if (at[k] == 1e-3 * table[i].shift_mm) {
+        size_t row = (size_t)(2 * table[i].shift_mm + 0.5);
+        assert_close(point(&r, row, "force_N"), 1e-3 * table[i].force_mN[1] + pull[k], 1e-3, 0);
+      }
+    }
+  }
+  double peak = dea_result_table_number(r.lines, 0, "peak_force_N", 0);
+  double peak_at = dea_result_table_number(r.lines, 0, "peak_shift_m", 0);
+  assert_true(peak > point(&r, 3, "force_N") && peak < 0.32 && peak_at > 1e-3 && peak_at < 2e-3);
+  dea_result_destroy(ctx, r.result);
+  dea_design_destroy(ctx, r.design);
+  r = run(device,
+          "{body: hub, force_from: 200 mN, force_to: 360 mN, steps: 8, back: yes, voltage: [3 kV]}",
+          DEA_OK);
+  assert_int_equal(r.points->row_count, 17);
+  for (size_t i = 0; i < 17; i++) { // it leaps between 300 and 320 mN, and stays there
+    bool before = i <= 5;
+    assert_true(point(&r, i, "force_N") < peak || i > 5);
+    assert_true(before ? point(&r, i, "shift_m") < peak_at : point(&r, i, "shift_m") > 4e-3);
+    assert_close(point(&r, i, "unstable_modes"), 0, 0, 0);
+  }
+  assert_non_null(find_finding(ctx, DEA_NOTE, "leaps from"));
+  end(&r, device);
+}
+
+/* A round film that pressure bulges a little: p a^2/(4 T) in the middle, T = h (sigma - eps E^2).
+ */
+static void test_diaphragm(void **state)
+{
+  static const double a = 20e-3, l = 1.2;
+  (void)state;
+  struct dea_device *device = device_new();
+  struct dea_layout *layout = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, a, false, nowhere);
+  add_film(device, 0, l, l);
+  add_electrode(device, 0, false, 0, 0);
+  add_electrode(device, 0, true, 0, 1);
+  layout->supports[layout->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  layout->pressures[layout->pressure_count++] = (struct dea_layout_pressure){.pressure_Pa = 5};
+  struct ran r = run(
+      device, "{pressure_from: 0 Pa, pressure_to: 20 Pa, steps: 2, voltage: [0 kV, 4 kV]}", DEA_OK);
+  const struct dea_material film = silicone();
+  struct dea_plane plane;
+  assert_int_equal(dea_plane_elastic(&film, l, l, &plane), DEA_OK);
+  for (size_t row = 0; row < 6; row++) {
+    double h = 100e-6 / (l * l), E = (row < 3 ? 0 : 4e3) / h, p = 10.0 * (double)(row % 3);
+    double tension = h * (l * plane.s1 - 2.8 * DEA_EPSILON_0 * E * E);
+    assert_close(point(&r, row, "pressure_Pa"), p, 1e-12, 0);
+    assert_close(point(&r, row, "highest_z_m"), p * a * a / (4 * tension), 3e-4, 1e-12);
+    assert_true(isnan(point(&r, row, "shift_m")));
+  }
+  end(&r, device);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cone),     cmocka_unit_test(test_force_and_charge),
+      cmocka_unit_test(test_hung),     cmocka_unit_test(test_pushed),
+      cmocka_unit_test(test_bistable), cmocka_unit_test(test_diaphragm),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
