@@ -3,6 +3,7 @@
 #include "model/make.h"
 #include "model/solid/actuator/constituent_of_material.h"
 #include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
@@ -85,10 +86,23 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   return DEA_OK;
 }
 
-static bool needs_mass(const struct dea_layout *l)
+static bool has_weight(const struct dea_layout *l)
 {
   const double *g = l->gravity_m_per_s2;
   return g[0] != 0 || g[1] != 0 || g[2] != 0;
+}
+
+static dea_status check_densities(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (!(l->plies[i].material.density_kg_per_m3 > 0)) {
+      return dea_fail(ctx, DEA_E_DESIGN,
+                      "weight and inertia need the density of the material '%s' "
+                      "(materials[].density)",
+                      l->plies[i].material.name);
+    }
+  }
+  return DEA_OK;
 }
 
 static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *model)
@@ -100,10 +114,9 @@ static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *m
     if (model->film == DEA_LAYOUT_NONE && model->films[i].material != NULL) {
       model->film = i;
     }
-    if (needs_mass(l) && !(l->plies[i].material.density_kg_per_m3 > 0)) {
-      return dea_fail(ctx, DEA_E_DESIGN, "weight needs the density of the material '%s'",
-                      l->plies[i].material.name);
-    }
+  }
+  if (has_weight(l)) {
+    DEA_TRY(ctx, check_densities(ctx, l));
   }
   model->film = model->film == DEA_LAYOUT_NONE ? 0 : model->film;
   return DEA_OK;
@@ -311,7 +324,7 @@ static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
 static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
 {
   size_t count = model->mesh.grid->node_count;
-  if (!needs_mass(model->layout)) {
+  if (!has_weight(model->layout)) {
     return DEA_OK;
   }
   double *fall = dea_alloc(ctx, 3 * count, sizeof *fall);
@@ -709,6 +722,20 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status modes(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_load_point *at, size_t count,
+                        struct dea_load_point *points, struct dea_field_mesh **shapes)
+{
+  const struct dea_motions motions = {.solid = model->solid, .grid = model->mesh.grid};
+  *shapes = NULL;
+  DEA_TRY(ctx, check_densities(ctx, model->layout));
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                               "model 3d: frequencies are those in vacuo; the air that moves with "
+                               "a film makes it slower"));
+  DEA_TRY(ctx, dea_motions_modes(ctx, &motions, (int)model->film, at, count, points, shapes));
+  return DEA_OK;
+}
+
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
@@ -735,6 +762,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .solve = solve,
     .observe = observe,
     .move = move,
+    .modes = modes,
     .fields = fields,
     .size = size,
 };

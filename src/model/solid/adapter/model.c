@@ -395,6 +395,7 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
                               .centre = model->centre,
                               .centre_twin = model->centre_twin,
                               .tip = model->tip,
+                              .has_centre = true,
                               .has_tip = model->device->fibre_count > 0};
   dea_motions_set_branches(out, model->device);
   return DEA_OK;

@@ -48,7 +48,9 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_motions 
     *p = *at;
     p->mode = (double)(k + 1);
     p->frequency_Hz = copysign(sqrt(fabs(square[k])), square[k]) / (2 * pi);
-    p->mode_centre = 0.5 * (v[3 * m->centre + 2] + v[3 * m->centre_twin + 2]) / largest(v, dofs);
+    if (m->has_centre) {
+      p->mode_centre = 0.5 * (v[3 * m->centre + 2] + v[3 * m->centre_twin + 2]) / largest(v, dofs);
+    }
     DEA_TRY(ctx, out_of_plane(ctx, m, v, work, &p->mode_out_of_plane));
   }
   return DEA_OK;

@@ -12,7 +12,7 @@ struct dea_motions {
   const struct dea_grid *grid;
   size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
   size_t tip;
-  bool has_tip;
+  bool has_centre, has_tip;
   bool viscous; // a constituent has branches
   struct dea_branches branches[DEA_CONSTITUENT_COUNT];
 };

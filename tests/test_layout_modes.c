@@ -1,0 +1,109 @@
+/* Vibrations of devices of any layout against closed forms. */
+// ctest: solid
+#include "material/plane.h"
+#include "model/model.h"
+
+#include "layout_device.h"
+
+static const double pi = 3.14159265358979323846;
+
+static struct dea_model *model_of(const struct dea_device *device)
+{
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1.5};
+  struct dea_model *model;
+  assert_int_equal(dea_model_find("3d")->create(ctx, device, &settings, &model), DEA_OK);
+  return model;
+}
+
+/* The lowest modes at a voltage. */
+static void find_modes(struct dea_model *model, double voltage_V, size_t count,
+                       struct dea_load_point *out)
+{
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_load_point at;
+  struct dea_field_mesh *shapes;
+  assert_int_equal(type->solve(ctx, model, voltage_V, &at), DEA_OK);
+  assert_int_equal(type->modes(ctx, model, &at, count, out, &shapes), DEA_OK);
+  assert_non_null(dea_field_mesh_find(shapes, "mode_1"));
+  dea_field_mesh_destroy(ctx, shapes);
+}
+
+/* True stress of the film at its pre-stretch: what equal stretches take. */
+static double pre_stress(double l)
+{
+  const struct dea_material film = silicone();
+  struct dea_plane plane;
+  assert_int_equal(dea_plane_elastic(&film, l, l, &plane), DEA_OK);
+  return l * plane.s1;
+}
+
+/* A film in a rectangular frame, with electrodes all over: it stays flat and as it is, and the
+ * field takes its stress from that of the pre-stretch: f = c/2 sqrt(m^2/a^2 + n^2/b^2), c^2 =
+ * (sigma - eps E^2)/rho. */
+static void test_rectangle(void **state)
+{
+  enum { MODES = 4, ALL = 10 };
+  static const int waves[MODES][2] = {{1, 1}, {2, 1}, {3, 1}, {1, 2}}; // of sides as 2 to 1.1
+  static const double l = 1.2, a = 20e-3, b = 11e-3;
+  (void)state;
+  struct dea_device *device = device_new();
+  struct dea_layout *layout = device->layout;
+  size_t film = add_rectangle(device, "film", 0, 0, a, b);
+  add_film(device, film, l, l);
+  add_electrode(device, 0, false, film, 0);
+  add_electrode(device, 0, true, film, 1);
+  layout->supports[layout->support_count++] = (struct dea_layout_support){
+      .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  struct dea_model *model = model_of(device);
+  for (double V = 0; V < 6e3; V += 2.5e3) {
+    struct dea_load_point points[ALL];
+    double E = V / (100e-6 / (l * l)), stress = pre_stress(l) - 2.8 * DEA_EPSILON_0 * E * E;
+    size_t k = 0;
+    find_modes(model, V, ALL, points);
+    for (size_t i = 0; i < ALL && k < MODES; i++) {
+      if (points[i].mode_out_of_plane > 0.5) { // others are in the plane
+        double wanted = 0.5 * sqrt(stress / 1080) * hypot(waves[k][0] / a, waves[k][1] / b);
+        assert_close(points[i].frequency_Hz, wanted, 2e-4, 0);
+        assert_close(points[i].mode_out_of_plane, 1, 1e-6, 0);
+        assert_true(isnan(points[i].mode_centre));
+        k++;
+      }
+    }
+    assert_int_equal(k, MODES);
+  }
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* A heavy hub on a ring of film: its stiffness is 2 pi T/ln(b/a) with the tension T of the film,
+ * which has hardly a mass beside it. */
+static void test_hub(void **state)
+{
+  static const double mass_kg = 20e-3;
+  (void)state;
+  struct dea_device *device = cone_new();
+  device->layout->bodies[0].free = 4;
+  device->layout->bodies[0].mass_kg = mass_kg;
+  device->layout->plies[0].material.density_kg_per_m3 = 1e-3;
+  struct dea_model *model = model_of(device);
+  struct dea_load_point mode;
+  for (double V = 0; V < 6e3; V += 2.5e3) {
+    double h = 100e-6 / 1.44, E = V / h;
+    double tension = h * (pre_stress(1.2) - 2.8 * DEA_EPSILON_0 * E * E);
+    double wanted = sqrt(2 * pi * tension / log(4) / mass_kg) / (2 * pi);
+    find_modes(model, V, 1, &mode);
+    assert_close(mode.frequency_Hz, wanted, 2e-5, 0);
+    assert_close(mode.mode_out_of_plane, 1, 1e-6, 0);
+  }
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_rectangle),
+      cmocka_unit_test(test_hub),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
