@@ -107,24 +107,56 @@ static void test_schema(void **state)
   assert_int_equal(command_run("schema --material"), 0);
   assert_contains(command_out, "laws[].parameters");
   json_t *json = run_json("schema --json", 0);
-  json_t *film = json_object_get(json_object_get(json, "properties"), "film");
+  json_t *disc = json_object_get(json, "else"), *general = json_object_get(json, "then");
+  assert_non_null(json_object_get(json_object_get(general, "properties"), "plies"));
+  json_t *film = json_object_get(json_object_get(disc, "properties"), "film");
   assert_non_null(json_object_get(json_object_get(film, "properties"), "thickness"));
   assert_true(json_is_false(json_object_get(film, "additionalProperties")));
   json_decref(json);
 }
 
-static void test_reference_is_that_of_the_table(void **state)
+/* A page has the table that a command prints. */
+static void check_page(const char *page, const char *command)
 {
-  (void)state;
   static char document[COMMAND_TEXT_MAX];
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/design-file.md", "rb");
+  FILE *file = fopen(page, "rb");
   assert_non_null(file);
   document[fread(document, 1, sizeof document - 1, file)] = '\0';
   fclose(file);
-  assert_int_equal(command_run("schema --markdown"), 0);
+  assert_int_equal(command_run(command), 0);
   assert_contains(document, command_out);
-  assert_int_equal(command_run("schema --markdown --material"), 0);
-  assert_contains(document, command_out);
+}
+
+static void test_reference_is_that_of_the_table(void **state)
+{
+  (void)state;
+  check_page(DEA_SOURCE_DIR "/docs/design-file.md", "schema --markdown");
+  check_page(DEA_SOURCE_DIR "/docs/design-file.md", "schema --markdown --material");
+  check_page(DEA_SOURCE_DIR "/docs/devices.md", "schema --markdown --general");
+}
+
+/* What is told and drawn of a design of the general form. */
+static void test_layout(void **state)
+{
+  (void)state;
+  json_t *json = run_json("check @/examples/devices/from-dxf.yaml --svg drawing.svg --json", 0);
+  json_t *derived = json_object_get(json, "derived");
+  json_t *area = json_object_get(derived, "area_m2");
+  assert_close(json_real_value(json_object_get(area, "stiffeners")), 4 * 1e-3 * 18e-3, 1e-11, 0);
+  assert_close(json_real_value(json_object_get(area, "hub")), acos(-1) * 2.5e-3 * 2.5e-3, 1e-11, 0);
+  assert_int_equal(
+      json_integer_value(json_object_get(json_object_get(derived, "symmetry"), "mirrors")), 2);
+  json_decref(json);
+  static char svg[COMMAND_TEXT_MAX];
+  command_read("drawing.svg", svg);
+  assert_contains(svg, ">stiffeners, 50 ");
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml --svg disc.svg"), 0);
+  assert_int_equal(
+      command_run("check @/examples/devices/two-electrodes.yaml --set compute.modal.count=3"), 3);
+  assert_contains(command_err, "the study 'modal' needs a disc in a round frame");
+  assert_int_equal(command_run("run @/examples/devices/two-electrodes.yaml -o x -m lumped"), 3);
+  assert_contains(command_err, "this needs a disc in a round frame");
+  assert_int_equal(command_run("fab @/examples/devices/two-electrodes.yaml -o x"), 3);
 }
 
 static void test_materials(void **state)
@@ -155,6 +187,7 @@ int main(void)
       cmocka_unit_test(test_check_as_json),
       cmocka_unit_test(test_schema),
       cmocka_unit_test(test_reference_is_that_of_the_table),
+      cmocka_unit_test(test_layout),
       cmocka_unit_test(test_materials),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

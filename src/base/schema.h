@@ -128,6 +128,14 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
 /* JSON Schema (draft 2020-12) of a record as text, ended by a newline. */
 dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,
                                  const char *title, struct dea_text *out);
+/* The same of a file of two forms, told apart by a key of the first one. */
+struct dea_schema_forms {
+  const char *key;
+  const struct dea_record *with, *without;
+};
+dea_status dea_schema_print_forms_json(struct dea_context *ctx,
+                                       const struct dea_schema_forms *forms, const char *title,
+                                       struct dea_text *out);
 /* The same as a table for people: plain text for a terminal, or Markdown. */
 void dea_schema_print_text(const struct dea_record *record, struct dea_text *out);
 void dea_schema_print_markdown(const struct dea_record *record, struct dea_text *out);

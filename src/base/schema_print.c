@@ -322,12 +322,12 @@ static json_t *record_json(const struct dea_record *record)
   return json;
 }
 
-dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,
-                                 const char *title, struct dea_text *out)
+/* Takes the body. */
+static dea_status print_json(struct dea_context *ctx, json_t *body, const char *title,
+                             struct dea_text *out)
 {
   json_t *json = json_pack("{s:s, s:s}", "$schema", "https://json-schema.org/draft/2020-12/schema",
                            "title", title);
-  json_t *body = record_json(record);
   char *text = NULL;
   if (json != NULL && json_object_update(json, body) == 0) {
     text = json_dumps(json, JSON_INDENT(2));
@@ -340,4 +340,20 @@ dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_recor
   dea_text_add(out, "%s\n", text);
   free(text);
   return out->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+dea_status dea_schema_print_json(struct dea_context *ctx, const struct dea_record *record,
+                                 const char *title, struct dea_text *out)
+{
+  return print_json(ctx, record_json(record), title, out);
+}
+
+dea_status dea_schema_print_forms_json(struct dea_context *ctx,
+                                       const struct dea_schema_forms *forms, const char *title,
+                                       struct dea_text *out)
+{
+  json_t *body =
+      json_pack("{s:s, s:{s:[s]}, s:o, s:o}", "type", "object", "if", "required", forms->key,
+                "then", record_json(forms->with), "else", record_json(forms->without));
+  return print_json(ctx, body, title, out);
 }

@@ -1,16 +1,19 @@
 #include "cli/models.h"
 
 #include "base/text.h"
+#include "base/write_file.h"
 #include "cli/print_layout.h"
 #include "device/device.h"
+#include "output/layout_svg.h"
 #include "study/design_file.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct request {
-  const char *design;
+  const char *design, *svg;
   struct cli_overrides overrides;
   bool json;
 };
@@ -182,6 +185,18 @@ static void print_json(const struct dea_cli *cli, const char *file, const struct
   cli_print_json(json);
 }
 
+/* The drawing of a device into a file. */
+static dea_status write_drawing(struct dea_cli *cli, const char *file,
+                                const struct dea_device *device)
+{
+  struct dea_text out = {.ctx = cli->ctx};
+  dea_layout_svg(device->layout, 0, &out);
+  dea_status status =
+      out.failed ? DEA_E_MEMORY : dea_file_write(cli->ctx, file, dea_text_get(&out), out.length);
+  dea_text_free(&out);
+  return status;
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
@@ -193,8 +208,13 @@ static int run(struct dea_cli *cli, void *user)
     dea_status known = cli_models_check(cli, design);
     status = dea_device_build(cli->ctx, design, &device);
     status = status != DEA_OK ? status : known;
+    known = dea_study_check(cli->ctx, NULL, 0, design);
+    status = status != DEA_OK ? status : known;
     known = cli_variants_check(cli, design);
     status = status != DEA_OK ? status : known;
+  }
+  if (request->svg != NULL && status == DEA_OK) {
+    status = write_drawing(cli, request->svg, device);
   }
   if (request->json) {
     print_json(cli, request->design, design, device);
@@ -211,6 +231,7 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_SET_ROW(0, CLI_KEY, "film.thickness=200um; 'null' takes a key away"),
+    {"svg", 0, CLI_FILE, "FILE", "a drawing of the device", CLI_AT(svg)},
     CLI_JSON_ROW("values, derived numbers and findings as JSON"),
     {0}};
 

@@ -6,7 +6,7 @@
 #include "study/design_file.h"
 
 struct request {
-  bool json, markdown, material, protocol, mapping, fit, fit_device;
+  bool json, markdown, general, material, protocol, mapping, fit, fit_device;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -21,10 +21,14 @@ static int run(struct dea_cli *cli, void *user)
                                     : request->mapping    ? &dea_mapping_record
                                     : request->fit        ? &dea_fit_record
                                     : request->fit_device ? &dea_device_file_record
+                                    : request->general    ? &design.general.record
                                                           : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
-  if (request->json) {
+  if (request->json && record == &design.disc.record) {
+    const struct dea_schema_forms forms = {"plies", &design.general.record, record};
+    status = dea_schema_print_forms_json(cli->ctx, &forms, "design of an actuator", &out);
+  } else if (request->json) {
     status = dea_schema_print_json(cli->ctx, record, record->doc, &out);
   } else if (request->markdown) {
     dea_schema_print_markdown(record, &out);
@@ -37,6 +41,8 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_JSON_ROW("JSON Schema (draft 2020-12), for editors"),
     {"markdown", 0, CLI_FLAG, NULL, "a table in Markdown", CLI_AT(markdown), .or_before = true},
+    {"general", 0, CLI_FLAG, NULL, "the keys of a design with 'plies', of any layout, instead",
+     CLI_AT(general)},
     {"material", 0, CLI_FLAG, NULL, "the keys of a material file instead", CLI_AT(material)},
     {"protocol", 0, CLI_FLAG, NULL, "the keys of a protocol for `dea drive` instead",
      CLI_AT(protocol), .or_before = true},

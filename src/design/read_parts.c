@@ -145,6 +145,19 @@ static dea_status take_lists(const struct dea_parts_raw *raw, struct dea_parts *
   return dea_arena_status(&parts->memory);
 }
 
+static dea_status check_lines(const struct dea_reader *reader, const struct dea_parts *parts)
+{
+  for (size_t i = 0; i < parts->monitor_count; i++) {
+    const struct dea_parts_monitor *m = &parts->monitors[i];
+    if ((m->from_count > 0) != (m->to_count > 0)) {
+      DEA_TRY(reader->ctx, dea_schema_error(reader, m->name.location,
+                                            "the line '%.60s' needs both its ends, 'from' and 'to'",
+                                            m->name.text));
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
                           const struct dea_parts_raw *raw, struct dea_parts **out)
 {
@@ -164,6 +177,7 @@ dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shap
   for (size_t i = 0; i < parts->spring_count; i++) {
     DEA_TRY(ctx, read_table(reader, parts, &parts->springs[i]));
   }
+  DEA_TRY(ctx, check_lines(reader, parts));
   return check_all_names(reader, parts);
 }
 

@@ -30,9 +30,9 @@
   .count_offset = offsetof(struct type, counter)
 #define REQUIRED .required = true
 #define OPTIONAL .required = false
-#define POINT(type, member, word, text, number)                                                    \
+#define POINT(type, member, word, text, number, ...)                                               \
   NUMBER(type, member##_m, word, "m", text, "[0 mm, 0 mm]", .group = 1, .option = (number),        \
-         LIST(type, dea_quantity, member##_count, 2, 2))
+         LIST(type, dea_quantity, member##_count, 2, 2), __VA_ARGS__)
 /* Six numbers along and about the axes, of which the last three turn. */
 #define SIX(type, member, shift, shift_unit, shift_example, shift_text, turn, turn_unit,           \
             turn_example, turn_text)                                                               \
@@ -172,9 +172,9 @@ static const struct dea_field pressure_fields[] = {
 
 static const struct dea_field monitor_fields[] = {
     NAME(dea_parts_monitor, name, "name", "name in results", "middle", REQUIRED),
-    POINT(dea_parts_monitor, at, "at", "the point x, y of a ply", 1),
-    POINT(dea_parts_monitor, from, "from", "one end of a line on a ply", 2),
-    POINT(dea_parts_monitor, to, "to", "the other end of that line", 2),
+    POINT(dea_parts_monitor, at, "at", "point x, y of a ply", 1, REQUIRED),
+    POINT(dea_parts_monitor, from, "from", "one end of a line on a ply", 2, OPTIONAL),
+    POINT(dea_parts_monitor, to, "to", "the other end of that line", 2, OPTIONAL),
     NAME(dea_parts_monitor, shape, "shape", "a shape of a ply", "active", .group = 1, .option = 3),
     NAME(dea_parts_monitor, body, "body", "a rigid body", "hub", .group = 1, .option = 4),
     NAME(dea_parts_monitor, ply, "ply", "ply that the point, line or shape lies in", "film",

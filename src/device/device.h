@@ -42,9 +42,9 @@ struct dea_device {
  * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
-/* Whether it is a disc in a round frame, which models of one ask: DEA_E_UNSUPPORTED for a general
- * device, and for one that was filled by hand DEA_E_DESIGN with the number that none can have, such
- * as a coverage that is not between 0 and 1. */
+/* Whether it is a disc in a round frame, which models of one ask: DEA_E_DESIGN for a general
+ * device, and with the number that none can have for one that was filled by hand, such as a
+ * coverage that is not between 0 and 1. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
 /* Fits the breakdown field of the film, if it is known, to its thickness and to the area of the
  * electrodes, by the law of its material. */

@@ -1,4 +1,5 @@
 /* A disc of film in a rigid round frame, with radial fibres: the short form of a design. */
+#include "device/disc_layout.h"
 #include "device/generator.h"
 #include "device/geometry.h"
 
@@ -74,6 +75,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   typedef dea_status (*build_fn)(struct dea_context *, const struct dea_design *,
                                  struct dea_device *);
   static const build_fn parts[] = {build_film, build_electrode, build_fibre};
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_geometry_fill(design, device);
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
     dea_status status = parts[i](ctx, design, device);
@@ -81,7 +83,8 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
   }
-  return dea_geometry_check(ctx, design, device);
+  DEA_TRY(ctx, dea_geometry_check(ctx, design, device));
+  return dea_finding_count(ctx, DEA_ERROR) == errors ? dea_disc_layout_make(ctx, device) : DEA_OK;
 }
 
 static bool takes(const struct dea_design *design)

@@ -196,19 +196,33 @@ static dea_status check_electrodes(struct dea_context *ctx, const struct dea_lay
 
 // All else ---------------------------------------------------------------------------------------
 
+/* Every ply lies on or beside others up to the lowest one. */
 static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *l)
 {
-  for (size_t i = 0; i < l->ply_count; i++) {
-    bool alone = l->ply_count > 1;
-    for (size_t j = 0; j < l->ply_count && alone; j++) {
-      alone = j == i || !touch(l, l->plies[i].region, l->plies[j].region);
-    }
-    if (alone) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, l->plies[i].location,
-                                   "the ply '%s' lies on no other ply", l->plies[i].name));
+  bool *reached = dea_alloc(ctx, l->ply_count, sizeof *reached);
+  dea_status status = reached != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    reached[0] = true;
+  }
+  for (bool more = status == DEA_OK; more;) {
+    more = false;
+    for (size_t k = 0; k < l->ply_count * l->ply_count; k++) {
+      size_t from = k / l->ply_count, to = k % l->ply_count;
+      if (reached[from] && !reached[to] && touch(l, l->plies[from].region, l->plies[to].region)) {
+        more = reached[to] = true;
+      }
     }
   }
-  return DEA_OK;
+  for (size_t i = 0; i < l->ply_count && status == DEA_OK; i++) {
+    if (!reached[i]) {
+      status = dea_finding_add(ctx, DEA_ERROR, l->plies[i].location,
+                               "the ply '%s' lies nowhere on the device: not on '%s', nor on what "
+                               "lies there",
+                               l->plies[i].name, l->plies[0].name);
+    }
+  }
+  dea_free(ctx, reached);
+  return status;
 }
 
 static dea_status check_supports(struct dea_context *ctx, const struct dea_layout *l)

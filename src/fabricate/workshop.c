@@ -136,6 +136,8 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
 dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design *design,
                                const struct dea_device *device, struct dea_workshop **out)
 {
+  *out = NULL;
+  DEA_TRY(ctx, dea_device_check(ctx, device)); // files of other devices are not made yet
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;

@@ -73,10 +73,50 @@ static dea_status unknown_name(struct dea_context *ctx, const char *name)
   return status;
 }
 
+/* Whether a study can do anything with the device of a design. */
+static bool is_able(const struct dea_study *study, const struct dea_design *design)
+{
+  return study->any_layout || design == NULL || design->parts == NULL;
+}
+
+static dea_status not_able(struct dea_context *ctx, const struct dea_study *study)
+{
+  return dea_fail(ctx, DEA_E_DESIGN,
+                  "the study '%s' needs a disc in a round frame; of a design with 'plies' there is "
+                  "the sweep of voltages with its monitors",
+                  study->name);
+}
+
+/* Sections of studies that a design of the general form cannot have. */
+static dea_status check_sections(struct dea_context *ctx, const struct dea_design *design)
+{
+  dea_status status = DEA_OK;
+  if (design == NULL || design->parts == NULL) {
+    return DEA_OK;
+  }
+  const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
+  for (size_t k = 0; k < STUDIES; k++) {
+    const struct dea_settings *settings = dea_design_settings(design, studies[k]->keys);
+    if (settings == NULL || !settings->written || is_able(studies[k], design)) {
+      continue;
+    }
+    const struct dea_node *node = dea_node_find(compute, studies[k]->keys->key);
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, node->key_place,
+                                 "the study '%s' needs a disc in a round frame, a design of the "
+                                 "short form",
+                                 studies[k]->name));
+    status = not_able(ctx, studies[k]);
+  }
+  return status;
+}
+
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design)
 {
-  for (size_t i = 0; names != NULL && i < name_count; i++) {
+  if (names == NULL) {
+    return check_sections(ctx, design);
+  }
+  for (size_t i = 0; i < name_count; i++) {
     size_t k = 0;
     while (k < STUDIES && strcmp(studies[k]->name, names[i]) != 0) {
       k++;
@@ -87,6 +127,9 @@ dea_status dea_study_check(struct dea_context *ctx, const char *const names[], s
     if (studies[k]->needs != NULL && !is_asked(studies[k], design)) {
       return dea_fail(ctx, DEA_E_DESIGN, "the study '%s' needs %s in the design", names[i],
                       studies[k]->needs);
+    }
+    if (!is_able(studies[k], design)) {
+      return not_able(ctx, studies[k]);
     }
   }
   return DEA_OK;
@@ -106,7 +149,8 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   dea_status first = DEA_OK;
   for (size_t i = 0; i < STUDIES; i++) {
-    if (!is_wanted(studies[i], names, name_count, result->design)) {
+    if (!is_wanted(studies[i], names, name_count, result->design) ||
+        !is_able(studies[i], result->design)) { // the path, that every design asks for
       continue;
     }
     if (!studies[i]->own_models && model == NULL) {

@@ -16,6 +16,7 @@ struct dea_study {
   const char *needs; // keys of the design without which it cannot run; NULL: none
   bool by_name_only; // no design asks for it
   bool own_models;   // makes its own: `run` gets none
+  bool any_layout;   // takes devices of the general form; else only a disc in a round frame
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
@@ -32,7 +33,8 @@ struct dea_study {
  * keys the design lacks. */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result);
-/* Whether these names can be run for a design, as above. */
+/* Whether these names, or what the design asks for, can be run for a design, as above; of one of
+ * the general form also for a study of a disc, after a finding at what asks for it. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */

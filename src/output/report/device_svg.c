@@ -1,4 +1,5 @@
 /* The actuator drawn to scale from above, and cut along a fibre with the thickness drawn larger. */
+#include "output/layout_svg.h"
 #include "output/report/section.h"
 
 #include <math.h>
@@ -126,6 +127,13 @@ static void add_section(struct dea_text *out, const struct dea_device *device, i
 void dea_device_add_svg(struct dea_text *out, const struct dea_device *device, int number)
 {
   dea_text_add(out, "<div class=\"drawings\">");
+  if (device->general) {
+    dea_text_add(out, "<figure class=\"layout\">");
+    dea_layout_svg(device->layout, number, out);
+    dea_text_add(out, "<figcaption>From above, to scale, as it is stretched when parts are bonded "
+                      "to it</figcaption></figure></div>");
+    return;
+  }
   add_top(out, device, number);
   add_section(out, device, number);
   dea_text_add(out, "</div>");

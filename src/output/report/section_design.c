@@ -215,31 +215,59 @@ static const struct dea_material_data *find_data(struct dea_context *ctx,
   return &(*entry)->data;
 }
 
+/* A material with the part that it is that of. */
+struct part {
+  const struct dea_material *used;
+  const char *permittivity, *breakdown, *name;
+};
+
+static void add_part(struct dea_report *report, const struct dea_design *design,
+                     const struct part *part)
+{
+  struct dea_catalogue_entry *entry = NULL;
+  const struct dea_material_data *data =
+      part->used->name[0] != '\0' ? find_data(report->ctx, design, part->used->name, &entry) : NULL;
+  if (data != NULL) {
+    add_material(report, data, part->used, part->permittivity, part->breakdown, part->name);
+  }
+  dea_catalogue_destroy(report->ctx, entry);
+}
+
+/* Materials of plies, each once. */
+static void add_plies(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_layout *l = run->device->layout;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_parts_ply *ply = &run->design->parts->plies[i];
+    const struct part part = {&l->plies[i].material, ply->permittivity.text, ply->breakdown.text,
+                              l->plies[i].name};
+    size_t first = 0;
+    while (strcmp(l->plies[first].material.name, part.used->name) != 0) {
+      first++;
+    }
+    if (first == i) {
+      add_part(report, run->design, &part);
+    }
+  }
+}
+
 dea_status dea_section_materials(struct dea_report *report, const struct dea_report_run *run)
 {
   if (run->device == NULL) {
     return DEA_OK;
   }
   const struct dea_design *design = run->design;
-  const struct {
-    const struct dea_material *used;
-    const char *permittivity, *breakdown, *part;
-  } parts[] = {
+  const struct part parts[] = {
       {&run->device->film, design->film.permittivity.text, design->film.breakdown.text, "Film"},
       {&run->device->electrode, "", "", "Electrodes"},
       {&run->device->fibre, "", "", "Fibres"},
   };
   dea_section_begin(report, "materials", run->number, "Materials and their sources");
-  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-    struct dea_catalogue_entry *entry = NULL;
-    const struct dea_material_data *data =
-        parts[i].used->name[0] != '\0' ? find_data(report->ctx, design, parts[i].used->name, &entry)
-                                       : NULL;
-    if (data != NULL) {
-      add_material(report, data, parts[i].used, parts[i].permittivity, parts[i].breakdown,
-                   parts[i].part);
-    }
-    dea_catalogue_destroy(report->ctx, entry);
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0] && !run->device->general; i++) {
+    add_part(report, design, &parts[i]);
+  }
+  if (run->device->general) {
+    add_plies(report, run);
   }
   dea_section_end(report);
   return DEA_OK;

@@ -1,0 +1,314 @@
+/* Designs of the general form: the layout that is made of their parts, and what a bad one says. */
+#include "design_text.h"
+
+#include <math.h>
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+/* A design of which a line each can be replaced. */
+enum line { SHAPES = 2, PLIES, ELECTRODES, SUPPORTS, MORE, LINES };
+#define THREE_SHAPES                                                                               \
+  "shapes: [{name: film, kind: rectangle, width: 40 mm, height: 10 mm}, "                          \
+  "{name: active, kind: rectangle, width: 30 mm, height: 8 mm}, "                                  \
+  "{name: far, kind: circle, x: 90 mm, radius: 2 mm}"
+static const char *const usual[LINES] = {
+    [SHAPES] = THREE_SHAPES "]",
+    [PLIES] = "plies: [{name: lower, shape: film, material: film, thickness: 100 um, "
+              "pre_stretch: [1.2, 1.5]}, "
+              "{name: upper, shape: film, material: film, thickness: 60 um}]",
+    [ELECTRODES] = "electrodes: [{ply: lower, side: bottom, shape: active, channel: ground}, "
+                   "{ply: lower, side: top, shape: active, channel: drive}]",
+    [SUPPORTS] = "supports: [{edge: film}]",
+    [MORE] = "title: two films",
+};
+
+static const char *write_design(enum line which, const char *text)
+{
+  static char all[8192];
+  size_t used = (size_t)snprintf(all, sizeof all, "dea: 1\n");
+  for (int i = SHAPES; i < LINES; i++) {
+    used +=
+        (size_t)snprintf(all + used, sizeof all - used, "%s\n", i == (int)which ? text : usual[i]);
+  }
+  snprintf(all + used, sizeof all - used, "%s", FILM_MATERIAL);
+  return all;
+}
+
+static struct dea_design *design;
+static struct dea_device *device;
+
+static const struct dea_layout *build(enum line which, const char *text)
+{
+  dea_finding_clear(ctx);
+  if (read_and_build(ctx, write_design(which, text), NULL, 0, &design, &device) != DEA_OK) {
+    print_findings(ctx);
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  assert_true(device->general);
+  return device->layout;
+}
+
+static void drop(void)
+{
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  device = NULL;
+  design = NULL;
+}
+
+static void test_plies_and_electrodes(void **state)
+{
+  (void)state;
+  const struct dea_layout *l = build(0, NULL);
+  assert_int_equal(l->ply_count, 2);
+  assert_string_equal(l->plies[0].name, "lower");
+  assert_string_equal(l->regions[l->plies[0].region].name, "film");
+  assert_close(l->plies[0].thickness_unstretched_m, 100e-6, 0, 1e-18);
+  assert_close(l->plies[0].thickness_m, 100e-6 / 1.8, 0, 1e-18);
+  assert_close(l->plies[0].pre_stretch[1], 1.5, 0, 1e-15);
+  assert_close(l->plies[1].pre_stretch[1], 1, 0, 1e-15);
+  assert_true(dea_layout_is_dielectric(l, 0));
+  assert_false(dea_layout_is_dielectric(l, 1));
+  assert_int_equal(l->channel_count, 2);
+  assert_string_equal(l->channels[1].name, "drive");
+  assert_close(l->channels[1].ratio, 1, 0, 0);
+  assert_true(l->electrodes[1].top);
+  assert_int_equal(l->electrodes[1].channel, 1);
+  assert_int_equal(l->electrodes[0].channel, 0);
+  assert_true(l->supports[0].edge);
+  assert_int_equal(l->supports[0].components, 7);
+  assert_int_equal(l->symmetry.order, 2); // of a rectangle, with the film's axes along it
+  assert_int_equal(l->symmetry.mirrors, 2);
+  drop();
+}
+
+static void test_bodies_springs_monitors(void **state)
+{
+  (void)state;
+  const struct dea_layout *l = build(
+      MORE, "bodies: [{name: plate, shape: active, free: [z, turn_x], mass: 20 g, "
+            "force_z: 1 mN, move_x: 2 mm}]\n"
+            "springs: [{body: plate, direction: z, stiffness: 10 N/m, free_at: 1 mm}, "
+            "{body: plate, direction: turn_x, table: [[0 radian, 0 N.m], [1 radian, 3 mN.m]]}]\n"
+            "pressures: [{ply: lower, side: bottom, shape: film, pressure: 1 kPa}]\n"
+            "monitors: [{name: middle, at: [0 mm, 1 mm]}, "
+            "{name: gauge, from: [-5 mm, 0 mm], to: [5 mm, 0 mm], ply: lower}, "
+            "{name: field, shape: active, ply: lower}, {name: plate, body: plate}]\n"
+            "gravity: top_up");
+  const struct dea_layout_body *b = &l->bodies[0];
+  assert_int_equal(b->free, 4 + 8);
+  assert_int_equal(b->moved, 1);
+  assert_close(b->shift_m[0], 2e-3, 0, 1e-18);
+  assert_close(b->mass_kg, 0.02, 0, 1e-15);
+  assert_close(b->force_N[2], 1e-3, 0, 1e-15);
+  assert_close(l->springs[0].stiffness, 10, 0, 1e-12);
+  assert_close(l->springs[0].free_at, 1e-3, 0, 1e-15);
+  assert_int_equal(l->springs[1].component, 3);
+  assert_int_equal(l->springs[1].count, 2);
+  assert_close(l->springs[1].force[1], 3e-3, 0, 1e-15);
+  assert_close(l->pressures[0].pressure_Pa, 1000, 0, 1e-9);
+  assert_int_equal(l->monitors[0].kind, DEA_MONITOR_POINT);
+  assert_int_equal(l->monitors[0].ply, 1); // the uppermost one
+  assert_close(l->monitors[1].at_m[1][0], 5e-3, 0, 1e-15);
+  assert_int_equal(l->monitors[3].kind, DEA_MONITOR_BODY);
+  assert_true(l->gravity_m_per_s2[2] < -9.7);
+  drop();
+}
+
+/* Areas of what is made of other shapes, by closed forms. */
+static void test_shapes_of_shapes(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *shape;
+    double area_mm2, centre_mm[2];
+  } made[] = {
+      {"kind: difference, of: [film, active]", 400 - 240, {0, 0}},
+      {"kind: union, of: [active, film]", 400, {0, 0}},
+      {"kind: intersection, of: [film, active]", 240, {0, 0}},
+      {"kind: array, of: dot, count_x: 3, pitch_x: 5 mm, count_y: 2, pitch_y: -3 mm", 6, {5, -1.5}},
+      {"kind: array, of: dot, count_x: 3, pitch_x: 0.5 mm", 2, {0.5, 0}}, // they overlap
+      {"kind: polar, of: away, count: 4", 4, {0, 0}},
+      {"kind: polar, of: away, count: 2, angle: 90 degree", 2, {2, 2}},
+      {"kind: copy, of: away, angle: 90 degree, x: 1 mm", 1, {1, 4}},
+      {"kind: copy, of: away, mirror: 90 degree", 1, {-4, 0}},
+      {"kind: polygon, points: [[0 mm, 0 mm], [3 mm, 0 mm], [0 mm, 3 mm]]", 4.5, {1, 1}},
+      {"kind: ring, inner_radius: 1 mm, outer_radius: 2 mm", 3 * 3.14159265358979323846, {0, 0}},
+  };
+  for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
+    char line[1000];
+    double centre[2];
+    snprintf(line, sizeof line,
+             "shapes: [{name: made, %s}, {name: dot, kind: rectangle, width: 1 mm, height: 1 mm}, "
+             "{name: away, kind: rectangle, x: 4 mm, width: 1 mm, height: 1 mm}, %s",
+             made[i].shape, usual[SHAPES] + strlen("shapes: ["));
+    const struct dea_layout *l = build(SHAPES, line);
+    const struct dea_region *r = &l->regions[0].region;
+    assert_close(1e6 * dea_region_area_m2(r), made[i].area_mm2, 0, 1e-9 * made[i].area_mm2);
+    dea_region_centroid_m(r, centre);
+    assert_close(1e3 * centre[0], made[i].centre_mm[0], 0, 1e-9);
+    assert_close(1e3 * centre[1], made[i].centre_mm[1], 0, 1e-9);
+    drop();
+  }
+}
+
+/* A line of the design, what is wrong with it, and at which words of the line. */
+static const struct {
+  enum line which;
+  const char *text, *part, *at;
+} bad[] = {
+    // names
+    {PLIES, "plies: [{name: lower, shape: flim, material: film, thickness: 1 um}]",
+     "no shape 'flim'; did you mean 'film'?", "flim"},
+    {PLIES, "plies: [{name: lower, shape: film, material: flim, thickness: 1 um}]", "flim", "flim"},
+    {ELECTRODES, "electrodes: [{ply: lowest, side: top, shape: film, channel: drive}]",
+     "no ply 'lowest'; did you mean 'lower'?", "lowest"},
+    {ELECTRODES, "electrodes: [{ply: sheet, side: top, shape: film, channel: drive}]",
+     "no ply 'sheet'; there are 'lower', 'upper'", "sheet"},
+    {ELECTRODES, "electrodes: [{ply: lower, side: top, shape: active, channel: grund}]",
+     "no channel 'grund'; did you mean 'ground'?", "grund"},
+    {MORE, "springs: [{body: hub, direction: z, stiffness: 1 N/m}]",
+     "there is no body 'hub'; there are none", "hub,"},
+    {MORE, "bodies: [{name: hub, shape: film}, {name: hub, shape: film}]",
+     "the name 'hub' is taken by the body in line 6", "hub, shape: film}]"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: oval}]", "there is no shape 'oval'", "oval"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: circle, radius: 2 mm, diameter: 4 mm}]",
+     "unknown key 'diameter'", "diameter"},
+    // shapes
+    {SHAPES, THREE_SHAPES ", {name: a, kind: union, of: [a]}]", "is made of itself", "a]}"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: copy, of: b}, {name: b, kind: copy, of: c}, "
+                  "{name: c, kind: copy, of: a}]",
+     "the shape 'a' is made of itself: its 'c' needs it again", "a}]"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [2 mm, 2 mm], [2 mm, 0 mm], "
+                  "[0 mm, 1 mm]]}]",
+     "crosses or touches itself at (0.666667, 0.666667) mm", "a, kind"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [1 mm, 1 mm], [1 mm]]}]",
+     "this must be a list of 2 numbers", "[1 mm]]"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [1 mm, 1 mm], [1 mm, 2]]}]",
+     "'2' has no unit", "2]]"},
+    {SHAPES, THREE_SHAPES ", {name: c, kind: intersection, of: [film, far]}]",
+     "nothing is left of the shape 'c'", "c, kind"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: drawing, file: no.dxf, layer: CUT}]", "no.dxf",
+     "no.dxf"},
+    // where things lie
+    {ELECTRODES,
+     "electrodes: [{ply: lower, side: top, shape: active, channel: one}, "
+     "{ply: upper, side: bottom, shape: film, channel: two}]",
+     "electrodes of the channels 'one' and 'two' lie on each other on one face of 'upper', about "
+     "(0, 0) mm: 240 mm2",
+     "film, channel: two"},
+    {ELECTRODES, "electrodes: [{ply: lower, side: top, shape: far, channel: drive}]",
+     "the electrode 'drive' does not lie on its ply 'lower' at all", "far"},
+    {PLIES,
+     "plies: [{name: lower, shape: film, material: film, thickness: 1 um}, "
+     "{name: lost, shape: far, material: film, thickness: 1 um}]",
+     "the ply 'lost' lies nowhere on the device", "lost"},
+    {PLIES,
+     "plies: [{name: lower, shape: active, material: film, thickness: 1 um}]\n"
+     "channels: [{name: drive}]\nmonitors: [{name: a, at: [19 mm, 0 mm]}]",
+     "no ply lies where the monitor 'a' is", NULL},
+    {SUPPORTS, "supports: [{shape: far}]", "holds nothing", "far"},
+    {SUPPORTS, "supports: [{edge: film, within: far}]", "within 'far' holds nothing", "film"},
+    {MORE, "bodies: [{name: hub, shape: far}]", "nothing holds the body 'hub'", "hub"},
+    {MORE, "bodies: [{name: a, shape: film}, {name: b, shape: active}]",
+     "the bodies 'b' and 'a' lie on each other", "b, shape"},
+    {MORE, "monitors: [{name: tip, at: [50 mm, 0 mm]}]", "no ply lies where the monitor 'tip' is",
+     "tip"},
+    {MORE, "monitors: [{name: tip, shape: far, ply: lower}]",
+     "the monitor 'tip' does not lie on the ply 'lower'", "tip"},
+    {MORE, "pressures: [{ply: lower, side: top, shape: far, pressure: 1 kPa}]",
+     "does not lie on its ply", "far"},
+    // what does not go together
+    {SUPPORTS, "supports: [{edge: film, hold: [clamped, x]}]", "'clamped' and 'hinged' stand alone",
+     "clamped"},
+    {SUPPORTS, "supports: [{edge: film, hold: [x, y], move_z: 1 mm}]",
+     "move_z: this support does not hold z", "1 mm"},
+    {SUPPORTS, "supports: [{edge: film, shape: film}]", "exclude each other", "shape"},
+    {MORE,
+     "bodies: [{name: hub, shape: active}]\nsprings: [{body: hub, direction: z, turn_stiffness: 1 "
+     "N.m/radian}]",
+     "a spring against a shift has its 'stiffness'", NULL},
+    {MORE,
+     "bodies: [{name: hub, shape: active}]\nsprings: [{body: hub, direction: z, table: [[0 mm, 0 "
+     "N], [0 mm, 1 N]]}]",
+     "places must rise", NULL},
+    {MORE, "monitors: [{name: line, from: [0 mm, 0 mm], ply: lower}]",
+     "the line 'line' needs both its ends, 'from' and 'to'", "line,"},
+    {MORE, "monitors: [{name: line, ply: lower}]", "lacks the point x, y", NULL},
+    {MORE, "channels: [{name: ground}]", "needs no line of its own", "ground"},
+    {PLIES,
+     "plies: [{name: lower, shape: film, material: film, thickness: 1 um, pre_stretch: [1, 1, "
+     "1]}]",
+     "pre_stretch must have 1 to 2 items", "[1, 1, 1]"},
+    // keys of the other form
+    {MORE, "fibres: {count: 4}", "here a fibre is one of the 'plies'", "fibres"},
+    {MORE, "frame: {inner_diameter: 30 mm}", "here a rigid frame is one of the 'supports'",
+     "frame"},
+    {MORE, "film: {thickness: 3 um}", "here a film is one of the 'plies'", "film"},
+    {MORE, "stripes: 3", "shape of kind array", "stripes"},
+};
+
+static void test_one_error_each(void **state)
+{
+  (void)state;
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    dea_finding_clear(ctx);
+    dea_status status =
+        read_and_build(ctx, write_design(bad[i].which, bad[i].text), NULL, 0, &design, &device);
+    drop();
+    const struct dea_finding *finding = find_error(ctx, bad[i].part);
+    if (status != DEA_E_DESIGN || finding == NULL || dea_finding_count(ctx, DEA_ERROR) != 1) {
+      print_findings(ctx);
+      fail_msg("%zu errors, status %d, wanted '%s' of:\n%s", dea_finding_count(ctx, DEA_ERROR),
+               (int)status, bad[i].part, bad[i].text);
+    }
+    if (bad[i].at != NULL) {
+      const char *at = strstr(bad[i].text, bad[i].at);
+      assert_non_null(at);
+      if (finding->location.line != (size_t)bad[i].which ||
+          finding->location.column != (size_t)(at - bad[i].text) + 1) {
+        fail_msg("'%s' is said at %zu:%zu, not at %d:%zu", bad[i].part, finding->location.line,
+                 finding->location.column, (int)bad[i].which, (size_t)(at - bad[i].text) + 1);
+      }
+    }
+  }
+}
+
+/* Keys of the general form in a file of the short one. */
+static void test_short_form_says_where_parts_belong(void **state)
+{
+  (void)state;
+  dea_finding_clear(ctx);
+  assert_int_equal(
+      read_and_build(ctx, GOOD_DESIGN "bodies: [{name: hub}]\n", NULL, 0, &design, &device),
+      DEA_E_DESIGN);
+  drop();
+  assert_non_null(find_error(ctx, "'bodies' belongs to the general form"));
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 1);
+}
+
+static void test_no_dielectric_is_a_note(void **state)
+{
+  (void)state;
+  build(ELECTRODES, "");
+  assert_non_null(find_finding(ctx, DEA_NOTE, "a voltage does nothing"));
+  drop();
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test(name)
+  const struct CMUnitTest tests[] = {
+      TEST(test_plies_and_electrodes),
+      TEST(test_bodies_springs_monitors),
+      TEST(test_shapes_of_shapes),
+      TEST(test_one_error_each),
+      TEST(test_short_form_says_where_parts_belong),
+      TEST(test_no_dielectric_is_a_note),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
