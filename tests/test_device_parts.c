@@ -1,5 +1,6 @@
 /* Designs of the general form: the layout that is made of their parts, and what a bad one says. */
 #include "design_text.h"
+#include "failing_allocator.h"
 
 #include <math.h>
 
@@ -291,12 +292,64 @@ static void test_short_form_says_where_parts_belong(void **state)
   assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 1);
 }
 
+/* Items of lists go by their names in --set. */
+static void test_override_by_name(void **state)
+{
+  (void)state;
+  const struct dea_override override = {"plies.upper.thickness", "50 um"};
+  assert_int_equal(read_and_build(ctx, write_design(0, NULL), &override, 1, &design, &device),
+                   DEA_OK);
+  assert_close(device->layout->plies[1].thickness_m, 50e-6, 0, 1e-18);
+  drop();
+  const struct dea_override wrong = {"plies.middle.thickness", "50 um"};
+  dea_finding_clear(ctx);
+  assert_int_equal(read_and_build(ctx, write_design(0, NULL), &wrong, 1, &design, &device),
+                   DEA_E_DESIGN);
+  drop();
+  assert_non_null(
+      find_error(ctx, "'plies' is a list, not a section, and has no item of that name"));
+}
+
 static void test_no_dielectric_is_a_note(void **state)
 {
   (void)state;
   build(ELECTRODES, "");
   assert_non_null(find_finding(ctx, DEA_NOTE, "a voltage does nothing"));
   drop();
+}
+
+static dea_status build_example(struct dea_context *own)
+{
+  struct dea_design *read;
+  struct dea_device *made = NULL;
+  dea_status status =
+      dea_design_read(own, DEA_SOURCE_DIR "/examples/devices/from-dxf.yaml", NULL, 0, &read);
+  status = status == DEA_OK ? dea_device_build(own, read, &made) : status;
+  dea_device_destroy(own, made);
+  dea_design_destroy(own, read);
+  return status;
+}
+
+static dea_status build_shapes(struct dea_context *own)
+{
+  struct dea_design *read;
+  struct dea_device *made;
+  dea_status status = read_and_build(
+      own,
+      write_design(SHAPES, THREE_SHAPES ", {name: a, kind: polar, of: active, count: 3}, "
+                                        "{name: b, kind: difference, of: [a, film]}, "
+                                        "{name: c, kind: copy, of: b, mirror: 0 degree}]"),
+      NULL, 0, &read, &made);
+  dea_device_destroy(own, made);
+  dea_design_destroy(own, read);
+  return status;
+}
+
+static void test_failing_memory(void **state)
+{
+  (void)state;
+  assert_true(failing_ends(build_example, DEA_OK) > 100);
+  assert_true(failing_ends(build_shapes, DEA_OK) > 100);
 }
 
 int main(void)
@@ -308,6 +361,8 @@ int main(void)
       TEST(test_shapes_of_shapes),
       TEST(test_one_error_each),
       TEST(test_short_form_says_where_parts_belong),
+      TEST(test_override_by_name),
+      TEST(test_failing_memory),
       TEST(test_no_dielectric_is_a_note),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -277,12 +277,26 @@ static struct dea_node **link_of(struct dea_node *section, const char *key, size
   return link;
 }
 
-/* Walks to the section that holds the last key of the path, making sections on the way. */
+/* The section of a list whose `name` is that, or NULL. */
+static struct dea_node *item_of(const struct dea_node *list, const char *name, size_t length)
+{
+  for (struct dea_node *item = list->child; item != NULL; item = item->next) {
+    const struct dea_node *own =
+        item->kind == DEA_NODE_SECTION ? dea_node_find(item, "name") : NULL;
+    if (own != NULL && strlen(own->text) == length && memcmp(own->text, name, length) == 0) {
+      return item;
+    }
+  }
+  return NULL;
+}
+
+/* Walks to the section that holds the last key of the path, making sections on the way; items of a
+ * list go by their names. */
 static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_location location,
                        const char **path, struct dea_node **section)
 {
   struct dea_node *at = yaml->root;
-  for (const char *dot = strchr(*path, '.'); dot != NULL; dot = strchr(*path, '.')) {
+  for (const char *dot; (dot = strchr(*path, '.')) != NULL;) {
     size_t length = (size_t)(dot - *path);
     struct dea_node **link = link_of(at, *path, length);
     if (*link == NULL) {
@@ -297,13 +311,21 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
       at->child_count++;
     }
     at = *link;
+    *path = dot + 1;
+    const char *end = at->kind == DEA_NODE_LIST ? strchr(*path, '.') : NULL;
+    struct dea_node *item = end != NULL ? item_of(at, *path, (size_t)(end - *path)) : NULL;
+    if (item != NULL) {
+      at->overridden = true;
+      at = item;
+      *path = end + 1;
+    }
     if (at->kind != DEA_NODE_SECTION) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%.60s' is %s, not a section",
-                                   at->key, at->kind == DEA_NODE_LIST ? "a list" : "a value"));
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%.60s' is %s, not a section%s",
+                                   at->key, at->kind == DEA_NODE_LIST ? "a list" : "a value",
+                                   end != NULL ? ", and has no item of that name" : ""));
       return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is not a section", at->key);
     }
     at->overridden = true;
-    *path = dot + 1;
   }
   *section = at;
   return DEA_OK;

@@ -30,9 +30,18 @@ dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design
   bool bad = false;
   for (size_t i = 0; i < design->compute.model_count; i++) {
     const struct dea_label *label = &design->compute.models[i];
-    bad = cli_model_find(cli, label->text, label->location) == NULL || bad;
+    const struct dea_model_type *type = cli_model_find(cli, label->text, label->location);
+    bad = type == NULL || bad;
+    if (type != NULL && design->parts != NULL && !type->any_layout) {
+      dea_finding_add(cli->ctx, DEA_ERROR, label->location,
+                      "the model '%.60s' knows only a disc in a round frame; a design with 'plies' "
+                      "is computed by 3d",
+                      label->text);
+      bad = true;
+    }
   }
-  return bad ? dea_fail(cli->ctx, DEA_E_DESIGN, "a model is not known") : DEA_OK;
+  return bad ? dea_fail(cli->ctx, DEA_E_DESIGN, "a model is not known, or not for this device")
+             : DEA_OK;
 }
 
 dea_status cli_variants_check(struct dea_cli *cli, const struct dea_design *design)

@@ -28,7 +28,7 @@ static bool common_of(const struct dea_layout *l, size_t a, size_t b, struct dea
   dea_status status =
       dea_region_combine(l->ctx, DEA_INTERSECTION, region_of(l, a), region_of(l, b), out);
   dea_finding_trial_end(l->ctx, errors);
-  if (status != DEA_OK) {
+  if (status != DEA_OK && status != DEA_E_MEMORY) {
     dea_context_clear(l->ctx);
   }
   return status == DEA_OK;
@@ -318,5 +318,6 @@ dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *la
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));
   }
-  return DEA_OK;
+  // what regions have in common was not told for want of memory
+  return dea_context_status(ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK;
 }

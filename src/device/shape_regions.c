@@ -10,6 +10,9 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* Of a drawing: more than any mesh could follow. */
+enum { VERTICES_MAX = 400000 };
+
 enum state { NEW, BEING_MADE, MADE, WRONG };
 
 /* A file that was read; several shapes are of its layers. */
@@ -94,6 +97,7 @@ static dea_status combine(struct maker *m, const struct dea_parts_shape *shape,
   }
   if (status == DEA_OK && good && shape->make == DEA_MAKE_INTERSECTION) {
     append(out, &first);
+    status = dea_region_status(&first) == DEA_OK ? dea_region_status(out) : DEA_E_MEMORY;
   } else if (status == DEA_OK && good) {
     status = dea_region_combine(m->ctx, shape->make == DEA_MAKE_UNION ? DEA_UNION : DEA_DIFFERENCE,
                                 &first, &rest, out);
@@ -103,8 +107,8 @@ static dea_status combine(struct maker *m, const struct dea_parts_shape *shape,
   return status == DEA_OK && !good ? DEA_E_DESIGN : status;
 }
 
-/* Copies that overlap become one; `copies` is emptied. */
-static dea_status unite(struct maker *m, struct dea_region *copies, struct dea_region *out)
+/* Copies that overlap become one. */
+static dea_status unite(struct maker *m, const struct dea_region *copies, struct dea_region *out)
 {
   size_t before = dea_finding_trial_begin(m->ctx);
   dea_status status = dea_region_check(m->ctx, copies, true);
@@ -115,8 +119,7 @@ static dea_status unite(struct maker *m, struct dea_region *copies, struct dea_r
     dea_context_clear(m->ctx);
     status = dea_region_combine(m->ctx, DEA_UNION, copies, NULL, out);
   }
-  dea_region_free(copies);
-  return status;
+  return status == DEA_OK ? dea_region_status(out) : status;
 }
 
 static dea_status repeat(struct maker *m, const struct dea_parts_shape *shape,
@@ -139,7 +142,9 @@ static dea_status repeat(struct maker *m, const struct dea_parts_shape *shape,
     dea_region_add_grid(&copies, region_of(m, of), counts, steps);
   }
   dea_status status = dea_region_status(&copies);
-  return status == DEA_OK ? unite(m, &copies, out) : status;
+  status = status == DEA_OK ? unite(m, &copies, out) : status;
+  dea_region_free(&copies);
+  return status;
 }
 
 static dea_status copy(struct maker *m, const struct dea_parts_shape *shape, struct dea_region *out)
@@ -187,7 +192,8 @@ static dea_status read_drawing(struct maker *m, const struct dea_parts_shape *sh
   }
   struct read_drawing *next = &m->drawings[m->drawing_count++];
   next->file = file;
-  dea_status status = dea_drawing_read(ctx, file, NULL, &next->drawing);
+  const struct dea_drawing_settings settings = {.vertices_max = VERTICES_MAX};
+  dea_status status = dea_drawing_read(ctx, file, &settings, &next->drawing);
   if (status == DEA_E_IO) {
     return dea_finding_add(ctx, DEA_ERROR, shape->file.location, "file: %s",
                            dea_context_message(ctx));

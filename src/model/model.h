@@ -78,6 +78,7 @@ struct dea_time_options {
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
+  bool any_layout;       // knows devices of the general form too, not only a disc in a round frame
   /* device: lent, outlives the model. settings: copied; NULL: the defaults. */
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        const struct dea_model_settings *settings, struct dea_model **out);

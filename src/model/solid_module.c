@@ -166,6 +166,7 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
 
 const struct dea_model_type dea_model_3d = {
     .name = "3d",
+    .any_layout = true,
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
