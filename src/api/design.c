@@ -334,10 +334,18 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_design 
   dea_status status = DEA_OK;
   for (size_t i = 0; i < design->compute.model_count; i++) {
     const struct dea_label *model = &design->compute.models[i];
-    if (dea_model_find(model->text) == NULL) {
+    const struct dea_model_type *type = dea_model_find(model->text);
+    if (type == NULL) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location, "there is no model '%.60s'",
                                    model->text));
       status = dea_fail(ctx, DEA_E_DESIGN, "there is no model '%.60s'", model->text);
+    } else if (design->parts != NULL && !type->any_layout) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location,
+                                   "the model '%.60s' knows only a disc in a round frame; a design "
+                                   "with 'plies' is computed by 3d",
+                                   model->text));
+      status = dea_fail(ctx, DEA_E_DESIGN, "the model '%.60s' knows only a disc in a round frame",
+                        model->text);
     }
   }
   return status;
