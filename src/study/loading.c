@@ -717,6 +717,7 @@ const struct dea_study dea_study_loading = {
     .asked = asked,
     .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
     .own_models = true,
+    .any_layout = true,
     .run = run,
     .figures = figures,
     .figure_count = COUNT(figures),

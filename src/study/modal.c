@@ -150,6 +150,7 @@ const struct dea_study dea_study_modal = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
+    .any_layout = true,
     .run = run,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],

@@ -81,10 +81,18 @@ static bool is_able(const struct dea_study *study, const struct dea_design *desi
 
 static dea_status not_able(struct dea_context *ctx, const struct dea_study *study)
 {
-  return dea_fail(ctx, DEA_E_DESIGN,
-                  "the study '%s' needs a disc in a round frame; of a design with 'plies' there is "
-                  "the sweep of voltages with its monitors",
-                  study->name);
+  struct dea_text able = {.ctx = ctx};
+  for (size_t k = 0; k < STUDIES; k++) {
+    if (studies[k]->any_layout) {
+      dea_text_add(&able, "%s%s", able.length > 0 ? ", " : "", studies[k]->name);
+    }
+  }
+  dea_status status = dea_fail(ctx, DEA_E_DESIGN,
+                               "the study '%s' needs a disc in a round frame; of a design with "
+                               "'plies' there are: %s",
+                               study->name, dea_text_get(&able));
+  dea_text_free(&able);
+  return status;
 }
 
 /* Sections of studies that a design of the general form cannot have. */
