@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 static dea_context *ctx;
@@ -481,6 +482,96 @@ static void test_springs(void **state)
   check_spring(&spring, 1e-3, "spring_force_N");
 }
 
+struct allocations {
+  long left; // until the one that fails
+  long alive;
+  bool failed;
+};
+
+static void *resize(void *user, void *pointer, size_t size)
+{
+  struct allocations *count = user;
+  if (count->left-- == 0) {
+    count->failed = true;
+    return NULL;
+  }
+  void *moved = realloc(pointer, size);
+  count->alive += moved != NULL && pointer == NULL;
+  return moved;
+}
+
+static void release(void *user, void *pointer)
+{
+  struct allocations *count = user;
+  count->alive -= pointer != NULL;
+  free(pointer);
+}
+
+/* Much of what a solid can do, until something fails. */
+static dea_status work(dea_context *own, const dea_solid_options *options, dea_solid **solid)
+{
+  const double *size = options->box_m, bottom[3] = {size[0], size[1], 0};
+  const int nodes[2] = {0, 1};
+  const dea_array *pull;
+  const dea_mesh *mesh;
+  dea_body_spring spring = DEA_BODY_SPRING_INIT;
+  spring.component = 4;
+  spring.stiffness = 100;
+  spring.place = 0.05 * size[2];
+  dea_status status = dea_solid_new(own, options, solid);
+  status = status ? status : dea_solid_hold(own, *solid, nothing, bottom, 7, nothing);
+  status = status ? status : dea_solid_hold_nodes(own, *solid, nodes, 2, 7, nothing);
+  status = status ? status : dea_solid_hold_body(own, *solid, 0, 32, nothing, nothing);
+  status = status ? status : dea_solid_add_spring(own, *solid, &spring);
+  status = status ? status : dea_solid_add_spring(own, *solid, &spring);
+  status = status ? status : dea_solid_solve(own, *solid, 0);
+  status = status ? status : dea_solid_array(own, *solid, "spring_force_N", &pull);
+  status = status ? status : dea_solid_mesh(own, *solid, &mesh);
+  status = status ? status : dea_solid_find_charges(own, *solid);
+  return status ? status : dea_solid_modes(own, *solid, 1);
+}
+
+/* Whichever allocation fails: out of memory, and nothing is left over. */
+static void test_memory(void **state)
+{
+  (void)state;
+  const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.02};
+  dea_part part = rubber(&mu);
+  part.density_kg_per_m3 = 1000;
+  const dea_part *parts[] = {&part};
+  dea_body plate = DEA_BODY_INIT;
+  plate.low_m[2] = size[2];
+  memcpy(plate.high_m, size, sizeof size);
+  const dea_body *bodies[] = {&plate};
+  dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+  memcpy(options.box_m, size, sizeof size);
+  options.elements[0] = options.elements[1] = options.elements[2] = 1;
+  options.parts = parts;
+  options.part_count = 1;
+  options.bodies = bodies;
+  options.body_count = 1;
+  struct allocations count = {.failed = true};
+  long n = 0;
+  for (; count.failed; n++) {
+    dea_context_options with = DEA_CONTEXT_OPTIONS_INIT;
+    dea_context *own;
+    dea_solid *solid = NULL;
+    count = (struct allocations){.left = n};
+    with.user = &count;
+    with.resize = resize;
+    with.release = release;
+    dea_status status = dea_context_new(&with, &own);
+    if (status == DEA_OK) {
+      status = work(own, &options, &solid);
+      dea_solid_free(solid);
+      dea_context_free(own);
+    }
+    assert_int_equal(status, count.failed ? DEA_E_MEMORY : DEA_OK);
+    assert_int_equal(count.alive, 0);
+  }
+  assert_true(n > 100);
+}
+
 static void test_refused(void **state)
 {
   (void)state;
@@ -554,11 +645,11 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),    cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_modes),   cmocka_unit_test(test_channels),
-      cmocka_unit_test(test_msh),     cmocka_unit_test(test_body),
-      cmocka_unit_test(test_springs), cmocka_unit_test(test_settings),
-      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage),
+      cmocka_unit_test(test_modes),    cmocka_unit_test(test_channels),
+      cmocka_unit_test(test_msh),      cmocka_unit_test(test_body),
+      cmocka_unit_test(test_springs),  cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;
