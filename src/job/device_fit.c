@@ -27,7 +27,9 @@ struct work {
   double start[DEA_DEVICE_PARAMS_MAX], low[DEA_DEVICE_PARAMS_MAX], high[DEA_DEVICE_PARAMS_MAX],
       scale[DEA_DEVICE_PARAMS_MAX];
   bool held[DEA_DEVICE_PARAMS_MAX];
-  bool *slack; // [stops]
+  bool *slack;                     // [stops]
+  struct dea_load_point *designed; // [stops] of the design itself; NULL: it has none
+  bool starts_designed;
   struct dea_lsq_problem problem;
 };
 
@@ -251,9 +253,6 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
       w->model.wanted[curve->stop[i]] = w->model.wanted[curve->stop[i]] || !slack;
     }
   }
-  for (size_t k = w->model.stop_count; k-- > 1;) { // and the one after, which may become taut
-    w->model.wanted[k] = w->model.wanted[k] || w->model.wanted[k - 1];
-  }
 }
 
 // The start ---------------------------------------------------------------------------------------
@@ -262,20 +261,23 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
 static dea_status keep_designed(struct work *w)
 {
   double p[DEA_DEVICE_PARAMS_MAX];
-  const struct dea_load_point *points = NULL;
   bool whole = true;
   for (size_t j = 0; j < w->fit->param_count; j++) {
     p[j] = w->fit->params[j].designed;
     whole = whole && !isnan(p[j]);
   }
-  dea_status status = whole ? dea_device_model_points(&w->model, p, &points) : DEA_E_DOMAIN;
-  if (status != DEA_OK && status != DEA_E_DOMAIN) {
-    return status;
-  }
+  struct dea_load_point *points =
+      dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *points);
+  DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
+  dea_status status = whole ? dea_device_model_sweep(&w->model, p, points) : DEA_E_DOMAIN;
+  DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? DEA_OK : status);
+  w->designed = status == DEA_OK ? points : NULL;
+  w->starts_designed =
+      status == DEA_OK && memcmp(p, w->start, w->fit->param_count * sizeof *p) == 0;
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     struct dea_device_curve *curve = &w->fit->curves[c];
     for (size_t i = 0; i < curve->rows; i++) {
-      curve->designed[i] = status == DEA_OK ? value_of(points, curve, i) : NAN;
+      curve->designed[i] = w->designed != NULL ? value_of(points, curve, i) : NAN;
     }
   }
   return DEA_OK;
@@ -363,21 +365,26 @@ static dea_status tell_start(struct work *w)
 
 static dea_status prepare(struct work *w)
 {
-  const struct dea_load_point *points;
+  struct dea_load_point *own;
   bool changed;
   DEA_TRY(w->ctx, dea_device_curves_read(w->ctx, w->fit));
   DEA_TRY(w->ctx, check_tips(w));
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, dea_device_stops_make(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
+  own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  for (size_t k = 0; k < w->model.stop_count; k++) {
-    w->model.wanted[k] = true;
+  for (size_t c = 0; c < w->fit->curve_count; c++) {
+    w->model.slack_too =
+        w->model.slack_too || w->fit->curves[c].text->slack.value == DEA_DEVICE_SLACK_KEEP;
   }
   DEA_TRY(w->ctx, dea_device_model_begin(&w->model));
   DEA_TRY(w->ctx, keep_designed(w));
-  dea_status status = dea_device_model_points(&w->model, w->start, &points);
-  DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? tell_start(w) : status);
+  if (!w->starts_designed) {
+    dea_status status = dea_device_model_sweep(&w->model, w->start, own);
+    DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? tell_start(w) : status);
+  }
+  const struct dea_load_point *points = w->starts_designed ? w->designed : own;
   cut_slack(w, points, true, &changed);
   make_problem(w);
   DEA_TRY(w->ctx, check_start(w, points));
@@ -389,7 +396,9 @@ static dea_status prepare(struct work *w)
 /* Fits; where the film goes slack at other voltages than at the start, again with other rows. */
 static dea_status solve(struct work *w)
 {
-  const struct dea_load_point *points;
+  struct dea_load_point *points =
+      dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *points);
+  DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
   bool changed = true;
   for (int round = 0; round < ROUNDS_MAX && changed; round++) {
     if (round > 0) {
@@ -399,8 +408,8 @@ static dea_status solve(struct work *w)
       DEA_TRY(w->ctx, check_count(w));
     }
     DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
-    DEA_TRY(w->ctx, dea_device_model_points(&w->model, w->fit->least_squares.p, &points));
     if (round + 1 < ROUNDS_MAX) {
+      DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, w->fit->least_squares.p, points));
       cut_slack(w, points, false, &changed);
     }
   }
@@ -539,11 +548,10 @@ static void fill_curve(struct work *w, const struct slopes *s, struct dea_device
 }
 
 /* Field and tension at the highest voltage that was fitted with a free film. */
-static void fill_derived(struct work *w, const struct slopes *s, const double *designed)
+static void fill_derived(struct work *w, const struct slopes *s)
 {
   static const char *const keys[DEA_DEVICE_DERIVED_MAX] = {"true_field_V_per_m", "breakdown_margin",
                                                            "min_tension_N_per_m", "capacitance_F"};
-  const struct dea_load_point *before = NULL;
   size_t top = SIZE_MAX;
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     const struct dea_device_curve *curve = &w->fit->curves[c];
@@ -555,17 +563,13 @@ static void fill_derived(struct work *w, const struct slopes *s, const double *d
       }
     }
   }
-  if (designed != NULL && dea_device_model_points(&w->model, designed, &before) != DEA_OK) {
-    dea_context_clear(w->ctx);
-    before = NULL;
-  }
   for (size_t k = 0; k < DEA_DEVICE_DERIVED_MAX && top != SIZE_MAX; k++) {
     const int column = dea_point_column_find(keys[k]);
     const double value = dea_point_get(&s->at[top], column);
     if (!isnan(value)) {
       w->fit->derived[w->fit->derived_count++] = (struct dea_device_derived){
           column, w->model.voltage_V[top], value, std_of(w, s, top, column),
-          before != NULL ? dea_point_get(&before[top], column) : NAN};
+          w->designed != NULL ? dea_point_get(&w->designed[top], column) : NAN};
     }
   }
 }
@@ -670,9 +674,7 @@ static dea_status tell(struct work *w, const struct slopes *s)
 static dea_status finish(struct work *w)
 {
   struct dea_device_fit *fit = w->fit;
-  double designed[DEA_DEVICE_PARAMS_MAX];
   struct slopes slopes;
-  bool whole = true;
   DEA_TRY(w->ctx, find_slopes(w, &slopes)); // those of the last derivatives
   DEA_TRY(w->ctx, find_statistics(w));
   DEA_TRY(w->ctx, fill_values(w));
@@ -686,11 +688,7 @@ static dea_status finish(struct work *w)
       rows += fit->curves[c].used[i] ? 1U : 0U;
     }
   }
-  for (size_t j = 0; j < fit->param_count; j++) {
-    designed[j] = fit->params[j].designed;
-    whole = whole && !isnan(designed[j]);
-  }
-  fill_derived(w, &slopes, whole ? designed : NULL);
+  fill_derived(w, &slopes);
   DEA_TRY(w->ctx, tell(w, &slopes));
   fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
   fit->evaluations = w->model.evaluations;

@@ -77,8 +77,8 @@ static dea_status keep_state(struct dea_device_model *model, struct dea_model *m
   return DEA_OK;
 }
 
-/* One point: near the one that the last evaluation found there while the film was taut, else on
- * the way from the last voltage. */
+/* One point: near the one that the last evaluation found there, else on the way from the last
+ * voltage. A slack film has more than one state, and is gone to on that way only. */
 static dea_status solve(struct dea_device_model *model, struct dea_model *m, size_t stop,
                         struct dea_load_point *out)
 {
@@ -91,7 +91,7 @@ static dea_status solve(struct dea_device_model *model, struct dea_model *m, siz
   if (model->states == NULL) {
     return DEA_OK;
   }
-  if (out->min_tension_N_per_m <= 0) { // more than one state: those are gone to from rest
+  if (out->min_tension_N_per_m <= 0) {
     dea_state_free_values(ctx, &model->states[stop]);
     model->states[stop] = (struct dea_state){0};
     return DEA_OK;
@@ -106,7 +106,7 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
   struct dea_context *ctx = model->ctx;
   struct dea_model *m;
   size_t last = group->count;
-  while (last > 0 && !model->wanted[group->first + last - 1]) {
+  while (model->wanted != NULL && last > 0 && !model->wanted[group->first + last - 1]) {
     last--;
   }
   DEA_TRY(ctx, dea_model_create(ctx, model->type, design, device, &m));
@@ -171,7 +171,7 @@ dea_status dea_device_model_begin(struct dea_device_model *model)
     model->memo[k].points = NULL;
   }
   model->states = NULL;
-  if (model->type->load != NULL) {
+  if (model->type->load != NULL && !model->slack_too) {
     model->states = dea_alloc(model->ctx, model->stop_count, sizeof *model->states);
     return model->states != NULL ? DEA_OK : DEA_E_MEMORY;
   }
@@ -189,6 +189,19 @@ void dea_device_model_end(struct dea_device_model *model)
   }
   dea_free(model->ctx, model->states);
   model->states = NULL;
+}
+
+dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
+                                  struct dea_load_point *points)
+{
+  struct dea_state *states = model->states;
+  bool *wanted = model->wanted;
+  model->states = NULL;
+  model->wanted = NULL;
+  dea_status status = evaluate(model, p, points);
+  model->states = states;
+  model->wanted = wanted;
+  return status;
 }
 
 dea_status dea_device_model_points(struct dea_device_model *model, const double *p,

@@ -32,7 +32,8 @@ struct dea_device_model {
   size_t group_count;
   size_t stop_count;
   double *voltage_V; // [stop_count], in the arena of who fills it
-  bool *wanted;      // [stop_count]: the others are not computed while they come last in a group
+  bool *wanted;      // [stop_count]: the others are not computed where they come last in a group
+  bool slack_too;    // rows count where the film is slack: no warm starts
   struct dea_device_memo memo[DEA_DEVICE_MEMO];
   size_t memo_next;
   struct dea_state *states; // [stop_count] of the last evaluation, owned; NULL: no warm starts
@@ -48,6 +49,10 @@ void dea_device_model_end(struct dea_device_model *model);
  * with p. */
 dea_status dea_device_model_points(struct dea_device_model *model, const double *p,
                                    const struct dea_load_point **out);
+/* The same of all stops, without a warm start, as a sweep of its own would find them; points:
+ * [stop_count], written to. */
+dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
+                                  struct dea_load_point *points);
 /* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
 void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
                            char out[80]);
