@@ -67,6 +67,11 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return model->type->limit != NULL ? model->type->limit(model->inner) : NULL;
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -170,6 +175,7 @@ const struct dea_model_type dea_model_3d = {
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
+    .limit = limit,
     .solve = solve,
     .observe = observe,
     .indent = indent,

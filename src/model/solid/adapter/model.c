@@ -11,6 +11,7 @@
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/state.h"
 #include "model/solid/assembly/film.h"
+#include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/recovery/line_profile.h"
 
@@ -35,6 +36,9 @@ struct dea_model {
   struct dea_indent *indent;       // NULL: no probe
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
+  struct dea_event limit;          // where the last solve came to its end
+  bool limited;                    // it is known
+  double tension[2], tension_V[2]; // smallest of the film [N/m], at the last two points looked at
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -174,6 +178,16 @@ static void find_heights(const struct dea_model *model, const double *u, struct 
   }
 }
 
+static dea_status find_extremes(const struct dea_model *model, struct dea_solid_extremes *out)
+{
+  const struct dea_device *d = model->device;
+  struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+    films[i] = (struct dea_solid_film_data){&d->film, d->pre_stretch};
+  }
+  return dea_solid_extremes(model->solid, films, out);
+}
+
 static dea_status report(struct dea_context *ctx, struct dea_model *model,
                          struct dea_load_point *out)
 {
@@ -181,11 +195,7 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   const double *u = dea_solid_displacement(model->solid);
   struct dea_solid_extremes extremes;
   double capacitance_F;
-  struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
-  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
-    films[i] = (struct dea_solid_film_data){&d->film, d->pre_stretch};
-  }
-  dea_status status = dea_solid_extremes(model->solid, films, &extremes);
+  dea_status status = find_extremes(model, &extremes);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
@@ -225,16 +235,129 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-/* What a user can make of a solve that failed on the way to a voltage. */
-static dea_status stopped(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
-                          dea_status status)
+/* ---- why a solve ends ---- */
+
+/* Keeps the smallest tension where the solid is; it tells where the film goes slack. */
+static dea_status look_at_tension(struct dea_context *ctx, struct dea_model *model)
 {
-  char why[200];
+  struct dea_solid_extremes extremes;
+  dea_status status = find_extremes(model, &extremes);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  }
+  model->tension[0] = model->tension[1];
+  model->tension_V[0] = model->tension_V[1];
+  model->tension[1] = extremes.min_tension_N_per_m;
+  model->tension_V[1] = dea_solid_voltage(model->solid);
+  return DEA_OK;
+}
+
+/* Whether the film carries tension all over where it was looked at last: a membrane that is slack
+ * has none to rounding. */
+static bool is_taut(const struct dea_model *model)
+{
+  const struct dea_material *film = &model->device->film;
+  double scale = film->law->shear_modulus(film->param) * model->device->film_thickness_m;
+  return model->tension[1] > 1e-6 * scale;
+}
+
+/* The point where the solid is, as the event at which a solve ends. */
+static dea_status take_event(struct dea_context *ctx, struct dea_model *model,
+                             enum dea_event_kind kind)
+{
+  double before_V = model->voltage_V;
+  model->voltage_V = dea_solid_voltage(model->solid);
+  dea_status status = report(ctx, model, &model->limit.point);
+  model->voltage_V = before_V;
+  model->limit.kind = kind;
+  model->limited = status == DEA_OK;
+  return status;
+}
+
+/* A point of the path on the way to where a solve ends. Where the film goes slack between two of
+ * them: the voltage from their tensions and the squares of their voltages. */
+static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
+{
+  struct dea_model *model = user;
+  double V = dea_solid_voltage(model->solid);
+  bool before = is_taut(model);
+  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && before)) {
+    return take_event(ctx, model, V >= model->voltage_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
+  }
+  if (where == DEA_STOP_UNSTABLE) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, look_at_tension(ctx, model));
+  if (before && !is_taut(model)) {
+    const double *T = model->tension, *at_V = model->tension_V;
+    double share = T[0] > T[1] ? T[0] / (T[0] - T[1]) : 0;
+    DEA_TRY(ctx, take_event(ctx, model, DEA_EVENT_SLACK));
+    model->limit.point.voltage_V =
+        sqrt((1 - share) * at_V[0] * at_V[0] + share * at_V[1] * at_V[1]);
+  }
+  return DEA_OK;
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return model->limited ? &model->limit : NULL;
+}
+
+/* A film without tension that turned unstable, or that has lost it on the way that ended here. */
+static dea_status fail_slack(struct dea_context *ctx, const struct dea_model *model,
+                             double voltage_V, const struct dea_solid_stop *stop)
+{
+  char where[80] = "has no tension", state[120] = "it wrinkles";
+  if (model->limited) {
+    snprintf(where, sizeof where, "loses its tension at %.6g kV",
+             1e-3 * model->limit.point.voltage_V);
+  }
+  if (stop->kind == DEA_STOP_UNSTABLE) {
+    snprintf(state, sizeof state, "from %.6g kV on it buckles, in %d mode%s of this mesh",
+             1e-3 * stop->voltage_V, stop->unstable_modes, stop->unstable_modes == 1 ? "" : "s");
+  } else if (model->actuator.plate.membrane) {
+    snprintf(state, sizeof state, "wrinkled, it thins without limit");
+  }
+  return dea_fail(ctx, DEA_E_SLACK,
+                  "the film %s; %s. No state at %.6g kV was found on this mesh "
+                  "(compute.solid.refinement, domain: disc)",
+                  where, state, 1e-3 * voltage_V);
+}
+
+/* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
+static dea_status stopped(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                          const struct dea_solid_stop *stop, dea_status status)
+{
+  char why[160];
+  double refinement = model->actuator.settings.refinement;
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  if (model->limited && model->limit.kind != DEA_EVENT_SLACK) {
+    return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                    "%s at %.6g kV and an electrode stretch of %.5g: %s there is no stable "
+                    "equilibrium at %.6g kV",
+                    model->limit.kind == DEA_EVENT_PULL_IN ? "pull-in" : "snap-back",
+                    1e-3 * stop->voltage_V, model->limit.point.electrode_stretch,
+                    stop->kind == DEA_STOP_LIMIT ? "beyond it" : "the film thins in one place, and",
+                    1e-3 * voltage_V);
+  }
+  if (model->limited || (stop->kind == DEA_STOP_UNSTABLE && !is_taut(model))) {
+    return fail_slack(ctx, model, voltage_V, stop);
+  }
+  if (status == DEA_E_INVERTED) {
+    return dea_fail(ctx, status,
+                    "at %.6g kV, on the way to %.6g kV, %s: a mesh that follows is finer "
+                    "(compute.solid.refinement: %.3g)",
+                    1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why,
+                    fmax(refinement, 1) + 1);
+  }
+  if (status == DEA_E_DOMAIN) {
+    return dea_fail(ctx, status, "the law ends at %.6g kV, on the way to %.6g kV: %s",
+                    1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why);
+  }
   return dea_fail(ctx, status,
-                  "stopped between %.4g and %.4g kV (%s); the points before are kept. Try smaller "
-                  "steps of compute.voltage",
-                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
+                  "ours: not converged at %.6g kV, on the way to %.6g kV (%s). The points before "
+                  "are kept; please send the design",
+                  1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why);
 }
 
 /* Where the path to a voltage has turned unstable and the solid has gone down from it. */
@@ -332,6 +455,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                         struct dea_load_point *out)
 {
   end_history(ctx, model);
+  model->limited = false;
   double step = field_step_V_per_m * model->device->film_thickness_unstretched_m;
   double from = model->voltage_V, way = voltage_V - from;
   int steps = (int)ceil(fabs(way) / step - 1e-9);
@@ -342,10 +466,16 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                       1e-3 * voltage_V);
     }
     double next = i == steps ? voltage_V : from + way * i / steps;
-    dea_status status = dea_load_steps_solve(ctx, model->solid, next, &model->report);
+    struct dea_solid_stop stop;
+    DEA_TRY(ctx, look_at_tension(ctx, model));
+    dea_status status = dea_solid_approach(ctx, model->solid, next, is_taut(model), see_point,
+                                           model, &model->report, &stop);
     if (status != DEA_OK) {
-      return stopped(ctx, model, next, status);
+      return dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
+                 ? stopped(ctx, model, next, &stop, status)
+                 : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
+    model->limited = false;
     model->voltage_V = next;
     model->left_a_state = next > 0 && (model->left_a_state || model->report.snapped);
     DEA_TRY(ctx, say_snap(ctx, model));
@@ -495,6 +625,7 @@ const struct dea_model_type dea_solid_module = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .limit = limit,
     .indent = indent,
     .modes = modes,
     .respond = respond,

@@ -235,6 +235,31 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
   return DEA_OK;
 }
 
+/* What an element says that has no energy: turned inside out, or beyond its law. */
+static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *s, size_t e,
+                               dea_status status)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], x[3] = {0};
+  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = u};
+  if (strains == NULL) {
+    return DEA_E_MEMORY;
+  }
+  int count = dea_solid_gather(s, e, s->problem.grid->X, X);
+  dea_solid_gather(s, e, s->state.u, u);
+  bool inverted = status == DEA_E_DOMAIN && element->type->strains(element, &in, strains) != DEA_OK;
+  dea_free(ctx, strains);
+  for (int i = 0; i < 3 * count; i++) {
+    x[i % 3] += 1e3 * X[i] / count;
+  }
+  return dea_fail(ctx, inverted ? DEA_E_INVERTED : status,
+                  "element %zu around (%.4g, %.4g, %.4g) "
+                  "mm %s",
+                  e, x[0], x[1], x[2],
+                  inverted ? "turns inside out" : "is beyond its law's domain");
+}
+
 static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                enum dea_eval_order level, double *energy)
 {
@@ -246,7 +271,7 @@ static dea_status add_elements(struct dea_context *ctx, struct dea_solid *s, dou
         s, e, s->state.u, voltage_V, level,
         s->found.predicted_fits ? s->work.predicted + k * p->elements.predicted_count : NULL);
     if (status != DEA_OK) {
-      return dea_fail(ctx, status, "element %zu is inverted or beyond its law's domain", e);
+      return fail_element(ctx, s, e, status);
     }
     *energy += element->energy_J;
     s->found.energy_scale_J += fabs(element->energy_J);

@@ -30,7 +30,7 @@ void dea_solid_share(size_t count, size_t *from, size_t *to);
  */
 static inline bool dea_solid_may_shorten(dea_status status)
 {
-  return status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN;
+  return status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN || status == DEA_E_INVERTED;
 }
 
 /* DEA_E_INTERRUPTED on all ranks when one of them was interrupted: for each iteration. */

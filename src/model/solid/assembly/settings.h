@@ -32,6 +32,17 @@
   X(double, bulk_stiff, 128, "1", "power of 2, factor of kappa where unstable modes are counted")  \
   /* ---- load steps, and the descent from an unstable equilibrium ---- */                         \
   X(double, load_step_least, 1.0 / 64, "of the way asked for", "shortest step")                    \
+  X(double, approach_part, 0.5, "of the way asked for",                                            \
+    "shortest step before the path is followed")                                                   \
+  X(double, approach_part_least, 0.25, "of the way asked for",                                     \
+    "shortest step where it says nothing")                                                         \
+  X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
+  X(int, approach_iterations, 25, "1",                                                             \
+    "of one minimum of a taut film, before the path is followed")                                  \
+  X(int, approach_points, 40, "1", "points of the path on the way to a voltage")                   \
+  X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \
+  X(double, approach_step, 0.5, "of the way or of that displacement", "first step on it")          \
+  X(double, approach_step_most, 4, "of the way or of that displacement", "longest step")           \
   X(int, descent_modes, 4, "1", "unstable modes that are left one after the other")                \
   X(double, descent_push, 0.05, "of the solid's length", "first push along a mode")                \
   X(double, descent_equal, 1e-6, "of the fall", "energies of two sides that count as equal")       \

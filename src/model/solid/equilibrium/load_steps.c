@@ -315,7 +315,8 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
-static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
+/* In steps that are halved where one fails, down to `least` of the way, and grow again after. */
+static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, double least,
                                  struct dea_solid_report *report)
 {
   const struct dea_load_steps *path = &s->work.load_steps;
@@ -330,9 +331,10 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
       if (way >= 1) {
         return DEA_OK;
       }
+      part = fmin(2 * part, 1);
     } else {
       part /= 2;
-      if (!dea_solid_may_shorten(status) || !moves || part < s->settings.load_step_least) {
+      if (!dea_solid_may_shorten(status) || !moves || part < least) {
         return status;
       }
     }
@@ -342,6 +344,13 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                 struct dea_solid_report *report)
 {
+  return dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.load_step_least, report);
+}
+
+dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid *s,
+                                       double voltage_V, double least,
+                                       struct dea_solid_report *report)
+{
   struct dea_load_steps *path = &s->work.load_steps;
   *report = (struct dea_solid_report){0};
   DEA_TRY(ctx, dea_solid_check(ctx, s));
@@ -349,5 +358,5 @@ dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *s, do
   dea_solid_controls_get(s, path->controls);
   dea_solid_controls_goal(s, voltage_V, path->controls_goal);
   memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
-  return solve_in_steps(ctx, s, report);
+  return solve_in_steps(ctx, s, least, report);
 }

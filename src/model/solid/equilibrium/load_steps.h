@@ -12,6 +12,11 @@
 dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                                 struct dea_solid_report *report);
 
+/* The same with steps of `least` of the way or more, in place of settings.load_step_least. */
+dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid *solid,
+                                       double voltage_V, double least,
+                                       struct dea_solid_report *report);
+
 /* From an unstable equilibrium down along its most unstable mode v to a stable one, at the same
  * voltage and loads. side: 1 along v, -1 against it, 0 where the energy is lower (along v when that
  * is equal). Goes on until there is no unstable mode. The solid stays where it was with

@@ -1,0 +1,184 @@
+#include "model/solid/equilibrium/approach.h"
+
+#include "model/solid/assembly/controls.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/newton.h"
+
+#include <math.h>
+#include <string.h>
+
+/* One search for the cause, and where it starts. */
+struct search {
+  struct dea_solid *s;
+  double *state, *from, *goal; // state and controls at its start, controls that are wanted
+  dea_solid_path_sink points;
+  void *user;
+  struct dea_solid_report *report;
+  struct dea_solid_stop *stop;
+  bool went_on; // the solid is at a stable equilibrium further on
+};
+
+/* Displacement that counts as much as the whole load: a share of that on the way, as far as the
+ * displacements that are there tell, which go with the square of the voltage. */
+static double unit_of(const struct dea_solid *s, const double *from, const double *goal)
+{
+  double sum = 0, before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
+  size_t count = 3 * s->problem.grid->node_count;
+  for (size_t i = 0; i < count; i++) {
+    sum += s->state.u[i] * s->state.u[i];
+  }
+  double grown = sqrt(sum / (double)count) * (way < before ? way / before : 1);
+  return s->settings.approach_unit * fmax(grown, s->settings.approach_unit * s->problem.length_m);
+}
+
+/* The limit point or bifurcation that the last step has passed, or where it cannot be closed in on
+ * that step. */
+static dea_status take_stop(struct dea_context *ctx, const struct search *a,
+                            enum dea_solid_stop_kind kind, struct dea_solid_continuation *path,
+                            struct dea_continuation_point *at)
+{
+  a->stop->kind = kind;
+  a->stop->unstable_modes = at->unstable_modes;
+  dea_status status = dea_solid_continuation_locate(ctx, path, at);
+  if (dea_solid_may_shorten(status) || status == DEA_E_ARGUMENT) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  DEA_TRY(ctx, status);
+  a->stop->voltage_V = at->voltage_V;
+  DEA_TRY(ctx, a->points(ctx, a->user, kind));
+  return DEA_OK;
+}
+
+/* From a point beyond the goal to the equilibrium at it, from an unstable one down. */
+static dea_status leave_path(struct dea_context *ctx, struct search *a,
+                             const struct dea_continuation_point *at)
+{
+  struct dea_solid *s = a->s;
+  struct dea_solid_report report = {0};
+  if (at->load >= 1) {
+    dea_solid_controls_set(s, a->goal);
+  }
+  s->found.factor_fits = s->found.predicted_fits = false;
+  dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
+  if (status == DEA_OK && report.unstable_modes == 0) {
+    *a->report = report;
+    a->went_on = true;
+    return DEA_OK;
+  }
+  return status == DEA_OK ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "it stays unstable") : status;
+}
+
+/* Along the path until something has happened. */
+static dea_status follow(struct dea_context *ctx, struct search *a,
+                         struct dea_solid_continuation *path)
+{
+  struct dea_continuation_point at = {0};
+  for (int i = 0; i < a->s->settings.approach_points; i++) {
+    DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
+    if (at.passed == DEA_CONTINUATION_LIMIT) {
+      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
+      return DEA_OK;
+    }
+    DEA_TRY(ctx, a->points(ctx, a->user, DEA_STOP_UNKNOWN));
+    if (at.load >= 1 || at.unstable_modes > 0) {
+      dea_status status = leave_path(ctx, a, &at);
+      if (!dea_solid_may_shorten(status) || at.unstable_modes == 0) {
+        return status;
+      }
+      dea_context_clear(ctx);
+      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at));
+      return DEA_OK;
+    }
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is long");
+}
+
+/* From the equilibrium that the solid is at towards the goal by arc length. The solid is then
+ * further on (a->went_on), or where it was. Fails only where no shorter step would help. */
+static dea_status search_path(struct dea_context *ctx, struct search *a)
+{
+  const struct dea_solid_settings *o = &a->s->settings;
+  struct dea_continuation_options options = {o->approach_step, o->approach_step_most, 0};
+  struct dea_solid_continuation *path = NULL;
+  dea_solid_state_get(a->s, a->state);
+  dea_solid_controls_get(a->s, a->from);
+  options.unit_m = unit_of(a->s, a->from, a->goal);
+  a->went_on = false;
+  *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  dea_status status = dea_continuation_create_to(ctx, a->s, a->goal, &options, &path);
+  if (status == DEA_OK) {
+    status = follow(ctx, a, path);
+  }
+  dea_solid_continuation_destroy(ctx, path);
+  if (!a->went_on) {
+    dea_solid_state_set(a->s, a->state);
+    dea_solid_controls_set(a->s, a->from);
+    a->s->found.factor_fits = a->s->found.predicted_fits = false;
+  }
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+/* Load steps, few and long ones, that end after fewer iterations where the film is taut. */
+static dea_status try_steps(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
+{
+  struct dea_solid_settings *o = &a->s->settings;
+  const int iterations = o->iterations, iterations_free = o->iterations_free;
+  if (taut && o->approach_iterations < iterations) {
+    o->iterations = o->approach_iterations;
+    o->iterations_free = iterations_free < o->iterations ? iterations_free : o->iterations;
+  }
+  dea_status status =
+      dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
+  o->iterations = iterations;
+  o->iterations_free = iterations_free;
+  return status;
+}
+
+/* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
+static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
+{
+  for (int i = 0; i < a->s->settings.approach_rounds && a->s->problem.field == NULL; i++) {
+    dea_status status = try_steps(ctx, a, voltage_V, taut);
+    if (!dea_solid_may_shorten(status)) {
+      return status;
+    }
+    dea_context_clear(ctx);
+    dea_solid_controls_goal(a->s, voltage_V, a->goal);
+    DEA_TRY(ctx, search_path(ctx, a));
+    if (a->stop->kind == DEA_STOP_LIMIT) {
+      return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV",
+                      1e-3 * a->stop->voltage_V);
+    }
+    if (!a->went_on) {
+      break;
+    }
+  }
+  DEA_TRY(ctx, dea_load_steps_solve_within(ctx, a->s, voltage_V, a->s->settings.approach_part_least,
+                                           a->report));
+  return DEA_OK;
+}
+
+dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                              bool taut, dea_solid_path_sink points, void *user,
+                              struct dea_solid_report *report, struct dea_solid_stop *stop)
+{
+  struct search a = {.s = s, .points = points, .user = user, .report = report, .stop = stop};
+  struct dea_arena memory = {.ctx = ctx};
+  *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  a.state = dea_arena_alloc(&memory, s->work.load_steps.state_count, sizeof *a.state);
+  a.from = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.from);
+  a.goal = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.goal);
+  dea_status status = dea_solid_agree(ctx, memory.failed ? DEA_E_MEMORY : DEA_OK);
+  if (status == DEA_OK) {
+    status = go(ctx, &a, voltage_V, taut);
+  }
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,34 @@
+/* To the next voltage by load steps, and where they end along the path of equilibria to the cause
+ * (docs/theory/stops.md). */
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
+
+#include "model/solid/assembly/solid.h"
+
+enum dea_solid_stop_kind {
+  DEA_STOP_UNKNOWN,  // the path cannot be followed either
+  DEA_STOP_LIMIT,    // it turns back: a limit point
+  DEA_STOP_UNSTABLE, // it turns unstable, and no way down from there was found
+};
+
+struct dea_solid_stop {
+  enum dea_solid_stop_kind kind;
+  double voltage_V;   // of the limit point; where the path is first known to be unstable
+  int unstable_modes; // there
+};
+
+/* Looks at the solid at a point of the path; where: DEA_STOP_UNKNOWN at one on the way, otherwise
+ * at the limit point or bifurcation that was located. */
+typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
+                                          enum dea_solid_stop_kind where);
+
+/* As dea_load_steps_solve; load steps that fail go on along the path by arc length, around a
+ * bifurcation too, and then by load steps again. points: sees each point of such a path. taut: the
+ * film has tension, so that what takes more than approach_iterations is not looked for at first. A
+ * failure leaves the solid at the last equilibrium that was found: DEA_E_NO_EQUILIBRIUM beyond a
+ * limit point; otherwise the status of the last load step, and *stop says what is known. */
+dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
+                              bool taut, dea_solid_path_sink points, void *user,
+                              struct dea_solid_report *report, struct dea_solid_stop *stop);
+
+#endif

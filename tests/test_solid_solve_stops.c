@@ -1,0 +1,110 @@
+/* Where model 3d stops, against the exact disc: pull-in and loss of tension, located, from far
+ * steps (docs/theory/stops.md). */
+// ctest: solid
+#include "devices.h"
+#include "model/model.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+extern const struct dea_model_type dea_solid_module;
+
+static const struct dea_model_settings solid_film = {.film = DEA_FILM_SOLID},
+                                       membrane = {.film = DEA_FILM_MEMBRANE};
+
+/* A disc of a film of so many metres, of electrodes and frame. */
+static struct dea_device disc(struct dea_material film, double thickness_m, double pre_stretch,
+                              double electrode_m, double frame_m)
+{
+  struct dea_device d = test_disc(film, pre_stretch, electrode_m, electrode_m / frame_m, 0);
+  d.film_thickness_unstretched_m = thickness_m;
+  d.film_thickness_m = thickness_m / (pre_stretch * pre_stretch);
+  d.frame_radius_m = frame_m;
+  return d;
+}
+
+/* In equal steps to where it stops; *reached_V: the last voltage, *event: where. */
+static dea_status sweep(const struct dea_model_type *type, const struct dea_device *device,
+                        const struct dea_model_settings *settings, double highest_V, int steps,
+                        double *reached_V, struct dea_event *event)
+{
+  struct dea_model *model;
+  struct dea_load_point point;
+  dea_status status = type->create(ctx, device, settings, &model);
+  assert_int_equal(status, DEA_OK);
+  *reached_V = 0;
+  for (int i = 1; i <= steps && status == DEA_OK; i++) {
+    status = type->solve(ctx, model, highest_V * i / steps, &point);
+    *reached_V = status == DEA_OK ? point.voltage_V : *reached_V;
+  }
+  assert_int_not_equal(status, DEA_OK);
+  print_message("%s: %s\n", type->name, dea_context_message(ctx));
+  assert_non_null(type->limit(model));
+  *event = *type->limit(model);
+  type->destroy(ctx, model);
+  return status;
+}
+
+/* A soft film: the solid's limit point is that of the exact disc to what its mesh leaves, from one
+ * far step and from a few. */
+static void test_pull_in_agrees_with_the_exact_disc(void **state)
+{
+  (void)state;
+  struct dea_device device =
+      disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
+  device.film.permittivity.at_rest = 4.8;
+  struct dea_event exact, far, near, flat;
+  double at_V;
+  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 360, 2, &at_V, &exact),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(exact.kind, DEA_EVENT_PULL_IN);
+  assert_int_equal(sweep(&dea_solid_module, &device, &solid_film, 360, 1, &at_V, &far),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, &device, &solid_film, 360, 4, &at_V, &near),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_close(at_V, 270, 0, 1e-9);
+  assert_int_equal(sweep(&dea_solid_module, &device, &membrane, 360, 2, &at_V, &flat),
+                   DEA_E_NO_EQUILIBRIUM);
+  const struct dea_event *const all[] = {&far, &near, &flat};
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(all[i]->kind, DEA_EVENT_PULL_IN);
+    assert_close(all[i]->point.voltage_V, exact.point.voltage_V, 1e-3, 0);
+    assert_close(all[i]->point.electrode_stretch - 1, exact.point.electrode_stretch - 1, 2e-2, 0);
+  }
+  assert_close(far.point.voltage_V, near.point.voltage_V, 1e-5, 0);
+}
+
+/* A membrane that goes slack under its electrodes thins there without limit, which is before the
+ * exact disc, whose film carries compression, pulls in. */
+static void test_loss_of_tension_is_located(void **state)
+{
+  (void)state;
+  struct dea_device device =
+      disc(test_material("neo-hookean", 280e3, 0, 0), 500e-6, 1.05, 2.27e-3, 22.6e-3);
+  struct dea_event found;
+  double at_V;
+  assert_int_equal(sweep(&dea_solid_module, &device, &membrane, 120e3, 3, &at_V, &found),
+                   DEA_E_SLACK);
+  assert_int_equal(found.kind, DEA_EVENT_SLACK);
+  const struct dea_model_type *type = dea_model_find("axisymmetric");
+  struct dea_model *model;
+  struct dea_load_point point;
+  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
+  assert_int_equal(type->solve(ctx, model, 0.999 * found.point.voltage_V, &point), DEA_OK);
+  assert_true(point.min_tension_N_per_m > 0);
+  assert_int_equal(type->solve(ctx, model, 1.001 * found.point.voltage_V, &point), DEA_OK);
+  assert_true(point.min_tension_N_per_m < 0);
+  type->destroy(ctx, model);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
+      cmocka_unit_test(test_loss_of_tension_is_located),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
