@@ -90,6 +90,28 @@ static void test_compression_ratio(void **state)
   assert_int_equal(dea_load_point_flags(&point), 1u << DEA_FLAG_PREVIEW);
 }
 
+/* The error that a run estimates against what the exact disc says, which has no thickness, so
+ * within a factor; finer meshes have less. Where the film is slack none is estimated. */
+static void test_estimated_error(void **state)
+{
+  (void)state;
+  struct dea_device device = plain();
+  const struct dea_model_settings finer = {.film = DEA_FILM_SOLID, .refinement = 2};
+  struct dea_load_point exact = solve(dea_model_find("axisymmetric"), &device, NULL, 5e3);
+  struct dea_load_point coarse = solve(solid, &device, &solid_film, 5e3);
+  struct dea_load_point fine = solve(solid, &device, &finer, 5e3);
+  double found_m = fabs(exact.electrode_edge_u_m - coarse.electrode_edge_u_m);
+  assert_true(coarse.electrode_edge_u_error_m > 0.5 * found_m);
+  assert_true(coarse.electrode_edge_u_error_m < 2 * found_m);
+  assert_true(fine.electrode_edge_u_error_m < 0.9 * coarse.electrode_edge_u_error_m);
+  assert_true(coarse.centre_z_error_m < 1e-9); // it stays flat
+  assert_true(isnan(coarse.fibre_tip_z_error_m));
+  device = test_disc(test_yeoh(), 1, 3.75e-3, 0.25, 0);
+  coarse = solve(solid, &device, &solid_film, 2e3);
+  assert_true((dea_load_point_flags(&coarse) & 1u << DEA_FLAG_SLACK) != 0);
+  assert_true(isnan(coarse.electrode_edge_u_error_m));
+}
+
 static void test_permittivity_that_depends_on_stretch(void **state)
 {
   (void)state;
@@ -339,6 +361,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_compression_ratio),
+      cmocka_unit_test(test_estimated_error),
       cmocka_unit_test(test_permittivity_that_depends_on_stretch),
       cmocka_unit_test(test_electrodes_of_a_membrane),
       cmocka_unit_test(test_electrode_layers),

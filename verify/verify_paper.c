@@ -375,7 +375,7 @@ static void other_numbers(const struct run *b4)
          1e3 * device->electrode_radius_m);
   printf(
       "| 5.1 | gravity | no influence seen | a plain film sags %.2f um at rest (rho g h b^2 / 4 T, "
-      "T = %.1f N/m): below what their laser shows |\n",
+      "T = %.1f N/m): whether their laser shows that is not said |\n",
       1e6 * sag, at(b4, 0)->min_tension_N_per_m);
   double V30 = NAN;
   for (size_t i = 0; i + 1 < b4->count && isnan(V30); i++) {
@@ -407,13 +407,17 @@ static void why(const struct run *s4, const struct run *b4)
       1e-3 * fabs(centre_um(s4, 6e3)), 1e-3 * fabs(tip_um(s4, 6e3)),
       1e-3 * fabs(centre_um(b4, 6e3)));
   printf(
-      "* **The measured 0.5 mm at 8 kV.** As built the film has lost its tension in front of the "
+      "* **The measured 0.5 mm at 8 kV is open.** As built the film has lost its tension in front "
+      "of the "
       "fibre tips above 6 kV, and there it\n  buckles: by %.2f to %.2f mm at 8 kV on the solid "
       "meshes above, in one of two shapes, a dent or a pair of wrinkles. On one mesh the "
       "same\n  state is reached whatever the steps of the voltage; from mesh to mesh it may be "
-      "the other one. A laser that reads the largest height over\n  the whole actuator reads "
-      "that; the fibre tip moves %.2f mm and the centre %.2f mm (default mesh). What many "
-      "cycles do to it is not in here.\n",
+      "the other one: none of them is a\n  prediction (flag `slack` from 7 kV on, "
+      "`docs/theory/trust.md`). The paper's laser stood on the centre of the electrode \"if "
+      "possible\" (5.1), and\n  its profiles rise flat or as a cone in the middle (4.2.1); our "
+      "pits and wrinkles are less than 1 mm wide in front of each tip, and\n  the centre is flat. "
+      "None of our states has the paper's shape, nor its size there: the fibre tip moves %.2f mm "
+      "and the centre %.2f mm\n  (default mesh). What many cycles do to it is not in here.\n",
       1e-3 * buckled_um[0], 1e-3 * buckled_um[1], 1e-3 * fabs(tip_um(b4, 8e3)),
       1e-3 * fabs(centre_um(b4, 8e3)));
   puts("* **Thickness and hold of the fibre** move the tip most where the film has no pre-stretch; "

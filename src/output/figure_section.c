@@ -35,9 +35,11 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   static const enum dea_colour order[SHOWN_MAX] = {DEA_SKY, DEA_VERMILLION, DEA_BLACK};
   struct dea_series look = {.style = DEA_LINE, .colour = order[shown]};
   struct dea_surface_lattice drawing;
-  bool doubtful = dea_result_doubts(result, record->model, record->voltage_V) != 0;
-  snprintf(look.title, sizeof look.title, "%.4g kV%s", 1e-3 * record->voltage_V,
-           doubtful ? " (not trusted)" : "");
+  char words[DEA_FLAGS_SIZE];
+  unsigned doubts = dea_result_doubts(result, record->model, record->voltage_V);
+  look.colour = doubts != 0 ? DEA_GREY : look.colour;
+  snprintf(look.title, sizeof look.title, "%.4g kV%s%s", 1e-3 * record->voltage_V,
+           doubts != 0 ? ": " : "", dea_flags_text(doubts, words));
   dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
   if (status == DEA_OK) {
     status = add_diameter(ctx, panel, &drawing, 0, &look);
@@ -81,6 +83,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 const struct dea_figure dea_figure_section = {
     .name = "section",
     .caption =
-        "displacement out of the plane along diameters (full: along fibres, dashed: between)",
+        "displacement out of the plane along diameters (full: along fibres, dashed: between; "
+        "grey: not to be trusted)",
     .build = build,
 };

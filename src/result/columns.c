@@ -49,6 +49,20 @@ bool dea_points_have(const struct dea_load_point *points, size_t count, int colu
   return false;
 }
 
+int dea_point_error_column(int column)
+{
+  static const char unit[] = "_m", ending[] = "_error_m";
+  char key[64];
+  size_t length = strlen(dea_point_columns[column].key);
+  if (length < sizeof unit || length + sizeof ending > sizeof key) {
+    return -1;
+  }
+  length -= strlen(unit);
+  memcpy(key, dea_point_columns[column].key, length);
+  memcpy(key + length, ending, sizeof ending);
+  return dea_point_column_find(key);
+}
+
 bool dea_point_is_bound(const struct dea_load_point *point, int column)
 {
   static const char *const bounded[] = {"centre_z_m", "fibre_tip_z_m", "force_N"};

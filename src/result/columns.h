@@ -33,6 +33,8 @@ void dea_point_set(struct dea_load_point *point, int column, double value_si);
 /* True when at least one of the points has a number in that column. */
 bool dea_points_have(const struct dea_load_point *points, size_t count, int column);
 
+/* Column of the estimated error of that column, or -1. */
+int dea_point_error_column(int column);
 /* Whether the number in that column is an upper bound and no prediction: z and force of a point
  * with DEA_FLAG_BOUND. */
 bool dea_point_is_bound(const struct dea_load_point *point, int column);

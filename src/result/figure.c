@@ -66,6 +66,32 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* Band of the estimated error of a column, where it has one, below the curve. */
+static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
+                            const struct dea_curve *curve, int column, double factor, double shift,
+                            bool right)
+{
+  int error = dea_point_error_column(column);
+  size_t n = curve->count;
+  struct dea_series *band;
+  if (error < 0 || !dea_points_have(curve->points, n, error)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &band));
+  band->style = DEA_BAND;
+  band->colour = DEA_GREY;
+  band->right = right;
+  for (size_t i = 0; i < n; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    double value = factor * (dea_point_get(p, column) + shift);
+    double half = fabs(factor) * dea_point_get(p, error);
+    band->values[i] = 1e-3 * p->voltage_V;
+    band->values[n + i] = value - half;
+    band->values[2 * n + i] = value + half;
+  }
+  return DEA_OK;
+}
+
 /* What a key says of the dashed parts of a panel that had `before`. */
 static const char *dashed_words(const struct dea_curve *curve, const char *before)
 {
@@ -92,6 +118,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
     snprintf(shown.title + n, sizeof shown.title - n, " (upper bound)");
     shown.style = DEA_DOTTED;
   }
+  DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
   for (size_t i = 0; i < curve->count; i++) {
     if (!dea_load_point_trusted(&curve->points[i])) {

@@ -35,6 +35,12 @@
     "at most; only where the distribution of the breakdown field is known")                        \
   X(min_tension_N_per_m, "N/m", "N/m", 1.0, "smallest tension",                                    \
     "smallest principal tension (true stress x current thickness); below 0 the film is slack")     \
+  X(centre_z_error_m, "m", "um", 1e6, "error of z centre",                                         \
+    "estimated error of the mesh in the displacement of the centre")                               \
+  X(fibre_tip_z_error_m, "m", "um", 1e6, "error of z fibre tip",                                   \
+    "estimated error of the mesh in the displacement of the fibre tip")                            \
+  X(electrode_edge_u_error_m, "m", "um", 1e6, "error of u electrode edge",                         \
+    "estimated error of the mesh in the displacement of the electrode edge")                       \
   X(compression_ratio, "1", "1", 1.0, "compression ratio",                                         \
     "compression in the slack part of the film over what a clamped plate of its area bears: "      \
     "from 1 on it wrinkles")                                                                       \
@@ -89,7 +95,7 @@
     "the film's law is near its locking stretch or beyond it (from 80 % on)")                      \
   X(RANGE, "range", DOUBT, "the film is stretched beyond the measured range of its law")           \
   X(PREVIEW, "preview", DOUBT,                                                                     \
-    "a membrane film is a preview: no bending of the film, no shape of its wrinkles")              \
+    "the film is a membrane: without bending, and without the shape of its wrinkles")              \
   X(BREAKDOWN, "breakdown", DANGER, "the true field is beyond the film's breakdown field")         \
   X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")
 

@@ -24,7 +24,7 @@ static const struct dea_result_column columns[] = {
      .display_unit = "mN",
      .factor = 1e3,
      .title = "force",
-     .meaning = "that holds them there"},
+     .meaning = "that holds them there: an upper bound, of rigid rods"},
 };
 static const char study_name[] = "load-line";
 static const struct dea_result_table_type force_table = {.study = study_name,

@@ -7,15 +7,26 @@
 #include <stdio.h>
 #include <string.h>
 
-static void add_card(struct dea_text *out, const char *what, double value, const char *unit,
-                     int digits)
+/* error: estimated one, NAN: none is. */
+static void add_card_with(struct dea_text *out, const char *what, double value, double error,
+                          const char *unit, int digits)
 {
   if (!isfinite(value)) {
     return;
   }
   dea_text_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
   dea_html_number(out, fabs(value) < 1e-9 ? 0 : value, digits);
+  if (isfinite(error)) {
+    dea_text_add(out, " \302\261 ");
+    dea_html_number(out, error, 1);
+  }
   dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
+}
+
+static void add_card(struct dea_text *out, const char *what, double value, const char *unit,
+                     int digits)
+{
+  add_card_with(out, what, value, NAN, unit, digits);
 }
 
 static void add_event(struct dea_text *out, const struct dea_curve *path, enum dea_event_kind kind,
@@ -34,8 +45,10 @@ static void add_cards(struct dea_report *report, const struct dea_load_point *p,
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
   add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", 3);
-  add_card(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m, "\302\265m", 4);
-  add_card(out, bound ? "fibre tip, at most" : "fibre tip", 1e6 * p->fibre_tip_z_m, "\302\265m", 4);
+  add_card_with(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m,
+                1e6 * p->centre_z_error_m, "\302\265m", 4);
+  add_card_with(out, bound ? "fibre tip, at most" : "fibre tip", 1e6 * p->fibre_tip_z_m,
+                1e6 * p->fibre_tip_z_error_m, "\302\265m", 4);
   add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", 3);
   add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", 3);
   add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", 3);
@@ -43,9 +56,9 @@ static void add_cards(struct dea_report *report, const struct dea_load_point *p,
   dea_text_add(out, "</dl>");
 }
 
-/* Cards of a sweep at one of its voltages, NAN for none. what: it is. */
+/* Cards of a sweep at one of its voltages, NAN for none. what: it is, before words of flags. */
 static void add_cards_at(struct dea_report *report, const struct dea_curve *sweep, double voltage_V,
-                         const char *what)
+                         const char *what, unsigned flags)
 {
   const struct dea_load_point *p = NULL;
   for (size_t i = 0; i < sweep->count; i++) {
@@ -54,7 +67,7 @@ static void add_cards_at(struct dea_report *report, const struct dea_curve *swee
   if (p != NULL) {
     char heading[3 * DEA_NAME_SIZE], words[DEA_FLAGS_SIZE];
     snprintf(heading, sizeof heading, "Model %s at %.4g kV%s%s", sweep->model, 1e-3 * p->voltage_V,
-             what, dea_flags_text(dea_load_point_flags(p), words));
+             what, dea_flags_text(flags, words));
     add_cards(report, p, heading);
   }
 }
@@ -77,12 +90,14 @@ static void add_glance(struct dea_report *report, const struct dea_result *resul
   dea_text_add(out, ".</p>");
   out->failed = out->failed || text.failed;
   dea_text_free(&text);
-  add_cards_at(report, sweep, trust.good_V, ", the largest voltage to be trusted and safe");
+  add_cards_at(report, sweep, trust.good_V, ", the largest voltage to be trusted and safe", 0);
   if (trust.trusted_V > trust.good_V || isnan(trust.good_V)) {
-    add_cards_at(report, sweep, trust.trusted_V, ", the largest voltage to be trusted, but ");
+    add_cards_at(report, sweep, trust.trusted_V, ", the largest voltage to be trusted, but ",
+                 trust.dangers);
   }
   if (!(last_V <= trust.trusted_V)) {
-    add_cards_at(report, sweep, last_V, ", not to be trusted: ");
+    add_cards_at(report, sweep, last_V,
+                 ", not to be trusted: ", dea_result_doubts(result, sweep->model, last_V));
   }
   dea_text_add(out, "<dl class=\"cards\">");
   add_event(out, path, DEA_EVENT_SLACK, "slack from");

@@ -1,7 +1,10 @@
 #include "model/solid/adapter/fields.h"
 
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/recovery/recover.h"
+#include "model/solid/recovery/recover_error.h"
+
+#include <math.h>
 
 /* Potentials of a coupled field [V], owned by the caller; NULL for thin films. */
 static dea_status find_potentials(struct dea_context *ctx, const struct dea_solid *s, double **out)
@@ -21,34 +24,83 @@ static dea_status find_potentials(struct dea_context *ctx, const struct dea_soli
   return DEA_OK;
 }
 
+/* What recovery is made of; filled by prepare. */
+struct recovery {
+  struct dea_recover_input in;
+  double *potential_V, *across_V;
+};
+
+static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s, struct recovery *out)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  *out =
+      (struct recovery){.across_V = dea_alloc(ctx, p->grid->element_count, sizeof *out->across_V)};
+  dea_status status =
+      out->across_V != NULL ? find_potentials(ctx, s, &out->potential_V) : DEA_E_MEMORY;
+  for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
+    out->across_V[e] = dea_solid_voltage_across(s, e, s->state.voltage_V);
+  }
+  out->in = (struct dea_recover_input){.grid = p->grid,
+                                       .elements = &p->elements,
+                                       .kind = p->kind,
+                                       .constituents = p->constituents,
+                                       .bulk_factor = s->state.bulk_factor,
+                                       .constituent = p->constituent_of,
+                                       .active = p->active,
+                                       .u = s->state.u,
+                                       .multiplier = s->state.multiplier,
+                                       .across_V = out->across_V,
+                                       .potential_V = out->potential_V};
+  return status;
+}
+
+static void release(struct dea_context *ctx, struct recovery *recovery)
+{
+  dea_free(ctx, recovery->across_V);
+  dea_free(ctx, recovery->potential_V);
+}
+
 /* ply: of the middle surface, negative for all elements. */
 static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, int ply,
                           struct dea_field_mesh **out)
 {
-  const struct dea_solid_problem *p = &s->problem;
-  double *potential_V = NULL, *across_V = dea_alloc(ctx, p->grid->element_count, sizeof *across_V);
+  struct recovery work;
   *out = NULL;
-  dea_status status = across_V != NULL ? find_potentials(ctx, s, &potential_V) : DEA_E_MEMORY;
-  for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
-    across_V[e] = dea_solid_voltage_across(s, e, s->state.voltage_V);
-  }
-  const struct dea_recover_input input = {.grid = p->grid,
-                                          .elements = &p->elements,
-                                          .kind = p->kind,
-                                          .constituents = p->constituents,
-                                          .bulk_factor = s->state.bulk_factor,
-                                          .constituent = p->constituent_of,
-                                          .active = p->active,
-                                          .u = s->state.u,
-                                          .multiplier = s->state.multiplier,
-                                          .across_V = across_V,
-                                          .potential_V = potential_V};
+  dea_status status = prepare(ctx, s, &work);
   if (status == DEA_OK) {
-    status =
-        ply < 0 ? dea_recover_volume(ctx, &input, out) : dea_recover_surface(ctx, &input, ply, out);
+    status = ply < 0 ? dea_recover_volume(ctx, &work.in, out)
+                     : dea_recover_surface(ctx, &work.in, ply, out);
   }
-  dea_free(ctx, across_V);
-  dea_free(ctx, potential_V);
+  release(ctx, &work);
+  return status;
+}
+
+dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
+                            const double *const *weight, size_t count, double *error_m)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  double *z = NULL;
+  const double *each[DEA_ERRORS_MAX];
+  for (size_t k = 0; k < count; k++) {
+    error_m[k] = NAN;
+  }
+  if (dea_solid_any(!s->found.factor_fits)) {
+    return DEA_OK;
+  }
+  struct recovery work = {0};
+  z = dea_alloc(ctx, count * p->dofs, sizeof *z);
+  dea_status status = z != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
+  for (size_t k = 0; k < count && status == DEA_OK; k++) {
+    each[k] = z + k * p->dofs;
+    memcpy(z + k * p->dofs, weight[k], p->dofs * sizeof *z);
+    dea_solid_release_held(s, z + k * p->dofs);
+    status = dea_solid_solve_linear(ctx, s, z + k * p->dofs, z + k * p->dofs);
+  }
+  if (status == DEA_OK) {
+    status = dea_recover_errors(ctx, &work.in, each, count, error_m);
+  }
+  release(ctx, &work);
+  dea_free(ctx, z);
   return status;
 }
 

@@ -10,5 +10,10 @@ dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *sol
                             struct dea_field_mesh **out);
 dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int ply,
                              struct dea_field_mesh **out);
+/* Estimated errors [m] of displacements, not negative, each a sum of weight[k] [3 nodes] times
+ * u, from the factor of the last equilibrium; NAN where there is none, or it is of an unstable one.
+ * count <= DEA_ERRORS_MAX. */
+dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *solid,
+                            const double *const *weight, size_t count, double *error_m);
 
 #endif

@@ -11,6 +11,7 @@
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/state.h"
 #include "model/solid/assembly/film.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/recovery/line_profile.h"
@@ -188,6 +189,45 @@ static dea_status find_extremes(const struct dea_model *model, struct dea_solid_
   return dea_solid_extremes(model->solid, films, out);
 }
 
+/* Estimated errors of the reported displacements, where the state is one of which they say
+ * something. */
+static dea_status report_errors(struct dea_context *ctx, struct dea_model *model,
+                                struct dea_load_point *out)
+{
+  enum { CENTRE, TIP, EDGE, COUNT };
+  size_t dofs = model->solid->problem.dofs;
+  const double *X = model->grid->X + 3 * model->between;
+  const size_t two[2][2] = {{model->centre, model->centre_twin},
+                            {model->between, model->between_twin}};
+  double error_m[COUNT], *weights;
+  const double *each[COUNT];
+  if (!dea_load_point_trusted(out) || out->voltage_V == 0) {
+    return DEA_OK;
+  }
+  weights = dea_alloc(ctx, COUNT * dofs, sizeof *weights);
+  if (dea_solid_any(weights == NULL)) {
+    dea_free(ctx, weights);
+    return DEA_E_MEMORY;
+  }
+  for (int k = 0; k < COUNT; k++) {
+    each[k] = weights + (size_t)k * dofs;
+  }
+  weights[TIP * dofs + 3 * model->tip + 2] = 1;
+  for (int i = 0; i < 2; i++) {
+    weights[CENTRE * dofs + 3 * two[0][i] + 2] += 0.5;
+    weights[EDGE * dofs + 3 * two[1][i]] += 0.5 * X[0] / hypot(X[0], X[1]);
+    weights[EDGE * dofs + 3 * two[1][i] + 1] += 0.5 * X[1] / hypot(X[0], X[1]);
+  }
+  dea_status status = dea_solid_errors(ctx, model->solid, each, COUNT, error_m);
+  dea_free(ctx, weights);
+  if (status == DEA_OK) {
+    out->centre_z_error_m = error_m[CENTRE];
+    out->fibre_tip_z_error_m = model->device->fibre_count > 0 ? error_m[TIP] : NAN;
+    out->electrode_edge_u_error_m = error_m[EDGE];
+  }
+  return status;
+}
+
 static dea_status report(struct dea_context *ctx, struct dea_model *model,
                          struct dea_load_point *out)
 {
@@ -232,6 +272,7 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   }
   out->unstable_modes = model->report.unstable_modes;
   out->stable = out->unstable_modes == 0;
+  DEA_TRY(ctx, report_errors(ctx, model, out));
   return DEA_OK;
 }
 
