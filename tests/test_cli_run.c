@@ -121,6 +121,9 @@ static void test_run_folder(void **state)
     snprintf(path, sizeof path, "%s/frdea-4.run/%s", command_folder, files[i]);
     assert_int_equal(access(path, R_OK), 0);
   }
+  assert_contains(command_err, "model axisymmetric: to be trusted and safe up to 3.2 kV");
+  assert_contains(command_err, "those of the film without its fibres");
+  assert_contains(command_out, "<5017.0"); // the tip's z of model lumped is a bound
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures"), 5);
   assert_contains(command_err, "--force");
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --force"), 0);

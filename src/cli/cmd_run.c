@@ -201,7 +201,7 @@ static void print_row(const struct dea_load_point *p)
   print_cell(p->breakdown_margin, 100, 10, 1);
   print_cell(p->min_tension_N_per_m, 1, 10, 3);
   char words[DEA_FLAGS_SIZE];
-  dea_flags_text(dea_load_point_flags(p) & ~(1u << DEA_FLAG_BOUND), words);
+  dea_flags_text(dea_load_point_flags(p) & ~(1u << DEA_FLAG_BOUND | 1u << DEA_FLAG_PLAIN), words);
   printf("%s%s%s\n", words[0] != '\0' ? "  " : "",
          dea_load_point_trusted(p) ? "" : "not trusted: ", words);
 }

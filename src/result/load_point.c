@@ -63,7 +63,7 @@ bool dea_load_point_safe(const struct dea_load_point *point)
 
 bool dea_load_point_bounds(const struct dea_load_point *point)
 {
-  return has_kind(point, DEA_FLAG_LIMIT);
+  return (dea_load_point_flags(point) >> DEA_FLAG_BOUND & 1u) != 0;
 }
 
 const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE])

@@ -81,8 +81,8 @@
     "of the fibre tip's z against the excitation")
 
 /* What a reader of a point has to know of its numbers (docs/theory/trust.md). A doubt: they are not
- * to be trusted. A danger: they are, but the device would not live. A bound: z and force are no
- * prediction.
+ * to be trusted. A danger: they are, but the device would not live. A limit: of what the model
+ * answers; some of its numbers are no prediction for this device.
  * X(NAME, word in files, kind, sentence) */
 #define DEA_FLAG_LIST(X)                                                                           \
   X(SLACK, "slack", DOUBT,                                                                         \
@@ -97,7 +97,9 @@
   X(PREVIEW, "preview", DOUBT,                                                                     \
     "the film is a membrane: without bending, and without the shape of its wrinkles")              \
   X(BREAKDOWN, "breakdown", DANGER, "the true field is beyond the film's breakdown field")         \
-  X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")
+  X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")          \
+  X(PLAIN, "plain", LIMIT,                                                                         \
+    "strain, field and tension are those of the film without its fibres, which hold it back")
 
 enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT };
 #define DEA_FLAG_NUMBER(name, word, kind, sentence) DEA_FLAG_##name,

@@ -30,6 +30,7 @@ struct dea_trust dea_curve_trust(const struct dea_curve *curve)
     const struct dea_load_point *p = &curve->points[i];
     unsigned flags = dea_load_point_flags(p);
     unsigned doubts = of_kind(flags, DEA_FLAG_DOUBT), dangers = of_kind(flags, DEA_FLAG_DANGER);
+    trust.limits |= of_kind(flags, DEA_FLAG_LIMIT);
     if (doubts != 0 && p->voltage_V < trust.doubt_V) {
       trust.doubt_V = p->voltage_V;
       trust.doubts = doubts;
@@ -45,11 +46,10 @@ struct dea_trust dea_curve_trust(const struct dea_curve *curve)
   return trust;
 }
 
-/* "; at 6.2 kV the film ..., the state ...": what comes next. */
-static void add_flags(struct dea_text *out, unsigned flags, double voltage_V)
+/* "the film ..., and the state ...". */
+static void add_flags(struct dea_text *out, unsigned flags)
 {
   const char *before = "";
-  dea_text_add(out, "; at %.4g kV ", 1e-3 * voltage_V);
   for (int k = 0; k < DEA_FLAG_COUNT; k++) {
     if ((flags >> k & 1u) != 0) {
       dea_text_add(out, "%s%s", before, dea_flag_words[k].sentence);
@@ -66,14 +66,20 @@ void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
     dea_text_add(out, "to be trusted and safe up to %.4g kV", 1e-3 * trust->good_V);
   }
   if (trust->dangers != 0 && trust->danger_V <= trust->doubt_V) {
-    add_flags(out, trust->dangers, trust->danger_V);
+    dea_text_add(out, "; at %.4g kV ", 1e-3 * trust->danger_V);
+    add_flags(out, trust->dangers);
     if (!isnan(trust->trusted_V) && trust->trusted_V > trust->good_V) {
       dea_text_add(out, "; to be trusted up to %.4g kV, for a film that holds out",
                    1e-3 * trust->trusted_V);
     }
   }
   if (trust->doubts != 0) {
-    add_flags(out, trust->doubts, trust->doubt_V);
+    dea_text_add(out, "; at %.4g kV ", 1e-3 * trust->doubt_V);
+    add_flags(out, trust->doubts);
+  }
+  if (trust->limits != 0) {
+    dea_text_add(out, "; at all voltages ");
+    add_flags(out, trust->limits);
   }
 }
 

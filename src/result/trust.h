@@ -12,6 +12,7 @@ struct dea_trust {
   double trusted_V, safe_V, good_V;
   double doubt_V, danger_V; // of the first point with one [V]; INFINITY: none
   unsigned doubts, dangers; // flags of that point
+  unsigned limits;          // of the model, at any point
 };
 /* curve: with points. */
 struct dea_trust dea_curve_trust(const struct dea_curve *curve);

@@ -158,7 +158,7 @@ static dea_status say_trust(struct dea_context *ctx, const struct dea_curve *cur
   struct dea_text text = {.ctx = ctx};
   struct dea_trust trust = dea_curve_trust(curve);
   dea_status status = DEA_OK;
-  if ((trust.doubts | trust.dangers) != 0) {
+  if ((trust.doubts | trust.dangers | trust.limits) != 0) {
     dea_trust_text(&trust, &text);
     status = text.failed ? DEA_E_MEMORY
                          : dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
