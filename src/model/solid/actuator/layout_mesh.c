@@ -9,7 +9,7 @@
 /* Sizes of elements at refinement 1, which each refinement more halves: over the root of the area
  * of the largest ply; and how much finer they are along the edges of what changes the film's
  * stretch: electrodes, bodies, and plies that others carry. */
-static const double size_share = 0.09, edge_share = 0.4;
+static const double size_share = 0.12, edge_share = 0.4, growth = 0.7;
 /* A narrow region has an element across: its size over the region's area by its boundary, which is
  * half its width. */
 static const double across_share = 2;
@@ -130,7 +130,8 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
   }
   *plan = (struct dea_gmsh_plan){.shapes = shapes,
                                  .order = settings->order == 1 ? 1 : 2,
-                                 .size_m = size_of_all(l, settings->refinement)};
+                                 .size_m = size_of_all(l, settings->refinement),
+                                 .growth = growth};
   for (size_t i = 0; i < l->region_count; i++) {
     const struct dea_region *region =
         clipped[i].contour_count > 0 ? &clipped[i] : &l->regions[i].region;
