@@ -191,12 +191,18 @@ static void print_tip(const struct dea_load_point *p)
   printf("%12s", text);
 }
 
-static void print_row(const struct dea_load_point *p)
+/* general: of a device of any layout, in place of what a disc has. */
+static void print_row(const struct dea_load_point *p, bool general)
 {
   print_cell(p->voltage_V, 1e-3, 9, 3);
-  print_cell(p->electrode_stretch, 1, 10, 5);
-  print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-  print_tip(p);
+  if (general) {
+    print_cell(p->lowest_z_m, 1e6, 12, 1);
+    print_cell(p->highest_z_m, 1e6, 12, 1);
+  } else {
+    print_cell(p->electrode_stretch, 1, 10, 5);
+    print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
+    print_tip(p);
+  }
   print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
   print_cell(p->breakdown_margin, 100, 10, 1);
   print_cell(p->min_tension_N_per_m, 1, 10, 3);
@@ -228,16 +234,23 @@ static void print_model(const struct dea_result *result, const char *model)
   if (sweep == NULL && path == NULL) {
     return;
   }
-  printf("\n%s\n%9s%10s%12s%12s%12s%10s%10s\n", model, "V", "stretch", "u edge", "z tip", "field",
-         "margin", "tension");
-  printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
+  bool general = result->device->general;
+  if (general) {
+    printf("\n%s\n%9s%12s%12s%12s%10s%10s\n", model, "V", "lowest z", "highest z", "field",
+           "margin", "tension");
+    printf("%9s%12s%12s%12s%10s%10s\n", "kV", "um", "um", "V/um", "%", "N/m");
+  } else {
+    printf("\n%s\n%9s%10s%12s%12s%12s%10s%10s\n", model, "V", "stretch", "u edge", "z tip", "field",
+           "margin", "tension");
+    printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
+  }
   size_t count = sweep != NULL ? sweep->count : 0;
   size_t step = count > 0 ? row_step(count) : 1;
   for (size_t i = 0; i + 1 < count; i += step) {
-    print_row(&sweep->points[i]);
+    print_row(&sweep->points[i], general);
   }
   if (count > 0) {
-    print_row(&sweep->points[count - 1]);
+    print_row(&sweep->points[count - 1], general);
   }
   const struct dea_curve *limits = path != NULL ? path : sweep;
   for (size_t i = 0; i < limits->event_count; i++) {
