@@ -12,7 +12,7 @@ static const char name[] = "animation";
 static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
-  char caption[160];
+  char caption[160], size[DEA_VIEW3D_WORDS];
   snprintf(caption, sizeof caption,
            "the film's middle surface over the sweep, z drawn %g times larger than x and y",
            space->times);
@@ -23,9 +23,9 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   dea_view3d_add_margins(gp, LABEL_PX / height_px);
   dea_text_add(gp,
                "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
-               "set label 2 \"frame \342\214\200 %.4g mm, z \303\227 %g\" at screen 0.03, "
+               "set label 2 \"%s, z \303\227 %g\" at screen 0.03, "
                "screen 0.06 front\n",
-               2e3 * space->radius_m, space->times);
+               dea_view3d_size_words(space, size), space->times);
   dea_text_add(gp, "array words = [");
   for (size_t i = 0; i < space->count; i++) {
     dea_text_add(gp, "%s\"%s\"", i > 0 ? ", " : "", space->pictures[i].words);

@@ -12,7 +12,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
   double width_mm = 1e3 * format->width_m;
-  char caption[2 * DEA_VOLTAGE_WORDS];
+  char caption[2 * DEA_VOLTAGE_WORDS], size[DEA_VIEW3D_WORDS];
   snprintf(caption, sizeof caption,
            "the film's middle surface at %s, z drawn %g times larger than x and y",
            space->pictures[0].words, space->times);
@@ -27,10 +27,10 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
                "  set label 1 \"%s, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
                "front\n"
-               "  set label 2 \"frame \342\214\200 %.4g mm\" at screen 0.03, screen 0.06 front\n"
+               "  set label 2 \"%s\" at screen 0.03, screen 0.06 front\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
-               space->pictures[0].words, space->times, 2e3 * space->radius_m);
+               space->pictures[0].words, space->times, dea_view3d_size_words(space, size));
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }

@@ -120,6 +120,8 @@ static void fill_patch(const struct dea_field_mesh *mesh, const struct dea_mesh_
     evaluate(mesh, block, element, copy, 2.0 * (k % row) / patch->n - 1,
              2.0 * (k / row) / patch->m - 1, at);
     out->radius_m = fmax(out->radius_m, hypot(at[DEA_LATTICE_X], at[DEA_LATTICE_Y]));
+    out->reach_m[0] = fmax(out->reach_m[0], fabs(at[DEA_LATTICE_X]));
+    out->reach_m[1] = fmax(out->reach_m[1], fabs(at[DEA_LATTICE_Y]));
     out->z_min_m = fmin(out->z_min_m, at[DEA_LATTICE_UZ]);
     out->z_max_m = fmax(out->z_max_m, at[DEA_LATTICE_UZ]);
   }

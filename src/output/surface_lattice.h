@@ -26,6 +26,7 @@ struct dea_surface_lattice {
   struct dea_patch *patches;         // [patch_count], owned
   double (*at)[DEA_LATTICE_COLUMNS]; // of all patches, owned
   double radius_m;                   // of the outermost point
+  double reach_m[2];                 // largest |x| and |y|
   double z_min_m, z_max_m;           // of the displacement
 };
 

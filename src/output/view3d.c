@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Direction of view in degrees: turned about z, then tilted away from it. The projection is done in
  * the script, which leaves gnuplot a map whose third coordinate is the depth: so the film fills the
@@ -30,6 +31,17 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, str
   for (size_t i = 0; i < out->lines; i++) {
     out->frame_lines += pictures[0].outlines[i].kind != DEA_OUTLINE_FIBRE;
   }
+}
+
+const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS])
+{
+  const double *reach_m = space->pictures[0].drawing.reach_m;
+  if (fmin(reach_m[0], reach_m[1]) > 0.99 * space->radius_m) {
+    snprintf(out, DEA_VIEW3D_WORDS, "frame \342\214\200 %.4g mm", 2e3 * space->radius_m);
+  } else {
+    snprintf(out, DEA_VIEW3D_WORDS, "%.4g mm \303\227 %.4g mm", 2e3 * reach_m[0], 2e3 * reach_m[1]);
+  }
+  return out;
 }
 
 /* Lowest and highest place in the picture [mm] and half its width. */

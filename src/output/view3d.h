@@ -17,6 +17,10 @@ struct dea_view3d {
 /* pictures: of one mesh, at least one; lent. */
 void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count,
                         struct dea_view3d *out);
+/* "frame (diameter sign) 30 mm" of what is round, "30 mm x 40 mm" of what is not: the box about the
+ * middle. Returns out. */
+enum { DEA_VIEW3D_WORDS = 64 };
+const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS]);
 /* Height of a drawing in space over its width. */
 double dea_view3d_shape(const struct dea_view3d *space);
 /* Its settings: projection and ranges, with the variables tilt and turn of the view, and times. */
