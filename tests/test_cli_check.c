@@ -30,6 +30,9 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"check @/examples/frdea-4.yaml --set 'compute.models=[lumped, lumped]'", 3,
        "the model 'lumped' stands twice in the list"},
       {"run @/examples/frdea-4.yaml -m lumped -m lumped", 2, "--model lumped is given twice"},
+      {"check coupled.yaml", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
+      {"run coupled.yaml --json", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
+      {"check turned.yaml", 3, "turned.yaml:2:18: error: model 3d: the film's law has a direction"},
       {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
       {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
       {"materials nothing", 3, "there is no material 'nothing'"},
@@ -37,6 +40,27 @@ static void test_every_bad_file_has_its_exit_code(void **state)
   };
   command_write("text.yaml", "hello\n");
   command_write("design.yaml", "my own\n");
+  command_write(
+      "coupled.yaml",
+      "dea: 1\n"
+      "film: {material: elastosil-2030, permittivity: stretch-dependent, thickness: 1 mm}\n"
+      "pre_stretch: 1.5\n"
+      "frame: {inner_radius: 15 mm}\n"
+      "electrodes: {radius: 5 mm stretched}\n"
+      "compute: {models: [3d],\n"
+      "  solid: {field: coupled}}\n");
+  command_write("turned.yaml", "dea: 1\n"
+                               "film: {material: own, thickness: 1 mm}\n"
+                               "materials:\n"
+                               "  - name: own\n"
+                               "    kind: elastomer\n"
+                               "    laws: [{id: a, law: holzapfel-gasser-ogden, parameters: {mu: "
+                               "100 kPa, k1: 50 kPa}, source: t}]\n"
+                               "    permittivity: [{id: a, at_rest: 3, source: t}]\n"
+                               "pre_stretch: 1.5\n"
+                               "frame: {inner_radius: 15 mm}\n"
+                               "electrodes: {radius: 5 mm stretched}\n"
+                               "compute: {models: [3d]}\n");
   command_write("tab.yaml", "dea: 1\nfilm: # für VHB\n\tthickness: 100 um\n");
   command_write("binary.yaml", "\x7f"
                                "ELF\x02\x01\xff\xfe");

@@ -220,6 +220,16 @@ static void test_what_goes_wrong(void **state)
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o"), 2);
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml --st x=1"), 2);
   assert_int_equal(command_run("mesh a b"), 2);
+  command_write("mine.msh", "my own\n");
+  assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o mine.msh"), 5);
+  assert_non_null(strstr(command_err, "'mine.msh' is there already"));
+  command_read("mine.msh", command_out);
+  assert_string_equal(command_out, "my own\n");
+  assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o mine.msh --force"), 0);
+  command_write("own.yaml", "dea: 1\n");
+  assert_int_equal(command_run("mesh own.yaml -o own.yaml --force"), 5);
+  command_read("own.yaml", command_out);
+  assert_string_equal(command_out, "dea: 1\n");
   assert_int_equal(command_run("mesh no-such-file.yaml"), 5);
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o no/such/folder.msh"), 5);
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml --set fibres.width=6mm"), 3);

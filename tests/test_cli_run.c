@@ -284,6 +284,49 @@ static void test_lost_output(void **state)
   }
 }
 
+/* What --json writes to a standard output that is closed is lost: an error. */
+static void test_closed_output(void **state)
+{
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text, "'%s' schema --json >&- 2>'%s/err.txt'", DEA_COMMAND, command_folder);
+  int status = system(text);
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), 5);
+  command_read("err.txt", command_err);
+  assert_contains(command_err, "standard output is closed");
+}
+
+/* Figures are not removed and written behind a link, whatever --force says. */
+static void test_linked_figures(void **state)
+{
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           "cd '%s' && mkdir elsewhere linked && echo mine > elsewhere/stretch.svg && "
+           "ln -s ../elsewhere linked/figures",
+           command_folder);
+  assert_int_equal(system(text), 0);
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml -m lumped --force -o linked"), 5);
+  assert_contains(command_err, "is a link");
+  command_read("elsewhere/stretch.svg", command_out);
+  assert_string_equal(command_out, "mine\n");
+}
+
+/* A file that is longer than the user's limit is an error of writing, not the end by a signal. */
+static void test_file_too_long(void **state)
+{
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           "cd '%s' && ulimit -f 8 && '%s' run '%s/examples/plain-disc.yaml' -m lumped "
+           "--no-figures -o short >/dev/null 2>err.txt",
+           command_folder, DEA_COMMAND, DEA_SOURCE_DIR);
+  int status = system(text);
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), 5);
+}
+
 /* Interrupted in a long sweep: exit code 130, and what was computed is there. How fast this machine
  * is is not known, so several delays are tried until one falls into the sweep. */
 static void test_interrupt_keeps_points(void **state)
@@ -311,6 +354,9 @@ int main(void)
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),
       cmocka_unit_test(test_lost_output),
+      cmocka_unit_test(test_closed_output),
+      cmocka_unit_test(test_linked_figures),
+      cmocka_unit_test(test_file_too_long),
       cmocka_unit_test(test_interrupt_keeps_points),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

@@ -357,9 +357,11 @@ dea_status dea_design_check(dea_context *ctx, const dea_design *design)
   struct dea_design *inner;
   struct dea_device *device;
   dea_status status = door_design_build(inner_ctx, design, &inner, &device);
-  dea_device_destroy(inner_ctx, device);
   dea_status models = inner != NULL ? check_models(inner_ctx, inner) : DEA_OK;
   status = status != DEA_OK ? status : models;
+  models = status == DEA_OK ? dea_models_check(inner_ctx, inner, device) : DEA_OK;
+  status = status != DEA_OK ? status : models;
+  dea_device_destroy(inner_ctx, device);
   for (size_t i = 0; inner != NULL && i < inner->compute.compare_count; i++) {
     const struct dea_design *variant = inner->compute.compare[i].design;
     struct dea_device *other = NULL;

@@ -5,11 +5,12 @@
 
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct request {
   const char *design, *output; // output: NULL for none
   struct cli_overrides overrides;
-  bool json;
+  bool json, force;
 };
 
 /* Displacement components that nothing holds. */
@@ -131,12 +132,31 @@ static dea_status mesh_layout(struct dea_cli *cli, const struct request *request
   return status;
 }
 
+/* What is there is not written over unless that is wanted, and the design itself never. */
+static dea_status refuse_output(struct dea_cli *cli, const struct request *request)
+{
+  struct stat design, output;
+  if (request->output == NULL || stat(request->output, &output) != 0) {
+    return DEA_OK;
+  }
+  if (stat(request->design, &design) == 0 && design.st_dev == output.st_dev &&
+      design.st_ino == output.st_ino) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' is the design itself", request->output);
+  }
+  return request->force ? DEA_OK
+                        : dea_fail(cli->ctx, DEA_E_IO, "'%s' is there already; --force replaces it",
+                                   request->output);
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
-  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
+  dea_status status = refuse_output(cli, request);
+  if (status == DEA_OK) {
+    status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
+  }
   if (status == DEA_OK) {
     const struct dea_model_settings settings = dea_model_settings_of(design);
     status = (device->general ? mesh_layout : mesh_disc)(cli, request, device, &settings);
@@ -151,6 +171,7 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_OUTPUT_ROW(CLI_FILE, "FILE", "write the mesh as FILE, in Gmsh's format 2.2 (.msh)"),
+    CLI_FORCE_ROW('f', "replace a file of that name"),
     CLI_SET_ROW(0, CLI_KEY, "compute.solid.refinement=2"),
     CLI_JSON_ROW("size and quality of the mesh as JSON"),
     {0}};

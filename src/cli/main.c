@@ -76,9 +76,10 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
 }
 
 /* Standard files that the caller has closed become /dev/null; else the first result file would get
- * their number and what is printed would end in it. */
-static void open_standard_files(void)
+ * their number and what is printed would end in it. Whether standard output was closed. */
+static bool open_standard_files(void)
 {
+  bool closed = fcntl(STDOUT_FILENO, F_GETFD) < 0;
   int fd = open("/dev/null", O_RDWR);
   while (fd >= 0 && fd <= STDERR_FILENO) {
     fd = open("/dev/null", O_RDWR);
@@ -86,6 +87,7 @@ static void open_standard_files(void)
   if (fd >= 0) {
     close(fd);
   }
+  return closed;
 }
 
 /* Whether mpirun started this process beside a first one, which alone prints and writes files. */
@@ -106,11 +108,25 @@ static bool silence(void)
   return freopen("/dev/null", "w", stdout) != NULL && freopen("/dev/null", "w", stderr) != NULL;
 }
 
-/* Output that could not be written is a failure; a reader of a pipe that has had enough (head)
+static bool wants_json(int argc, char **argv)
+{
+  bool wants = false;
+  for (int i = 1; i < argc; i++) {
+    wants = wants || strcmp(argv[i], "--json") == 0;
+  }
+  return wants;
+}
+
+/* Output that could not be written is a failure, and what --json writes to a standard output that
+ * was closed; a reader of a pipe that has had enough (head)
  * needs no message. */
-static int finish_output(int code)
+static int finish_output(int code, bool wanted_closed)
 {
   struct stat file;
+  if (wanted_closed && code == 0) {
+    fputs("dea: error: standard output is closed, and --json writes there\n", stderr);
+    return dea_status_exit_code(DEA_E_IO);
+  }
   bool lost = ferror(stdout) != 0; // some earlier flush
   lost = fflush(stdout) != 0 || lost;
   if (lost && !(fstat(STDOUT_FILENO, &file) == 0 && S_ISFIFO(file.st_mode))) {
@@ -122,7 +138,7 @@ static int finish_output(int code)
 
 int main(int argc, char **argv)
 {
-  open_standard_files();
+  bool closed = open_standard_files();
   struct dea_cli cli = {.commands = commands, .follower = is_follower()};
   if (cli.follower && !silence()) {
     return dea_status_exit_code(DEA_E_IO);
@@ -155,5 +171,5 @@ int main(int argc, char **argv)
   }
   dea_text_free(&line);
   dea_context_destroy(cli.ctx);
-  return finish_output(code);
+  return finish_output(code, closed && wants_json(argc, argv));
 }

@@ -48,6 +48,7 @@ void cli_watch(struct dea_cli *cli)
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN); // a file that is too long is an error to write
 }
 
 void cli_voltage_is_on(void)
@@ -56,8 +57,7 @@ void cli_voltage_is_on(void)
   // program at once.
   static const int ending[] = {SIGHUP,  SIGQUIT, SIGALRM,   SIGUSR1,
                                SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
-  // A stopped program leaves the voltage where it is; a file that is too long is an error to write.
-  static const int ignored[] = {SIGTSTP, SIGTTOU, SIGTTIN, SIGXFSZ};
+  static const int ignored[] = {SIGTSTP, SIGTTOU, SIGTTIN}; // it would leave the voltage on
   struct sigaction action = {.sa_handler = on_signal}, before;
   sigemptyset(&action.sa_mask);
   voltage_flag = 1;

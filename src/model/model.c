@@ -13,11 +13,21 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
   };
 }
 
+dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
+                           const struct dea_design *design, const struct dea_device *device)
+{
+  if (type->check != NULL) {
+    DEA_TRY(ctx, type->check(ctx, design, device));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_design *design, const struct dea_device *device,
                             struct dea_model **out)
 {
   const struct dea_model_settings settings = dea_model_settings_of(design);
+  DEA_TRY(ctx, dea_model_check(ctx, type, design, device));
   DEA_TRY(ctx, type->create(ctx, device, &settings, out));
   return DEA_OK;
 }

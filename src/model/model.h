@@ -83,6 +83,10 @@ struct dea_model_type {
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        const struct dea_model_settings *settings, struct dea_model **out);
   void (*destroy)(struct dea_context *ctx, struct dea_model *model);
+  /* What this model does not take of a design: findings with their places, and DEA_E_DESIGN. Cheap.
+   * NULL when it takes all. */
+  dea_status (*check)(struct dea_context *ctx, const struct dea_design *design,
+                      const struct dea_device *device);
   /* Stable equilibrium at a voltage [V], reached from the last one solved (at first the flat film
    * at 0 V). Where there is none: DEA_E_NO_EQUILIBRIUM beyond a limit point (pull-in; see limit),
    * DEA_E_SLACK, DEA_E_DOMAIN at the end of a law, DEA_E_INVERTED, DEA_E_NOT_CONVERGED where the
@@ -169,7 +173,13 @@ struct dea_model_type {
 
 /* What a design says of how to compute (compute.solid). */
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design);
-/* A model of a device with the settings of its design. */
+/* What a model does not take of a design, as `check` above. */
+dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
+                           const struct dea_design *design, const struct dea_device *device);
+/* The same of all models that a design names; names that there are not are passed over. */
+dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *design,
+                            const struct dea_device *device);
+/* A model of a device with the settings of its design, which it has to take. */
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_design *design, const struct dea_device *device,
                             struct dea_model **out);

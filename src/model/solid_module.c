@@ -67,6 +67,44 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
+/* Where a design asks for what the engine has not. */
+static dea_status refuse(struct dea_context *ctx, const struct dea_location *where,
+                         const char *what)
+{
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, *where, "%s", what));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s", what);
+}
+
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_device *device)
+{
+  const struct dea_material *film = &device->film;
+  if (device->general) {
+    return DEA_OK;
+  }
+  bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
+  if (coupled && film->permittivity.slope != 0) {
+    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.field.location,
+                        "model 3d: a coupled field needs a constant permittivity, and that of the "
+                        "film depends on stretch (film.permittivity)"));
+  }
+  if (coupled && design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
+    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.field.location,
+                        "model 3d: a coupled field needs a film with a thickness "
+                        "(compute.solid.film: solid)"));
+  }
+  if (film->law != NULL && film->law->anisotropic) {
+    DEA_TRY(ctx,
+            refuse(ctx,
+                   design->film.law.origin == DEA_ABSENT || design->film.law.origin == DEA_DEFAULT
+                       ? &design->film.material.location
+                       : &design->film.law.location,
+                   "model 3d: the film's law has a direction of its own, which this model "
+                   "does not know yet"));
+  }
+  return DEA_OK;
+}
+
 static const struct dea_event *limit(const struct dea_model *model)
 {
   return model->type->limit != NULL ? model->type->limit(model->inner) : NULL;
@@ -175,6 +213,7 @@ const struct dea_model_type dea_model_3d = {
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
+    .check = check,
     .limit = limit,
     .solve = solve,
     .observe = observe,

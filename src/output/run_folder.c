@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L // lstat
 #include "output/run_folder.h"
 
 #include "base/write_file.h"
@@ -10,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const struct dea_export *const exports[] = {
@@ -18,6 +20,22 @@ static const struct dea_export *const exports[] = {
 #undef EXPORT_ROW
 };
 enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
+
+/* A folder of results that is a link would have files removed and written elsewhere. */
+static dea_status refuse_link(struct dea_context *ctx, const char *directory, const char *name)
+{
+  struct stat info;
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+  dea_free(ctx, path);
+  return !link ? DEA_OK
+               : dea_fail(ctx, DEA_E_IO,
+                          "%s/%s is a link to another place, which --force does not follow",
+                          directory, name);
+}
 
 dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force)
 {
@@ -31,6 +49,8 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
     DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIGURE_FOLDER));
     DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIELD_FOLDER));
   }
+  DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIGURE_FOLDER));
+  DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIELD_FOLDER));
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   if (access(directory, W_OK) != 0) {
     return dea_fail(ctx, DEA_E_IO, "the folder %s cannot be written to", directory);

@@ -33,8 +33,11 @@ static PetscErrorCode give_code(MPI_Comm comm, int line, const char *function, c
   (void)file;
   (void)message;
   (void)self;
-  bool swapped = type == PETSC_ERROR_INITIAL && line == PETSC_ERR_MEM && function != NULL &&
-                 strncmp(function, "PetscMalloc", strlen("PetscMalloc")) == 0;
+  bool malloc_failed =
+      function != NULL && strncmp(function, "PetscMalloc", strlen("PetscMalloc")) == 0;
+  // of a function that asks for several arrays at once it is that function's own line
+  bool is_line = code < PETSC_ERR_MIN_VALUE || code > PETSC_ERR_MAX_VALUE;
+  bool swapped = type == PETSC_ERROR_INITIAL && line == PETSC_ERR_MEM && (malloc_failed || is_line);
   return swapped ? PETSC_ERR_MEM : code;
 }
 

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Random designs, each swept by one model, and what came of them, as a table of verdicts.
+
+    random_designs.py DEA [--count 200] [--first 0] [--model 3d] [--seconds 60] [--keep DIR]
+                      [--out rows.jsonl] [--compare rows.jsonl] [--share 0.01]
+
+A design follows from its number alone, so that two versions of the program are asked the same.
+What may vary: catalogue and own laws, 0 to 24 fibres, pre-stretch 1 to 4, 10 um to 1 mm, glue,
+stiff electrodes, weight, membrane and solid film, thin and coupled field, up to twice breakdown.
+
+--keep    folder for the design files of what ended as "ours", one line for the reason
+--out     one line of JSON a design
+--compare the lines of another version: designs whose verdict is another one are listed
+--share   fails (exit 1) where more than this share of the designs that ran ends as "ours"
+
+Sizes: 20 as a test, 200 and 2000 by hand (docs/theory/stops.md).
+"""
+import argparse
+import json
+import os
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+
+
+# Laws of silicones, acrylics and stiff rubbers: (name, parameters in kPa or 1, shear modulus in Pa)
+def own_law(r):
+    mu = 10 ** r.uniform(3.9, 6.3)  # 8 kPa to 2 MPa
+    kPa = lambda x: "%.6g kPa" % (1e-3 * x)
+    kind = r.choice(["neo-hookean", "gent", "mooney-rivlin", "yeoh", "ogden", "arruda-boyce"])
+    if kind == "neo-hookean":
+        return kind, {"mu": kPa(mu)}, mu
+    if kind == "gent":
+        return kind, {"mu": kPa(mu), "jm": "%.4g" % 10 ** r.uniform(0.7, 2.3)}, mu
+    if kind == "mooney-rivlin":
+        share = r.uniform(0, 0.2)
+        return kind, {"c10": kPa(mu * (1 - share) / 2), "c01": kPa(mu * share / 2)}, mu
+    if kind == "yeoh":
+        return kind, {"c1": kPa(mu / 2), "c2": kPa(-mu / 2 * r.uniform(0, 0.05)),
+                      "c3": kPa(mu / 2 * 10 ** r.uniform(-4, -1.5))}, mu
+    if kind == "ogden":
+        alpha = r.uniform(1.5, 4)
+        return kind, {"mu1": kPa(2 * mu / alpha), "alpha1": "%.4g" % alpha}, mu
+    return kind, {"mu": kPa(mu), "lambda_m": "%.4g" % r.uniform(1.8, 8)}, mu
+
+
+def film_of(r):
+    """(lines of film and materials, breakdown field of the unstretched film, its exponent)"""
+    name = r.choice(["elastosil-2030", "elastosil-2030", "vhb-4910", "own", "own"])
+    if name == "elastosil-2030":
+        law = r.choice(["yeoh-178", "yeoh-181"])
+        slope = "stretch-dependent" if r.random() < 0.15 else "constant"
+        return ["  material: elastosil-2030", "  law: " + law, "  permittivity: " + slope], [], 80e6, 0
+    if name == "vhb-4910":
+        return ["  material: vhb-4910"], [], 30.6e6, 1.13
+    law, parameters, _ = own_law(r)
+    field, exponent = r.uniform(20e6, 150e6), r.choice([0, 0, 0.5, 1.13])
+    own = ["  - name: own", "    kind: elastomer",
+           "    density: {value: 1000 kg/m^3, source: random}", "    laws:",
+           "      - {id: random, law: %s, parameters: {%s}, source: random}" %
+           (law, ", ".join("%s: %s" % p for p in parameters.items())),
+           "    permittivity:", "      - {id: random, at_rest: %.3g, source: random}" % r.uniform(2.5, 8),
+           "    breakdown:", "      - {id: random, at_rest: %.4g V/um, exponent: %g, source: random}" %
+           (1e-6 * field, exponent)]
+    return ["  material: own"], own, field, exponent
+
+
+def fibres_of(r, electrode_mm, frame_mm):
+    if r.random() < 0.3:
+        return []
+    count = r.choice([1, 2, 3, 4, 4, 4, 6, 8, 8, 12, 16, 24])
+    most = 0.8 * 6.28 * electrode_mm / count  # at the tips
+    lines = ["fibres:", "  count: %d" % count, "  width: %.4g mm" % min(r.uniform(0.2, 2), most),
+             "  thickness: %.4g um" % 10 ** r.uniform(1.3, 2.5), "  material: pet",
+             "  outer_end: " + r.choice(["clamped", "clamped", "hinged", "free"]),
+             "  overlap: %.4g mm stretched" % (r.choice([0, 0, 0.2]) * electrode_mm)]
+    if r.random() < 0.3:
+        lines += ["  bond: {thickness: %.3g um, modulus: %.3g MPa}" %
+                  (r.uniform(5, 60), 10 ** r.uniform(-1, 1))]
+    return lines
+
+
+def design_of(number, coarse):
+    """Text of the design file of a number."""
+    r = random.Random("libdea %d" % number)
+    film, materials, field, exponent = film_of(r)
+    pre = r.choice([1, 1, 1.05, 1.2, 1.5, 2, r.uniform(1, 4), r.uniform(1, 4)])
+    thickness = 10 ** r.uniform(-5, -3)
+    frame = r.uniform(5, 40)
+    electrode = frame * r.uniform(0.1, 0.6)
+    solid_film = r.random() < 0.75
+    # E_b l^n (the true field) = V l^2/H0
+    highest = field * pre ** (exponent - 2) * thickness * r.uniform(0.3, 2)
+    steps = 6
+    lines = ["dea: 1", "title: Random design %d" % number, "materials:"] + materials
+    lines += ["  - name: stiff", "    kind: electrode",
+              "    density: {value: 1200 kg/m^3, source: random}", "    laws:",
+              "      - {id: random, law: neo-hookean, parameters: {mu: %.4g kPa}, source: random}" %
+              10 ** r.uniform(1, 3.5), "film:"] + film
+    lines += ["  thickness: %.4g um" % (1e6 * thickness), "pre_stretch: %.4g" % pre,
+              "frame: {inner_radius: %.4g mm}" % frame, "electrodes:",
+              "  radius: %.4g mm stretched" % electrode]
+    if r.random() < 0.35:
+        lines += ["  material: stiff", "  thickness: %.3g um" % 10 ** r.uniform(0, 1.8)]
+    lines += fibres_of(r, electrode, frame)
+    if r.random() < 0.2:
+        lines += ["gravity: " + r.choice(["fibres_up", "fibres_down"])]
+    coupled = solid_film and r.random() < 0.1
+    lines += ["compute:", "  models: [3d]",
+              "  voltage: {from: %.5g kV, to: %.5g kV, step: %.5g kV}" %
+              (0, 1e-3 * highest, 1e-3 * highest / steps),
+              "  solid: {film: %s, field: %s%s}" % ("solid" if solid_film else "membrane",
+                                                    "coupled" if coupled else "thin",
+                                                    ", order: 1, order_z: 1" if coarse else "")]
+    return "\n".join(lines) + "\n"
+
+
+OURS = "ours: not converged"
+
+
+def verdict_of(summary, code, stderr):
+    """Kind of verdict and the sentence."""
+    if summary is None:
+        refused = code in (2, 3) or (code == 5 and "memory" in stderr)
+        return ("refused" if refused else "no answer, exit %d" % code), stderr.strip()[-300:]
+    if summary.get("complete"):
+        return "complete", ""
+    why = summary.get("stopped", "")
+    verdict = summary.get("verdict", "")
+    if verdict:
+        return (OURS if verdict == "not_converged" else verdict), why
+    if summary.get("status") in ("DEA_E_DESIGN", "DEA_E_UNSUPPORTED", "DEA_E_ARGUMENT"):
+        return "refused", why
+    return OURS, why or stderr.strip()[-300:]
+
+
+def processor_s():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run_one(dea, path, model, seconds):
+    """Kind of verdict, the sentence, processor seconds."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 2))
+    before = processor_s()
+    done = subprocess.run([dea, "run", path, "-m", model, "--study", "sweep", "--json"],
+                          capture_output=True, text=True, preexec_fn=limit,
+                          env=dict(os.environ, OMP_NUM_THREADS="1"))
+    used = processor_s() - before
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used > 0.9 * seconds:
+        return "out of time", "more than %d s of processor time" % seconds, used
+    try:
+        summary = json.loads(done.stdout)
+    except ValueError:
+        summary = None
+    if summary is not None and "model" not in summary:
+        summary = None
+    return verdict_of(summary, done.returncode, done.stderr) + (used,)
+
+
+def median(values):
+    values = sorted(values)
+    n = len(values)
+    return float("nan") if n == 0 else 0.5 * (values[(n - 1) // 2] + values[n // 2])
+
+
+def table(rows):
+    kinds = sorted({row["verdict"] for row in rows},
+                   key=lambda k: -sum(row["verdict"] == k for row in rows))
+    print("| verdict | designs | median s | longest s |\n|---|---|---|---|")
+    for kind in kinds:
+        times = [row["seconds"] for row in rows if row["verdict"] == kind]
+        print("| %s | %d | %.2f | %.2f |" % (kind, len(times), median(times), max(times)))
+    ran = [row for row in rows if row["verdict"] != "refused"]
+    bad = [row for row in ran if row["verdict"] in (OURS, "out of time")
+           or row["verdict"].startswith("no answer")]
+    stop = median([row["seconds"] for row in ran if row["verdict"] != "complete"])
+    success = median([row["seconds"] for row in ran if row["verdict"] == "complete"])
+    share = len(bad) / len(ran) if ran else 0
+    print("\n%d designs, %d ran; ours, out of time and without an answer: %d (%.1f %%); a stop takes "
+          "%.2g of a success" % (len(rows), len(ran), len(bad), 100 * share, stop / success))
+    return share
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("dea")
+    p.add_argument("--count", type=int, default=200)
+    p.add_argument("--first", type=int, default=0)
+    p.add_argument("--model", default="3d")
+    p.add_argument("--seconds", type=int, default=60, help="of processor time, for one design")
+    p.add_argument("--total", type=float, default=1e9, help="of processor time, for all")
+    p.add_argument("--coarse", action="store_true", help="elements of order 1: a quick look")
+    p.add_argument("--keep")
+    p.add_argument("--out")
+    p.add_argument("--compare")
+    p.add_argument("--share", type=float, default=1)
+    a = p.parse_args()
+    rows = []
+    folder = a.keep or tempfile.mkdtemp()
+    os.makedirs(folder, exist_ok=True)
+    out = open(a.out, "w") if a.out else None
+    for number in range(a.first, a.first + a.count):
+        if processor_s() > a.total:
+            break
+        path = os.path.join(folder, "%05d.yaml" % number)
+        with open(path, "w") as f:
+            f.write(design_of(number, a.coarse))
+        verdict, why, seconds = run_one(a.dea, path, a.model, a.seconds)
+        row = {"design": number, "verdict": verdict, "seconds": round(seconds, 2),
+               "why": re.sub(r"\s+", " ", why)}
+        rows.append(row)
+        if out:
+            out.write(json.dumps(row) + "\n")
+            out.flush()
+        if not a.keep or verdict in ("complete", "refused"):
+            os.remove(path)
+    share = table(rows)
+    if a.compare:
+        old = {row["design"]: row for row in map(json.loads, open(a.compare))}
+        for row in rows:
+            before = old.get(row["design"])
+            if before and before["verdict"] != row["verdict"]:
+                print("design %d: %s -> %s" % (row["design"], before["verdict"], row["verdict"]))
+    return share > a.share
+
+
+if __name__ == "__main__":
+    sys.exit(main())
