@@ -210,6 +210,54 @@ static void test_disc_of_both_models(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* The soft disc of test_solid_solve_stops on a free mesh: its pull-in is located and told, as of
+ * the exact disc. */
+static void test_pull_in_is_told(void **state)
+{
+  (void)state;
+  struct dea_material soft = test_material("arruda-boyce", 15.36e3, 5.99, 0);
+  soft.permittivity.at_rest = 4.8;
+  struct dea_device plain = test_disc(soft, 1.2, 2.6e-3, 2.6 / 15.5, 0);
+  plain.film_thickness_unstretched_m = 30e-6;
+  plain.film_thickness_m = 30e-6 / 1.44;
+  plain.frame_radius_m = 15.5e-3;
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
+  dea_region_add_circle(add_region(device, "active"), 0, 0, 2.6e-3, false, nowhere);
+  add_film(device, 0, 1.2, 1.2);
+  l->plies[0].material = soft;
+  l->plies[0].thickness_m = plain.film_thickness_m;
+  l->plies[0].thickness_unstretched_m = plain.film_thickness_unstretched_m;
+  add_electrode(device, 0, false, 1, 0);
+  add_electrode(device, 0, true, 1, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  const struct dea_model_type *exact_type = dea_model_find("axisymmetric");
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_model *exact, *model = model_of(device, DEA_FILM_MEMBRANE, 1);
+  struct dea_load_point point;
+  assert_int_equal(exact_type->create(ctx, &plain, NULL, &exact), DEA_OK);
+  assert_int_equal(exact_type->solve(ctx, exact, 360, &point), DEA_E_NO_EQUILIBRIUM);
+  double pull_in_V = exact_type->limit(exact)->point.voltage_V;
+  dea_status found = DEA_OK;
+  for (double V = 300; V < 350 && found == DEA_OK; V += 5) {
+    found = type->solve(ctx, model, V, &point);
+    // below it there is nothing to tell; beyond it lies a state that is told to be one of several
+    bool told = ((point.told >> DEA_FLAG_STATES) & 1) != 0;
+    assert_true(found != DEA_OK || told == (V > pull_in_V));
+  }
+  if (found != DEA_OK) {
+    assert_int_equal(found, DEA_E_NO_EQUILIBRIUM);
+    assert_non_null(strstr(dea_context_message(ctx), "pull-in at 0.33"));
+    assert_non_null(type->limit(model));
+    assert_close(type->limit(model)->point.voltage_V, pull_in_V, 1e-3, 0);
+  }
+  exact_type->destroy(ctx, exact);
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -218,6 +266,7 @@ int main(void)
       cmocka_unit_test(test_release_of_a_bilayer),
       cmocka_unit_test(test_stack),
       cmocka_unit_test(test_disc_of_both_models),
+      cmocka_unit_test(test_pull_in_is_told),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

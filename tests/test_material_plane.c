@@ -295,7 +295,9 @@ static void test_no_pull_in_when_locking_early(void **state)
 static void test_breakdown(void **state)
 {
   (void)state;
-  struct dea_material material = {.breakdown = {true, 80e6, 0.5, true}};
+  struct dea_material material = {
+      .breakdown = {
+          .known = true, .at_rest_V_per_m = 80e6, .exponent = 0.5, .exponent_known = true}};
   assert_close(dea_breakdown_field(&material, 2.25), 120e6, 1e-15, 0.0);
   material.breakdown.known = false;
   assert_true(isnan(dea_breakdown_field(&material, 1.0)));

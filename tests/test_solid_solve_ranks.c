@@ -233,7 +233,7 @@ static void test_ranks_agree(void **state)
   assert_true(one[SLACK].modes > 1);
   assert_int_equal(one[COUPLED].status, DEA_OK);
   assert_int_equal(one[COUPLED].modes, 0);
-  assert_int_equal(one[INVERTED].status, DEA_E_DOMAIN);
+  assert_int_equal(one[INVERTED].status, DEA_E_INVERTED);
 }
 
 /* A factor that finds no room is a failure, not a solution of something else. */

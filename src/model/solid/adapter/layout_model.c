@@ -2,6 +2,7 @@
 #include "base/module.h"
 #include "model/make.h"
 #include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/adapter/ending.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
@@ -35,10 +36,12 @@ struct dea_model {
   size_t mesh_node_count; // without those of bodies
   size_t film;            // the first dielectric ply, or the first of all
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
+  double flat_m;          // the same as they are in the flat state
   double voltage_V, rest_energy_J;
   bool left_a_state;      // on the way an unstable state was left: there are several
   double pressure_factor; // on all pressures
   struct dea_solid_report report;
+  struct dea_ending ending; // of the last solve
 };
 
 // Materials --------------------------------------------------------------------------------------
@@ -480,19 +483,23 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
-/* The unstretched thickness that steps of voltage are counted by. */
-static double find_thinnest(const struct dea_model *model)
+/* The thickness that steps of voltage are counted by, unstretched, and of the flat state. */
+static void find_thinnest(struct dea_model *model)
 {
-  double thinnest = INFINITY, ratio = 1e-3;
+  double ratio = 1e-3;
+  model->thinnest_m = model->flat_m = INFINITY;
   for (size_t i = 0; i < model->layout->ply_count; i++) {
     if (model->films[i].material != NULL) {
-      thinnest = fmin(thinnest, model->layout->plies[i].thickness_unstretched_m);
+      const struct dea_layout_ply *ply = &model->layout->plies[i];
+      model->thinnest_m = fmin(model->thinnest_m, ply->thickness_unstretched_m);
+      model->flat_m = fmin(model->flat_m, ply->thickness_m);
     }
   }
   for (size_t k = 1; k < model->layout->channel_count; k++) {
     ratio = fmax(ratio, fabs(model->layout->channels[k].ratio));
   }
-  return thinnest / ratio;
+  model->thinnest_m /= ratio;
+  model->flat_m /= ratio;
 }
 
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
@@ -516,7 +523,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, fill_constituents(ctx, model));
   DEA_TRY(ctx, make_solid(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
-  model->thinnest_m = find_thinnest(model);
+  find_thinnest(model);
   DEA_TRY(ctx, release(ctx, model));
   model->rest_energy_J = model->report.energy_J;
   return DEA_OK;
@@ -593,20 +600,54 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status stopped(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
-                          dea_status status)
+static dea_status point_at(struct dea_context *ctx, void *self, double voltage_V,
+                           struct dea_load_point *out)
 {
-  char why[200];
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  return dea_fail(ctx, status,
-                  "stopped between %.4g and %.4g kV (%s); the points before are kept. Try smaller "
-                  "steps of compute.voltage",
-                  1e-3 * model->voltage_V, 1e-3 * voltage_V, why);
+  struct dea_model *model = self;
+  double before_V = model->voltage_V;
+  model->voltage_V = voltage_V;
+  dea_status status = report(ctx, model, out);
+  model->voltage_V = before_V;
+  return status;
+}
+
+static dea_status look_at_film(struct dea_context *ctx, void *self, double *tension_N_per_m,
+                               double *field_V_per_m)
+{
+  struct dea_model *model = self;
+  struct dea_solid_extremes extremes;
+  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
+  *tension_N_per_m = extremes.min_tension_N_per_m;
+  *field_V_per_m = extremes.true_field_V_per_m;
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status, "the film cannot be evaluated on the way");
+}
+
+/* Who is asked on the way to a voltage. */
+static void set_ending(struct dea_model *model)
+{
+  model->ending.owner = (struct dea_ending_owner){
+      .solid = model->solid,
+      .model = model,
+      .point = point_at,
+      .film = look_at_film,
+      .tension_scale_N_per_m = dea_constituent_modulus(&model->constituents[model->film]) *
+                               model->layout->plies[model->film].thickness_m,
+      .flat_thickness_m = model->flat_m,
+      .refinement = model->settings.refinement,
+      .membrane = model->mesh.membrane};
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return model->ending.limited ? &model->ending.limit : NULL;
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
+  set_ending(model);
+  model->ending.limited = false;
   double step = field_step_V_per_m * model->thinnest_m, from = model->voltage_V;
   double way = voltage_V - from;
   int steps = isfinite(step) ? (int)ceil(fabs(way) / step - 1e-9) : 1;
@@ -617,11 +658,9 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                       1e-3 * voltage_V);
     }
     double next = i == steps ? voltage_V : from + way * i / steps;
-    dea_status status = dea_load_steps_solve(ctx, model->solid, next, &model->report);
-    if (status != DEA_OK) {
-      return stopped(ctx, model, next, status);
-    }
+    DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, next, &model->report));
     model->voltage_V = next;
+    model->left_a_state = model->left_a_state || model->ending.leapt;
     if (model->report.snapped) {
       model->left_a_state = true;
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
@@ -760,6 +799,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .limit = limit,
     .observe = observe,
     .move = move,
     .modes = modes,

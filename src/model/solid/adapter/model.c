@@ -5,6 +5,7 @@
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/adapter/buckling_branch.h"
 #include "model/solid/adapter/circuit_step.h"
+#include "model/solid/adapter/ending.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
@@ -12,7 +13,6 @@
 #include "model/solid/adapter/state.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
-#include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/recovery/line_profile.h"
 
@@ -37,9 +37,7 @@ struct dea_model {
   struct dea_indent *indent;       // NULL: no probe
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
-  struct dea_event limit;          // where the last solve came to its end
-  bool limited;                    // it is known
-  double tension[2], tension_V[2]; // smallest of the film [N/m], at the last two points looked at
+  struct dea_ending ending;        // of the last solve
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -278,127 +276,46 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
 
 /* ---- why a solve ends ---- */
 
-/* Keeps the smallest tension where the solid is; it tells where the film goes slack. */
-static dea_status look_at_tension(struct dea_context *ctx, struct dea_model *model)
+static dea_status point_at(struct dea_context *ctx, void *self, double voltage_V,
+                           struct dea_load_point *out)
 {
-  struct dea_solid_extremes extremes;
-  dea_status status = find_extremes(model, &extremes);
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
-  }
-  model->tension[0] = model->tension[1];
-  model->tension_V[0] = model->tension_V[1];
-  model->tension[1] = extremes.min_tension_N_per_m;
-  model->tension_V[1] = dea_solid_voltage(model->solid);
-  return DEA_OK;
-}
-
-/* Whether the film carries tension all over where it was looked at last: a membrane that is slack
- * has none to rounding. */
-static bool is_taut(const struct dea_model *model)
-{
-  const struct dea_material *film = &model->device->film;
-  double scale = film->law->shear_modulus(film->param) * model->device->film_thickness_m;
-  return model->tension[1] > 1e-6 * scale;
-}
-
-/* The point where the solid is, as the event at which a solve ends. */
-static dea_status take_event(struct dea_context *ctx, struct dea_model *model,
-                             enum dea_event_kind kind)
-{
+  struct dea_model *model = self;
   double before_V = model->voltage_V;
-  model->voltage_V = dea_solid_voltage(model->solid);
-  dea_status status = report(ctx, model, &model->limit.point);
+  model->voltage_V = voltage_V;
+  dea_status status = report(ctx, model, out);
   model->voltage_V = before_V;
-  model->limit.kind = kind;
-  model->limited = status == DEA_OK;
   return status;
 }
 
-/* A point of the path on the way to where a solve ends. Where the film goes slack between two of
- * them: the voltage from their tensions and the squares of their voltages. */
-static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
+static dea_status look_at_film(struct dea_context *ctx, void *self, double *tension_N_per_m,
+                               double *field_V_per_m)
 {
-  struct dea_model *model = user;
-  double V = dea_solid_voltage(model->solid);
-  bool before = is_taut(model);
-  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && before)) {
-    return take_event(ctx, model, V >= model->voltage_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
-  }
-  if (where == DEA_STOP_UNSTABLE) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, look_at_tension(ctx, model));
-  if (before && !is_taut(model)) {
-    const double *T = model->tension, *at_V = model->tension_V;
-    double share = T[0] > T[1] ? T[0] / (T[0] - T[1]) : 0;
-    DEA_TRY(ctx, take_event(ctx, model, DEA_EVENT_SLACK));
-    model->limit.point.voltage_V =
-        sqrt((1 - share) * at_V[0] * at_V[0] + share * at_V[1] * at_V[1]);
-  }
-  return DEA_OK;
+  struct dea_solid_extremes extremes;
+  dea_status status = find_extremes(self, &extremes);
+  *tension_N_per_m = extremes.min_tension_N_per_m;
+  *field_V_per_m = extremes.true_field_V_per_m;
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status, "the film cannot be evaluated on the way");
+}
+
+/* Who is asked on the way to a voltage. */
+static void set_ending(struct dea_model *model)
+{
+  const struct dea_device *d = model->device;
+  model->ending.owner = (struct dea_ending_owner){
+      .solid = model->solid,
+      .model = model,
+      .point = point_at,
+      .film = look_at_film,
+      .tension_scale_N_per_m = d->film.law->shear_modulus(d->film.param) * d->film_thickness_m,
+      .flat_thickness_m = d->film_thickness_m,
+      .refinement = model->actuator.settings.refinement,
+      .membrane = model->actuator.plate.membrane};
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return model->limited ? &model->limit : NULL;
-}
-
-/* A film without tension that turned unstable, or that has lost it on the way that ended here. */
-static dea_status fail_slack(struct dea_context *ctx, const struct dea_model *model,
-                             double voltage_V, const struct dea_solid_stop *stop)
-{
-  char where[80] = "has no tension", state[120] = "it wrinkles";
-  if (model->limited) {
-    snprintf(where, sizeof where, "loses its tension at %.6g kV",
-             1e-3 * model->limit.point.voltage_V);
-  }
-  if (stop->kind == DEA_STOP_UNSTABLE) {
-    snprintf(state, sizeof state, "from %.6g kV on it buckles, in %d mode%s of this mesh",
-             1e-3 * stop->voltage_V, stop->unstable_modes, stop->unstable_modes == 1 ? "" : "s");
-  } else if (model->actuator.plate.membrane) {
-    snprintf(state, sizeof state, "wrinkled, it thins without limit");
-  }
-  return dea_fail(ctx, DEA_E_SLACK,
-                  "the film %s; %s. No state at %.6g kV was found on this mesh "
-                  "(compute.solid.refinement, domain: disc)",
-                  where, state, 1e-3 * voltage_V);
-}
-
-/* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
-static dea_status stopped(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                          const struct dea_solid_stop *stop, dea_status status)
-{
-  char why[160];
-  double refinement = model->actuator.settings.refinement;
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  if (model->limited && model->limit.kind != DEA_EVENT_SLACK) {
-    return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
-                    "%s at %.6g kV and an electrode stretch of %.5g: %s there is no stable "
-                    "equilibrium at %.6g kV",
-                    model->limit.kind == DEA_EVENT_PULL_IN ? "pull-in" : "snap-back",
-                    1e-3 * stop->voltage_V, model->limit.point.electrode_stretch,
-                    stop->kind == DEA_STOP_LIMIT ? "beyond it" : "the film thins in one place, and",
-                    1e-3 * voltage_V);
-  }
-  if (model->limited || (stop->kind == DEA_STOP_UNSTABLE && !is_taut(model))) {
-    return fail_slack(ctx, model, voltage_V, stop);
-  }
-  if (status == DEA_E_INVERTED) {
-    return dea_fail(ctx, status,
-                    "at %.6g kV, on the way to %.6g kV, %s: a mesh that follows is finer "
-                    "(compute.solid.refinement: %.3g)",
-                    1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why,
-                    fmax(refinement, 1) + 1);
-  }
-  if (status == DEA_E_DOMAIN) {
-    return dea_fail(ctx, status, "the law ends at %.6g kV, on the way to %.6g kV: %s",
-                    1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why);
-  }
-  return dea_fail(ctx, status,
-                  "ours: not converged at %.6g kV, on the way to %.6g kV (%s). The points before "
-                  "are kept; please send the design",
-                  1e-3 * dea_solid_voltage(model->solid), 1e-3 * voltage_V, why);
+  return model->ending.limited ? &model->ending.limit : NULL;
 }
 
 /* Where the path to a voltage has turned unstable and the solid has gone down from it. */
@@ -496,7 +413,8 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                         struct dea_load_point *out)
 {
   end_history(ctx, model);
-  model->limited = false;
+  set_ending(model);
+  model->ending.limited = false;
   double step = field_step_V_per_m * model->device->film_thickness_unstretched_m;
   double from = model->voltage_V, way = voltage_V - from;
   int steps = (int)ceil(fabs(way) / step - 1e-9);
@@ -507,18 +425,10 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                       1e-3 * voltage_V);
     }
     double next = i == steps ? voltage_V : from + way * i / steps;
-    struct dea_solid_stop stop;
-    DEA_TRY(ctx, look_at_tension(ctx, model));
-    dea_status status = dea_solid_approach(ctx, model->solid, next, is_taut(model), see_point,
-                                           model, &model->report, &stop);
-    if (status != DEA_OK) {
-      return dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
-                 ? stopped(ctx, model, next, &stop, status)
-                 : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-    }
-    model->limited = false;
+    DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, next, &model->report));
     model->voltage_V = next;
-    model->left_a_state = next > 0 && (model->left_a_state || model->report.snapped);
+    model->left_a_state =
+        next > 0 && (model->left_a_state || model->report.snapped || model->ending.leapt);
     DEA_TRY(ctx, say_snap(ctx, model));
     DEA_TRY(ctx, take_side(ctx, model));
   }

@@ -1,0 +1,154 @@
+#include "model/solid/adapter/ending.h"
+
+#include "model/solid/equilibrium/newton.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* More area at once than this, and a limit point may have been passed: along a path that goes on
+ * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
+static const double leap = 1.5;
+
+/* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
+ * largest area stretch. */
+static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
+{
+  double tension, field, V = dea_solid_voltage(e->owner.solid);
+  DEA_TRY(ctx, e->owner.film(ctx, e->owner.model, &tension, &field));
+  e->area = V > 0 ? field * e->owner.flat_thickness_m / V : 1;
+  e->tension[0] = e->tension[1];
+  e->tension_V[0] = e->tension_V[1];
+  e->tension[1] = tension;
+  e->tension_V[1] = V;
+  return DEA_OK;
+}
+
+/* Whether the film carries tension all over where it was looked at last: a membrane that is slack
+ * has none to rounding. */
+static bool is_taut(const struct dea_ending *e)
+{
+  return e->tension[1] > 1e-6 * e->owner.tension_scale_N_per_m;
+}
+
+/* The point where the solid is, as the event at which a solve ends. */
+static dea_status take_event(struct dea_context *ctx, struct dea_ending *e,
+                             enum dea_event_kind kind)
+{
+  dea_status status =
+      e->owner.point(ctx, e->owner.model, dea_solid_voltage(e->owner.solid), &e->limit.point);
+  e->limit.kind = kind;
+  e->limited = status == DEA_OK;
+  return status;
+}
+
+/* A point of the path on the way to where a solve ends. Where the film goes slack between two of
+ * them: the voltage from their tensions and the squares of their voltages. */
+static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
+{
+  struct dea_ending *e = user;
+  double V = dea_solid_voltage(e->owner.solid);
+  bool before = is_taut(e);
+  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && before)) {
+    return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
+  }
+  if (where == DEA_STOP_UNSTABLE) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  if (before && !is_taut(e)) {
+    const double *T = e->tension, *at_V = e->tension_V;
+    double share = T[0] > T[1] ? T[0] / (T[0] - T[1]) : 0;
+    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
+    e->limit.point.voltage_V = sqrt((1 - share) * at_V[0] * at_V[0] + share * at_V[1] * at_V[1]);
+  }
+  return DEA_OK;
+}
+
+/* A film without tension that turned unstable, or that has lost it on the way that ended here. */
+static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
+                             const struct dea_solid_stop *stop)
+{
+  char where[80] = "has no tension", state[120] = "it wrinkles";
+  if (e->limited) {
+    snprintf(where, sizeof where, "loses its tension at %.6g kV", 1e-3 * e->limit.point.voltage_V);
+  }
+  if (stop->kind == DEA_STOP_UNSTABLE) {
+    snprintf(state, sizeof state, "from %.6g kV on it buckles, in %d mode%s of this mesh",
+             1e-3 * stop->voltage_V, stop->unstable_modes, stop->unstable_modes == 1 ? "" : "s");
+  } else if (e->owner.membrane) {
+    snprintf(state, sizeof state, "wrinkled, it thins without limit");
+  }
+  return dea_fail(ctx, DEA_E_SLACK,
+                  "the film %s; %s. No state at %.6g kV was found on this mesh "
+                  "(compute.solid.refinement, domain: disc)",
+                  where, state, 1e-3 * voltage_V);
+}
+
+/* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
+static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
+                          const struct dea_solid_stop *stop, dea_status status)
+{
+  char why[160];
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  if (e->limited && e->limit.kind != DEA_EVENT_SLACK) {
+    char stretch[60] = ""; // of a disc
+    if (!isnan(e->limit.point.electrode_stretch)) {
+      snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
+               e->limit.point.electrode_stretch);
+    }
+    return dea_fail(
+        ctx, DEA_E_NO_EQUILIBRIUM, "%s at %.6g kV%s: %s there is no stable equilibrium at %.6g kV",
+        e->limit.kind == DEA_EVENT_PULL_IN ? "pull-in" : "snap-back", 1e-3 * stop->voltage_V,
+        stretch, stop->kind == DEA_STOP_LIMIT ? "beyond it" : "the film thins in one place, and",
+        1e-3 * voltage_V);
+  }
+  if (e->limited || (stop->kind == DEA_STOP_UNSTABLE && !is_taut(e))) {
+    return fail_slack(ctx, e, voltage_V, stop);
+  }
+  if (status == DEA_E_INVERTED) {
+    return dea_fail(ctx, status,
+                    "at %.6g kV, on the way to %.6g kV, %s: a mesh that follows is finer "
+                    "(compute.solid.refinement: %.3g)",
+                    1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why,
+                    fmax(e->owner.refinement, 1) + 1);
+  }
+  if (status == DEA_E_DOMAIN) {
+    return dea_fail(ctx, status, "the law ends at %.6g kV, on the way to %.6g kV: %s",
+                    1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
+  }
+  return dea_fail(ctx, status,
+                  "ours: not converged at %.6g kV, on the way to %.6g kV (%s). The points before "
+                  "are kept; please send the design",
+                  1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
+}
+
+static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
+                           double before)
+{
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         "model 3d: from %.6g to %.6g kV the film's area grows at once, from %.3g "
+                         "to %.3g times that of the flat film: there may be pull-in between, and "
+                         "this be a state beyond it (smaller steps of compute.voltage tell)",
+                         1e-3 * e->from_V, 1e-3 * voltage_V, before, e->area);
+}
+
+dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double from_V,
+                         double voltage_V, struct dea_solid_report *report)
+{
+  struct dea_solid_stop stop;
+  e->from_V = from_V;
+  e->limited = false;
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  dea_status status =
+      dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
+  if (status == DEA_OK) {
+    double before = e->area;
+    e->limited = false;
+    DEA_TRY(ctx, look_at_tension(ctx, e));
+    e->leapt = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
+    return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
+  }
+  return dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
+             ? stopped(ctx, e, voltage_V, &stop, status)
+             : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
