@@ -50,9 +50,15 @@ expect 0 "copy by force" dea examples --force --copy "$folder/new/deep"
 echo x >"$folder/file"
 expect 5 "copy into a file" dea examples --copy "$folder/file"
 
-# the design in the README is a valid one
-awk '/^```/ { inside = /yaml/; next } inside' "$source/README.md" >"$folder/readme.yaml"
-expect 0 "design of the README" dea check "$folder/readme.yaml"
+# the designs in the README and on the page of devices are valid ones
+for page in README.md docs/devices.md; do
+  awk -v to="$folder/page-" '/^```/ { inside = /yaml/; count += inside; next }
+    inside { print >(to count ".yaml") }' "$source/$page"
+  for design in "$folder"/page-*.yaml; do
+    expect 0 "design of $page" dea check "$design"
+  done
+  rm "$folder"/page-*.yaml
+done
 
 # doctor
 expect 0 "doctor" dea doctor
