@@ -49,19 +49,8 @@ double dea_layout_overlap_m2(const struct dea_layout *l, size_t a, size_t b)
 bool dea_layout_holds(const struct dea_layout *l, size_t region, const double x_m[2])
 {
   const struct dea_region *r = region_of(l, region);
-  double near = 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r);
-  for (size_t c = 0; c < r->contour_count; c++) {
-    const struct dea_contour contour = dea_region_contour(r, c);
-    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
-      const struct dea_piece piece = dea_contour_piece(&contour, i);
-      double at[2];
-      dea_piece_nearest(&piece, x_m, at);
-      if (hypot(at[0] - x_m[0], at[1] - x_m[1]) <= near) {
-        return true;
-      }
-    }
-  }
-  return dea_region_inside(r, x_m[0], x_m[1]);
+  return dea_region_inside(r, x_m[0], x_m[1]) ||
+         dea_region_distance_m(r, x_m) <= 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r);
 }
 
 /* Whether some ply holds a point. */

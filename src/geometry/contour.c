@@ -81,6 +81,13 @@ void dea_piece_nearest(const struct dea_piece *piece, const double x_m[2], doubl
   out[1] = piece->from[1] + s * dy;
 }
 
+double dea_piece_distance_m(const struct dea_piece *piece, const double x_m[2])
+{
+  double at[2];
+  dea_piece_nearest(piece, x_m, at);
+  return hypot(at[0] - x_m[0], at[1] - x_m[1]);
+}
+
 /* Both by Green's theorem: the polygon of the chords, seen from the first vertex so that nothing
  * is lost far from the origin, and the circular segment between each chord and its arc, of area
  * r^2 (s - sin s)/2 and first moment about the centre 2/3 r^3 sin^3(s/2) towards its middle. */
@@ -182,6 +189,16 @@ static double turn_along(const struct dea_piece *piece, double x, double y)
     turn += piece->sweep > 0 && turn < 0 ? 2 * pi : piece->sweep < 0 && turn > 0 ? -2 * pi : 0;
   }
   return turn;
+}
+
+double dea_contour_distance_m(const struct dea_contour *contour, const double x_m[2])
+{
+  double least = INFINITY;
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece piece = dea_contour_piece(contour, i);
+    least = fmin(least, dea_piece_distance_m(&piece, x_m));
+  }
+  return least;
 }
 
 bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_m)

@@ -37,6 +37,7 @@ void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2]
 void dea_piece_point(const struct dea_piece *piece, double fraction, double out[2]);
 /* Point of a piece that is nearest to another point. */
 void dea_piece_nearest(const struct dea_piece *piece, const double x_m[2], double out[2]);
+double dea_piece_distance_m(const struct dea_piece *piece, const double x_m[2]);
 /* Grows a box {x min, y min, x max, y max} so that it holds the piece. */
 void dea_piece_grow_box(const struct dea_piece *piece, double box[4]);
 /* Where the line or circle of a crosses that of b, beyond their ends too; returns 0 to 2. Up to
@@ -54,6 +55,8 @@ double dea_contour_length_m(const struct dea_contour *contour);
 void dea_contour_moment_m3(const struct dea_contour *contour, double out[2]);
 /* Grows a box {x min, y min, x max, y max} so that it holds the contour. */
 void dea_contour_grow_box(const struct dea_contour *contour, double box[4]);
+/* Distance of a point from a contour. */
+double dea_contour_distance_m(const struct dea_contour *contour, const double x_m[2]);
 /* Whether a point, not on it, lies inside a closed contour. */
 bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_m);
 

@@ -94,10 +94,3 @@ bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j)
   }
   return (!a->arc && beside(a, b, snap)) || (!b->arc && beside(b, a, snap));
 }
-
-double dea_piece_distance_m(const struct dea_piece *piece, const double x_m[2])
-{
-  double at[2];
-  dea_piece_nearest(piece, x_m, at);
-  return hypot(at[0] - x_m[0], at[1] - x_m[1]);
-}

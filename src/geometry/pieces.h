@@ -29,7 +29,5 @@ bool dea_pieces_next(const struct dea_pieces *pieces, const double box[4], size_
  * look.
  */
 bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j);
-/* Distance of a point from a piece. */
-double dea_piece_distance_m(const struct dea_piece *piece, const double x_m[2]);
 
 #endif

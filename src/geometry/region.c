@@ -128,6 +128,16 @@ double dea_region_size_m(const struct dea_region *region)
   return region->contour_count > 0 ? hypot(box[2] - box[0], box[3] - box[1]) : 0;
 }
 
+double dea_region_distance_m(const struct dea_region *region, const double x_m[2])
+{
+  double least = INFINITY;
+  for (size_t i = 0; i < region->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(region, i);
+    least = fmin(least, dea_contour_distance_m(&contour, x_m));
+  }
+  return least;
+}
+
 bool dea_region_inside(const struct dea_region *region, double x_m, double y_m)
 {
   bool inside = false;

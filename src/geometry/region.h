@@ -43,6 +43,8 @@ double dea_region_boundary_m(const struct dea_region *region);
 void dea_region_box_m(const struct dea_region *region, double out[4]);
 /* Whether a point, not on the boundary, lies in the region. */
 bool dea_region_inside(const struct dea_region *region, double x_m, double y_m);
+/* Distance of a point from the boundary; INFINITY of an empty region. */
+double dea_region_distance_m(const struct dea_region *region, const double x_m[2]);
 /* Diagonal of the box: the size that tolerances are counted from. */
 double dea_region_size_m(const struct dea_region *region);
 

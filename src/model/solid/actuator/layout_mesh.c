@@ -42,24 +42,19 @@ static void mark_used(const struct dea_layout *l, bool *used)
   }
 }
 
-/* Sizes of elements: everywhere, and along the boundary of a region. */
-static double size_of_all(const struct dea_layout *l, double refinement)
+static double largest_ply_m2(const struct dea_layout *l)
 {
   double largest = 0;
   for (size_t i = 0; i < l->ply_count; i++) {
     largest = fmax(largest, dea_region_area_m2(&l->regions[l->plies[i].region].region));
   }
-  return size_share * sqrt(largest) * exp2(1 - fmax(1, refinement));
+  return largest;
 }
 
 /* Whether the film's stretch changes at the boundary of a region. */
-static bool is_fine(const struct dea_layout *l, size_t region)
+static bool is_fine(const struct dea_layout *l, size_t region, double largest_m2)
 {
-  double largest = 0;
   bool fine = false;
-  for (size_t i = 0; i < l->ply_count; i++) {
-    largest = fmax(largest, dea_region_area_m2(&l->regions[l->plies[i].region].region));
-  }
   for (size_t i = 0; i < l->electrode_count; i++) {
     fine = fine || l->electrodes[i].region == region;
   }
@@ -69,16 +64,16 @@ static bool is_fine(const struct dea_layout *l, size_t region)
   for (size_t i = 0; i < l->ply_count; i++) {
     fine = fine || l->plies[i].region == region;
   }
-  return fine && dea_region_area_m2(&l->regions[region].region) < (1 - 1e-9) * largest;
+  return fine && dea_region_area_m2(&l->regions[region].region) < (1 - 1e-9) * largest_m2;
 }
 
-static double size_at_edge(const struct dea_layout *l, size_t region, double size_m,
-                           double refinement)
+/* Of elements along the boundary of a region. */
+static double size_at_edge(const struct dea_layout *l, size_t region, double largest_m2,
+                           double size_m, double finer)
 {
   const struct dea_region *r = &l->regions[region].region;
   double across = across_share * dea_region_area_m2(r) / dea_region_boundary_m(r);
-  return fmin(is_fine(l, region) ? edge_share * size_m : size_m,
-              across * exp2(1 - fmax(1, refinement)));
+  return fmin(is_fine(l, region, largest_m2) ? edge_share * size_m : size_m, across * finer);
 }
 
 /* What of each region lies on the plies, into clipped[region_count]; empty where all of it does,
@@ -124,13 +119,14 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
                             const struct dea_region *clipped, struct dea_gmsh_plan *plan)
 {
   const struct dea_layout *l = mesh->layout;
+  double largest_m2 = largest_ply_m2(l), finer = exp2(1 - fmax(1, settings->refinement));
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   if (shapes == NULL) {
     return DEA_E_MEMORY;
   }
   *plan = (struct dea_gmsh_plan){.shapes = shapes,
                                  .order = settings->order == 1 ? 1 : 2,
-                                 .size_m = size_of_all(l, settings->refinement),
+                                 .size_m = size_share * sqrt(largest_m2) * finer,
                                  .growth = growth};
   for (size_t i = 0; i < l->region_count; i++) {
     const struct dea_region *region =
@@ -145,11 +141,11 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
     for (size_t k = 0; k < region->contour_count; k++) {
       contours[k] = dea_region_contour(region, k);
     }
-    shapes[plan->shape_count++] = (struct dea_gmsh_shape){
-        .name = l->regions[i].name,
-        .contours = contours,
-        .count = region->contour_count,
-        .edge_size_m = size_at_edge(l, i, plan->size_m, settings->refinement)};
+    shapes[plan->shape_count++] =
+        (struct dea_gmsh_shape){.name = l->regions[i].name,
+                                .contours = contours,
+                                .count = region->contour_count,
+                                .edge_size_m = size_at_edge(l, i, largest_m2, plan->size_m, finer)};
   }
   return DEA_OK;
 }
@@ -247,7 +243,7 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_model_settin
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
   DEA_TRY(ctx, find_skips(ctx, mesh, skips));
   for (size_t p = 0; p < l->ply_count; p++) {
-    bool surface = mesh->membrane && dea_layout_is_dielectric(l, p);
+    bool surface = mesh->membrane && mesh->dielectric[p];
     plies[p] = (struct dea_ply){
         .thickness_m = surface ? 0 : l->plies[p].thickness_m,
         .count = l->plies[p].elements > 0 && !surface ? l->plies[p].elements : 1,
@@ -287,6 +283,7 @@ static int channel_at(const struct dea_layout_mesh *mesh, size_t plane_region, s
   return -1;
 }
 
+/* Also which plies are dielectric. */
 static void find_fields(struct dea_layout_mesh *mesh)
 {
   size_t plies = mesh->layout->ply_count;
@@ -298,6 +295,7 @@ static void find_fields(struct dea_layout_mesh *mesh)
       int bottom = channel_at(mesh, i / plies, i % plies, false);
       if (top >= 0 && bottom >= 0 && top != bottom) {
         *field = (struct dea_layout_field){top, bottom};
+        mesh->dielectric[i % plies] = true;
       }
     }
   }
@@ -311,6 +309,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_model_settings 
   size_t count = mesh->plane->region_count * plies;
   mesh->present = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->present);
   mesh->field = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->field);
+  mesh->dielectric = dea_arena_alloc(&mesh->memory, plies, sizeof *mesh->dielectric);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
   for (size_t i = 0; i < count; i++) {
     mesh->present[i] = is_within(mesh, i / plies, mesh->layout->plies[i % plies].region);
@@ -349,21 +348,6 @@ bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, 
   return is_within(mesh, (size_t)mesh->grid->region[element], region);
 }
 
-static double distance_to(const struct dea_region *region, const double x[2])
-{
-  double least = INFINITY;
-  for (size_t k = 0; k < region->contour_count; k++) {
-    const struct dea_contour contour = dea_region_contour(region, k);
-    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
-      const struct dea_piece piece = dea_contour_piece(&contour, i);
-      double at[2];
-      dea_piece_nearest(&piece, x, at);
-      least = fmin(least, hypot(x[0] - at[0], x[1] - at[1]));
-    }
-  }
-  return least;
-}
-
 size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                             size_t within, bool *marked)
 {
@@ -383,11 +367,11 @@ size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, b
   for (size_t n = 0; n < plane->node_count; n++) {
     const double *x = plane->x + 2 * n;
     if (marked[n] && edge) {
-      marked[n] = distance_to(&regions[region].region, x) <= near_m;
+      marked[n] = dea_region_distance_m(&regions[region].region, x) <= near_m;
     }
     if (marked[n] && within != DEA_LAYOUT_NONE) {
       marked[n] = dea_region_inside(&regions[within].region, x[0], x[1]) ||
-                  distance_to(&regions[within].region, x) <= near_m;
+                  dea_region_distance_m(&regions[within].region, x) <= near_m;
     }
     count += marked[n] ? 1 : 0;
   }

@@ -20,7 +20,8 @@ struct dea_layout_mesh {
   size_t *group; // [region_count of the layout] group of a region; DEA_LAYOUT_NONE: not meshed
   bool *present; // [region_count of the plane][ply_count]
   struct dea_layout_field *field; // [region_count of the plane][ply_count]
-  struct dea_grid *grid;          // its regions are those of the plane mesh; owned
+  bool *dielectric;      // [ply_count] plies that are between electrodes of two channels somewhere
+  struct dea_grid *grid; // its regions are those of the plane mesh; owned
 };
 
 /* DEA_E_DESIGN with a finding for plies that do not lie flat on each other; DEA_E_TOOL as

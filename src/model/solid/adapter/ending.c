@@ -13,12 +13,16 @@ static const double leap = 1.5;
  * largest area stretch. */
 static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
 {
-  double tension, field, V = dea_solid_voltage(e->owner.solid);
-  DEA_TRY(ctx, e->owner.film(ctx, e->owner.model, &tension, &field));
-  e->area = V > 0 ? field * e->owner.flat_thickness_m / V : 1;
+  struct dea_solid_extremes film;
+  double V = dea_solid_voltage(e->owner.solid);
+  dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  }
+  e->area = V > 0 ? film.true_field_V_per_m * e->owner.flat_thickness_m / V : 1;
   e->tension[0] = e->tension[1];
   e->tension_V[0] = e->tension_V[1];
-  e->tension[1] = tension;
+  e->tension[1] = film.min_tension_N_per_m;
   e->tension_V[1] = V;
   return DEA_OK;
 }
@@ -132,8 +136,9 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
                          1e-3 * e->from_V, 1e-3 * voltage_V, before, e->area);
 }
 
-dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double from_V,
-                         double voltage_V, struct dea_solid_report *report)
+/* One load step. */
+static dea_status step(struct dea_context *ctx, struct dea_ending *e, double from_V,
+                       double voltage_V, struct dea_solid_report *report)
 {
   struct dea_solid_stop stop;
   e->from_V = from_V;
@@ -151,4 +156,39 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
   return dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
              ? stopped(ctx, e, voltage_V, &stop, status)
              : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* Where the way to a voltage has turned unstable and the solid has gone down from it. */
+static dea_status say_snap(struct dea_context *ctx, double voltage_V)
+{
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                         "model 3d: the state on the way to %.4g kV is unstable (buckling or "
+                         "snapping); the sweep goes on from the stable one below it",
+                         1e-3 * voltage_V);
+}
+
+dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double from_V,
+                         double voltage_V, struct dea_solid_report *report)
+{
+  double way = voltage_V - from_V, at_V = from_V;
+  int steps = isfinite(e->owner.step_V) ? (int)ceil(fabs(way) / e->owner.step_V - 1e-9) : 1;
+  steps = steps < 1 ? 1 : steps;
+  e->limited = false;
+  for (int i = 1; i <= steps; i++) {
+    if (dea_solid_any(dea_interrupted(ctx))) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
+                      1e-3 * voltage_V);
+    }
+    double next_V = i == steps ? voltage_V : from_V + way * i / steps;
+    DEA_TRY(ctx, step(ctx, e, at_V, next_V, report));
+    at_V = next_V;
+    DEA_TRY(ctx, report->snapped ? say_snap(ctx, at_V) : DEA_OK);
+    DEA_TRY(ctx, e->owner.arrived(ctx, e->owner.model, at_V));
+  }
+  return DEA_OK;
+}
+
+const struct dea_event *dea_ending_limit(const struct dea_ending *e)
+{
+  return e->limited ? &e->limit : NULL;
 }

@@ -3,18 +3,21 @@
 #ifndef DEA_MODEL_SOLID_ADAPTER_ENDING_H
 #define DEA_MODEL_SOLID_ADAPTER_ENDING_H
 
+#include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/approach.h"
 #include "result/load_point.h"
 
-/* Whose solid it is; the functions look at where it is. */
+/* Whose solid it is. */
 struct dea_ending_owner {
   struct dea_solid *solid;
+  const struct dea_solid_film_data *films; // [constituent_count]
   void *model;
+  /* Where the solid is, at that voltage. */
   dea_status (*point)(struct dea_context *ctx, void *model, double voltage_V,
                       struct dea_load_point *out);
-  /* Smallest tension of the film, INFINITY without a film, and its largest true field. */
-  dea_status (*film)(struct dea_context *ctx, void *model, double *tension_N_per_m,
-                     double *field_V_per_m);
+  /* After each load step that came to its voltage. */
+  dea_status (*arrived)(struct dea_context *ctx, void *model, double voltage_V);
+  double step_V;                // a longer way is gone in such load steps
   double tension_scale_N_per_m; // what is small against that is none
   double flat_thickness_m;      // of the flat film where the field is largest
   double refinement;            // of the mesh
@@ -35,8 +38,10 @@ struct dea_ending {
 
 /* To a voltage from that of the last equilibrium, from_V. Where that fails the message is the
  * verdict: pull-in or snap-back (DEA_E_NO_EQUILIBRIUM), loss of tension (DEA_E_SLACK), an inverted
- * element, the end of a law, or that it is ours. */
+ * element, the end of a law, or that it is ours; what arrived before stays. */
 dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *ending, double from_V,
                          double voltage_V, struct dea_solid_report *report);
+/* Where the last way came to its end, NULL where it did not; lent. */
+const struct dea_event *dea_ending_limit(const struct dea_ending *ending);
 
 #endif

@@ -51,7 +51,7 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   const struct dea_layout_ply *ply = &model->layout->plies[i];
   const struct dea_material *material = &ply->material;
   struct dea_constituent *out = &model->constituents[i];
-  bool dielectric = dea_layout_is_dielectric(model->layout, i);
+  bool dielectric = model->mesh.dielectric[i];
   double quarter = 0.5 * acos(-1.0), turns = ply->angle_rad / quarter;
   double l[2] = {ply->pre_stretch[0], ply->pre_stretch[1]};
   bool along = fabs(turns - round(turns)) < 1e-9;
@@ -75,6 +75,13 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   *out = material->law != NULL
              ? dea_constituent_stretched(part, material, l)
              : dea_constituent_free(part, material->young_modulus_Pa, material->poisson_ratio);
+  if (dielectric && (material->law == NULL || material->permittivity.at_rest == 0)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, ply->location,
+                                 "ply '%s' lies between electrodes: its material '%s' needs a law "
+                                 "and a permittivity",
+                                 ply->name, material->name));
+    return dea_fail(ctx, DEA_E_DESIGN, "the ply '%s' is no dielectric", ply->name);
+  }
   if (dielectric) {
     dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
     out->relaxed = model->mesh.membrane;
@@ -323,27 +330,24 @@ static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
-/* The weight of plies and bodies among the dead loads. */
-static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+/* The weight of plies and bodies as the dead loads, none without it. */
+static dea_status set_weight(struct dea_context *ctx, const struct dea_model *model)
 {
-  size_t count = model->mesh.grid->node_count;
+  size_t count = 3 * model->mesh.grid->node_count;
+  double *force = dea_solid_force(model->solid);
   if (!has_weight(model->layout)) {
+    memset(force, 0, count * sizeof *force);
     return DEA_OK;
   }
-  double *fall = dea_alloc(ctx, 3 * count, sizeof *fall);
-  double *force = dea_alloc(ctx, 3 * count, sizeof *force);
-  dea_status status = fall != NULL && force != NULL ? DEA_OK : DEA_E_MEMORY;
-  for (size_t i = 0; i < 3 * model->mesh_node_count && status == DEA_OK; i++) {
+  double *fall = dea_alloc(ctx, count, sizeof *fall);
+  if (fall == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < 3 * model->mesh_node_count; i++) {
     fall[i] = model->layout->gravity_m_per_s2[i % 3];
   }
-  if (status == DEA_OK) {
-    status = dea_solid_mass_apply(ctx, model->solid, fall, force);
-  }
-  for (size_t i = 0; i < 3 * count && status == DEA_OK; i++) {
-    dea_solid_force(model->solid)[i] += force[i];
-  }
+  dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, force);
   dea_free(ctx, fall);
-  dea_free(ctx, force);
   return status;
 }
 
@@ -416,7 +420,6 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   memcpy(force, dea_solid_reaction(model->solid), values * sizeof *force);
   DEA_TRY(ctx, hold_supports(ctx, model, false));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
-  memset(force, 0, values * sizeof *force);
   DEA_TRY(ctx, hold_supports(ctx, model, true));
   for (size_t k = 1; k < model->layout->channel_count; k++) {
     dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
@@ -424,8 +427,8 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   for (size_t i = 0; i < model->layout->pressure_count; i++) {
     dea_pressure_set(model->pressures[i], model->layout->pressures[i].pressure_Pa);
   }
+  DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
-  DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
   model->left_a_state = model->report.snapped;
   return DEA_OK;
@@ -550,13 +553,6 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_free(ctx, model);
 }
 
-static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         const struct dea_model_settings *settings, struct dea_model **out)
-{
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
-  return DEA_OK;
-}
-
 static void find_heights(const struct dea_model *model, struct dea_load_point *out)
 {
   const double *u = dea_solid_displacement(model->solid);
@@ -568,9 +564,10 @@ static void find_heights(const struct dea_model *model, struct dea_load_point *o
   }
 }
 
-static dea_status report(struct dea_context *ctx, struct dea_model *model,
+static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
                          struct dea_load_point *out)
 {
+  const struct dea_model *model = self;
   struct dea_solid_extremes extremes;
   double capacitance_F;
   dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
@@ -578,12 +575,12 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
   if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
+    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
   }
   *out = dea_load_point_empty();
-  out->voltage_V = model->voltage_V;
+  out->voltage_V = voltage_V;
   find_heights(model, out);
-  out->nominal_field_V_per_m = model->voltage_V / model->thinnest_m;
+  out->nominal_field_V_per_m = voltage_V / model->thinnest_m;
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
   out->min_tension_N_per_m =
@@ -600,77 +597,25 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status point_at(struct dea_context *ctx, void *self, double voltage_V,
-                           struct dea_load_point *out)
+static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
 {
   struct dea_model *model = self;
-  double before_V = model->voltage_V;
+  (void)ctx;
   model->voltage_V = voltage_V;
-  dea_status status = report(ctx, model, out);
-  model->voltage_V = before_V;
-  return status;
-}
-
-static dea_status look_at_film(struct dea_context *ctx, void *self, double *tension_N_per_m,
-                               double *field_V_per_m)
-{
-  struct dea_model *model = self;
-  struct dea_solid_extremes extremes;
-  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
-  *tension_N_per_m = extremes.min_tension_N_per_m;
-  *field_V_per_m = extremes.true_field_V_per_m;
-  return status == DEA_OK ? DEA_OK
-                          : dea_fail(ctx, status, "the film cannot be evaluated on the way");
-}
-
-/* Who is asked on the way to a voltage. */
-static void set_ending(struct dea_model *model)
-{
-  model->ending.owner = (struct dea_ending_owner){
-      .solid = model->solid,
-      .model = model,
-      .point = point_at,
-      .film = look_at_film,
-      .tension_scale_N_per_m = dea_constituent_modulus(&model->constituents[model->film]) *
-                               model->layout->plies[model->film].thickness_m,
-      .flat_thickness_m = model->flat_m,
-      .refinement = model->settings.refinement,
-      .membrane = model->mesh.membrane};
+  model->left_a_state = model->left_a_state || model->report.snapped || model->ending.leapt;
+  return DEA_OK;
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return model->ending.limited ? &model->ending.limit : NULL;
+  return dea_ending_limit(&model->ending);
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  set_ending(model);
-  model->ending.limited = false;
-  double step = field_step_V_per_m * model->thinnest_m, from = model->voltage_V;
-  double way = voltage_V - from;
-  int steps = isfinite(step) ? (int)ceil(fabs(way) / step - 1e-9) : 1;
-  steps = steps < 1 ? 1 : steps;
-  for (int i = 1; i <= steps; i++) {
-    if (dea_solid_any(dea_interrupted(ctx))) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
-                      1e-3 * voltage_V);
-    }
-    double next = i == steps ? voltage_V : from + way * i / steps;
-    DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, next, &model->report));
-    model->voltage_V = next;
-    model->left_a_state = model->left_a_state || model->ending.leapt;
-    if (model->report.snapped) {
-      model->left_a_state = true;
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                   "model 3d: the state on the way to %.4g kV is unstable "
-                                   "(buckling or snapping); the sweep goes on from the stable one "
-                                   "below it",
-                                   1e-3 * next));
-    }
-  }
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, voltage_V, &model->report));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   return DEA_OK;
 }
 
@@ -750,7 +695,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
                                  "under this load; it goes on from the stable one below it",
                                  1e-3 * model->voltage_V));
   }
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   return DEA_OK;
 }
 
@@ -789,6 +734,27 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
   *out = (struct dea_model_size){.elements = model->mesh.grid->element_count,
                                  .nodes = model->mesh.grid->node_count,
                                  .unknowns = 3 * model->mesh.grid->node_count};
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  struct dea_model *model = *out;
+  const struct dea_layout_ply *film = &model->layout->plies[model->film];
+  model->ending.owner = (struct dea_ending_owner){
+      .solid = model->solid,
+      .films = model->films,
+      .model = model,
+      .point = report,
+      .arrived = arrived,
+      .step_V = field_step_V_per_m * model->thinnest_m,
+      .tension_scale_N_per_m =
+          dea_constituent_modulus(&model->constituents[model->film]) * film->thickness_m,
+      .flat_thickness_m = model->flat_m,
+      .refinement = model->settings.refinement,
+      .membrane = model->mesh.membrane};
+  return DEA_OK;
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_layout_module;

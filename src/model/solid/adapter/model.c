@@ -37,7 +37,8 @@ struct dea_model {
   struct dea_indent *indent;       // NULL: no probe
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
-  struct dea_ending ending;        // of the last solve
+  struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
+  struct dea_ending ending; // of the last solve
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -140,6 +141,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
   model->rest_energy_J = model->report.energy_J;
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+    model->films[i] = (struct dea_solid_film_data){&device->film, device->pre_stretch};
+  }
   DEA_TRY(ctx, say_sag(ctx, model));
   return DEA_OK;
 }
@@ -156,13 +160,6 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
-static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         const struct dea_model_settings *settings, struct dea_model **out)
-{
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
-  return DEA_OK;
-}
-
 /* Largest and smallest displacement out of the plane among the film's nodes. */
 static void find_heights(const struct dea_model *model, const double *u, struct dea_load_point *out)
 {
@@ -175,16 +172,6 @@ static void find_heights(const struct dea_model *model, const double *u, struct 
       out->lowest_z_m = fmin(out->lowest_z_m, u[3 * n + 2]);
     }
   }
-}
-
-static dea_status find_extremes(const struct dea_model *model, struct dea_solid_extremes *out)
-{
-  const struct dea_device *d = model->device;
-  struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
-  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
-    films[i] = (struct dea_solid_film_data){&d->film, d->pre_stretch};
-  }
-  return dea_solid_extremes(model->solid, films, out);
 }
 
 /* Estimated errors of the reported displacements, where the state is one of which they say
@@ -226,31 +213,32 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
   return status;
 }
 
-static dea_status report(struct dea_context *ctx, struct dea_model *model,
+static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
                          struct dea_load_point *out)
 {
+  struct dea_model *model = self;
   const struct dea_device *d = model->device;
   const double *u = dea_solid_displacement(model->solid);
   struct dea_solid_extremes extremes;
   double capacitance_F;
-  dea_status status = find_extremes(model, &extremes);
+  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
   if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", model->voltage_V);
+    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
   }
   const double *X = model->grid->X + 3 * model->between;
   const double *v = u + 3 * model->between, *w = u + 3 * model->between_twin;
   double outwards = 0.5 * ((v[0] + w[0]) * X[0] + (v[1] + w[1]) * X[1]) / hypot(X[0], X[1]);
   *out = dea_load_point_empty();
-  out->voltage_V = model->voltage_V;
+  out->voltage_V = voltage_V;
   out->electrode_stretch = 1 + outwards / d->electrode_radius_m;
   out->electrode_edge_u_m = outwards;
   out->centre_z_m = 0.5 * (u[3 * model->centre + 2] + u[3 * model->centre_twin + 2]);
   out->fibre_tip_z_m = d->fibre_count > 0 ? u[3 * model->tip + 2] : NAN;
   find_heights(model, u, out);
-  out->nominal_field_V_per_m = model->voltage_V / d->film_thickness_unstretched_m;
+  out->nominal_field_V_per_m = voltage_V / d->film_thickness_unstretched_m;
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
   out->breakdown_probability =
@@ -274,62 +262,7 @@ static dea_status report(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-/* ---- why a solve ends ---- */
-
-static dea_status point_at(struct dea_context *ctx, void *self, double voltage_V,
-                           struct dea_load_point *out)
-{
-  struct dea_model *model = self;
-  double before_V = model->voltage_V;
-  model->voltage_V = voltage_V;
-  dea_status status = report(ctx, model, out);
-  model->voltage_V = before_V;
-  return status;
-}
-
-static dea_status look_at_film(struct dea_context *ctx, void *self, double *tension_N_per_m,
-                               double *field_V_per_m)
-{
-  struct dea_solid_extremes extremes;
-  dea_status status = find_extremes(self, &extremes);
-  *tension_N_per_m = extremes.min_tension_N_per_m;
-  *field_V_per_m = extremes.true_field_V_per_m;
-  return status == DEA_OK ? DEA_OK
-                          : dea_fail(ctx, status, "the film cannot be evaluated on the way");
-}
-
-/* Who is asked on the way to a voltage. */
-static void set_ending(struct dea_model *model)
-{
-  const struct dea_device *d = model->device;
-  model->ending.owner = (struct dea_ending_owner){
-      .solid = model->solid,
-      .model = model,
-      .point = point_at,
-      .film = look_at_film,
-      .tension_scale_N_per_m = d->film.law->shear_modulus(d->film.param) * d->film_thickness_m,
-      .flat_thickness_m = d->film_thickness_m,
-      .refinement = model->actuator.settings.refinement,
-      .membrane = model->actuator.plate.membrane};
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return model->ending.limited ? &model->ending.limit : NULL;
-}
-
-/* Where the path to a voltage has turned unstable and the solid has gone down from it. */
-static dea_status say_snap(struct dea_context *ctx, const struct dea_model *model)
-{
-  if (model->report.snapped) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                            "model 3d: the state on the way to %.4g kV is unstable (buckling or "
-                            "snapping); the sweep goes on from the stable one below it",
-                            1e-3 * model->voltage_V));
-  }
-  return DEA_OK;
-}
+/* ---- on the way to a voltage ---- */
 
 /* To the side that the design asks for, where there is a state. */
 static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
@@ -353,6 +286,21 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
+static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
+{
+  struct dea_model *model = self;
+  model->voltage_V = voltage_V;
+  model->left_a_state =
+      voltage_V > 0 && (model->left_a_state || model->report.snapped || model->ending.leapt);
+  DEA_TRY(ctx, take_side(ctx, model));
+  return DEA_OK;
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return dea_ending_limit(&model->ending);
+}
+
 /* ---- in time ---- */
 
 /* Equilibria are looked for from where the history has come to. */
@@ -369,7 +317,7 @@ static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
                               struct dea_load_point *out)
 {
   model->voltage_V = dea_solid_voltage(model->solid);
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   dea_circuit_step_point(model->driven, out);
   out->stored_energy_J += model->stored_J;
   out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
@@ -380,7 +328,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
   end_history(ctx, model);
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
   DEA_TRY(ctx, dea_circuit_step_create(ctx, model->solid, &model->actuator, time, &model->driven));
   DEA_TRY(ctx, report_time(ctx, model, out));
@@ -413,26 +361,8 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                         struct dea_load_point *out)
 {
   end_history(ctx, model);
-  set_ending(model);
-  model->ending.limited = false;
-  double step = field_step_V_per_m * model->device->film_thickness_unstretched_m;
-  double from = model->voltage_V, way = voltage_V - from;
-  int steps = (int)ceil(fabs(way) / step - 1e-9);
-  steps = steps < 1 ? 1 : steps;
-  for (int i = 1; i <= steps; i++) {
-    if (dea_solid_any(dea_interrupted(ctx))) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
-                      1e-3 * voltage_V);
-    }
-    double next = i == steps ? voltage_V : from + way * i / steps;
-    DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, next, &model->report));
-    model->voltage_V = next;
-    model->left_a_state =
-        next > 0 && (model->left_a_state || model->report.snapped || model->ending.leapt);
-    DEA_TRY(ctx, say_snap(ctx, model));
-    DEA_TRY(ctx, take_side(ctx, model));
-  }
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, voltage_V, &model->report));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   return DEA_OK;
 }
 
@@ -453,7 +383,7 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                     "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
                     1e3 * model->indent->depth_m, 1e3 * depth_m, why);
   }
-  DEA_TRY(ctx, report(ctx, model, out));
+  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
   return DEA_OK;
 }
 
@@ -566,6 +496,26 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
   *out = (struct dea_model_size){.elements = model->grid->element_count,
                                  .nodes = model->grid->node_count,
                                  .unknowns = 3 * model->grid->node_count};
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  struct dea_model *model = *out;
+  model->ending.owner = (struct dea_ending_owner){
+      .solid = model->solid,
+      .films = model->films,
+      .model = model,
+      .point = report,
+      .arrived = arrived,
+      .step_V = field_step_V_per_m * device->film_thickness_unstretched_m,
+      .tension_scale_N_per_m =
+          device->film.law->shear_modulus(device->film.param) * device->film_thickness_m,
+      .flat_thickness_m = device->film_thickness_m,
+      .refinement = model->actuator.settings.refinement,
+      .membrane = model->actuator.plate.membrane};
+  return DEA_OK;
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;

@@ -39,12 +39,7 @@ static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
 {
   double least = INFINITY;
   for (size_t k = 0; k < shape->count; k++) {
-    for (size_t i = 0; i < dea_contour_pieces(&shape->contours[k]); i++) {
-      const struct dea_piece piece = dea_contour_piece(&shape->contours[k], i);
-      double near_x[2];
-      dea_piece_nearest(&piece, x, near_x);
-      least = fmin(least, hypot(x[0] - near_x[0], x[1] - near_x[1]));
-    }
+    least = fmin(least, dea_contour_distance_m(&shape->contours[k], x));
   }
   return least;
 }
