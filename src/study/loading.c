@@ -84,18 +84,8 @@ static const struct dea_field fields[] = {
      .default_text = "no",
      .doc = "whether each line goes back the same way: snapping shows as hysteresis",
      .example = "yes"},
-    {.key = "voltage",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(voltages_V),
-     .unit = "V",
-     .max = 1e6,
-     .list_min = 1,
-     .list_max = DEA_DESIGN_STOPS_MAX,
-     .element_size = sizeof(struct dea_quantity),
-     .count_offset = AT(voltage_count),
-     .absent_text = "0 V and the quarters of the highest",
-     .doc = "voltages of the lines",
-     .example = "[0 kV, 3 kV, 5 kV]"},
+    DEA_STUDY_STOPS_FIELD("0 V and the quarters of the highest", "voltages of the lines",
+                          "[0 kV, 3 kV, 5 kV]"),
 };
 
 static const struct dea_record record = {

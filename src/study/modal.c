@@ -29,18 +29,9 @@ static const struct dea_field fields[] = {
      .default_text = "6",
      .doc = "how many modes, from the lowest on",
      .example = "6"},
-    {.key = "voltage",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(voltages_V),
-     .unit = "V",
-     .max = 1e6,
-     .list_min = 1,
-     .list_max = DEA_DESIGN_STOPS_MAX,
-     .element_size = sizeof(struct dea_quantity),
-     .count_offset = AT(voltage_count),
-     .absent_text = "0 V and the quarters of the highest",
-     .doc = "voltages that the actuator vibrates about, in the order to be computed",
-     .example = "[0 kV, 4 kV, 8 kV]"},
+    DEA_STUDY_STOPS_FIELD("0 V and the quarters of the highest",
+                          "voltages that the actuator vibrates about, in the order to be computed",
+                          "[0 kV, 4 kV, 8 kV]"),
 };
 
 static const struct dea_record record = {

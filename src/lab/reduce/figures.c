@@ -303,7 +303,7 @@ static dea_status build_cycles(const struct drawing *d, struct dea_plot *plot)
   return DEA_OK;
 }
 
-// ------------------------------------------------------------------------------------------------
+// Files ------------------------------------------------------------------------------------------
 
 static dea_status draw_one(struct drawing *d, const char *name, const char *caption,
                            dea_status (*build)(const struct drawing *, struct dea_plot *))

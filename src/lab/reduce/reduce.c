@@ -384,7 +384,7 @@ static dea_status reduce_current(struct job *job)
                              &r->discharge_count, &r->current);
 }
 
-// ------------------------------------------------------------------------------------------------
+// The whole --------------------------------------------------------------------------------------
 
 static void take_options(const struct dea_reduce_options *options, struct dea_reduction *out)
 {
