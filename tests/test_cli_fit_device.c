@@ -55,7 +55,7 @@ static void test_parameters(void **state)
          "the material 'pet' says nothing of film.thickness");
   expect("lumped", "{name: film.thickness, fixed: yes}", one, 3, "nothing is left to be fitted");
   expect("lumped", "{name: pre_stretch}, {name: pre_stretch}", one, 3,
-         "'pre_stretch' is a parameter in line 5 already");
+         "the name 'pre_stretch' is taken by the parameter in line 5");
 }
 
 static void test_curves(void **state)

@@ -1,19 +1,14 @@
 #include "calibrate/device_file.h"
 
 #include "base/file.h"
-#include "result/provenance.h"
-
-#include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_device_file, member)
 #define CURVE_AT(member) offsetof(struct dea_device_curve_text, member)
-#define PARAMETER_AT(member) offsetof(struct dea_fit_parameter_text, member)
 
 static const char *const kinds[] = {"sweep", "force", NULL}; // enum dea_device_kind
 static const char *const uses[] = {"fit", "check", NULL};    // the first of enum dea_fit_use
 static const char *const slacks[] = {"cut", "keep", NULL};   // enum dea_device_slack
-static const char *const no_yes[] = {"no", "yes", NULL};
 
 static const struct dea_field curve_fields[] = {
     {.key = "name",
@@ -81,66 +76,30 @@ static const struct dea_field curve_fields[] = {
 static const struct dea_record curve_record = {"curve", "measured curves of the device",
                                                curve_fields, COUNT(curve_fields)};
 
-#define PARAMETER_FIELD(word, meaning, shown, without)                                             \
-  {                                                                                                \
-    .key = #word, .kind = DEA_FIELD_LABEL, .offset = PARAMETER_AT(word), .doc = meaning,           \
-    .example = shown, .absent_text = without                                                       \
-  }
 static const struct dea_field parameter_fields[] = {
     {.key = "name",
      .kind = DEA_FIELD_LABEL,
-     .offset = PARAMETER_AT(name),
+     .offset = offsetof(struct dea_fit_parameter_text, name),
      .required = true,
      .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
             "film.law.NAME of a parameter of the law",
      .example = "film.thickness"},
-    PARAMETER_FIELD(start, "where the search begins", "100 um", "the design's"),
-    PARAMETER_FIELD(low, "lower bound", "80 um", "the key's"),
-    PARAMETER_FIELD(high, "upper bound", "120 um", "the key's"),
-    PARAMETER_FIELD(prior,
-                    "value that was known before, or the material of the catalogue that has it",
-                    "100 um", "none"),
-    PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "5 um",
-                    "none, or the material's"),
-    {.key = "fixed",
-     .kind = DEA_FIELD_CHOICE,
-     .offset = PARAMETER_AT(fixed),
-     .choices = no_yes,
-     .default_text = "no",
-     .doc = "whether it keeps its start",
-     .example = "yes"},
+    DEA_FIT_PARAMETER_FIELD(start, "where the search begins", "100 um", "the design's"),
+    DEA_FIT_PARAMETER_FIELD(low, "lower bound", "80 um", "the key's"),
+    DEA_FIT_PARAMETER_FIELD(high, "upper bound", "120 um", "the key's"),
+    DEA_FIT_PARAMETER_FIELD(
+        prior, "value that was known before, or the material of the catalogue that has it",
+        "100 um", "none"),
+    DEA_FIT_PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "5 um",
+                            "none, or the material's"),
+    DEA_FIT_FIXED_FIELD,
 };
 static const struct dea_record parameter_record = {"parameter", "a number of the design",
                                                    parameter_fields, COUNT(parameter_fields)};
 
 static const struct dea_field file_fields[] = {
-    {.key = "dea_fit",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = AT(version),
-     .unit = "1",
-     .min = DEA_FIT_VERSION,
-     .max = DEA_FIT_VERSION,
-     .required = true,
-     .doc = "version of the format",
-     .example = "1"},
-    {.key = "name",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(name),
-     .required = true,
-     .doc = "name of the design that is written",
-     .example = "sample-3"},
-    {.key = "title",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(title),
-     .absent_text = "the design's",
-     .doc = "what the device is",
-     .example = "sample 3 as built"},
-    {.key = "source",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(source),
-     .absent_text = "none",
-     .doc = "where the measurements come from",
-     .example = "our lab, June 2026"},
+    DEA_FIT_HEAD_FIELDS("name of the design that is written", "sample-3", "the design's",
+                        "what the device is", "sample 3 as built"),
     {.key = "design",
      .kind = DEA_FIELD_LABEL,
      .offset = AT(design),
@@ -180,46 +139,13 @@ const struct dea_record dea_device_file_record = {
     "fit file", "measurements of a device and what of its design is fitted", file_fields,
     COUNT(file_fields)};
 
-static dea_status check(struct dea_context *ctx, const struct dea_device_file *fit)
+static dea_status check(struct dea_context *ctx, const void *file)
 {
-  for (size_t i = 0; i < fit->curve_count; i++) {
-    for (size_t k = 0; k < i; k++) {
-      if (strcmp(fit->curves[k].name.text, fit->curves[i].name.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->curves[i].name.location,
-                                     "the name '%.60s' is taken by the curve in line %zu",
-                                     fit->curves[i].name.text, fit->curves[k].name.location.line));
-      }
-    }
-  }
-  for (size_t i = 0; i < fit->parameter_count; i++) {
-    for (size_t k = 0; k < i; k++) {
-      if (strcmp(fit->parameters[k].name.text, fit->parameters[i].name.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->parameters[i].name.location,
-                                     "'%.60s' is a parameter in line %zu already",
-                                     fit->parameters[i].name.text,
-                                     fit->parameters[k].name.location.line));
-      }
-    }
-  }
-  return dea_fit_name_check(ctx, &fit->name);
-}
-
-static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,
-                             struct dea_device_file *fit)
-{
-  size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  dea_sha256_hex(bytes, length, fit->sha256);
-  DEA_TRY(ctx, dea_yaml_parse(ctx, fit->file, bytes, length, &fit->document));
-  struct dea_reader reader = {ctx, fit->document, NULL};
+  const struct dea_device_file *fit = file;
   DEA_TRY(ctx,
-          dea_schema_read(&reader, &dea_device_file_record, dea_yaml_root(fit->document), "", fit));
-  if (dea_finding_count(ctx, DEA_ERROR) == errors) {
-    DEA_TRY(ctx, check(ctx, fit));
-  }
-  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
-  return found == 0 ? DEA_OK
-                    : dea_fail(ctx, DEA_E_DESIGN, "the fit file '%s' has %zu error%s", fit->file,
-                               found, found > 1 ? "s" : "");
+          dea_fit_names_check(ctx, fit->curves, fit->curve_count, sizeof fit->curves[0], "curve"));
+  return dea_fit_names_check(ctx, fit->parameters, fit->parameter_count, sizeof fit->parameters[0],
+                             "parameter");
 }
 
 dea_status dea_device_file_is(struct dea_context *ctx, const char *file, bool *out)
@@ -242,29 +168,14 @@ dea_status dea_device_file_is(struct dea_context *ctx, const char *file, bool *o
 dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
                                 struct dea_device_file **out)
 {
-  char *bytes;
-  size_t length;
-  *out = NULL;
-  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  struct dea_device_file *fit = dea_alloc(ctx, 1, sizeof *fit);
-  dea_status status = fit != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    fit->file = dea_intern(ctx, file);
-    status = fit->file != NULL ? read_bytes(ctx, bytes, length, fit) : DEA_E_MEMORY;
-  }
-  dea_free(ctx, bytes);
-  if (status != DEA_OK) {
-    dea_device_file_destroy(ctx, fit);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  void *fit;
+  dea_status status =
+      dea_fit_head_read(ctx, file, &dea_device_file_record, sizeof **out, check, &fit);
   *out = fit;
-  return DEA_OK;
+  return status;
 }
 
 void dea_device_file_destroy(struct dea_context *ctx, struct dea_device_file *fit)
 {
-  if (fit != NULL) {
-    dea_yaml_destroy(ctx, fit->document);
-    dea_free(ctx, fit);
-  }
+  dea_fit_head_destroy(ctx, fit);
 }

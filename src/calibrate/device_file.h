@@ -23,15 +23,12 @@ struct dea_device_curve_text {
 };
 
 struct dea_device_file {
-  const char *file; // interned
-  char sha256[65];
-  struct dea_quantity version;
-  struct dea_label name, title, source, design, model;
+  struct dea_fit_head head;
+  struct dea_label design, model;
   struct dea_fit_parameter_text parameters[DEA_DEVICE_PARAMS_MAX];
   size_t parameter_count;
   struct dea_device_curve_text curves[DEA_DEVICE_FILES_MAX];
   size_t curve_count;
-  struct dea_yaml *document; // owned
 };
 
 extern const struct dea_record dea_device_file_record;

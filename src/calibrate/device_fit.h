@@ -67,7 +67,7 @@ struct dea_device_fit {
   struct dea_lsq_statistics statistics;
   bool scale_known; // uncertainties were given
   double scatter;   // root mean square misfit where they were not, in the quantity's SI unit
-  char weak[DEA_FIT_WEAK_MAX][200];
+  char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE];
   size_t weak_count;
   struct dea_device_pair pairs[DEA_DEVICE_PAIRS_MAX];
   size_t pair_count;

@@ -1,13 +1,13 @@
 /* What a fit of a device says beyond its numbers: parameters that its curves do not tell apart, and
  * the measurement that would. */
 #include "calibrate/device_fit.h"
+#include "calibrate/information.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 static const double close_correlation = 0.95; // of two parameters that are told
-static const double open_share = 1e-9;        // added to J'J: what nothing is known of stays finite
 
 void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit)
 {
@@ -18,84 +18,6 @@ void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit)
     dea_arena_free(&fit->memory);
     dea_free(ctx, fit);
   }
-}
-
-/* J'J over the active parameters, each in units that make its own column of length 1. */
-struct information {
-  size_t active[DEA_DEVICE_PARAMS_MAX], count;
-  double length[DEA_DEVICE_PARAMS_MAX];
-  double A[DEA_DEVICE_PARAMS_MAX * DEA_DEVICE_PARAMS_MAX];
-};
-
-static void add_rows(struct information *to, const double *J, size_t rows, double weight)
-{
-  const size_t k = to->count;
-  for (size_t a = 0; a < k; a++) {
-    for (size_t b = 0; b < k; b++) {
-      double sum = 0;
-      for (size_t i = 0; i < rows; i++) {
-        sum += J[to->active[a] * rows + i] * J[to->active[b] * rows + i];
-      }
-      to->A[a * k + b] += weight * sum / (to->length[a] * to->length[b]);
-    }
-  }
-}
-
-static void start(const struct dea_device_fit *fit, struct information *out)
-{
-  const struct dea_lsq_fit *lsq = &fit->least_squares;
-  *out = (struct information){.count = 0};
-  for (size_t j = 0; j < fit->param_count; j++) {
-    if (!lsq->held[j] && !lsq->at_bound[j]) {
-      double sum = 0;
-      for (size_t i = 0; i < lsq->rows; i++) {
-        sum += lsq->J[j * lsq->rows + i] * lsq->J[j * lsq->rows + i];
-      }
-      out->length[out->count] = sum > 0 ? sqrt(sum) : 1 / fit->params[j].param.scale;
-      out->active[out->count++] = j;
-    }
-  }
-  add_rows(out, lsq->J, lsq->rows, 1 / fit->statistics.variance);
-  for (size_t a = 0; a < out->count; a++) {
-    out->A[a * out->count + a] += open_share;
-  }
-}
-
-/* ln det A and the diagonal of its inverse, by Cholesky; A is destroyed. */
-static double factor(struct information *of, double *variance)
-{
-  const size_t k = of->count;
-  double *A = of->A, sum = 0;
-  for (size_t j = 0; j < k; j++) {
-    for (size_t i = j; i < k; i++) {
-      double s = A[i * k + j];
-      for (size_t l = 0; l < j; l++) {
-        s -= A[i * k + l] * A[j * k + l];
-      }
-      A[i * k + j] = i == j ? sqrt(fmax(s, 1e-300)) : s / A[j * k + j];
-    }
-    sum += 2 * log(A[j * k + j]);
-  }
-  for (size_t c = 0; c < k; c++) { // column c of the inverse of the factor
-    double y[DEA_DEVICE_PARAMS_MAX] = {0};
-    variance[c] = 0;
-    for (size_t i = c; i < k; i++) {
-      double s = i == c ? 1 : 0;
-      for (size_t l = c; l < i; l++) {
-        s -= A[i * k + l] * y[l];
-      }
-      y[i] = s / A[i * k + i];
-    }
-    for (size_t i = k; i-- > 0;) { // and of the whole: L' x = y
-      double s = y[i];
-      for (size_t l = i + 1; l < k; l++) {
-        s -= A[l * k + i] * y[l];
-      }
-      y[i] = s / A[i * k + i];
-    }
-    variance[c] = y[c];
-  }
-  return sum;
 }
 
 /* ---- the next measurement ---- */
@@ -116,7 +38,7 @@ static void add_next(struct dea_device_fit *fit, const char *what, double shrink
   fit->next_count = kept + 1;
 }
 
-static size_t place_of(const struct information *of, size_t param)
+static size_t place_of(const struct dea_information *of, size_t param)
 {
   size_t a = 0;
   while (a < of->count && of->active[a] != param) {
@@ -126,7 +48,7 @@ static size_t place_of(const struct information *of, size_t param)
 }
 
 /* What a candidate does for each pair. */
-static void help_pairs(struct dea_device_fit *fit, const struct information *base,
+static void help_pairs(struct dea_device_fit *fit, const struct dea_information *base,
                        const double *before, const double *after, const char *what)
 {
   for (size_t k = 0; k < fit->pair_count; k++) {
@@ -210,7 +132,8 @@ static void tell_weak(struct dea_device_fit *fit)
 dea_status dea_device_tell(struct dea_context *ctx, struct dea_device_fit *fit,
                            const struct dea_device_candidate *candidates, size_t count)
 {
-  struct information base, now;
+  struct dea_information base, now;
+  double scale[DEA_DEVICE_PARAMS_MAX];
   double before[DEA_DEVICE_PARAMS_MAX], after[DEA_DEVICE_PARAMS_MAX];
   (void)ctx;
   tell_weak(fit);
@@ -218,13 +141,15 @@ dea_status dea_device_tell(struct dea_context *ctx, struct dea_device_fit *fit,
   if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
     return DEA_OK;
   }
-  start(fit, &base);
-  now = base;
-  const double without = factor(&now, before);
+  for (size_t j = 0; j < fit->param_count; j++) {
+    scale[j] = fit->params[j].param.scale;
+  }
+  dea_information_start(&fit->least_squares, fit->statistics.variance, scale, &base);
+  const double without = dea_information_factor(&base, before);
   for (size_t c = 0; c < count; c++) {
     now = base;
-    add_rows(&now, candidates[c].J, candidates[c].rows, 1);
-    const double gain = factor(&now, after) - without;
+    dea_information_add(&now, candidates[c].J, candidates[c].rows, 1);
+    const double gain = dea_information_factor(&now, after) - without;
     add_next(fit, candidates[c].what, exp(-0.5 * gain / (double)base.count));
     help_pairs(fit, &base, before, after, candidates[c].what);
   }

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "calibrate/fit_model.h"
 
-enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4 };
+enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 200 };
 enum { DEA_FIT_WEAK_CONDITION = 1000 }; // singular values that far below the largest are told
 
 /* A parameter as found, in its unit. */
@@ -61,9 +61,9 @@ struct dea_fit {
   struct dea_fit_value values[DEA_LSQ_PARAMS_MAX];
   struct dea_lsq_fit least_squares;
   struct dea_lsq_statistics statistics;
-  bool scale_known;                 // uncertainties were given
-  double scatter_Pa;                // root mean square misfit where they were not
-  char weak[DEA_FIT_WEAK_MAX][200]; // combinations that are not told apart, in words
+  bool scale_known;                               // uncertainties were given
+  double scatter_Pa;                              // root mean square misfit where they were not
+  char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]; // combinations that are not told apart, in words
   size_t weak_count;
   struct dea_fit_curve *curves; // [series_count]
   struct dea_fit_stability stability[DEA_COUPON_MODES];
@@ -95,7 +95,7 @@ dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem
 /* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
  * one unit what they do hold, else the direction in units of the scales. */
 void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
-                            bool open, const char *what, char out[200]);
+                            bool open, const char *what, char out[DEA_FIT_WEAK_SIZE]);
 /* The weak combinations in words, where the law ends to be stable, and the next test. */
 void dea_fit_tell_weak(struct dea_fit *fit);
 void dea_fit_tell_stability(struct dea_fit *fit);

@@ -1,8 +1,5 @@
 #include "calibrate/fit_file.h"
 
-#include "base/file.h"
-#include "result/provenance.h"
-
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -40,7 +37,6 @@ static const struct dea_record column_record = {
     "columns", "titles of the columns, without their units", column_fields, COUNT(column_fields)};
 
 static const char *const uses[] = {"fit", "check", "predict", NULL};
-static const char *const no_yes[] = {"no", "yes", NULL};
 
 static const struct dea_field test_fields[] = {
     {.key = "name",
@@ -146,12 +142,6 @@ static const struct dea_field test_fields[] = {
 static const struct dea_record test_record = {"test", "a test of the material", test_fields,
                                               COUNT(test_fields)};
 
-#define PARAMETER_FIELD(word, meaning, shown, without)                                             \
-  {                                                                                                \
-    .key = #word, .kind = DEA_FIELD_LABEL,                                                         \
-    .offset = offsetof(struct dea_fit_parameter_text, word), .doc = meaning, .example = shown,     \
-    .absent_text = without                                                                         \
-  }
 static const struct dea_field parameter_fields[] = {
     {.key = "name",
      .kind = DEA_FIELD_LABEL,
@@ -159,50 +149,19 @@ static const struct dea_field parameter_fields[] = {
      .required = true,
      .doc = "parameter of the law",
      .example = "c1"},
-    PARAMETER_FIELD(start, "where the search begins", "100 kPa", "found"),
-    PARAMETER_FIELD(low, "lower bound", "1 kPa", "the law's"),
-    PARAMETER_FIELD(high, "upper bound", "1 MPa", "the law's"),
-    PARAMETER_FIELD(prior, "value that was known before", "180 kPa", "none"),
-    PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "20 kPa", "none"),
-    {.key = "fixed",
-     .kind = DEA_FIELD_CHOICE,
-     .offset = offsetof(struct dea_fit_parameter_text, fixed),
-     .choices = no_yes,
-     .default_text = "no",
-     .doc = "whether it keeps its start",
-     .example = "yes"},
+    DEA_FIT_PARAMETER_FIELD(start, "where the search begins", "100 kPa", "found"),
+    DEA_FIT_PARAMETER_FIELD(low, "lower bound", "1 kPa", "the law's"),
+    DEA_FIT_PARAMETER_FIELD(high, "upper bound", "1 MPa", "the law's"),
+    DEA_FIT_PARAMETER_FIELD(prior, "value that was known before", "180 kPa", "none"),
+    DEA_FIT_PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "20 kPa", "none"),
+    DEA_FIT_FIXED_FIELD,
 };
 static const struct dea_record parameter_record = {"parameter", "what is known of a parameter",
                                                    parameter_fields, COUNT(parameter_fields)};
 
 static const struct dea_field fit_fields[] = {
-    {.key = "dea_fit",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = AT(version),
-     .unit = "1",
-     .min = DEA_FIT_VERSION,
-     .max = DEA_FIT_VERSION,
-     .required = true,
-     .doc = "version of the format",
-     .example = "1"},
-    {.key = "name",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(name),
-     .required = true,
-     .doc = "name of the material that is written",
-     .example = "my-silicone"},
-    {.key = "title",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(title),
-     .absent_text = "none",
-     .doc = "what the material is",
-     .example = "silicone film, batch 7"},
-    {.key = "source",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(source),
-     .absent_text = "none",
-     .doc = "where the measurements come from",
-     .example = "our lab, June 2026"},
+    DEA_FIT_HEAD_FIELDS("name of the material that is written", "my-silicone", "none",
+                        "what the material is", "silicone film, batch 7"),
     {.key = "material",
      .kind = DEA_FIELD_LABEL,
      .offset = AT(material),
@@ -265,16 +224,6 @@ static const struct dea_field fit_fields[] = {
 const struct dea_record dea_fit_record = {
     "fit file", "measurements of a material and what is fitted", fit_fields, COUNT(fit_fields)};
 
-dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name)
-{
-  return strlen(name->text) < DEA_NAME_SIZE && strpbrk(name->text, "/\\ \t:#'\"") == NULL
-             ? DEA_OK
-             : dea_finding_add(ctx, DEA_ERROR, name->location,
-                               "'%.80s' cannot be the name of a file: letters, digits and -, at "
-                               "most %d",
-                               name->text, DEA_NAME_SIZE - 1);
-}
-
 /* What the table cannot say of a test. */
 static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test *test)
 {
@@ -297,68 +246,29 @@ static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test 
   return DEA_OK;
 }
 
-static dea_status check(struct dea_context *ctx, const struct dea_fit_file *fit)
+static dea_status check(struct dea_context *ctx, const void *file)
 {
+  const struct dea_fit_file *fit = file;
   for (size_t i = 0; i < fit->test_count; i++) {
     DEA_TRY(ctx, check_test(ctx, &fit->tests[i]));
-    for (size_t k = 0; k < i && fit->tests[i].name.text[0] != '\0'; k++) {
-      if (strcmp(fit->tests[k].name.text, fit->tests[i].name.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->tests[i].name.location,
-                                     "the name '%.60s' is taken by the test in line %zu",
-                                     fit->tests[i].name.text, fit->tests[k].name.location.line));
-      }
-    }
   }
   if (fit->parameter_count > 0 && fit->law_count > 1) {
     DEA_TRY(ctx,
             dea_finding_add(ctx, DEA_ERROR, fit->parameters[0].name.location,
                             "parameters are those of one law; %zu laws are given", fit->law_count));
   }
-  return dea_fit_name_check(ctx, &fit->name);
-}
-
-static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,
-                             struct dea_fit_file *fit)
-{
-  size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  dea_sha256_hex(bytes, length, fit->sha256);
-  DEA_TRY(ctx, dea_yaml_parse(ctx, fit->file, bytes, length, &fit->document));
-  struct dea_reader reader = {ctx, fit->document, NULL};
-  DEA_TRY(ctx, dea_schema_read(&reader, &dea_fit_record, dea_yaml_root(fit->document), "", fit));
-  if (dea_finding_count(ctx, DEA_ERROR) == errors) {
-    DEA_TRY(ctx, check(ctx, fit));
-  }
-  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
-  return found == 0 ? DEA_OK
-                    : dea_fail(ctx, DEA_E_DESIGN, "the fit file '%s' has %zu error%s", fit->file,
-                               found, found > 1 ? "s" : "");
+  return dea_fit_names_check(ctx, fit->tests, fit->test_count, sizeof fit->tests[0], "test");
 }
 
 dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out)
 {
-  char *bytes;
-  size_t length;
-  *out = NULL;
-  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  struct dea_fit_file *fit = dea_alloc(ctx, 1, sizeof *fit);
-  dea_status status = fit != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    fit->file = dea_intern(ctx, file);
-    status = fit->file != NULL ? read_bytes(ctx, bytes, length, fit) : DEA_E_MEMORY;
-  }
-  dea_free(ctx, bytes);
-  if (status != DEA_OK) {
-    dea_fit_file_destroy(ctx, fit);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  void *fit;
+  dea_status status = dea_fit_head_read(ctx, file, &dea_fit_record, sizeof **out, check, &fit);
   *out = fit;
-  return DEA_OK;
+  return status;
 }
 
 void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit)
 {
-  if (fit != NULL) {
-    dea_yaml_destroy(ctx, fit->document);
-    dea_free(ctx, fit);
-  }
+  dea_fit_head_destroy(ctx, fit);
 }

@@ -2,11 +2,10 @@
 #ifndef DEA_CALIBRATE_FIT_FILE_H
 #define DEA_CALIBRATE_FIT_FILE_H
 
-#include "base/schema.h"
 #include "calibrate/coupon.h"
+#include "calibrate/fit_head.h"
 
 enum {
-  DEA_FIT_VERSION = 1,
   DEA_FIT_TESTS_MAX = 16,
   DEA_FIT_LAWS_MAX = 8,
 };
@@ -47,16 +46,9 @@ struct dea_fit_test {
   struct dea_quantity length_m, section_m2, relative, absolute_Pa, rate_per_s, ramp_s, stretch;
 };
 
-struct dea_fit_parameter_text {
-  struct dea_label name, start, low, high, prior, prior_std;
-  struct dea_choice fixed;
-};
-
 struct dea_fit_file {
-  const char *file; // interned
-  char sha256[65];
-  struct dea_quantity version;
-  struct dea_label name, title, source, material, branches;
+  struct dea_fit_head head;
+  struct dea_label material, branches;
   struct dea_label laws[DEA_FIT_LAWS_MAX];
   size_t law_count;
   struct dea_quantity branch_s[DEA_BRANCHES_MAX];
@@ -65,7 +57,6 @@ struct dea_fit_file {
   size_t parameter_count;
   struct dea_fit_test tests[DEA_FIT_TESTS_MAX];
   size_t test_count;
-  struct dea_yaml *document; // owned
 };
 
 extern const struct dea_record dea_fit_record;
@@ -73,8 +64,6 @@ extern const struct dea_record dea_fit_record;
 /* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
  * failure. */
 dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
-/* A finding where the name of what a fit writes cannot be that of a file. */
-dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name);
 void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);
 
 #endif

@@ -1,6 +1,7 @@
 /* What a fit says beyond its numbers: combinations of parameters that the tests do not tell apart,
  * where the law ends to be stable, and which test would tell most. */
 #include "calibrate/fit.h"
+#include "calibrate/information.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +10,7 @@
 /* ---- combinations ---- */
 
 void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
-                            bool open, const char *what, char out[200])
+                            bool open, const char *what, char out[DEA_FIT_WEAK_SIZE])
 {
   size_t index[DEA_LSQ_PARAMS_MAX], count = 0;
   double most = 0;
@@ -23,22 +24,22 @@ void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const 
   }
   const char *hold = open ? "determine only" : "hold little more than";
   if (count == 1) {
-    snprintf(out, 200, "the %s hardly determine %s", what, params[index[0]].name);
+    snprintf(out, DEA_FIT_WEAK_SIZE, "the %s hardly determine %s", what, params[index[0]].name);
     return;
   }
   if (count == 2 && strcmp(params[index[0]].unit, params[index[1]].unit) == 0) {
     const double share = -direction[index[0]] / direction[index[1]]; // a + share b stays
-    snprintf(out, 200, "the %s %s %s %c %.3g %s", what, hold, params[index[0]].name,
+    snprintf(out, DEA_FIT_WEAK_SIZE, "the %s %s %s %c %.3g %s", what, hold, params[index[0]].name,
              share > 0 ? '+' : '-', fabs(share), params[index[1]].name);
     return;
   }
-  size_t used =
-      (size_t)snprintf(out, 200, "the %s %s notice a change of", what, open ? "do not" : "hardly");
+  size_t used = (size_t)snprintf(out, DEA_FIT_WEAK_SIZE, "the %s %s notice a change of", what,
+                                 open ? "do not" : "hardly");
   for (size_t k = 0; k < count && used < 160; k++) {
     const double part = direction[index[k]] / direction[index[0]];
     const double ratio = params[index[k]].scale / params[index[0]].scale;
-    used += (size_t)snprintf(out + used, 200 - used, "%s %+.2g x %s", k > 0 ? "," : "",
-                             part / ratio, params[index[k]].name);
+    used += (size_t)snprintf(out + used, DEA_FIT_WEAK_SIZE - used, "%s %+.2g x %s",
+                             k > 0 ? "," : "", part / ratio, params[index[k]].name);
   }
 }
 
@@ -87,39 +88,6 @@ void dea_fit_tell_stability(struct dea_fit *fit)
 /* ---- the next test ---- */
 
 enum { NEXT_ROWS = 10 };
-
-/* J'J over the active parameters, scaled: out [n x n]. */
-static void add_information(const double *J, const double *weight, size_t m, size_t n,
-                            const size_t *active, const double *length, double *out, size_t k)
-{
-  (void)n;
-  for (size_t a = 0; a < k; a++) {
-    for (size_t b = 0; b < k; b++) {
-      double sum = 0;
-      for (size_t i = 0; i < m; i++) {
-        sum += weight[i] * weight[i] * J[active[a] * m + i] * J[active[b] * m + i];
-      }
-      out[a * k + b] += sum / (length[a] * length[b]);
-    }
-  }
-}
-
-/* ln det of a positive matrix by Cholesky; A is destroyed. */
-static double log_determinant(double *A, size_t k)
-{
-  double sum = 0;
-  for (size_t j = 0; j < k; j++) {
-    for (size_t i = j; i < k; i++) {
-      double s = A[i * k + j];
-      for (size_t l = 0; l < j; l++) {
-        s -= A[i * k + l] * A[j * k + l];
-      }
-      A[i * k + j] = i == j ? sqrt(fmax(s, 1e-300)) : s / A[j * k + j];
-    }
-    sum += 2 * log(A[j * k + j]);
-  }
-  return sum;
-}
 
 /* Stretch of that mode with the I1 of a uniaxial stretch. */
 static double as_far(enum dea_coupon_mode mode, double uniaxial)
@@ -192,16 +160,16 @@ static double longest_time(const struct dea_fit *fit)
 }
 
 static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct dea_fit *fit,
-                        int which, const size_t *active, const double *length, const double *base)
+                        int which, const struct dea_information *base)
 {
-  const size_t k = fit->statistics.active;
+  const size_t n = fit->model.count;
   struct dea_fit_series series;
   struct dea_lsq_problem problem;
   struct dea_fit_next next;
+  struct dea_information now = *base;
+  double stress[NEXT_ROWS], variance[DEA_LSQ_PARAMS_MAX];
   DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, next.what));
-  double stress[NEXT_ROWS], weight[NEXT_ROWS];
-  double *J = dea_arena_alloc(arena, NEXT_ROWS * fit->model.count, sizeof *J);
-  double *A = dea_arena_alloc(arena, 2 * k * k, sizeof *A);
+  double *J = dea_arena_alloc(arena, NEXT_ROWS * n, sizeof *J);
   DEA_TRY(ctx, dea_fit_model_stress(arena, &fit->model, &series, &problem));
   if (problem.residual(problem.user, fit->least_squares.p, stress) != DEA_OK ||
       dea_lsq_jacobian(ctx, &problem, fit->least_squares.p, J) != DEA_OK) {
@@ -209,14 +177,13 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
     return DEA_OK; // beyond the law: no advice
   }
   const double share = relative_uncertainty(fit);
-  for (size_t i = 0; i < NEXT_ROWS; i++) {
-    weight[i] = 1 / (share * fmax(fabs(stress[i]), 1e-12));
+  for (size_t k = 0; k < NEXT_ROWS * n; k++) {
+    J[k] /= share * fmax(fabs(stress[k % NEXT_ROWS]), 1e-12);
   }
-  memcpy(A, base, k * k * sizeof *A);
-  memcpy(A + k * k, base, k * k * sizeof *A);
-  add_information(J, weight, NEXT_ROWS, fit->model.count, active, length, A, k);
-  const double gain = log_determinant(A, k) - log_determinant(A + k * k, k);
-  next.shrink = exp(-0.5 * gain / (double)k);
+  dea_information_add(&now, J, NEXT_ROWS, 1);
+  const double gain =
+      dea_information_factor(&now, variance) - dea_information_factor(base, variance);
+  next.shrink = exp(-0.5 * gain / (double)base->count);
   size_t at = fit->next_count++;
   for (; at > 0 && fit->next[at - 1].shrink > next.shrink; at--) {
     fit->next[at] = fit->next[at - 1];
@@ -227,35 +194,20 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
 
 dea_status dea_fit_tell_next(struct dea_context *ctx, struct dea_fit *fit)
 {
-  const size_t k = fit->statistics.active, m = fit->least_squares.rows;
-  size_t active[DEA_LSQ_PARAMS_MAX], count = 0;
-  double length[DEA_LSQ_PARAMS_MAX];
+  struct dea_information base;
+  double scale[DEA_LSQ_PARAMS_MAX];
   struct dea_arena arena = {.ctx = ctx};
-  double *base = dea_arena_alloc(&arena, k * k, sizeof *base);
-  double *weight = dea_arena_alloc(&arena, m, sizeof *weight);
-  dea_status status = dea_arena_status(&arena);
-  for (size_t j = 0; j < fit->model.count && status == DEA_OK; j++) {
-    if (!fit->least_squares.held[j] && !fit->least_squares.at_bound[j]) {
-      double sum = 0;
-      for (size_t i = 0; i < m; i++) {
-        sum += fit->least_squares.J[j * m + i] * fit->least_squares.J[j * m + i];
-      }
-      length[count] = sum > 0 ? sqrt(sum) : 1 / fit->model.params[j].scale;
-      active[count++] = j;
-    }
+  dea_status status = DEA_OK;
+  if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
+    return DEA_OK;
   }
-  for (size_t i = 0; i < m && status == DEA_OK; i++) {
-    weight[i] = 1 / sqrt(fit->statistics.variance);
+  for (size_t j = 0; j < fit->model.count; j++) {
+    scale[j] = fit->model.params[j].scale;
   }
-  if (status == DEA_OK && k > 0 && isfinite(fit->statistics.variance)) {
-    add_information(fit->least_squares.J, weight, m, fit->model.count, active, length, base, k);
-    for (size_t a = 0; a < k; a++) {
-      base[a * k + a] *= 1 + 1e-9; // what nothing is known of stays a number
-    }
-    const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
-    for (int which = 0; which <= last && status == DEA_OK; which++) {
-      status = weigh(ctx, &arena, fit, which, active, length, base);
-    }
+  dea_information_start(&fit->least_squares, fit->statistics.variance, scale, &base);
+  const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
+  for (int which = 0; which <= last && status == DEA_OK; which++) {
+    status = weigh(ctx, &arena, fit, which, &base);
   }
   dea_arena_free(&arena);
   return status;

@@ -1,11 +1,8 @@
 #include "cli/cli.h"
-#include "cli/print_device_fit.h"
+#include "cli/print_fit.h"
 #include "job/device_fit.h"
 #include "output/device_fit_files.h"
 #include "output/fit_files.h"
-
-#include <math.h>
-#include <string.h>
 
 struct request {
   const char *file, *output;
@@ -13,116 +10,6 @@ struct request {
   struct dea_fit_options options;
   struct dea_plot_format format;
 };
-
-/* Unit for people and the factor to it. */
-static const char *shown_unit(const char *unit, double *factor)
-{
-  *factor = strcmp(unit, "Pa") == 0 ? 1e-3 : 1;
-  return strcmp(unit, "Pa") == 0 ? "kPa" : strcmp(unit, "1") == 0 ? "" : unit;
-}
-
-static void print_laws(const struct dea_fit *fit)
-{
-  if (fit->candidate_count < 2) {
-    return;
-  }
-  printf("%-18s %10s %8s %22s\n", "law", "parameters", "branches", "held-out tests off by");
-  for (size_t i = 0; i < fit->candidate_count; i++) {
-    const struct dea_fit_candidate *c = &fit->candidates[i];
-    if (c->failed) {
-      printf("%-18s cannot be fitted: %s\n", c->name, c->why);
-    } else {
-      char share[32] = "more than 1000";
-      if (c->held_out_share < 10) {
-        snprintf(share, sizeof share, "%.2f", 100 * c->held_out_share);
-      }
-      printf("%-18s %10zu %8zu %20s %%%s\n", c->name, c->free_count, c->branch_count, share,
-             i == fit->chosen ? "  <- taken" : "");
-    }
-  }
-  putchar('\n');
-}
-
-/* An end of an interval; of a time that may be as short as can be the lower one is 0. */
-static void print_end(const char *word, double value, bool open)
-{
-  if (open || isinf(value)) {
-    printf("%s open", word);
-  } else {
-    printf("%s %.5g", word, value);
-  }
-}
-
-static void print_values(const struct dea_fit *fit)
-{
-  printf("%s\n", fit->model.law->long_name);
-  for (size_t j = 0; j < fit->model.count; j++) {
-    const struct dea_fit_value *v = &fit->values[j];
-    double factor;
-    const char *unit = shown_unit(fit->model.params[j].unit, &factor);
-    printf("  %-12s %12.6g", fit->model.params[j].name, factor * v->value);
-    if (v->fixed) {
-      printf("    fixed");
-    } else if (v->at_bound) {
-      printf("    at its bound");
-    } else if (isinf(v->std)) {
-      printf("    not determined");
-    } else {
-      printf(" +- %-9.3g", factor * v->std);
-    }
-    printf(" %s", unit);
-    if (!isnan(v->low)) {
-      printf("   (68 %%:");
-      print_end("", factor * v->low, v->low == 0);
-      print_end(" to", factor * v->high, false);
-      printf(")");
-    }
-    putchar('\n');
-  }
-}
-
-static void print_tests(const struct dea_fit *fit)
-{
-  static const char *const uses[] = {"fitted", "checked", "foretold"};
-  putchar('\n');
-  for (size_t s = 0; s < fit->series_count; s++) {
-    const struct dea_fit_curve *c = &fit->curves[s];
-    printf("%-24s %-9s %5zu rows", c->series->test->name.text, uses[c->series->test->use.value],
-           c->series->rows);
-    if (!isnan(c->rms_Pa)) {
-      printf(", off by %.3g kPa (root mean square), %.1f %% at most", 1e-3 * c->rms_Pa,
-             100 * c->largest);
-    }
-    if (c->lag > 0) {
-      printf("; neighbours correlate (%.2f): %.1f rows count", c->lag, c->effective);
-    }
-    putchar('\n');
-  }
-}
-
-static void print_advice(const struct dea_fit *fit)
-{
-  putchar('\n');
-  if (fit->statistics.widened) {
-    printf("the misfit is %.2g times what the uncertainties explain: the law or they are wrong; "
-           "error bars are widened by that\n",
-           sqrt(fit->statistics.reduced_chi2));
-  }
-  for (size_t k = 0; k < fit->weak_count; k++) {
-    printf("%s\n", fit->weak[k]);
-  }
-  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
-    const struct dea_fit_stability *s = &fit->stability[mode];
-    if (!isnan(s->unstable_from)) {
-      printf("not stable (Drucker) in %s tension from the stretch %.3g on%s\n",
-             dea_coupon_mode_names[mode], s->unstable_from, s->measured ? "" : ", not measured");
-    }
-  }
-  if (fit->next_count > 0) {
-    printf("the test that would tell most: %s (error bars x %.2f)\n", fit->next[0].what,
-           fit->next[0].shrink);
-  }
-}
 
 static dea_status fit_file(struct dea_cli *cli, const struct request *request,
                            struct dea_fit_file **file, struct dea_fit_tests *tests,
@@ -143,12 +30,9 @@ static int fit_material(struct dea_cli *cli, const struct request *request)
   struct dea_fit *fit = NULL;
   dea_status status = fit_file(cli, request, &file, &tests, &fit);
   if (fit != NULL && request->json) {
-    cli_print_json(dea_fit_json(cli->ctx, fit, cli->command_line));
+    cli_print_json(dea_fit_json(fit, cli->command_line));
   } else if (fit != NULL) {
-    print_laws(fit);
-    print_values(fit);
-    print_tests(fit);
-    print_advice(fit);
+    cli_print_fit(fit);
     if (status == DEA_OK) {
       printf("\nwritten to %s\n", request->output);
     }

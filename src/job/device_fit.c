@@ -71,7 +71,7 @@ static dea_status find_model(struct work *w)
 static dea_status read_design(struct work *w)
 {
   const struct dea_device_file *file = w->fit->file;
-  w->path = dea_path_beside(w->ctx, file->file, file->design.text);
+  w->path = dea_path_beside(w->ctx, file->head.file, file->design.text);
   if (w->path == NULL) {
     return DEA_E_MEMORY;
   }

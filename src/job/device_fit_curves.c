@@ -181,7 +181,7 @@ dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit
   dea_status worst = DEA_OK;
   for (size_t k = 0; k < fit->file->curve_count; k++) { // all of them, for all that is wrong
     struct reading r = {.ctx = ctx, .fit = fit, .text = &fit->file->curves[k]};
-    char *path = dea_path_beside(ctx, fit->file->file, r.text->file.text), *inside = NULL;
+    char *path = dea_path_beside(ctx, fit->file->head.file, r.text->file.text), *inside = NULL;
     if (path != NULL && dea_path_is_folder(path)) {
       inside = dea_path_join(ctx, path, "measurement.csv");
     }
@@ -194,7 +194,7 @@ dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit
   DEA_TRY(ctx, worst);
   return dea_finding_count(ctx, DEA_ERROR) == errors
              ? DEA_OK
-             : dea_fail(ctx, DEA_E_DESIGN, "the curves of '%s' have errors", fit->file->file);
+             : dea_fail(ctx, DEA_E_DESIGN, "the curves of '%s' have errors", fit->file->head.file);
 }
 
 // Points of the model -----------------------------------------------------------------------------

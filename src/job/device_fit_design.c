@@ -25,11 +25,11 @@ static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
   const struct dea_device_file *file = fit->file;
   dea_text_add(out, "# Written by dea %s fit: %s as it was built, by its measured curves.\n",
                DEA_VERSION, dea_path_name(fit->design_file));
-  if (file->source.text[0] != '\0') {
-    add_comment(out, file->source.text);
+  if (file->head.source.text[0] != '\0') {
+    add_comment(out, file->head.source.text);
   }
   dea_text_add(out, "# Fit file %s (SHA-256 %s), design %s (%s), model %s\n",
-               dea_path_name(file->file), file->sha256, dea_path_name(fit->design_file),
+               dea_path_name(file->head.file), file->head.sha256, dea_path_name(fit->design_file),
                fit->design_sha256, fit->model);
   for (size_t c = 0; c < fit->curve_count; c++) {
     if (fit->curves[c].text->use.value == DEA_FIT_USED) {
@@ -95,7 +95,7 @@ static void add_material(struct dea_text *out, const struct dea_device_fit *fit,
                          const struct dea_material *film)
 {
   const struct dea_law *law = film->law;
-  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", fit->file->name.text);
+  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", fit->file->head.name.text);
   dea_text_add(out, "    laws:\n      - id: fit\n        law: %s\n        parameters: {",
                law->name);
   for (size_t i = 0; i < law->param_count; i++) {
@@ -154,7 +154,7 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_fi
   }
   if (*of_material) {
     static const char *const gone[] = {"film.law", "film.permittivity", "film.breakdown"};
-    snprintf(text, sizeof text, "%.63s-film", fit->file->name.text);
+    snprintf(text, sizeof text, "%.63s-film", fit->file->head.name.text);
     DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.material", text));
     for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
       DEA_TRY(ctx, dea_yaml_override(ctx, document, gone[k], "null"));
@@ -175,9 +175,9 @@ dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit
   bool of_material = false;
   DEA_TRY(ctx, dea_yaml_parse(ctx, model->name, model->bytes, model->length, &document));
   dea_status status = put_values(ctx, fit, document, &film, &of_material);
-  if (status == DEA_OK && fit->file->title.text[0] != '\0') {
+  if (status == DEA_OK && fit->file->head.title.text[0] != '\0') {
     dea_text_add(&material, "\"");
-    for (const char *c = fit->file->title.text; *c != '\0'; c++) {
+    for (const char *c = fit->file->head.title.text; *c != '\0'; c++) {
       dea_text_add(&material, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
     }
     dea_text_add(&material, "\"");

@@ -325,5 +325,5 @@ dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_devi
   }
   return dea_finding_count(ctx, DEA_ERROR) == errors
              ? DEA_OK
-             : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", file->file);
+             : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", file->head.file);
 }

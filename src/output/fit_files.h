@@ -6,8 +6,6 @@
 #include "calibrate/fit.h"
 #include "plot/plot.h"
 
-enum { DEA_FIT_JSON_SCHEMA = 1 };
-
 /* The tests of a fit file, in its order. */
 struct dea_fit_tests {
   struct dea_fit_series series[DEA_FIT_TESTS_MAX];
@@ -26,7 +24,7 @@ void dea_fit_tests_free(struct dea_fit_tests *tests);
 dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
                                 struct dea_text *out);
 /* All of it; command: NULL for none. */
-json_t *dea_fit_json(struct dea_context *ctx, const struct dea_fit *fit, const char *command);
+json_t *dea_fit_json(const struct dea_fit *fit, const char *command);
 
 /* Makes the folder and takes the files of an earlier fit out of it; DEA_E_IO when it has one and
  * force is not set. */

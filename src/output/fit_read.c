@@ -65,7 +65,7 @@ static dea_status read_path(struct dea_arena *arena, const struct dea_fit_test *
 static dea_status read_test(struct dea_arena *arena, const struct dea_fit_file *file,
                             const struct dea_fit_test *test, struct dea_fit_series *out)
 {
-  char *path = dea_path_beside(arena->ctx, file->file, test->file.text);
+  char *path = dea_path_beside(arena->ctx, file->head.file, test->file.text);
   dea_status status = path != NULL ? read_path(arena, test, path, out) : DEA_E_MEMORY;
   dea_free(arena->ctx, path);
   return status;

@@ -3,8 +3,8 @@
 #include "base/write_file.h"
 #include "material/catalogue.h"
 #include "output/csv.h"
+#include "output/fit_common.h"
 #include "output/fit_files.h"
-#include "plot/gnuplot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,11 +43,11 @@ static void add_notes(struct dea_text *out, const char *indent, const struct dea
 static void add_source(struct dea_text *out, const char *indent, const struct dea_fit *fit)
 {
   struct dea_text source = {.ctx = out->ctx};
-  if (fit->file->source.text[0] != '\0') {
-    dea_text_add(&source, "%s; ", fit->file->source.text);
+  if (fit->file->head.source.text[0] != '\0') {
+    dea_text_add(&source, "%s; ", fit->file->head.source.text);
   }
   dea_text_add(&source, "dea %s fit of %s (SHA-256 %s) to", DEA_VERSION,
-               dea_path_name(fit->file->file), fit->file->sha256);
+               dea_path_name(fit->file->head.file), fit->file->head.sha256);
   const char *separator = " ";
   for (size_t s = 0; s < fit->series_count; s++) {
     if (dea_fit_series_used(&fit->series[s])) {
@@ -223,8 +223,8 @@ dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *f
   dea_text_add(out,
                "# Written by dea fit. For dea to find it, DEA_MATERIALS names the folder that this "
                "file is in.\ndea_material: 1\nname: %s\n",
-               file->name.text);
-  add_key(out, "", "title", file->title.text);
+               file->head.name.text);
+  add_key(out, "", "title", file->head.title.text);
   dea_text_add(out, "kind: elastomer\n");
   add_law(out, fit);
   add_viscosity(out, fit);
@@ -237,30 +237,19 @@ dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *f
 
 /* ---- CSV and JSON ---- */
 
-static const char *const use_names[] = {"fit", "check", "predict"};
-
-static void add_field(struct dea_text *out, double value, double factor)
-{
-  if (isfinite(value)) {
-    dea_text_add(out, ",%.8g", factor * value);
-  } else {
-    dea_text_add(out, ",");
-  }
-}
-
 static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
 {
   const struct dea_fit_series *series = curve->series;
   for (size_t i = 0; i < series->rows; i++) {
     dea_csv_add_name(out, series->test->name.text);
-    dea_text_add(out, ",%s,%zu", use_names[series->test->use.value], series->line[i]);
-    add_field(out, series->time_s != NULL ? series->time_s[i] : NAN, 1);
-    add_field(out, series->stretch[i], 1);
-    add_field(out, series->stress_Pa[i], 1e-3);
-    add_field(out, series->std_Pa[i], 1e-3);
-    add_field(out, curve->stress_Pa[i], 1e-3);
-    add_field(out, curve->std_Pa[i], 1e-3);
-    add_field(out, curve->stress_Pa[i] - series->stress_Pa[i], 1e-3);
+    dea_text_add(out, ",%s,%zu", dea_fit_use_names[series->test->use.value], series->line[i]);
+    dea_fit_add_field(out, series->time_s != NULL ? series->time_s[i] : NAN);
+    dea_fit_add_field(out, series->stretch[i]);
+    dea_fit_add_field(out, 1e-3 * series->stress_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * series->std_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * curve->stress_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * curve->std_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * (curve->stress_Pa[i] - series->stress_Pa[i]));
     dea_text_add(out, "\n");
   }
 }
@@ -269,35 +258,13 @@ static json_t *values_json(const struct dea_fit *fit)
 {
   json_t *array = json_array();
   for (size_t j = 0; j < fit->model.count; j++) {
-    const struct dea_fit_value *value = &fit->values[j];
     json_t *object = json_object();
     dea_json_put_text(object, "name", fit->model.params[j].name);
     dea_json_put_text(object, "unit", fit->model.params[j].unit);
-    dea_json_put(object, "value", value->value);
-    dea_json_put(object, "standard_uncertainty", value->std);
-    dea_json_put(object, "interval_low", value->low);
-    dea_json_put(object, "interval_high", value->high);
-    json_object_set_new(object, "fixed", json_boolean(value->fixed));
-    json_object_set_new(object, "at_bound", json_boolean(value->at_bound));
-    json_object_set_new(object, "determined", json_boolean(!isinf(value->std)));
-    json_object_set_new(object, "interval_bends", json_boolean(value->bends));
+    dea_fit_json_value(object, &fit->values[j]);
     json_array_append_new(array, object);
   }
   return array;
-}
-
-static json_t *correlations_json(const struct dea_fit *fit)
-{
-  json_t *rows = json_array();
-  const size_t n = fit->model.count;
-  for (size_t j = 0; j < n; j++) {
-    json_t *row = json_array();
-    for (size_t l = 0; l < n; l++) {
-      json_array_append_new(row, json_real(fit->statistics.correlation[j * n + l]));
-    }
-    json_array_append_new(rows, row);
-  }
-  return rows;
 }
 
 static json_t *laws_json(const struct dea_fit *fit)
@@ -330,15 +297,11 @@ static json_t *tests_json(const struct dea_fit *fit)
     const struct dea_fit_curve *curve = &fit->curves[s];
     json_t *object = json_object();
     dea_json_put_text(object, "name", curve->series->test->name.text);
-    dea_json_put_text(object, "use", use_names[curve->series->test->use.value]);
+    dea_json_put_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
     dea_json_put_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
-    dea_json_put_text(object, "file", curve->series->file);
-    dea_json_put_text(object, "sha256", curve->series->sha256);
-    dea_json_put_count(object, "rows", curve->series->rows);
-    dea_json_put_count(object, "slack_rows", curve->series->slack);
+    dea_fit_json_rows(object, curve->series->file, curve->series->sha256, curve->series->rows,
+                      curve->series->slack, curve->lag, curve->effective);
     dea_json_put_count(object, "repeated_rows", curve->series->repeated);
-    dea_json_put(object, "neighbour_correlation", curve->lag);
-    dea_json_put(object, "effective_rows", curve->effective);
     dea_json_put(object, "rms_Pa", curve->rms_Pa);
     dea_json_put(object, "largest_relative", curve->largest);
     json_array_append_new(array, object);
@@ -348,17 +311,9 @@ static json_t *tests_json(const struct dea_fit *fit)
 
 static json_t *advice_json(const struct dea_fit *fit)
 {
-  json_t *object = json_object(), *weak = json_array(), *next = json_array(),
-         *stability = json_array();
-  for (size_t k = 0; k < fit->weak_count; k++) {
-    json_array_append_new(weak, json_string(fit->weak[k]));
-  }
-  for (size_t k = 0; k < fit->next_count; k++) {
-    json_t *row = json_object();
-    dea_json_put_text(row, "test", fit->next[k].what);
-    dea_json_put(row, "error_bars_times", fit->next[k].shrink);
-    json_array_append_new(next, row);
-  }
+  json_t *object = json_object(), *stability = json_array();
+  dea_fit_json_advice(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
+                      fit->next_count);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     json_t *row = json_object();
     dea_json_put_text(row, "mode", dea_coupon_mode_names[mode]);
@@ -367,34 +322,19 @@ static json_t *advice_json(const struct dea_fit *fit)
     dea_json_put(row, "unstable_from", fit->stability[mode].unstable_from);
     json_array_append_new(stability, row);
   }
-  json_object_set_new(object, "weak", weak);
-  json_object_set_new(object, "next_tests", next);
   json_object_set_new(object, "stability", stability);
   return object;
 }
 
-json_t *dea_fit_json(struct dea_context *ctx, const struct dea_fit *fit, const char *command)
+json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
 {
-  (void)ctx;
-  json_t *root = json_object();
-  json_object_set_new(root, "schema", json_integer(DEA_FIT_JSON_SCHEMA));
-  dea_json_put_text(root, "program", "dea " DEA_VERSION);
-  dea_json_put_text(root, "command", command);
-  dea_json_put_text(root, "file", fit->file->file);
-  dea_json_put_text(root, "sha256", fit->file->sha256);
-  dea_json_put_text(root, "material", fit->file->name.text);
+  json_t *root = dea_fit_json_begin(&fit->file->head, command);
+  dea_json_put_text(root, "material", fit->file->head.name.text);
   dea_json_put_text(root, "law", fit->model.law->name);
   json_object_set_new(root, "laws", laws_json(fit));
   json_object_set_new(root, "parameters", values_json(fit));
-  json_object_set_new(root, "correlations", correlations_json(fit));
-  json_object_set_new(root, "uncertainty_given", json_boolean(fit->scale_known));
-  dea_json_put(root, "scatter_Pa", fit->scale_known ? NAN : fit->scatter_Pa);
-  dea_json_put(root, "chi_square", fit->scale_known ? fit->least_squares.chi2 : NAN);
-  dea_json_put(root, "reduced_chi_square", fit->scale_known ? fit->statistics.reduced_chi2 : NAN);
-  json_object_set_new(root, "widened", json_boolean(fit->statistics.widened));
-  dea_json_put_count(root, "rows", fit->least_squares.rows);
-  dea_json_put(root, "effective_rows", fit->statistics.effective_rows);
-  dea_json_put(root, "condition", fit->statistics.condition);
+  dea_fit_json_statistics(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa,
+                          &fit->least_squares, &fit->statistics);
   json_object_set_new(root, "tests", tests_json(fit));
   json_object_set_new(root, "advice", advice_json(fit));
   return root;
@@ -405,32 +345,24 @@ json_t *dea_fit_json(struct dea_context *ctx, const struct dea_fit *fit, const c
 dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
                           const char *directory, bool force)
 {
-  char material[DEA_NAME_SIZE + 8];
-  snprintf(material, sizeof material, "%.63s.yaml", file->name.text);
-  const char *const names[] = {"fit.json", "fit.csv", "fit", "fit_time", material};
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, names[i], force));
-  }
-  return dea_folder_make(ctx, directory);
+  static const char *const figures[] = {"fit", "fit_time"};
+  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 2, force);
 }
 
 static dea_status write_texts(struct dea_context *ctx, const struct dea_fit *fit,
                               const char *command, const char *directory)
 {
   struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
-  char name[DEA_NAME_SIZE + 8], *json = NULL;
   dea_text_add(&csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
                      "fit std (kPa),residual (kPa)\n");
   for (size_t s = 0; s < fit->series_count; s++) {
     add_rows(&csv, &fit->curves[s]);
   }
-  snprintf(name, sizeof name, "%.63s.yaml", fit->file->name.text);
   dea_status status = dea_fit_material_add(ctx, fit, &material);
-  status = status == DEA_OK ? dea_text_write(ctx, &material, directory, name) : status;
-  status = status == DEA_OK ? dea_text_write(ctx, &csv, directory, "fit.csv") : status;
-  status = status == DEA_OK ? dea_json_text(ctx, dea_fit_json(ctx, fit, command), &json) : status;
-  status = status == DEA_OK ? dea_text_file_write(ctx, directory, "fit.json", json) : status;
-  dea_free(ctx, json);
+  if (status == DEA_OK) {
+    status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, &material, &csv,
+                                  dea_fit_json(fit, command));
+  }
   dea_text_free(&material);
   dea_text_free(&csv);
   return status;

@@ -1,9 +1,0 @@
-/* What `dea fit` prints of a device. */
-#ifndef DEA_CLI_PRINT_DEVICE_FIT_H
-#define DEA_CLI_PRINT_DEVICE_FIT_H
-
-#include "calibrate/device_fit.h"
-
-void cli_print_device_fit(const struct dea_device_fit *fit);
-
-#endif

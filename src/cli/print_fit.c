@@ -1,0 +1,242 @@
+/* What `dea fit` prints. */
+#include "cli/print_fit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// What both have in common ------------------------------------------------------------------------
+
+/* A value with its unit for people: 101.3 um. */
+struct shown {
+  const char *unit;
+  double factor;
+};
+
+/* Behind a value: how well it is known, its unit (with a state of the film, or ""), its interval.
+ * digits: of the uncertainty. */
+static void print_known(const struct dea_fit_value *v, const struct shown *shown, int digits,
+                        const char *state, bool logarithmic)
+{
+  if (v->fixed) {
+    printf("    fixed");
+  } else if (v->at_bound) {
+    printf("    at its bound");
+  } else if (isinf(v->std)) {
+    printf("    not determined");
+  } else {
+    printf(" +- %-9.*g", digits, shown->factor * v->std);
+  }
+  printf(" %s%s", shown->unit, state);
+  if (!isnan(v->low)) {
+    // of a time that may be as short as can be the lower end is 0
+    const bool open = isinf(v->low) || (logarithmic && v->low == 0);
+    printf("   (68 %%: ");
+    printf(open ? "open" : "%.5g", shown->factor * v->low);
+    printf(isinf(v->high) ? " to open)" : " to %.5g)", shown->factor * v->high);
+  }
+  putchar('\n');
+}
+
+static void print_neighbours(double lag, double effective)
+{
+  if (lag > 0) {
+    printf("; neighbours correlate (%.2f): %.1f rows count", lag, effective);
+  }
+  putchar('\n');
+}
+
+/* blamed: "the law or they are wrong" */
+static void print_misfit(const struct dea_lsq_statistics *statistics, const char *blamed)
+{
+  putchar('\n');
+  if (statistics->widened) {
+    printf("the misfit is %.2g times what the uncertainties explain: %s wrong; error bars are "
+           "widened by that\n",
+           sqrt(statistics->reduced_chi2), blamed);
+  }
+}
+
+static void print_weak(const char weak[][DEA_FIT_WEAK_SIZE], size_t count)
+{
+  for (size_t k = 0; k < count; k++) {
+    printf("%s\n", weak[k]);
+  }
+}
+
+static void print_next(const char *word, const struct dea_fit_next *next, size_t count)
+{
+  if (count > 0) {
+    printf("the %s that would tell most: %s (error bars x %.2f)\n", word, next->what, next->shrink);
+  }
+}
+
+// A material --------------------------------------------------------------------------------------
+
+static struct shown shown_of_law(const char *unit)
+{
+  return strcmp(unit, "Pa") == 0 ? (struct shown){"kPa", 1e-3}
+                                 : (struct shown){strcmp(unit, "1") == 0 ? "" : unit, 1};
+}
+
+static void print_laws(const struct dea_fit *fit)
+{
+  if (fit->candidate_count < 2) {
+    return;
+  }
+  printf("%-18s %10s %8s %22s\n", "law", "parameters", "branches", "held-out tests off by");
+  for (size_t i = 0; i < fit->candidate_count; i++) {
+    const struct dea_fit_candidate *c = &fit->candidates[i];
+    if (c->failed) {
+      printf("%-18s cannot be fitted: %s\n", c->name, c->why);
+    } else {
+      char share[32] = "more than 1000";
+      if (c->held_out_share < 10) {
+        snprintf(share, sizeof share, "%.2f", 100 * c->held_out_share);
+      }
+      printf("%-18s %10zu %8zu %20s %%%s\n", c->name, c->free_count, c->branch_count, share,
+             i == fit->chosen ? "  <- taken" : "");
+    }
+  }
+  putchar('\n');
+}
+
+static void print_law_values(const struct dea_fit *fit)
+{
+  printf("%s\n", fit->model.law->long_name);
+  for (size_t j = 0; j < fit->model.count; j++) {
+    const struct dea_fit_param *param = &fit->model.params[j];
+    const struct shown shown = shown_of_law(param->unit);
+    printf("  %-12s %12.6g", param->name, shown.factor * fit->values[j].value);
+    print_known(&fit->values[j], &shown, 3, "", param->logarithmic);
+  }
+}
+
+static void print_tests(const struct dea_fit *fit)
+{
+  static const char *const uses[] = {"fitted", "checked", "foretold"};
+  putchar('\n');
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_curve *c = &fit->curves[s];
+    printf("%-24s %-9s %5zu rows", c->series->test->name.text, uses[c->series->test->use.value],
+           c->series->rows);
+    if (!isnan(c->rms_Pa)) {
+      printf(", off by %.3g kPa (root mean square), %.1f %% at most", 1e-3 * c->rms_Pa,
+             100 * c->largest);
+    }
+    print_neighbours(c->lag, c->effective);
+  }
+}
+
+static void print_stability(const struct dea_fit *fit)
+{
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    const struct dea_fit_stability *s = &fit->stability[mode];
+    if (!isnan(s->unstable_from)) {
+      printf("not stable (Drucker) in %s tension from the stretch %.3g on%s\n",
+             dea_coupon_mode_names[mode], s->unstable_from, s->measured ? "" : ", not measured");
+    }
+  }
+}
+
+void cli_print_fit(const struct dea_fit *fit)
+{
+  print_laws(fit);
+  print_law_values(fit);
+  print_tests(fit);
+  print_misfit(&fit->statistics, "the law or they are");
+  print_weak(fit->weak, fit->weak_count);
+  print_stability(fit);
+  print_next("test", fit->next, fit->next_count);
+}
+
+// A device ----------------------------------------------------------------------------------------
+
+static struct shown shown_of(const struct dea_device_param *param, double value)
+{
+  const char *unit = param->param.unit;
+  if (strcmp(unit, "m") == 0) {
+    return fabs(value) < 1e-3 ? (struct shown){"um", 1e6} : (struct shown){"mm", 1e3};
+  }
+  if (strcmp(unit, "Pa") == 0) {
+    return fabs(value) < 1e7 ? (struct shown){"kPa", 1e-3} : (struct shown){"MPa", 1e-6};
+  }
+  return (struct shown){strcmp(unit, "1") == 0 ? "" : unit, 1};
+}
+
+static void print_values(const struct dea_device_fit *fit)
+{
+  printf("%-28s %12s    %s\n", "", "as designed", "as built");
+  for (size_t j = 0; j < fit->param_count; j++) {
+    const struct dea_device_param *param = &fit->params[j];
+    const struct dea_fit_value *v = &fit->values[j];
+    const struct shown shown = shown_of(param, v->value);
+    printf("%-28s %12.6g -> %10.6g", param->param.name, shown.factor * param->designed,
+           shown.factor * v->value);
+    print_known(v, &shown, 2, param->state, false);
+  }
+}
+
+static void print_curves(const struct dea_device_fit *fit)
+{
+  putchar('\n');
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    const struct dea_device_curve *curve = &fit->curves[c];
+    const struct dea_column *column = &dea_point_columns[curve->column];
+    const bool bare = strcmp(column->display_unit, "1") == 0;
+    printf("%-20s %-20s %-7s %3zu rows", curve->text->name.text, column->key,
+           curve->text->use.value == DEA_FIT_USED ? "fitted" : "checked", curve->rows);
+    if (!isnan(curve->rms)) {
+      printf(", off by %.3g%s%s (root mean square), %.1f %% of the range at most",
+             column->factor * curve->rms, bare ? "" : " ", bare ? "" : column->display_unit,
+             100 * curve->largest);
+    }
+    print_neighbours(curve->lag, curve->effective);
+    if (curve->slack > 0) {
+      printf("%20s %zu of them, from %.4g kV on, are left out: the model's film is slack there\n",
+             "", curve->slack, 1e-3 * curve->slack_from_V);
+    }
+  }
+}
+
+static void print_derived(const struct dea_device_fit *fit)
+{
+  for (size_t k = 0; k < fit->derived_count; k++) {
+    const struct dea_device_derived *d = &fit->derived[k];
+    const struct dea_column *column = &dea_point_columns[d->column];
+    if (k == 0) {
+      printf("\nAt %.4g kV, the highest that was fitted:\n", 1e-3 * d->voltage_V);
+    }
+    printf("  %-20s %10.4g +- %-8.2g %s", column->header, column->factor * d->value,
+           column->factor * d->std, column->display_unit);
+    if (!isnan(d->designed)) {
+      printf("   (as designed %.4g)", column->factor * d->designed);
+    }
+    putchar('\n');
+  }
+}
+
+static void print_pairs(const struct dea_device_fit *fit)
+{
+  for (size_t k = 0; k < fit->pair_count; k++) {
+    const struct dea_device_pair *pair = &fit->pairs[k];
+    printf("%s and %s %s told apart", fit->params[pair->first].param.name,
+           fit->params[pair->second].param.name,
+           fabs(pair->correlation) < 0.999 ? "are hardly" : "cannot be");
+    if (!isnan(pair->correlation)) {
+      printf(" (correlation %.3f)", pair->correlation);
+    }
+    printf("%s%s\n", pair->next[0] != '\0' ? "; this would tell: " : "", pair->next);
+  }
+}
+
+void cli_print_device_fit(const struct dea_device_fit *fit)
+{
+  print_values(fit);
+  print_curves(fit);
+  print_derived(fit);
+  print_misfit(&fit->statistics, "the model, what it was not asked to fit, or they are");
+  print_weak(fit->weak, fit->weak_count);
+  print_pairs(fit);
+  print_next("measurement", fit->next, fit->next_count);
+}

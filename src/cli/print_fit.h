@@ -1,0 +1,10 @@
+/* What `dea fit` prints. */
+#ifndef DEA_CLI_PRINT_FIT_H
+#define DEA_CLI_PRINT_FIT_H
+
+#include "calibrate/device_fit.h"
+
+void cli_print_fit(const struct dea_fit *fit);
+void cli_print_device_fit(const struct dea_device_fit *fit);
+
+#endif
