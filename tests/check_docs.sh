@@ -20,6 +20,22 @@ for page in README.md docs/python.md; do # and so is its script, by the test of 
   echo ---
 done | awk '/^---$/ { n++; next } { text[n + 0] = text[n + 0] $0 "\n" } END { exit text[0] == "" || text[0] != text[1] }' ||
   { echo "the script of README.md is not the first one of docs/python.md"; exit 1; }
+# Each test that the safety case names is a test of that file.
+awk '/^\|.*`test_/ {
+  file = ""
+  n = split($0, part, "`")
+  for (i = 2; i <= n; i += 2) {
+    if (split(part[i], at, ": ") == 2) { file = at[1]; name = at[2] } else { name = part[i] }
+    if (name ~ /^test_[a-z0-9_]*$/) { print file, name }
+  }
+}' docs/safety.md | {
+  count=0
+  while read -r file name; do
+    count=$((count + 1))
+    grep -q "unit_test[a-z_]*(${name}[,)]" "tests/$file" || { echo "docs/safety.md: $file has no test $name"; exit 1; }
+  done
+  [ "$count" -gt 20 ] || { echo "hardly any test found in docs/safety.md: the check is broken"; exit 1; }
+}
 printf '%s\n' "$list" | {
   bad=0
   while read -r page path; do
