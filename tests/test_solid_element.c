@@ -12,6 +12,8 @@ static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 static const double scale_V_per_m = 2e8, h = 44e-6, rho = 970;
 
+static const double turned_stretch[3] = {1.6, 1.25, 1 / (1.6 * 1.25 - 0.04)}, turned_shear = -0.2;
+
 struct sample {
   const struct dea_element *element;
   struct dea_constituent film;
@@ -33,8 +35,9 @@ static double *unknown(struct sample *s, int i)
 }
 
 /* A parallelogram in the plane, upright: the places are linear in the local axes. levels: those of
- * its nodes. A surface lies at z = 0. */
-static void fill(int order, const struct dea_element *element, struct sample *s)
+ * its nodes. A surface lies at z = 0. The film is stretched alike along all axes, or along two that
+ * are turned. */
+static void fill(int order, const struct dea_element *element, bool turned, struct sample *s)
 {
   double line[DEA_HEX_LINE_MAX], line_z[DEA_HEX_LINE_MAX] = {0};
   int n = order + 1, levels = element->nodes / (n * n);
@@ -46,6 +49,10 @@ static void fill(int order, const struct dea_element *element, struct sample *s)
                                 .permittivity_F_per_m = 2.5e-11,
                                 .thickness_m = h,
                                 .density_kg_per_m3 = rho}};
+  if (turned) {
+    memcpy(s->film.pre_stretch, turned_stretch, sizeof turned_stretch);
+    s->film.pre_shear = turned_shear;
+  }
   assert_int_equal(dea_constituent_relax(&s->film), DEA_OK);
   dea_lobatto_nodes((size_t)order, line);
   if (levels > 1) {
@@ -272,14 +279,63 @@ static void test_every_kind(void **state)
       static void (*const checks[])(struct sample * s) = {check_derivatives, check_rigid_motion,
                                                           check_patch,       check_integrals,
                                                           check_prediction,  check_inverted};
-      for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+      for (size_t i = 0; i < 2 * sizeof checks / sizeof checks[0]; i++) {
         static struct sample s;
-        fill(order, &set.of[kind], &s);
+        fill(order, &set.of[kind], i % 2 == 1, &s);
         assert_int_equal(s.element->type->check(&s.film), DEA_OK);
-        checks[i](&s);
+        checks[i / 2](&s);
       }
     }
     dea_element_set_release(ctx, &set);
+  }
+}
+
+/* A film whose pre-stretch lies at an angle, and the same with its axes along x and y in a body
+ * that is turned: Psi(F; R D R^T) = Psi(F R; D), with P = P(F R) R^T and so twice for A. */
+static void test_pre_stretch_at_an_angle(void **state)
+{
+  static const double D[3] = {1.5, 1.2, 1 / 1.8},
+                      F[9] = {1.05, 0.1, 0.02, -0.03, 0.9, 0.1, 0, 0.04, 1.1};
+  const double angle = 0.65, c = cos(angle), s = sin(angle);
+  const double R[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
+  struct dea_point turned, straight;
+  double cof[9], FR[9] = {0}, P[9] = {0};
+  (void)state;
+  for (int a = 0; a < 9; a++) {
+    for (int k = 0; k < 3; k++) {
+      FR[a] += F[a / 3 * 3 + k] * R[3 * k + a % 3];
+    }
+  }
+  struct dea_constituent film = {.law = dea_law_find("yeoh"),
+                                 .param = {178.4e3, -6e3, 4.2e3},
+                                 .pre_stretch = {D[0], D[1], D[2]},
+                                 .permittivity_F_per_m = 2.5e-11};
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  double J = dea_cofactors(FR, cof), p0 = film.p0_Pa;
+  assert_int_equal(dea_constituent_point(&film, FR, cof, J, 1e4, 3e7, true, &straight), DEA_OK);
+  film.pre_stretch[0] = D[0] * c * c + D[1] * s * s;
+  film.pre_stretch[1] = D[0] * s * s + D[1] * c * c;
+  film.pre_shear = (D[0] - D[1]) * s * c;
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  assert_close(film.p0_Pa, p0, 1e-13, 0);
+  J = dea_cofactors(F, cof);
+  assert_int_equal(dea_constituent_point(&film, F, cof, J, 1e4, 3e7, true, &turned), DEA_OK);
+  assert_close(turned.W, straight.W, 1e-13, 0);
+  for (int a = 0; a < 9; a++) {
+    for (int k = 0; k < 3; k++) {
+      P[a] += straight.P[a / 3 * 3 + k] * R[a % 3 * 3 + k];
+    }
+  }
+  for (int a = 0; a < 9; a++) {
+    assert_close(turned.P[a], P[a], 0, 1e-13 * largest(P, 9));
+    for (int b = 0; b < 9; b++) {
+      double A = 0;
+      for (int k = 0; k < 9; k++) {
+        int from = 9 * (a / 3 * 3 + k / 3) + b / 3 * 3 + k % 3;
+        A += straight.A[from] * R[a % 3 * 3 + k / 3] * R[b % 3 * 3 + k % 3];
+      }
+      assert_close(turned.A[9 * a + b], A, 0, 1e-13 * largest(straight.A, 81));
+    }
   }
 }
 
@@ -299,6 +355,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_kind),
+      cmocka_unit_test(test_pre_stretch_at_an_angle),
       cmocka_unit_test(test_orders_out_of_range),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

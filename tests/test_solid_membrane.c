@@ -20,7 +20,7 @@ static struct dea_element_result at, up, down;
 static double complex solid_film(const struct dea_constituent *layer, double field,
                                  const double complex F[6], double complex P[6])
 {
-  const double *G = layer->pre_stretch;
+  const double *G = layer->pre_stretch, s = layer->pre_shear;
   double complex N[3], full[9], W, solid[9], A[81], n = 0;
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -28,8 +28,8 @@ static double complex solid_film(const struct dea_constituent *layer, double fie
     n += N[i] * N[i];
   }
   for (int i = 0; i < 3; i++) {
-    full[3 * i] = F[2 * i] * G[0];
-    full[3 * i + 1] = F[2 * i + 1] * G[1];
+    full[3 * i] = F[2 * i] * G[0] + F[2 * i + 1] * s;
+    full[3 * i + 1] = F[2 * i] * s + F[2 * i + 1] * G[1];
     full[3 * i + 2] = N[i] / n * G[2];
   }
   assert_int_equal(complex_point(layer->law->name, layer->param, full, NULL, &W, solid, A), DEA_OK);
@@ -45,7 +45,7 @@ static double complex solid_film(const struct dea_constituent *layer, double fie
     for (int b = 0; b < 3; b++) {
       dn += 2 * N[b] * d[b];
     }
-    P[a] = G[J] * solid[3 * i + J] - 0.5 * k * dn;
+    P[a] = G[J] * solid[3 * i + J] + s * solid[3 * i + O] - 0.5 * k * dn;
     for (int b = 0; b < 3; b++) {
       P[a] += G[2] * solid[3 * b + 2] * (d[b] / n - N[b] * dn / (n * n));
     }
@@ -93,6 +93,10 @@ static void check_law(const struct dea_law *law, const double *param)
         film(law, param, uniform(&seed, 0.9, 1.4), uniform(&seed, 0.9, 1.4));
     layer.permittivity_slope_F_per_m = uniform(&seed, -0.3, 0.1) * permittivity;
     compose(m1, m2, uniform(&seed, 0, 6), F);
+    check_point(&layer, uniform(&seed, 0, 5e7), F, 1e-11);
+    layer.pre_shear = uniform(&seed, -0.2, 0.2);
+    layer.pre_stretch[2] =
+        1 / (layer.pre_stretch[0] * layer.pre_stretch[1] - layer.pre_shear * layer.pre_shear);
     check_point(&layer, uniform(&seed, 0, 5e7), F, 1e-11);
   }
 }

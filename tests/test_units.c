@@ -27,6 +27,7 @@ static void test_reads_what_designs_write(void **state)
       {".5 mm", "m", 5e-4},
       {"+2 mm", "m", 2e-3},
       {"180 degree", "radian", 3.14159265358979323846},
+      {"-90 deg", "radian", -0.5 * 3.14159265358979323846},
       {"0.2", "1", 0.2},
       {"-3", "1", -3},
   };

@@ -36,6 +36,18 @@ static void release_system(void *system)
   unlock_udunits(handler);
 }
 
+/* The table of udunits2, and the short word for its degree of an angle. NULL: it cannot be read. */
+static ut_system *read_system(void)
+{
+  ut_system *system = ut_read_xml(NULL);
+  ut_unit *degree = system != NULL ? ut_get_unit_by_name(system, "degree") : NULL;
+  if (degree != NULL) {
+    ut_map_name_to_unit("deg", UT_ASCII, degree);
+  }
+  ut_free(degree);
+  return system;
+}
+
 /* The unit table of the context, read on first use (5 ms). */
 static ut_system *system_get(struct dea_context *ctx)
 {
@@ -44,7 +56,7 @@ static ut_system *system_get(struct dea_context *ctx)
     return system;
   }
   ut_error_message_handler handler = lock_udunits();
-  system = ut_read_xml(NULL);
+  system = read_system();
   unlock_udunits(handler);
   if (system == NULL) {
     dea_fail(ctx, DEA_E_TOOL, "the unit database of udunits2 cannot be read");

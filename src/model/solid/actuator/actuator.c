@@ -82,11 +82,11 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
     constituents[i] = dea_constituent_bonded((const double[]){0, 0});
   }
   const double l[] = {d->pre_stretch, d->pre_stretch};
-  constituents[DEA_CONSTITUENT_FILM] = dea_constituent_stretched(DEA_PART_FILM, &d->film, l);
+  constituents[DEA_CONSTITUENT_FILM] = dea_constituent_stretched(DEA_PART_FILM, &d->film, l, 0);
   dea_constituent_set_permittivity(&constituents[DEA_CONSTITUENT_FILM], &d->film.permittivity,
                                    d->film_thickness_m);
   constituents[DEA_CONSTITUENT_ELECTRODE] = dea_constituent_stretched(
-      DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l);
+      DEA_PART_ELECTRODE, film.electrode != NULL ? film.electrode : &d->film, l, 0);
   constituents[DEA_CONSTITUENT_ELECTRODE].thickness_m = out->plate.electrode_thickness;
   // a glue is taken as incompressible; the design says nothing else of it
   constituents[DEA_CONSTITUENT_GLUE] = dea_constituent_free(DEA_PART_GLUE, d->bond_modulus_Pa, 0.5);

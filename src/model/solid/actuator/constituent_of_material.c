@@ -3,20 +3,30 @@
 #include <math.h>
 
 static const double kappa_share = 100; // kappa over the shear modulus
+static const double same_angle = 1e-9; // of a quarter turn: along an axis
 
 /* Poisson's ratios from there on are those of an incompressible solid: kappa is large enough. */
 static const double incompressible = 0.49;
 
 struct dea_constituent dea_constituent_stretched(enum dea_part part,
                                                  const struct dea_material *material,
-                                                 const double pre_stretch[2])
+                                                 const double pre_stretch[2], double angle_rad)
 {
-  double l1 = pre_stretch[0], l2 = pre_stretch[1];
+  const double quarter = 0.5 * acos(-1.0), turns = angle_rad / quarter, whole = round(turns);
+  bool along = pre_stretch[0] == pre_stretch[1] || fabs(turns - whole) < same_angle;
+  bool across = along && fmod(whole, 2) != 0;
+  double l1 = pre_stretch[across ? 1 : 0], l2 = pre_stretch[across ? 0 : 1];
+  double middle = 0.5 * (l1 + l2), half = 0.5 * (l1 - l2);
   struct dea_constituent out = {
       .part = part,
       .pre_stretch = {l1, l2, 1 / (l1 * l2)},
       .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
   };
+  if (!along) { // G = R diag(l1, l2) R^T by the double angle
+    out.pre_stretch[0] = middle + half * cos(2 * angle_rad);
+    out.pre_stretch[1] = middle - half * cos(2 * angle_rad);
+    out.pre_shear = half * sin(2 * angle_rad);
+  }
   dea_constituent_set_law(&out, material->law, material->param);
   return out;
 }

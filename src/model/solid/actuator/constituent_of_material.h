@@ -4,10 +4,11 @@
 
 #include "model/solid/point/constituent.h"
 
-/* Of the material's law, stretched along x and y before it came to the flat state. */
+/* Of the material's law, stretched before it came to the flat state, along two axes of which the
+ * first is turned by an angle from x. */
 struct dea_constituent dea_constituent_stretched(enum dea_part part,
                                                  const struct dea_material *material,
-                                                 const double pre_stretch[2]);
+                                                 const double pre_stretch[2], double angle_rad);
 /* Bonded free of stress; a Poisson's ratio of 0.49 and more is taken as incompressible. */
 struct dea_constituent dea_constituent_free(enum dea_part part, double young_modulus_Pa,
                                             double poisson_ratio);

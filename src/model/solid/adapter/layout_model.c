@@ -52,20 +52,7 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   const struct dea_material *material = &ply->material;
   struct dea_constituent *out = &model->constituents[i];
   bool dielectric = model->mesh.dielectric[i];
-  double quarter = 0.5 * acos(-1.0), turns = ply->angle_rad / quarter;
-  double l[2] = {ply->pre_stretch[0], ply->pre_stretch[1]};
-  bool along = fabs(turns - round(turns)) < 1e-9;
-  if (l[0] != l[1] && !along) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, ply->location,
-                                 "ply '%s': two pre-stretches at an angle of %g deg are not "
-                                 "computed yet; only multiples of 90 deg",
-                                 ply->name, 90 * turns));
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the pre-stretch of '%s' lies at an angle", ply->name);
-  }
-  if (along && fabs(fmod(round(turns), 2)) > 0.5) {
-    l[0] = ply->pre_stretch[1];
-    l[1] = ply->pre_stretch[0];
-  }
+  const double *l = ply->pre_stretch;
   if (material->law != NULL && material->law->anisotropic) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d does not know films with a direction of their own (law '%s') yet",
@@ -73,7 +60,7 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   }
   enum dea_part part = dielectric ? DEA_PART_FILM : DEA_PART_FIBRE;
   *out = material->law != NULL
-             ? dea_constituent_stretched(part, material, l)
+             ? dea_constituent_stretched(part, material, l, ply->angle_rad)
              : dea_constituent_free(part, material->young_modulus_Pa, material->poisson_ratio);
   if (dielectric && (material->law == NULL || material->permittivity.at_rest == 0)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, ply->location,

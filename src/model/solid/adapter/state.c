@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { CONSTITUENT_NUMBERS = 8 }; // beside the parameters of the law
+enum { CONSTITUENT_NUMBERS = 8 }; // beside the parameters of the law, and pre_shear if there is one
 
 static size_t used_constituents(const struct dea_solid *s)
 {
@@ -27,13 +27,16 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     const double own[CONSTITUENT_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
-    size_t params = l->law->param_count;
-    if (count + CONSTITUENT_NUMBERS + params > room) {
+    size_t params = l->law->param_count, more = l->pre_shear != 0 ? 1 : 0;
+    if (count + CONSTITUENT_NUMBERS + params + more > room) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer constituents");
     }
     memcpy(to + count, own, sizeof own);
     memcpy(to + count + CONSTITUENT_NUMBERS, l->param, params * sizeof *to);
     count += CONSTITUENT_NUMBERS + params;
+    if (more > 0) {
+      to[count++] = l->pre_shear;
+    }
   }
   out->number_count += count;
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "materials", to, count * sizeof *to));

@@ -29,9 +29,11 @@ static dea_status wear_of(const struct dea_element *element, const struct dea_el
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
     int p = q % film->count; // point in the plane
     double area = film->area[p] * strains.volume_m3[q] / constituent->thickness_m;
-    const double *C = strains.C[q], *G = constituent->pre_stretch;
-    double a = G[0] * G[0] * C[0], b = G[1] * G[1] * C[1], c = G[0] * G[1] * C[5];
-    double root = hypot(0.5 * (a - b), c), middle = 0.5 * (a + b);
+    const double *C = strains.C[q];
+    double plane[3] = {C[0], C[1], C[5]};
+    dea_constituent_pull_back(constituent, plane, plane);
+    double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
+    double middle = 0.5 * (plane[0] + plane[1]);
     out->compression_ratio += fmax(-film->tension[p], 0) * area / compression_borne_N(constituent);
     dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
                                                    sqrt(fmax(middle - root, 1e-30))));

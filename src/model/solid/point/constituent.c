@@ -83,24 +83,67 @@ static void add_electric(const struct dea_constituent *constituent, double E, co
   }
 }
 
-/* Elastic part with the pre-stretch: P_iJ = P(FG)_iJ G_J, and so twice for A. */
-static dea_status elastic(const struct dea_constituent *constituent, const double F[9],
-                          bool tangent, struct dea_point *out)
+void dea_constituent_pull_back(const struct dea_constituent *constituent, const double X[3],
+                               double out[3])
 {
-  static const double fibre[3] = {1, 0, 0};
+  double a = constituent->pre_stretch[0], b = constituent->pre_stretch[1];
+  double s = constituent->pre_shear;
+  const double now[3] = {a * a * X[0] + 2 * a * s * X[2] + s * s * X[1],
+                         b * b * X[1] + 2 * b * s * X[2] + s * s * X[0],
+                         (a * b + s * s) * X[2] + s * (a * X[0] + b * X[1])};
+  memcpy(out, now, sizeof now);
+}
+
+/* Rows x of the plane and its normal, `step` numbers from one component to the next, times G. */
+static void times_g(const struct dea_constituent *constituent, int step, double *x)
+{
   const double *G = constituent->pre_stretch;
-  double FG[9];
-  for (int a = 0; a < 9; a++) {
-    FG[a] = F[a] * G[a % 3];
+  double x0 = x[0], x1 = x[step], s = constituent->pre_shear;
+  x[0] = x0 * G[0] + x1 * s;
+  x[step] = x0 * s + x1 * G[1];
+  x[2 * step] *= G[2];
+}
+
+/* P = P(FG) G, and so twice for A. */
+static void pull_back_point(const struct dea_constituent *constituent, bool tangent,
+                            struct dea_point *out)
+{
+  const double *G = constituent->pre_stretch;
+  if (constituent->pre_shear != 0) {
+    for (int i = 0; i < 3; i++) {
+      times_g(constituent, 1, out->P + 3 * i);
+    }
+    for (int k = 0; k < 27 && tangent; k++) { // iJ and k of A_iJkL
+      times_g(constituent, 1, out->A + 3 * k);
+    }
+    for (int k = 0; k < 27 && tangent; k++) { // i and kL
+      times_g(constituent, 9, out->A + k / 9 * 27 + k % 9);
+    }
+    return;
   }
-  dea_status status = tangent
-                          ? dea_point_elastic(constituent->law, constituent->param, FG, fibre, out)
-                          : dea_point_stress(constituent->law, constituent->param, FG, fibre, out);
-  for (int a = 0; a < 9 && status == DEA_OK; a++) {
+  for (int a = 0; a < 9; a++) {
     out->P[a] *= G[a % 3];
     for (int b = 0; b < 9 && tangent; b++) {
       out->A[9 * a + b] *= G[a % 3] * G[b % 3];
     }
+  }
+}
+
+/* Elastic part with the pre-stretch. */
+static dea_status elastic(const struct dea_constituent *constituent, const double F[9],
+                          bool tangent, struct dea_point *out)
+{
+  static const double fibre[3] = {1, 0, 0};
+  double FG[9];
+  memcpy(FG, F, sizeof FG);
+  for (int i = 0; i < 3; i++) {
+    times_g(constituent, 1, FG + 3 * i);
+  }
+  dea_status status = tangent
+                          ? dea_point_elastic(constituent->law, constituent->param, FG, fibre, out)
+                          : dea_point_stress(constituent->law, constituent->param, FG, fibre, out);
+  if (status == DEA_OK) {
+    pull_back_point(constituent, tangent, out);
   }
   return status;
 }

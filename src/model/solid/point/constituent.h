@@ -23,6 +23,7 @@ struct dea_constituent {
   const struct dea_law *law;
   double param[DEA_LAW_PARAM_MAX]; // of the law, SI
   double pre_stretch[3];           // diagonal of G, det G = 1
+  double pre_shear;                // G_12 = G_21: pre-stretches at an angle to the axes
   double p0_Pa, kappa_s_Pa;        // dea_constituent_relax sets them
   double kappa_Pa;                 // bulk modulus of the projected part, of the element
   double permittivity_F_per_m;     // eps of the flat constituent, 0: no electric energy
@@ -49,6 +50,11 @@ static inline bool dea_constituent_takes_pressure(const struct dea_constituent *
 {
   return constituent->law->compressible == NULL;
 }
+
+/* G X G of a symmetric tensor of the plane (11 22 12), as C of the flat constituent becomes that of
+ * the unstretched one, and its stress that of the flat one. out may be X. */
+void dea_constituent_pull_back(const struct dea_constituent *constituent, const double X[3],
+                               double out[3]);
 
 /* Shear modulus of the ground state [Pa]. */
 double dea_constituent_modulus(const struct dea_constituent *constituent);

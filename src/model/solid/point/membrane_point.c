@@ -132,21 +132,40 @@ static void set_permittivity(const struct dea_constituent *constituent, double G
       DEA_EPSILON_0;
 }
 
+/* S = G S(C) G, and so twice for D. */
+static void pull_back_tensors(const struct dea_constituent *constituent, struct plane_tensors *t)
+{
+  const double *G = constituent->pre_stretch, scale[3] = {G[0] * G[0], G[1] * G[1], G[0] * G[1]};
+  dea_constituent_pull_back(constituent, t->S, t->S);
+  for (int a = 0; a < 9 && constituent->pre_shear == 0; a++) {
+    t->D[a / 3][a % 3] *= scale[a / 3] * scale[a % 3];
+  }
+  for (int a = 0; a < 3 && constituent->pre_shear != 0; a++) {
+    dea_constituent_pull_back(constituent, t->D[a], t->D[a]);
+  }
+  for (int b = 0; b < 3 && constituent->pre_shear != 0; b++) {
+    double column[3] = {t->D[0][b], t->D[1][b], t->D[2][b]};
+    dea_constituent_pull_back(constituent, column, column);
+    for (int a = 0; a < 3; a++) {
+      t->D[a][b] = column[a];
+    }
+  }
+}
+
 /* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
 static dea_status evaluate_point(const struct dea_constituent *constituent, const double F[6],
                                  double field, struct plane_tensors *t,
                                  struct dea_membrane_point *out)
 {
-  const double *G = constituent->pre_stretch, scale[3] = {G[0] * G[0], G[1] * G[1], G[0] * G[1]};
+  const double *G = constituent->pre_stretch, s = constituent->pre_shear;
+  double flat_area = G[0] * G[1] - s * s; // over the unstretched one
   double c[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
                  F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
   struct dea_material material = {.law = constituent->law};
   memcpy(material.param, constituent->param, constituent->law->param_count * sizeof(double));
-  const struct dea_tension film = {&material, field / scale[2]};
-  set_permittivity(constituent, scale[2], &material.permittivity);
-  for (int a = 0; a < 3; a++) {
-    t->C[a] = scale[a] * c[a];
-  }
+  const struct dea_tension film = {&material, field / flat_area};
+  set_permittivity(constituent, flat_area, &material.permittivity);
+  dea_constituent_pull_back(constituent, c, t->C);
   double mean = 0.5 * (t->C[0] + t->C[1]), half = 0.5 * (t->C[0] - t->C[1]);
   double d = hypot(half, t->C[2]);
   struct principal p;
@@ -155,14 +174,9 @@ static dea_status evaluate_point(const struct dea_constituent *constituent, cons
     return status;
   }
   assemble_tensors(&p, d > 0 ? half / d : 1, d > 0 ? t->C[2] / d : 0, t);
-  for (int a = 0; a < 3; a++) {
-    t->S[a] *= scale[a];
-    for (int b = 0; b < 3; b++) {
-      t->D[a][b] *= scale[a] * scale[b];
-    }
-  }
+  pull_back_tensors(constituent, t);
   out->W = p.W;
-  out->area = p.natural[0] * p.natural[1] / scale[2];
+  out->area = p.natural[0] * p.natural[1] / flat_area;
   double first = p.S[0] * (mean + d) / out->area, second = p.S[1] * (mean - d) / out->area;
   out->tension_Pa[0] = fmax(first, second);
   out->tension_Pa[1] = fmin(first, second);

@@ -2,7 +2,7 @@
  *
  * Symbol   meaning                                                                     unit
  * F        dx/dX, its in-plane columns F_1, F_2; F[2 i + J] here                       1
- * G        pre-stretch, diagonal; C_JL = G_J F_J . F_L G_L                             1
+ * G        pre-stretch, symmetric; C = G c G with c_JL = F_J . F_L                     1
  * x1, x2   eigenvalues of C, x1 >= x2: squares of the stretches l1, l2                 1
  * f        energy per volume of film, with field; S = 2 df/dC                          Pa */
 #ifndef DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H

@@ -135,11 +135,11 @@ void dea_recover_plane(const struct dea_constituent *constituent, const double F
   const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
   const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                             a[0] * b[1] - a[1] * b[0]};
-  double e[2][3], T[2][2], squares[2], cof[9];
-  double gx = constituent->pre_stretch[0], gy = constituent->pre_stretch[1];
+  double e[2][3], T[2][2], squares[2], cof[9], C[3] = {dot(a, a), dot(b, b), dot(a, b)};
   double length = sqrt(dot(a, a));
   out->area = sqrt(dot(normal, normal));
-  principal(gx * gx * dot(a, a), gy * gy * dot(b, b), gx * gy * dot(a, b), squares);
+  dea_constituent_pull_back(constituent, C, C);
+  principal(C[0], C[1], C[2], squares);
   out->stretch[0] = sqrt(squares[0]);
   out->stretch[1] = sqrt(fmax(squares[1], 0));
   out->stretch[2] = constituent->pre_stretch[2] * dea_cofactors(F, cof) / out->area;

@@ -151,13 +151,21 @@ static void principal_stretch(const struct dea_constituent *constituent, const d
                               double out[3])
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+  const double *G = constituent->pre_stretch, s = constituent->pre_shear;
   double C[6] = {0}, axis[3][3];
   for (int m = 0; m < 6; m++) {
     for (int i = 0; i < 3; i++) {
       C[m] += F[3 * i + row[m]] * F[3 * i + column[m]];
     }
-    C[m] *= constituent->pre_stretch[row[m]] * constituent->pre_stretch[column[m]];
   }
+  double plane[3] = {C[0], C[1], C[3]}, yz = C[4], zx = C[5];
+  dea_constituent_pull_back(constituent, plane, plane);
+  C[0] = plane[0];
+  C[1] = plane[1];
+  C[2] *= G[2] * G[2];
+  C[3] = plane[2];
+  C[4] = G[1] * G[2] * yz + s * G[2] * zx;
+  C[5] = G[2] * G[0] * zx + s * G[2] * yz;
   principal(C, out, axis);
   for (int k = 0; k < 3; k++) {
     out[k] = sqrt(fmax(out[k], 0));
