@@ -6,11 +6,13 @@
 #include <string.h>
 
 enum { BLOCKS = 4, AUTO_BRANCHES_MAX = 6 };
+#define SCATTER_SHARE 0.01 // of the largest stress
 
 struct work {
   struct dea_context *ctx;
   struct dea_fit *fit;
-  double from_s, to_s; // that the tests in time span
+  struct dea_material materials[DEA_FIT_LAWS_MAX]; // of the candidates, as fitted to all rows
+  double from_s, to_s;                             // that the tests in time span
   bool timed;
 };
 
@@ -57,7 +59,7 @@ static dea_status look_at_uncertainties(struct work *w)
     return dea_fail(w->ctx, DEA_E_DESIGN, "no test is there to be fitted (use: fit)");
   }
   fit->scale_known = known == rows;
-  fit->scatter_Pa = 0.01 * most; // a scale only: what it is follows from the residuals
+  fit->scatter_Pa = SCATTER_SHARE * most; // a scale only: what it is follows from the residuals
   if (known > 0 && known < rows) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, lacking->test->name.location,
                                     "'%.60s' gives no uncertainty while others do: give it one, or "
@@ -197,19 +199,50 @@ static dea_status hold_out_all(struct work *w, const struct dea_fit_model *model
                                &shares, &count));
     }
   }
-  candidate->held_out = sqrt(squares / (double)count);
+  candidate->held_out = sqrt(squares / (double)count) * (w->fit->scale_known ? 1 : SCATTER_SHARE);
   candidate->held_out_share = sqrt(shares / (double)count);
   return DEA_OK;
 }
 
+/* Where it ends to be stable, in all three modes to the I1 that the tests reach: a film is
+ * stretched in all of them. */
+static void find_stability(const struct dea_fit *fit, const struct dea_material *material,
+                           struct dea_fit_candidate *candidate)
+{
+  for (int k = 0; k < DEA_COUPON_MODES; k++) {
+    const enum dea_coupon_mode mode = (enum dea_coupon_mode)k;
+    const double from =
+        dea_fit_unstable_from(material, mode, dea_fit_stretch_as_far(mode, fit->stretch_max));
+    if (!isnan(from) && !(candidate->unstable_from <= from)) {
+      candidate->unstable_mode = mode;
+      candidate->unstable_from = from;
+    }
+  }
+}
+
+/* Whether a law is to be taken before the best so far: of two that foretell as well (5 %) the one
+ * with fewer parameters; a stable one before one that is not, unless that foretells far better. */
+static bool is_better(const struct dea_fit_candidate *candidate,
+                      const struct dea_fit_candidate *best)
+{
+  const bool stable = isnan(candidate->unstable_from), best_stable = isnan(best->unstable_from);
+  if (stable != best_stable) {
+    return stable ? candidate->held_out < DEA_FIT_STABLE_FACTOR * best->held_out
+                  : candidate->held_out * DEA_FIT_STABLE_FACTOR <= best->held_out;
+  }
+  const bool simpler = candidate->free_count < best->free_count;
+  return candidate->held_out < (simpler ? 1.05 : 1 / 1.05) * best->held_out;
+}
+
 /* One law, its branches and how well it foretells; a failure is kept with its message. */
 static dea_status try_law(struct work *w, const struct dea_label *name, struct dea_fit_model *model,
-                          struct dea_fit_candidate *candidate)
+                          struct dea_material *material, struct dea_fit_candidate *candidate)
 {
   struct dea_fit *fit = w->fit;
   struct dea_lsq_fit found;
   const struct dea_fit_rows rows = all_rows(fit);
-  *candidate = (struct dea_fit_candidate){.held_out = NAN, .held_out_share = NAN};
+  *candidate =
+      (struct dea_fit_candidate){.held_out = NAN, .held_out_share = NAN, .unstable_from = NAN};
   snprintf(candidate->name, sizeof candidate->name, "%.63s", name->text);
   DEA_TRY(w->ctx,
           dea_fit_model_make(w->ctx, fit->file, name, fit->series, fit->series_count, model));
@@ -219,7 +252,9 @@ static dea_status try_law(struct work *w, const struct dea_label *name, struct d
   DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, model, &rows, &found));
   candidate->chi2 = found.chi2;
   candidate->aicc = criterion(&found, candidate->free_count, fit->scale_known);
+  dea_fit_model_material(model, found.p, material);
   dea_lsq_free(&found);
+  find_stability(fit, material, candidate);
   return fit->file->law_count > 1 ? hold_out_all(w, model, candidate) : DEA_OK;
 }
 
@@ -233,7 +268,7 @@ static dea_status choose_law(struct work *w)
     struct dea_fit_model model;
     dea_progress(w->ctx, "laws", i, fit->file->law_count);
     fit->candidate_count = i + 1;
-    dea_status status = try_law(w, &fit->file->laws[i], &model, candidate);
+    dea_status status = try_law(w, &fit->file->laws[i], &model, &w->materials[i], candidate);
     if (status == DEA_E_MEMORY || status == DEA_E_DESIGN || status == DEA_E_TOOL ||
         fit->file->law_count == 1) {
       DEA_TRY(w->ctx, status);
@@ -244,16 +279,43 @@ static dea_status choose_law(struct work *w)
       dea_context_clear(w->ctx);
       continue;
     }
-    // of two that foretell as well (5 %) the one with fewer parameters
-    const double limit = any ? best->held_out : INFINITY;
-    const bool simpler = any && candidate->free_count < best->free_count;
-    if (!any || candidate->held_out < (simpler ? 1.05 : 1 / 1.05) * limit) {
+    if (!any || is_better(candidate, best)) {
       fit->chosen = i;
       fit->model = model;
       any = true;
     }
   }
   return any ? DEA_OK : dea_fail(w->ctx, DEA_E_NOT_CONVERGED, "none of the laws could be fitted");
+}
+
+/* Largest difference of other laws that foretell about as well, in modes that no test has. */
+static void find_spreads(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  const struct dea_material *taken = &w->materials[fit->chosen];
+  const double limit = DEA_FIT_STABLE_FACTOR * fit->candidates[fit->chosen].held_out;
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    struct dea_fit_spread spread = {.mode = (enum dea_coupon_mode)mode};
+    double l = dea_fit_stretch_as_far(spread.mode, fit->stretch_max);
+    const struct dea_coupon coupon = {.mode = spread.mode, .rows = 1, .stretch = &l};
+    for (size_t i = 0; i < fit->candidate_count && !fit->stability[mode].measured; i++) {
+      double own, other;
+      if (i == fit->chosen || fit->candidates[i].failed || !(fit->candidates[i].held_out < limit) ||
+          dea_coupon_stress(taken, &coupon, NULL, &own) != DEA_OK ||
+          dea_coupon_stress(&w->materials[i], &coupon, NULL, &other) != DEA_OK) {
+        continue;
+      }
+      const double share = fabs(other / own - 1);
+      if (share > spread.share) {
+        spread.share = share;
+        spread.stretch = l;
+        snprintf(spread.other, sizeof spread.other, "%s", fit->candidates[i].name);
+      }
+    }
+    if (spread.share > 0) {
+      fit->spreads[fit->spread_count++] = spread;
+    }
+  }
 }
 
 /* ---- the law that was chosen ---- */
@@ -418,6 +480,7 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, fill_curves(w));
   dea_fit_tell_weak(fit);
   dea_fit_tell_stability(fit);
+  find_spreads(w);
   DEA_TRY(w->ctx, dea_fit_tell_next(w->ctx, fit));
   fit->scatter_Pa = scatter_Pa;
   return DEA_OK;

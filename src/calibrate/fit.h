@@ -8,6 +8,10 @@
 #include "calibrate/fit_model.h"
 
 enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 200 };
+/* A law that is stable over the range of the tests is taken before one that is not, unless that one
+ * foretells held-out tests so many times better; and laws that foretell them so many times as badly
+ * at most are compared where no test was made. */
+#define DEA_FIT_STABLE_FACTOR 2.0
 enum { DEA_FIT_WEAK_CONDITION = 1000 }; // singular values that far below the largest are told
 
 /* A parameter as found, in its unit. */
@@ -24,9 +28,15 @@ struct dea_fit_candidate {
   bool failed; // it could not be fitted; `why`
   char why[160];
   size_t free_count, branch_count;
-  double chi2, aicc;     // of all rows
-  double held_out;       // root mean square of residuals of tests that were held out, NAN: none
-  double held_out_share; // the same of stress over the largest stress of the test
+  double chi2, aicc; // of all rows
+  /* Root mean square of what it misses of tests that were held out, NAN: none. It is what a law is
+   * chosen by: in uncertainties where they are known, else over the largest stress of all tests. */
+  double held_out;
+  double
+      held_out_share; // the same over the largest stress of each test, whatever uncertainties say
+  enum dea_coupon_mode unstable_mode;
+  double
+      unstable_from; // lowest stretch of the range of the tests where it is not stable, NAN: none
 };
 
 /* A test beside the fit; arrays [series->rows]. */
@@ -43,6 +53,14 @@ struct dea_fit_stability {
   bool measured;        // a test of that mode was fitted
   double to;            // stretch up to which it was looked at
   double unstable_from; // NAN: stable
+};
+
+/* How far laws that foretell held-out tests about as well are apart where no test was made. */
+struct dea_fit_spread {
+  enum dea_coupon_mode mode;
+  double stretch; // with the I1 that the tests reach
+  char other[DEA_NAME_SIZE];
+  double share; // largest difference from the law that was taken, over its stress
 };
 
 /* What one more test would do. */
@@ -67,6 +85,9 @@ struct dea_fit {
   size_t weak_count;
   struct dea_fit_curve *curves; // [series_count]
   struct dea_fit_stability stability[DEA_COUPON_MODES];
+  struct dea_fit_spread
+      spreads[DEA_COUPON_MODES]; // of modes without a test, where there is another
+  size_t spread_count;
   struct dea_fit_next next[DEA_FIT_NEXT_MAX]; // the best first
   size_t next_count;
   double stretch_min, stretch_max; // of the rows that were fitted
@@ -99,6 +120,11 @@ void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const 
 /* The weak combinations in words, where the law ends to be stable, and the next test. */
 void dea_fit_tell_weak(struct dea_fit *fit);
 void dea_fit_tell_stability(struct dea_fit *fit);
+/* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */
+double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
+                             double to);
+/* Stretch of a mode with the I1 of a uniaxial stretch. */
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double uniaxial);
 dea_status dea_fit_tell_next(struct dea_context *ctx, struct dea_fit *fit);
 
 #endif

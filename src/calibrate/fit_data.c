@@ -152,6 +152,22 @@ static dea_status check_zero(struct work *w)
   return DEA_OK;
 }
 
+/* The number that a name ends with ("VHB 2.5", "strip_2.5.csv"), with a decimal point: others may
+ * count pieces. NAN: none. */
+static double last_number(const char *name)
+{
+  size_t end = strlen(name), dot = 0;
+  end -= end > 4 && strcmp(name + end - 4, ".csv") == 0 ? 4U : 0U;
+  size_t begin = end;
+  while (begin > 0 && (isdigit((unsigned char)name[begin - 1]) || name[begin - 1] == '.')) {
+    begin--;
+    dot += name[begin] == '.' ? 1U : 0U;
+  }
+  const bool alone = begin == 0 || strchr(" _-=", name[begin - 1]) != NULL;
+  const double value = alone && dot == 1 && end > begin + 2 ? strtod(name + begin, NULL) : NAN;
+  return value >= 1 && value < 50 ? value : NAN;
+}
+
 /* The number after "stretch" or "lambda" in a text, NAN: none. */
 static double named_stretch(const char *text)
 {
@@ -180,6 +196,8 @@ static dea_status check_reach(struct work *w)
   double named = test->stretch.si, most = 0;
   named = isnan(named) ? named_stretch(test->name.text) : named;
   named = isnan(named) ? named_stretch(w->raw->file) : named;
+  named = isnan(named) ? last_number(test->name.text) : named;
+  named = isnan(named) ? last_number(w->raw->file) : named;
   for (size_t i = 0; i < w->raw->rows; i++) {
     most = fmax(most, w->out->stretch[i]);
   }

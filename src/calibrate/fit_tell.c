@@ -57,15 +57,26 @@ void dea_fit_tell_weak(struct dea_fit *fit)
 
 /* ---- stability ---- */
 
-void dea_fit_tell_stability(struct dea_fit *fit)
+double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
+                             double to)
 {
   enum { STEPS = 200 };
+  for (int k = 0; k <= STEPS; k++) {
+    const double l = 1 + (to - 1) * k / STEPS;
+    if (!dea_coupon_is_stable(material, l, dea_coupon_across(mode, l))) {
+      return l;
+    }
+  }
+  return NAN;
+}
+
+void dea_fit_tell_stability(struct dea_fit *fit)
+{
   struct dea_material material;
   dea_fit_model_material(&fit->model, fit->least_squares.p, &material);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     struct dea_fit_stability *stability = &fit->stability[mode];
-    *stability = (struct dea_fit_stability){
-        .mode = (enum dea_coupon_mode)mode, .to = 1, .unstable_from = NAN};
+    *stability = (struct dea_fit_stability){.mode = (enum dea_coupon_mode)mode, .to = 1};
     for (size_t s = 0; s < fit->series_count; s++) {
       const struct dea_fit_series *series = &fit->series[s];
       if (dea_fit_series_used(series) && (int)series->coupon.mode == mode) {
@@ -76,12 +87,8 @@ void dea_fit_tell_stability(struct dea_fit *fit)
       }
     }
     stability->to = stability->measured ? stability->to : fit->stretch_max;
-    for (int k = 0; k <= STEPS && isnan(stability->unstable_from); k++) {
-      const double l = 1 + (stability->to - 1) * k / STEPS;
-      if (!dea_coupon_is_stable(&material, l, dea_coupon_across((enum dea_coupon_mode)mode, l))) {
-        stability->unstable_from = l;
-      }
-    }
+    stability->unstable_from =
+        dea_fit_unstable_from(&material, (enum dea_coupon_mode)mode, stability->to);
   }
 }
 
@@ -89,8 +96,7 @@ void dea_fit_tell_stability(struct dea_fit *fit)
 
 enum { NEXT_ROWS = 10 };
 
-/* Stretch of that mode with the I1 of a uniaxial stretch. */
-static double as_far(enum dea_coupon_mode mode, double uniaxial)
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double uniaxial)
 {
   const double wanted = uniaxial * uniaxial + 2 / uniaxial;
   double low = 1, high = fmax(uniaxial, 1.0001) * 2;
@@ -115,7 +121,7 @@ static dea_status propose(struct dea_arena *arena, const struct dea_fit *fit, in
   DEA_TRY(arena->ctx, dea_arena_status(arena));
   const bool relaxation = which == DEA_COUPON_MODES;
   const enum dea_coupon_mode mode = relaxation ? DEA_UNIAXIAL : (enum dea_coupon_mode)which;
-  const double to = as_far(mode, fit->stretch_max);
+  const double to = dea_fit_stretch_as_far(mode, fit->stretch_max);
   for (size_t i = 0; i < NEXT_ROWS; i++) {
     const double x = (double)(i + 1) / NEXT_ROWS;
     stretch[i] = relaxation ? to : 1 + (to - 1) * x;

@@ -79,26 +79,44 @@ static struct shown shown_of_law(const char *unit)
                                  : (struct shown){strcmp(unit, "1") == 0 ? "" : unit, 1};
 }
 
+/* What a law is chosen by, with its share of the stress, and where it is not stable. */
+static void print_candidate(const struct dea_fit_candidate *c, bool scale_known, bool taken)
+{
+  char share[24] = "> 1000";
+  const double off = scale_known ? c->held_out_share : c->held_out;
+  if (off < 10) {
+    snprintf(share, sizeof share, "%.2f", 100 * off);
+  }
+  printf("%-18s %10zu %8zu ", c->name, c->free_count, c->branch_count);
+  if (scale_known && c->held_out < 1e4) {
+    printf("%8.2f std", c->held_out);
+  } else if (scale_known) {
+    printf("> 10000 std");
+  }
+  printf("%8s %%%s", share, taken ? "  <- taken" : "");
+  if (!isnan(c->unstable_from)) {
+    printf("  not stable: %s from %.3g", dea_coupon_mode_names[c->unstable_mode], c->unstable_from);
+  }
+  putchar('\n');
+}
+
 static void print_laws(const struct dea_fit *fit)
 {
   if (fit->candidate_count < 2) {
     return;
   }
-  printf("%-18s %10s %8s %22s\n", "law", "parameters", "branches", "held-out tests off by");
+  printf("%-18s %10s %8s   held-out tests off by\n", "law", "parameters", "branches");
   for (size_t i = 0; i < fit->candidate_count; i++) {
     const struct dea_fit_candidate *c = &fit->candidates[i];
     if (c->failed) {
       printf("%-18s cannot be fitted: %s\n", c->name, c->why);
     } else {
-      char share[32] = "more than 1000";
-      if (c->held_out_share < 10) {
-        snprintf(share, sizeof share, "%.2f", 100 * c->held_out_share);
-      }
-      printf("%-18s %10zu %8zu %20s %%%s\n", c->name, c->free_count, c->branch_count, share,
-             i == fit->chosen ? "  <- taken" : "");
+      print_candidate(c, fit->scale_known, i == fit->chosen);
     }
   }
-  putchar('\n');
+  printf(fit->scale_known ? "(std: times the uncertainty, by which the law is chosen; %%: of the "
+                            "test's largest stress)\n\n"
+                          : "(of the largest stress of all tests)\n\n");
 }
 
 static void print_law_values(const struct dea_fit *fit)
@@ -139,6 +157,17 @@ static void print_stability(const struct dea_fit *fit)
   }
 }
 
+/* What no test holds. */
+static void print_spreads(const struct dea_fit *fit)
+{
+  for (size_t k = 0; k < fit->spread_count; k++) {
+    const struct dea_fit_spread *s = &fit->spreads[k];
+    printf("no %s test: there %s, which foretells the tests about as well, differs by %.3g %% at "
+           "%.3g\n",
+           dea_coupon_mode_names[s->mode], s->other, 100 * s->share, s->stretch);
+  }
+}
+
 void cli_print_fit(const struct dea_fit *fit)
 {
   print_laws(fit);
@@ -147,6 +176,7 @@ void cli_print_fit(const struct dea_fit *fit)
   print_misfit(&fit->statistics, "the law or they are");
   print_weak(fit->weak, fit->weak_count);
   print_stability(fit);
+  print_spreads(fit);
   print_next("test", fit->next, fit->next_count);
 }
 

@@ -41,8 +41,7 @@ static dea_status add_test(struct dea_context *ctx, struct dea_plot *plot,
   dea_label_escape(series->test->name.text, title, sizeof title);
   if (measured) {
     DEA_TRY(ctx, add(ctx, &plot->panels[0], n, n > 60 ? DEA_THIN : DEA_MARKERS, number, &data));
-    DEA_TRY(ctx,
-            add(ctx, &plot->panels[1], n, n > 60 ? DEA_THIN : DEA_LINE_MARKED, number, &residual));
+    DEA_TRY(ctx, add(ctx, &plot->panels[1], n, n > 60 ? DEA_THIN : DEA_MARKERS, number, &residual));
     data->colour = n > 60 ? DEA_BLACK : data->colour;
     snprintf(data->title, sizeof data->title, "%s", title);
   } else {
@@ -92,6 +91,38 @@ static void limit(const struct dea_panel *from, struct dea_panel *to)
   }
 }
 
+/* A line at 0 of the residuals, and one where a law that was measured so ends to be stable. */
+static dea_status add_lines(struct dea_context *ctx, const struct dea_fit *fit, bool time,
+                            struct dea_plot *plot)
+{
+  struct dea_series *line;
+  const struct dea_panel *panel = &plot->panels[0];
+  DEA_TRY(ctx, add(ctx, &plot->panels[1], 2, DEA_THIN, 0, &line));
+  line->colour = DEA_BLACK;
+  line->values[0] = panel->x_min;
+  line->values[1] = panel->x_max;
+  line->values[2] = line->values[3] = 0;
+  double most = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    for (size_t i = 0; i < fit->series[s].rows; i++) {
+      most = fmax(most, 1e-3 * fit->curves[s].stress_Pa[i]);
+    }
+  }
+  for (int mode = 0; mode < DEA_COUPON_MODES && !time; mode++) {
+    const struct dea_fit_stability *stability = &fit->stability[mode];
+    if (stability->measured && !isnan(stability->unstable_from)) {
+      DEA_TRY(ctx, add(ctx, &plot->panels[0], 2, DEA_DASHED, 0, &line));
+      line->colour = DEA_GREY;
+      line->values[0] = line->values[1] = stability->unstable_from;
+      line->values[2] = 0;
+      line->values[3] = most;
+      snprintf(line->title, sizeof line->title, "%s: not stable beyond",
+               dea_coupon_mode_names[mode]);
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool time,
                        const char *name, const struct dea_plot_format *format,
                        const char *directory, bool *drawn)
@@ -125,6 +156,8 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
   }
   if (plot->panels[1].series_count == 0) {
     plot->panel_count = 1;
+  } else if (status == DEA_OK) {
+    status = add_lines(ctx, fit, time, plot);
   }
   if (status == DEA_OK && *drawn) {
     status = dea_plot_write(ctx, plot, format, directory);

@@ -284,6 +284,7 @@ static json_t *laws_json(const struct dea_fit *fit)
       dea_json_put(object, "aicc", candidate->aicc);
       dea_json_put(object, "held_out", candidate->held_out);
       dea_json_put(object, "held_out_share", candidate->held_out_share);
+      dea_json_put(object, "unstable_from", candidate->unstable_from);
     }
     json_array_append_new(array, object);
   }
@@ -311,7 +312,7 @@ static json_t *tests_json(const struct dea_fit *fit)
 
 static json_t *advice_json(const struct dea_fit *fit)
 {
-  json_t *object = json_object(), *stability = json_array();
+  json_t *object = json_object(), *stability = json_array(), *spreads = json_array();
   dea_fit_json_advice(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
                       fit->next_count);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
@@ -323,6 +324,15 @@ static json_t *advice_json(const struct dea_fit *fit)
     json_array_append_new(stability, row);
   }
   json_object_set_new(object, "stability", stability);
+  for (size_t k = 0; k < fit->spread_count; k++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, "mode", dea_coupon_mode_names[fit->spreads[k].mode]);
+    dea_json_put(row, "stretch", fit->spreads[k].stretch);
+    dea_json_put_text(row, "other_law", fit->spreads[k].other);
+    dea_json_put(row, "differs_by_share", fit->spreads[k].share);
+    json_array_append_new(spreads, row);
+  }
+  json_object_set_new(object, "not_measured", spreads);
   return object;
 }
 
