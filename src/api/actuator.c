@@ -82,11 +82,12 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
     return DEA_E_MEMORY;
   }
   actuator->ctx = ctx;
-  actuator->type = type;
   actuator->point = dea_load_point_empty();
   dea_status status = door_design_build(inner, design, &actuator->design, &actuator->device);
   if (status == DEA_OK) {
-    status = dea_model_create(inner, type, actuator->design, actuator->device, &actuator->model);
+    actuator->type = dea_model_of_device(type, actuator->device);
+    status = dea_model_create(inner, actuator->type, actuator->design, actuator->device,
+                              &actuator->model);
   }
   if (status != DEA_OK) {
     dea_actuator_free(actuator);

@@ -339,7 +339,7 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_design 
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location, "there is no model '%.60s'",
                                    model->text));
       status = dea_fail(ctx, DEA_E_DESIGN, "there is no model '%.60s'", model->text);
-    } else if (design->parts != NULL && !type->any_layout) {
+    } else if (design->parts != NULL && type->of_layouts == NULL) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location,
                                    "the model '%.60s' knows only a disc in a round frame; a design "
                                    "with 'plies' is computed by 3d",

@@ -32,7 +32,7 @@ dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_model_type *type = cli_model_find(cli, label->text, label->location);
     bad = type == NULL || bad;
-    if (type != NULL && design->parts != NULL && !type->any_layout) {
+    if (type != NULL && design->parts != NULL && type->of_layouts == NULL) {
       dea_finding_add(cli->ctx, DEA_ERROR, label->location,
                       "the model '%.60s' knows only a disc in a round frame; a design with 'plies' "
                       "is computed by 3d",

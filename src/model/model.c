@@ -1,5 +1,12 @@
 #include "model/model.h"
 
+const struct dea_model_type *dea_model_of_device(const struct dea_model_type *type,
+                                                 const struct dea_device *device)
+{
+  bool general = device != NULL && device->general;
+  return general && type->of_layouts != NULL ? type->of_layouts : type;
+}
+
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 {
   return (struct dea_model_settings){
@@ -16,8 +23,9 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_design *design, const struct dea_device *device)
 {
-  if (type->check != NULL) {
-    DEA_TRY(ctx, type->check(ctx, design, device));
+  const struct dea_model_type *own = dea_model_of_device(type, device);
+  if (own->check != NULL) {
+    DEA_TRY(ctx, own->check(ctx, design, device));
   }
   return DEA_OK;
 }

@@ -78,7 +78,9 @@ struct dea_time_options {
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
-  bool any_layout;       // knows devices of the general form too, not only a disc in a round frame
+  /* The same model of devices of the general form, with what it can there; NULL: it knows only a
+   * disc in a round frame. */
+  const struct dea_model_type *of_layouts;
   /* device: lent, outlives the model. settings: copied; NULL: the defaults. */
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        const struct dea_model_settings *settings, struct dea_model **out);
@@ -171,6 +173,9 @@ struct dea_model_type {
   void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };
 
+/* The type that speaks for a model of this device (NULL: a disc): what is NULL there it cannot. */
+const struct dea_model_type *dea_model_of_device(const struct dea_model_type *type,
+                                                 const struct dea_device *device);
 /* What a design says of how to compute (compute.solid). */
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design);
 /* What a model does not take of a design, as `check` above. */
@@ -179,7 +184,8 @@ dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type 
 /* The same of all models that a design names; names that there are not are passed over. */
 dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *design,
                             const struct dea_device *device);
-/* A model of a device with the settings of its design, which it has to take. */
+/* A model of a device with the settings of its design, which it has to take; type: the one that
+ * speaks for it. */
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_design *design, const struct dea_device *device,
                             struct dea_model **out);

@@ -79,9 +79,6 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
                         const struct dea_device *device)
 {
   const struct dea_material *film = &device->film;
-  if (device->general) {
-    return DEA_OK;
-  }
   bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
   if (coupled && film->permittivity.slope != 0) {
     DEA_TRY(ctx, refuse(ctx, &design->compute.solid.field.location,
@@ -207,18 +204,33 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
   model->type->size(model->inner, out);
 }
 
+/* What the module's model of layouts has. */
+static const struct dea_model_type of_layouts = {
+    .name = "3d",
+    .long_name = "3D solid",
+    .create = create,
+    .destroy = destroy,
+    .limit = limit,
+    .solve = solve,
+    .observe = observe,
+    .move = move,
+    .modes = modes,
+    .fields = fields,
+    .save = save,
+    .load = load,
+    .size = size,
+};
+
 const struct dea_model_type dea_model_3d = {
     .name = "3d",
-    .any_layout = true,
+    .of_layouts = &of_layouts,
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
     .check = check,
     .limit = limit,
     .solve = solve,
-    .observe = observe,
     .indent = indent,
-    .move = move,
     .modes = modes,
     .respond = respond,
     .profile = profile,

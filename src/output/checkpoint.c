@@ -274,6 +274,21 @@ static dea_status take_surfaces(struct dea_context *ctx, struct dea_result *from
   return DEA_OK;
 }
 
+/* Moves the tables that the sweep of a model makes as it goes, with the rows of its first `count`
+ * points: each has as many. */
+static dea_status take_tables(struct dea_context *ctx, struct dea_result *from,
+                              const struct dea_curve *sweep, size_t count, struct dea_result *to)
+{
+  for (size_t i = 0; i < from->table_count; i++) {
+    struct dea_result_table *table = &from->tables[i];
+    if (strcmp(table->model, sweep->model) == 0 && strcmp(table->type.study, sweep->kind) == 0) {
+      dea_result_table_cut(ctx, table, count * (table->row_count / sweep->count));
+      DEA_TRY(ctx, dea_result_take_table(ctx, to, table));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status take_sweep(struct dea_context *ctx, const char *directory, const char *state,
                              struct dea_result *old, const struct dea_curve *sweep,
                              struct dea_result *result)
@@ -291,6 +306,7 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
     DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &sweep->points[i]));
   }
   DEA_TRY(ctx, take_surfaces(ctx, old, sweep->model, count, result));
+  DEA_TRY(ctx, take_tables(ctx, old, sweep, count, result));
   return DEA_OK;
 }
 

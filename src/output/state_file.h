@@ -4,7 +4,7 @@
 
 #include "result/state.h"
 
-enum { DEA_STATE_SCHEMA = 1 };
+enum { DEA_STATE_SCHEMA = 2 };
 
 /* points: of the sweep that the state stands after. Of marks (what the state belongs to) the
  * SHA-256 is kept. */

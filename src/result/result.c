@@ -131,6 +131,18 @@ dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *resu
   return DEA_OK;
 }
 
+dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,
+                                 struct dea_result_table *table)
+{
+  struct dea_result_table *to;
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &table->type, table->model, table->width, &to));
+  *to = *table;
+  table->cells = NULL;
+  table->own_columns = NULL;
+  table->row_count = table->room = 0;
+  return DEA_OK;
+}
+
 /* Room for one more of *items; on failure everything stays as it was. */
 static dea_status make_room(struct dea_context *ctx, void **items, size_t count, size_t *room,
                             size_t size)

@@ -6,7 +6,7 @@
 
 #include "base/context.h"
 
-enum { DEA_STATE_PARTS_MAX = 16, DEA_STATE_NUMBERS_MAX = 256 };
+enum { DEA_STATE_PARTS_MAX = 16, DEA_STATE_NUMBERS_MAX = 1024 };
 
 struct dea_state_array {
   const char *name;

@@ -54,11 +54,17 @@ dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_resul
   return DEA_OK;
 }
 
-void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *table)
+void dea_result_table_cut(struct dea_context *ctx, struct dea_result_table *table, size_t rows)
 {
-  for (size_t i = 0; i < table->row_count * table->stride; i++) {
+  for (size_t i = rows * table->stride; i < table->row_count * table->stride; i++) {
     dea_free(ctx, table->cells[i].text);
   }
+  table->row_count = rows < table->row_count ? rows : table->row_count;
+}
+
+void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *table)
+{
+  dea_result_table_cut(ctx, table, 0);
   dea_free(ctx, table->cells);
   dea_free(ctx, table->own_columns);
   table->own_columns = NULL;

@@ -83,6 +83,8 @@ size_t dea_result_table_values(const struct dea_result_table *table, size_t colu
 dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_result_table_type *type,
                                  const char *model, size_t width, struct dea_result_table *out);
 void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *table);
+/* Frees all rows but the first. */
+void dea_result_table_cut(struct dea_context *ctx, struct dea_result_table *table, size_t rows);
 /* A value of a row: of its column's kind the one that counts. */
 struct dea_result_table_value {
   double number;      // of all kinds that are no text

@@ -115,7 +115,7 @@ dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_typ
                              struct dea_model *model, double voltage_V, struct dea_result *result)
 {
   struct dea_observation seen;
-  if (type->observe == NULL || result->device == NULL || !result->device->general) {
+  if (type->observe == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));

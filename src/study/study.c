@@ -154,6 +154,7 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
                          const char *const names[], size_t name_count, struct dea_result *result)
 {
   struct dea_model *model = NULL; // made for the first study that wants it
+  type = dea_model_of_device(type, result->device);
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   dea_status first = DEA_OK;
   for (size_t i = 0; i < STUDIES; i++) {

@@ -23,17 +23,11 @@ static double distance_to_pull_in(const struct dea_curve *path, const struct dea
   return NAN;
 }
 
-/* Whether the device is of the general form. */
-static bool is_general(const struct dea_result *result)
-{
-  return result->device != NULL && result->device->general;
-}
-
 static dea_status add_profile(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, double voltage_V, struct dea_result *result)
 {
   struct dea_profile profile;
-  if (type->profile == NULL || is_general(result)) { // profiles are along radii of a disc
+  if (type->profile == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
@@ -83,12 +77,12 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
       fields_wanted(result->design, curve->points[curve->count - 1].voltage_V)) {
     DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &fields));
   }
-  bool saves = type->save != NULL && !is_general(result);
-  if (saves) {
+  if (type->save != NULL) {
     status = dea_model_save(ctx, type, model, &state);
   }
   if (status == DEA_OK) {
-    status = sink->point(ctx, sink->user, result, curve, fields, saves ? &state : NULL);
+    status =
+        sink->point(ctx, sink->user, result, curve, fields, type->save != NULL ? &state : NULL);
   }
   dea_field_mesh_destroy(ctx, fields);
   return status;
@@ -179,11 +173,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   snprintf(what, sizeof what, "%s sweep", type->name);
   open_curve(curve);
   dea_status status = DEA_OK;
-  if (is_general(result) && curve->count > 0) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "a run of a device of the general form cannot be resumed yet; run it anew with "
-                    "--force");
-  }
   if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
     status = restore(ctx, type, model, result->checkpoint);
   }

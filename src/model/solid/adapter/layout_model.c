@@ -2,10 +2,10 @@
 #include "base/module.h"
 #include "model/make.h"
 #include "model/solid/actuator/constituent_of_material.h"
-#include "model/solid/adapter/ending.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
+#include "model/solid/adapter/standing.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
@@ -16,6 +16,12 @@
 
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
 static const double no_motion[3] = {0};
+
+/* What a state belongs to beside the solid's mesh and materials. */
+struct marks {
+  double *out; // NULL: only counted
+  size_t count;
+};
 
 struct dea_model {
   const struct dea_layout *layout;
@@ -37,11 +43,9 @@ struct dea_model {
   size_t film;            // the first dielectric ply, or the first of all
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
   double flat_m;          // the same as they are in the flat state
-  double voltage_V, rest_energy_J;
-  bool left_a_state;      // on the way an unstable state was left: there are several
   double pressure_factor; // on all pressures
-  struct dea_solid_report report;
-  struct dea_ending ending; // of the last solve
+  struct dea_standing at;
+  struct marks marks; // of saved states, made by the first
 };
 
 // Materials --------------------------------------------------------------------------------------
@@ -403,10 +407,10 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   size_t values = 3 * model->mesh.grid->node_count;
   double *force = dea_solid_force(model->solid);
   DEA_TRY(ctx, hold_all(ctx, model));
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
   memcpy(force, dea_solid_reaction(model->solid), values * sizeof *force);
   DEA_TRY(ctx, hold_supports(ctx, model, false));
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
   DEA_TRY(ctx, hold_supports(ctx, model, true));
   for (size_t k = 1; k < model->layout->channel_count; k++) {
     dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
@@ -416,8 +420,8 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   }
   DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
-  model->left_a_state = model->report.snapped;
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
+  model->at.left_a_state = model->at.report.snapped;
   return DEA_OK;
 }
 
@@ -515,7 +519,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   find_thinnest(model);
   DEA_TRY(ctx, release(ctx, model));
-  model->rest_energy_J = model->report.energy_J;
+  model->at.rest_energy_J = model->at.report.energy_J;
   return DEA_OK;
 }
 
@@ -575,11 +579,11 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->locking_share = extremes.reach.locking_share;
   out->range_share = extremes.reach.range_share;
   out->compression_ratio = extremes.compression_ratio;
-  out->told |= (unsigned)model->left_a_state << DEA_FLAG_STATES;
+  out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->mesh.membrane << DEA_FLAG_PREVIEW;
-  out->energy_J = model->report.energy_J - model->rest_energy_J;
+  out->energy_J = model->at.report.energy_J - model->at.rest_energy_J;
   out->capacitance_F = capacitance_F;
-  out->unstable_modes = model->report.unstable_modes;
+  out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
   return DEA_OK;
 }
@@ -588,21 +592,21 @@ static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
 {
   struct dea_model *model = self;
   (void)ctx;
-  model->voltage_V = voltage_V;
-  model->left_a_state = model->left_a_state || model->report.snapped || model->ending.leapt;
+  model->at.voltage_V = voltage_V;
+  model->at.left_a_state =
+      model->at.left_a_state || model->at.report.snapped || model->at.ending.leapt;
   return DEA_OK;
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return dea_ending_limit(&model->ending);
+  return dea_standing_limit(&model->at);
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, voltage_V, &model->report));
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  DEA_TRY(ctx, dea_standing_solve(ctx, &model->at, voltage_V, out));
   return DEA_OK;
 }
 
@@ -667,22 +671,93 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, check_control(ctx, model, control, value));
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
-  dea_status status = dea_load_steps_solve(ctx, model->solid, model->voltage_V, &model->report);
+  dea_status status =
+      dea_load_steps_solve(ctx, model->solid, model->at.voltage_V, &model->at.report);
   if (status != DEA_OK) {
-    double reached = from + model->report.way * (value - from);
+    double reached = from + model->at.report.way * (value - from);
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
     DEA_TRY(ctx, set_control(ctx, model, control, reached));
     return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
-                    model->report.way, why);
+                    model->at.report.way, why);
   }
-  if (model->report.snapped) {
-    model->left_a_state = true;
+  if (model->at.report.snapped) {
+    model->at.left_a_state = true;
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: a state at %.4g kV is unstable (buckling or snapping) "
                                  "under this load; it goes on from the stable one below it",
-                                 1e-3 * model->voltage_V));
+                                 1e-3 * model->at.voltage_V));
   }
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
+  return DEA_OK;
+}
+
+// Saved states -----------------------------------------------------------------------------------
+
+static void mark(struct marks *marks, const double *values, size_t count)
+{
+  if (marks->out != NULL && count > 0) {
+    memcpy(marks->out + marks->count, values, count * sizeof *values);
+  }
+  marks->count += count;
+}
+
+/* All numbers of the layout that electrodes, supports, and loads depend on. */
+static void mark_layout(const struct dea_layout *l, struct marks *marks)
+{
+  mark(marks, l->gravity_m_per_s2, 3);
+  for (size_t i = 0; i < l->channel_count; i++) {
+    const double own[] = {l->channels[i].ratio, l->channels[i].own_V};
+    mark(marks, own, 2);
+  }
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    const struct dea_layout_electrode *e = &l->electrodes[i];
+    const double own[] = {(double)e->ply, e->top, (double)e->region, (double)e->channel};
+    mark(marks, own, 4);
+  }
+  for (size_t i = 0; i < l->support_count; i++) {
+    mark(marks, l->supports[i].move_m, 3);
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    const struct dea_layout_body *b = &l->bodies[i];
+    mark(marks, &b->mass_kg, 1);
+    mark(marks, b->shift_m, 3);
+    mark(marks, b->turn_rad, 3);
+    mark(marks, b->force_N, 3);
+    mark(marks, b->moment_N_m, 3);
+  }
+  for (size_t i = 0; i < l->spring_count; i++) {
+    const struct dea_layout_spring *s = &l->springs[i];
+    const double own[] = {(double)s->body, s->component, s->free_at, s->stiffness};
+    mark(marks, own, 4);
+    mark(marks, s->at, s->count);
+    mark(marks, s->force, s->count);
+  }
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    const struct dea_layout_pressure *p = &l->pressures[i];
+    const double own[] = {(double)p->region, (double)p->ply, p->top, p->pressure_Pa};
+    mark(marks, own, 4);
+  }
+}
+
+static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
+{
+  DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
+  if (model->marks.out == NULL) {
+    struct marks counted = {.out = NULL};
+    mark_layout(model->layout, &counted);
+    model->marks.out = dea_arena_alloc(&model->memory, counted.count, sizeof *model->marks.out);
+    DEA_TRY(ctx, dea_arena_status(&model->memory));
+    mark_layout(model->layout, &model->marks);
+  }
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "loads", model->marks.out,
+                                  model->marks.count * sizeof *model->marks.out));
+  return DEA_OK;
+}
+
+static dea_status load(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_state *state)
+{
+  DEA_TRY(ctx, dea_standing_load(ctx, &model->at, state));
   return DEA_OK;
 }
 
@@ -729,7 +804,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   struct dea_model *model = *out;
   const struct dea_layout_ply *film = &model->layout->plies[model->film];
-  model->ending.owner = (struct dea_ending_owner){
+  model->at.ending.owner = (struct dea_ending_owner){
       .solid = model->solid,
       .films = model->films,
       .model = model,
@@ -757,5 +832,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .move = move,
     .modes = modes,
     .fields = fields,
+    .save = save,
+    .load = load,
     .size = size,
 };

@@ -5,12 +5,11 @@
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/adapter/buckling_branch.h"
 #include "model/solid/adapter/circuit_step.h"
-#include "model/solid/adapter/ending.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/solid_of_actuator.h"
-#include "model/solid/adapter/state.h"
+#include "model/solid/adapter/standing.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
@@ -30,15 +29,12 @@ struct dea_model {
   size_t tip, centre, between; // nodes that are reported
   size_t centre_twin,
       between_twin; // on the other side of the film's middle plane, or the same ones
-  double voltage_V, rest_energy_J;
-  struct dea_solid_report report;
-  bool left_a_state;               // since 0 V the solid has gone over to another state
+  struct dea_standing at;
   double *profile;                 // what the last one lends from
   struct dea_indent *indent;       // NULL: no probe
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
   struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
-  struct dea_ending ending; // of the last solve
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -139,8 +135,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_solid_of_actuator(ctx, &model->actuator, model->grid, &model->solid));
   find_nodes(model);
   DEA_TRY(ctx, add_weight(ctx, model));
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->report));
-  model->rest_energy_J = model->report.energy_J;
+  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
+  model->at.rest_energy_J = model->at.report.energy_J;
   for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
     model->films[i] = (struct dea_solid_film_data){&device->film, device->pre_stretch};
   }
@@ -248,15 +244,15 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->range_share = extremes.reach.range_share;
   double copies = dea_actuator_copies(&model->actuator);
   out->compression_ratio = copies * extremes.compression_ratio;
-  out->told |= (unsigned)model->left_a_state << DEA_FLAG_STATES;
+  out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->actuator.plate.membrane << DEA_FLAG_PREVIEW;
-  out->energy_J = copies * (model->report.energy_J - model->rest_energy_J);
+  out->energy_J = copies * (model->at.report.energy_J - model->at.rest_energy_J);
   out->capacitance_F = copies * capacitance_F;
   if (model->indent != NULL) {
     out->tip_depth_m = model->indent->depth_m;
     out->force_N = dea_indent_force(model->indent, u);
   }
-  out->unstable_modes = model->report.unstable_modes;
+  out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
   DEA_TRY(ctx, report_errors(ctx, model, out));
   return DEA_OK;
@@ -269,19 +265,19 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
 {
   bool moved;
   double before_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
-  if (model->indent != NULL || model->voltage_V == 0) {
+  if (model->indent != NULL || model->at.voltage_V == 0) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_buckling_branch_take(ctx, model->solid, model->grid, &model->actuator.plate,
                                         model->centre, model->actuator.settings.buckling_branch,
-                                        &model->report, &moved));
+                                        &model->at.report, &moved));
   if (moved) {
-    model->left_a_state = true;
+    model->at.left_a_state = true;
     double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: at %.4g kV the centre goes over from %.4g to %.4g um "
                                  "(compute.solid.buckling_branch)",
-                                 1e-3 * model->voltage_V, 1e6 * before_m, 1e6 * after_m));
+                                 1e-3 * model->at.voltage_V, 1e6 * before_m, 1e6 * after_m));
   }
   return DEA_OK;
 }
@@ -289,16 +285,16 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
 static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
 {
   struct dea_model *model = self;
-  model->voltage_V = voltage_V;
-  model->left_a_state =
-      voltage_V > 0 && (model->left_a_state || model->report.snapped || model->ending.leapt);
+  model->at.voltage_V = voltage_V;
+  model->at.left_a_state = voltage_V > 0 && (model->at.left_a_state || model->at.report.snapped ||
+                                             model->at.ending.leapt);
   DEA_TRY(ctx, take_side(ctx, model));
   return DEA_OK;
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return dea_ending_limit(&model->ending);
+  return dea_standing_limit(&model->at);
 }
 
 /* ---- in time ---- */
@@ -309,15 +305,15 @@ static void end_history(struct dea_context *ctx, struct dea_model *model)
   if (model->driven != NULL) {
     dea_circuit_step_destroy(ctx, model->driven);
     model->driven = NULL;
-    model->voltage_V = dea_solid_voltage(model->solid);
+    model->at.voltage_V = dea_solid_voltage(model->solid);
   }
 }
 
 static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
                               struct dea_load_point *out)
 {
-  model->voltage_V = dea_solid_voltage(model->solid);
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  model->at.voltage_V = dea_solid_voltage(model->solid);
+  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
   dea_circuit_step_point(model->driven, out);
   out->stored_energy_J += model->stored_J;
   out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
@@ -328,7 +324,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
   end_history(ctx, model);
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
   model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
   DEA_TRY(ctx, dea_circuit_step_create(ctx, model->solid, &model->actuator, time, &model->driven));
   DEA_TRY(ctx, report_time(ctx, model, out));
@@ -345,7 +341,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
   if (dea_solid_any(dea_interrupted(ctx))) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
   }
-  DEA_TRY(ctx, dea_circuit_step_advance(ctx, model->driven, step, &model->report, error));
+  DEA_TRY(ctx, dea_circuit_step_advance(ctx, model->driven, step, &model->at.report, error));
   DEA_TRY(ctx, report_time(ctx, model, out));
   return DEA_OK;
 }
@@ -361,8 +357,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
                         struct dea_load_point *out)
 {
   end_history(ctx, model);
-  DEA_TRY(ctx, dea_ending_go(ctx, &model->ending, model->voltage_V, voltage_V, &model->report));
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  DEA_TRY(ctx, dea_standing_solve(ctx, &model->at, voltage_V, out));
   return DEA_OK;
 }
 
@@ -374,8 +369,8 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
     DEA_TRY(ctx, dea_indent_create(ctx, &model->actuator, model->grid, model->solid, probe,
                                    &model->indent));
   }
-  dea_status status =
-      dea_indent_move(ctx, model->indent, model->solid, model->voltage_V, depth_m, &model->report);
+  dea_status status = dea_indent_move(ctx, model->indent, model->solid, model->at.voltage_V,
+                                      depth_m, &model->at.report);
   if (status != DEA_OK) {
     char why[200];
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
@@ -383,7 +378,7 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                     "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
                     1e3 * model->indent->depth_m, 1e3 * depth_m, why);
   }
-  DEA_TRY(ctx, report(ctx, model, model->voltage_V, out));
+  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
   return DEA_OK;
 }
 
@@ -468,26 +463,14 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  const double own[] = {model->voltage_V};
-  *out = (struct dea_state){0};
-  DEA_TRY(ctx, dea_solid_save(ctx, model->solid, out));
-  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "model", own, 1));
-  if (model->left_a_state) { // by its presence
-    DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "left_a_state", own, 1));
-  }
+  DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
   return DEA_OK;
 }
 
 static dea_status load(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_state *state)
 {
-  const double *own = dea_state_find(state, "model", 1);
-  if (own == NULL) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
-  }
-  DEA_TRY(ctx, dea_solid_load(ctx, model->solid, state));
-  model->voltage_V = own[0];
-  model->left_a_state = dea_state_find(state, "left_a_state", 1) != NULL;
+  DEA_TRY(ctx, dea_standing_load(ctx, &model->at, state));
   return DEA_OK;
 }
 
@@ -503,7 +486,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 {
   DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   struct dea_model *model = *out;
-  model->ending.owner = (struct dea_ending_owner){
+  model->at.ending.owner = (struct dea_ending_owner){
       .solid = model->solid,
       .films = model->films,
       .model = model,

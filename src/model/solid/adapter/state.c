@@ -1,6 +1,8 @@
 #include "model/solid/adapter/state.h"
 
+#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/matrix.h"
 
 #include <string.h>
 
@@ -68,6 +70,18 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   return DEA_OK;
 }
 
+/* The factor that the equilibrium has left for the start of the next step. */
+static dea_status factorise(struct dea_context *ctx, struct dea_solid *s)
+{
+  double energy;
+  int negative;
+  s->found.factor_fits = s->found.predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
+  s->found.factor_fits = negative == 0;
+  return DEA_OK;
+}
+
 dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
                           const struct dea_state *state)
 {
@@ -84,5 +98,6 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
   memcpy(s->state.force_goal, s->state.force, s->problem.dofs * sizeof(double));
   s->found.force_largest_N = own[0];
   s->found.energy_largest_J = own[1];
+  DEA_TRY(ctx, factorise(ctx, s));
   return DEA_OK;
 }

@@ -9,7 +9,8 @@
 
 /* Adds the solid's arrays, and marks of its mesh, supports and materials. Lent by the solid. */
 dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *solid, struct dea_state *out);
-/* DEA_E_ARGUMENT when an array is missing or of another length; the solid is then as it was. */
+/* Factorises the tangent there, from which the next solve starts as it would have. DEA_E_ARGUMENT
+ * when an array is missing or of another length; the solid is then as it was. */
 dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *solid,
                           const struct dea_state *state);
 

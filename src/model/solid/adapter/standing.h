@@ -1,0 +1,28 @@
+/* Where a model of a solid stands, whatever device the solid is of: its last equilibrium, and the
+ * way to the next one. What model/model.h asks of all such models is done here. */
+#ifndef DEA_MODEL_SOLID_ADAPTER_STANDING_H
+#define DEA_MODEL_SOLID_ADAPTER_STANDING_H
+
+#include "model/solid/adapter/ending.h"
+#include "result/state.h"
+
+/* Zeroed at first but for the ending's owner. */
+struct dea_standing {
+  struct dea_ending ending; // of the last solve
+  struct dea_solid_report report;
+  double voltage_V, rest_energy_J;
+  bool left_a_state; // a state was left on the way to here: there are several
+};
+
+/* `solve` and `limit` of struct dea_model_type. */
+dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *standing,
+                              double voltage_V, struct dea_load_point *out);
+const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
+
+/* Where the solid stands as a saved state, and back; as dea_solid_save and dea_solid_load. */
+dea_status dea_standing_save(struct dea_context *ctx, const struct dea_standing *standing,
+                             struct dea_state *out);
+dea_status dea_standing_load(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_state *state);
+
+#endif
