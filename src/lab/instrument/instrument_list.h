@@ -7,4 +7,6 @@
   X(comedi)                                                                                        \
   X(nidaqmx)                                                                                       \
   X(gocator)                                                                                       \
+  X(keyence)                                                                                       \
+  X(optoncdt)                                                                                      \
   X(scpi)

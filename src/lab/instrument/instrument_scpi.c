@@ -302,9 +302,10 @@ static dea_status start_scpi(struct dea_context *ctx, struct dea_instrument *ins
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   s->start_s = dea_clock_s();
-  for (size_t i = 0; i < s->raw.reading_count; i++) {
-    s->due_s[i] = s->start_s;
-  }
+  s->asking.count = s->raw.reading_count;
+  s->asking.interval_s = s->raw.interval_s.si;
+  s->asking.timeout_s = s->raw.timeout_s.si;
+  dea_asking_start(&s->asking, s->start_s);
   return s->output.queue != NULL ? dea_scpi_output_start(ctx, s) : DEA_OK;
 }
 
@@ -341,7 +342,7 @@ static dea_status check_suffix(struct dea_context *ctx, struct dea_scpi *s, size
 static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, const char *response,
                                 const struct dea_sink *sink)
 {
-  size_t reading = s->asked_reading;
+  size_t reading = s->asking.reading;
   double value, now_s = dea_clock_s();
   if (s->asked == DEA_SCPI_NOTHING) {
     s->base.lost++;
@@ -369,32 +370,20 @@ static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, con
 /* Asks for the reading that is due, if any and nothing is waited for; *next_s: when one will be. */
 static dea_status ask_next(struct dea_context *ctx, struct dea_scpi *s, double *next_s)
 {
-  size_t first = 0;
   double now_s = dea_clock_s();
   *next_s = INFINITY;
   if (s->asked == DEA_SCPI_READING) {
-    const char *query = s->raw.readings[s->asked_reading].query.text;
+    const char *query = s->raw.readings[s->asking.reading].query.text;
     *next_s = s->asked_s + s->raw.timeout_s.si;
     return now_s < *next_s ? DEA_OK : dea_scpi_no_response(ctx, s, query, s->raw.timeout_s.si);
   }
-  if (s->asked != DEA_SCPI_NOTHING || s->raw.reading_count == 0) {
-    return DEA_OK;
-  }
-  for (size_t i = 1; i < s->raw.reading_count; i++) {
-    first = s->due_s[i] < s->due_s[first] ? i : first;
-  }
-  if (s->due_s[first] > now_s) {
-    *next_s = s->due_s[first];
+  if (s->asked != DEA_SCPI_NOTHING || !dea_asking_next(&s->asking, now_s, next_s)) {
     return DEA_OK;
   }
   s->asked = DEA_SCPI_READING;
-  s->asked_reading = first;
   s->asked_s = now_s;
-  // One that takes longer than the interval is asked again at once, not for what was missed.
-  double due_s = s->due_s[first] + s->raw.interval_s.si;
-  s->due_s[first] = due_s > now_s ? due_s : now_s;
-  *next_s = now_s + s->raw.timeout_s.si;
-  return dea_scpi_send(ctx, &s->link, s->raw.timeout_s.si, s->raw.readings[first].query.text);
+  return dea_scpi_send(ctx, &s->link, s->raw.timeout_s.si,
+                       s->raw.readings[s->asking.reading].query.text);
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,

@@ -7,6 +7,7 @@
 #ifndef DEA_LAB_INSTRUMENT_SCPI_H
 #define DEA_LAB_INSTRUMENT_SCPI_H
 
+#include "lab/instrument/asking.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/line_reader.h"
 #include "lab/instrument/scpi_parse.h"
@@ -65,13 +66,12 @@ struct dea_scpi {
   const struct dea_protocol *protocol; // lent
   struct dea_scpi_link link;
   char name[DEA_SOCKET_NAME_SIZE + 8];
-  double start_s;                            // computer's clock at start; NAN before
-  double due_s[DEA_INSTRUMENT_READINGS_MAX]; // of the readings, on the computer's clock
+  double start_s;           // computer's clock at start; NAN before
+  struct dea_asking asking; // of the readings
   /* What stood behind the first number of each: its unit, which must stay; valid when `known`. */
   char suffix[DEA_INSTRUMENT_READINGS_MAX][DEA_SCPI_SUFFIX_SIZE];
   bool known[DEA_INSTRUMENT_READINGS_MAX], noted_suffix;
   enum dea_scpi_question asked; // what is waited for
-  size_t asked_reading;
   double asked_s;
   bool broken; // a response made no sense: which question the next one belongs to is not known
   struct dea_scpi_output output;

@@ -94,7 +94,7 @@ dea_status dea_socket_read(struct dea_context *ctx, const struct dea_socket *con
   if (room == 0 || wait_for(connection->descriptor, POLLIN, timeout_s) != 1) {
     return DEA_OK;
   }
-  ssize_t got = recv(connection->descriptor, bytes, room, 0);
+  ssize_t got = read(connection->descriptor, bytes, room);
   if (got > 0) {
     *length = (size_t)got;
     return DEA_OK;
@@ -106,13 +106,20 @@ dea_status dea_socket_read(struct dea_context *ctx, const struct dea_socket *con
                   got == 0 ? "it closed it" : strerror(errno), advice);
 }
 
+/* Of a socket without SIGPIPE; a serial line (serial.h) knows none. */
+static ssize_t send_some(int descriptor, const void *bytes, size_t length)
+{
+  ssize_t sent = send(descriptor, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+  return sent < 0 && errno == ENOTSOCK ? write(descriptor, bytes, length) : sent;
+}
+
 dea_status dea_socket_write(struct dea_context *ctx, const struct dea_socket *connection,
                             double timeout_s, const void *bytes, size_t length)
 {
   const char *at = bytes;
   double until_s = dea_clock_s() + timeout_s;
   while (length > 0) {
-    ssize_t sent = send(connection->descriptor, at, length, MSG_NOSIGNAL);
+    ssize_t sent = send_some(connection->descriptor, at, length);
     if (sent >= 0) {
       at += sent;
       length -= (size_t)sent;
@@ -135,7 +142,7 @@ void dea_socket_write_if_possible(const struct dea_socket *connection, const voi
                                   size_t length)
 {
   if (connection->descriptor >= 0) {
-    (void)!send(connection->descriptor, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+    (void)!send_some(connection->descriptor, bytes, length);
   }
 }
 

@@ -1,5 +1,5 @@
-/* TCP connections to instruments: every wait ends, a lost connection is a sentence, and no write
- * raises SIGPIPE. */
+/* TCP connections to instruments, and what is read and written like one (serial.h): every wait
+ * ends, a lost connection is a sentence, and no write raises SIGPIPE. */
 #ifndef DEA_LAB_INSTRUMENT_SOCKET_H
 #define DEA_LAB_INSTRUMENT_SOCKET_H
 
