@@ -23,6 +23,11 @@ static json_t *amounts_json(const struct dea_workshop *w)
 {
   struct dea_amounts a;
   json_t *json = json_object();
+  if (w->plan.device->general) {
+    dea_json_put(json, "ink_area_m2", dea_ink_area_m2(w));
+    dea_json_put(json, "mass_kg", dea_plies_mass_kg(w->plan.device->layout));
+    return json;
+  }
   dea_amounts_find(w, &a);
   dea_json_put(json, "film_area_m2", a.film_area_m2);
   dea_json_put(json, "ink_area_m2", a.ink_area_m2);
@@ -40,11 +45,14 @@ static void print_json(const struct dea_workshop *w, const struct request *reque
   json_t *parts = json_array(), *files = json_array();
   for (size_t i = 0; i < w->count; i++) {
     const struct dea_part *part = &w->part[i];
-    json_t *row = json_pack("{s:s, s:s, s:i, s:f, s:f}", "name", part->name, "film",
-                            dea_film_state_name(part->state), "copies", w->layout[i].count,
-                            "area_m2", dea_part_area_m2(part), "cut_length_m",
-                            dea_part_length_m(part, DEA_LAYER_CUT_INNER) +
-                                dea_part_length_m(part, DEA_LAYER_CUT_OUTER));
+    json_t *row =
+        json_pack("{s:s, s:s, s:i, s:f, s:f}", "name", part->name, "film", dea_part_film_name(part),
+                  "copies", w->layout[i].count, "area_m2", dea_part_area_m2(part), "cut_length_m",
+                  dea_part_length_m(part, DEA_LAYER_CUT_INNER) +
+                      dea_part_length_m(part, DEA_LAYER_CUT_OUTER));
+    if (part->quantity > 1) {
+      json_object_set_new(row, "times", json_integer((json_int_t)part->quantity));
+    }
     json_array_append_new(parts, row);
   }
   dea_workshop_files(w, options, add_name, files);

@@ -1,5 +1,6 @@
 /* What the workshop needs beside the actuator itself: section `fabrication` of a design file.
- * Reasons for the defaults: docs/fabrication.md. */
+ * Reasons for the defaults: docs/fabrication.md. A design of the general form has kerf to blank,
+ * ring.width_m and frame_gap_m of its frame, marks, and cure; the rest is 0. */
 #ifndef DEA_DESIGN_FABRICATION_H
 #define DEA_DESIGN_FABRICATION_H
 
@@ -27,6 +28,7 @@ struct dea_fabrication {
     struct dea_quantity width_m;          // of the ring
     struct dea_quantity contact_window_m; // diameter of the hole over the lower pad; 0: none
   } ring;
+  struct dea_quantity frame_gap_m; // between parts and a frame that holds the film until it is cut
   struct {
     struct dea_quantity anchor_m; // how far a held fibre lies on the frame
     struct dea_quantity tab_width_m, tab_length_m;

@@ -426,9 +426,6 @@ static const struct dea_field not_general[] = {
      .elsewhere =
          "'fibres' belongs to the short form of a disc; here a fibre is one of the 'plies', "
          "with a shape such as a rectangle, a strip, or an array or polar of them"},
-    {.key = "fabrication",
-     .elsewhere = "'fabrication' belongs to the short form of a disc; files for the workshop are "
-                  "not made of the general form yet"},
     {.key = "stripes",
      .elsewhere = "there are no 'stripes': they are one of the 'plies', with a shape of kind array "
                   "of rectangles"},
@@ -524,6 +521,8 @@ static void fill_general(const struct dea_shape_schema *shapes, struct dea_desig
       field->choices = general_gravities;
       field->doc = "weight, and which way the top of the plies faces";
       field->example = "top_up";
+    } else if (strcmp(field->key, "fabrication") == 0) {
+      field->record = &dea_fabrication_general_record;
     } else if (strcmp(field->key, "shapes") == 0) {
       field->kinds = shapes->kinds;
     }

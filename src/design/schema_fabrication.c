@@ -58,6 +58,42 @@ static const struct dea_field blank_fields[] = {
 static const struct dea_record blank_record = {"blank", "film as it is cut", blank_fields,
                                                COUNT(blank_fields)};
 
+static const struct dea_field general_blank_fields[] = {
+    {.key = "margin",
+     .kind = DEA_FIELD_INPLANE,
+     .offset = AT(blank.margin),
+     .unit = "m",
+     .max = 1,
+     .default_text = "10 mm stretched",
+     .doc = "film beyond the outer edge of the frame, for the grips of the stretcher",
+     .example = "10 mm stretched"},
+};
+static const struct dea_record general_blank_record = {
+    "blank", "film as it is cut", general_blank_fields, COUNT(general_blank_fields)};
+
+static const struct dea_field frame_fields[] = {
+    {.key = "width",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(ring.width_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 1,
+     .default_text = "10 mm",
+     .doc = "width of the frame, from the box around its opening outwards",
+     .example = "10 mm"},
+    {.key = "gap",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(frame_gap_m),
+     .unit = "m",
+     .max = 1,
+     .default_text = "5 mm",
+     .doc = "distance of a frame from the parts, where it holds the film only until that is cut",
+     .example = "5 mm"},
+};
+static const struct dea_record frame_record = {
+    "frame", "the plate that holds a stretched film, or an edge that is a support", frame_fields,
+    COUNT(frame_fields)};
+
 static const struct dea_field leads_fields[] = {
     {.key = "width",
      .kind = DEA_FIELD_INPLANE,
@@ -245,63 +281,70 @@ static const struct dea_field tolerance_fields[] = {
 static const struct dea_record tolerance_record = {"tolerance", "tolerances of the check list",
                                                    tolerance_fields, COUNT(tolerance_fields)};
 
+#define KERF_ROW                                                                                   \
+  {                                                                                                \
+    .key = "kerf", .kind = DEA_FIELD_NUMBER, .offset = AT(kerf_m), .unit = "m", .max = 0.01,       \
+    .default_text = "0.2 mm",                                                                      \
+    .doc = "width of the cut: paths lie half of it outside of parts and inside of holes",          \
+    .example = "0.2 mm"                                                                            \
+  }
+#define FEATURE_ROW                                                                                \
+  {                                                                                                \
+    .key = "minimum_feature", .kind = DEA_FIELD_NUMBER, .offset = AT(minimum_feature_m),           \
+    .unit = "m", .above_min = true, .max = 0.1, .default_text = "0.5 mm",                          \
+    .doc = "narrowest web, slot or hole that the cutter makes", .example = "0.5 mm"                \
+  }
+#define COPIES_ROW                                                                                 \
+  {                                                                                                \
+    .key = "copies", .kind = DEA_FIELD_INTEGER, .offset = AT(copies), .unit = "1", .min = 1,       \
+    .max = DEA_DESIGN_COPIES_MAX, .default_text = "1", .doc = "actuators to be made",              \
+    .example = "4"                                                                                 \
+  }
+#define SECTION_ROW(word, its, words)                                                              \
+  {                                                                                                \
+    .key = word, .kind = DEA_FIELD_RECORD, .record = &its, .doc = words                            \
+  }
+#define SHEET_ROW SECTION_ROW("sheet", sheet_record, "material that parts are cut from")
+#define MARKS_ROW                                                                                  \
+  SECTION_ROW("marks", marks_record, "alignment marks, and the grid that shows the pre-stretch")
+#define CURE_ROW SECTION_ROW("cure", cure_record, "curing of the printed electrodes")
+
 static const struct dea_field fields[] = {
-    {.key = "kerf",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(kerf_m),
-     .unit = "m",
-     .max = 0.01,
-     .default_text = "0.2 mm",
-     .doc = "width of the cut: paths lie half of it outside of parts and inside of holes",
-     .example = "0.2 mm"},
-    {.key = "minimum_feature",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(minimum_feature_m),
-     .unit = "m",
-     .above_min = true,
-     .max = 0.1,
-     .default_text = "0.5 mm",
-     .doc = "narrowest web, slot or hole that the cutter makes",
-     .example = "0.5 mm"},
-    {.key = "copies",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = AT(copies),
-     .unit = "1",
-     .min = 1,
-     .max = DEA_DESIGN_COPIES_MAX,
-     .default_text = "1",
-     .doc = "actuators to be made",
-     .example = "4"},
-    {.key = "sheet",
-     .kind = DEA_FIELD_RECORD,
-     .record = &sheet_record,
-     .doc = "material that parts are cut from"},
-    {.key = "blank", .kind = DEA_FIELD_RECORD, .record = &blank_record, .doc = "film as it is cut"},
-    {.key = "leads",
-     .kind = DEA_FIELD_RECORD,
-     .record = &leads_record,
-     .doc = "leads of the electrodes, with a pad on the ring"},
-    {.key = "ring",
-     .kind = DEA_FIELD_RECORD,
-     .record = &ring_record,
-     .doc = "the frame as a part: a ring around its inner diameter"},
-    {.key = "holder",
-     .kind = DEA_FIELD_RECORD,
-     .record = &holder_record,
-     .doc = "what holds the fibres until they are bonded"},
-    {.key = "marks",
-     .kind = DEA_FIELD_RECORD,
-     .record = &marks_record,
-     .doc = "alignment marks, and the grid that shows the pre-stretch"},
-    {.key = "cure",
-     .kind = DEA_FIELD_RECORD,
-     .record = &cure_record,
-     .doc = "curing of the printed electrodes"},
-    {.key = "tolerance",
-     .kind = DEA_FIELD_RECORD,
-     .record = &tolerance_record,
-     .doc = "tolerances of the check list"},
+    KERF_ROW,
+    FEATURE_ROW,
+    COPIES_ROW,
+    SHEET_ROW,
+    SECTION_ROW("blank", blank_record, "film as it is cut"),
+    SECTION_ROW("leads", leads_record, "leads of the electrodes, with a pad on the ring"),
+    SECTION_ROW("ring", ring_record, "the frame as a part: a ring around its inner diameter"),
+    SECTION_ROW("holder", holder_record, "what holds the fibres until they are bonded"),
+    MARKS_ROW,
+    CURE_ROW,
+    SECTION_ROW("tolerance", tolerance_record, "tolerances of the check list"),
 };
 
 const struct dea_record dea_fabrication_record = {"fabrication", "what the workshop needs", fields,
                                                   COUNT(fields)};
+
+static const struct dea_field general_fields[] = {
+    KERF_ROW,
+    FEATURE_ROW,
+    COPIES_ROW,
+    SHEET_ROW,
+    SECTION_ROW("blank", general_blank_record, "film as it is cut, where it is to be stretched"),
+    SECTION_ROW("frame", frame_record,
+                "the plate that holds a stretched film, or an edge that is a support"),
+    MARKS_ROW,
+    CURE_ROW,
+    {.key = "leads",
+     .elsewhere = "a lead is part of the shape of its electrode here, such as a union of it with a "
+                  "strip"},
+    {.key = "ring", .elsewhere = "the frame's width is 'frame: {width: ...}' here"},
+    {.key = "holder", .elsewhere = "parts lie on a carrier here, which needs no holder"},
+    {.key = "tolerance",
+     .elsewhere = "no quick model knows what a tolerance does to a device of any layout; 'dea run "
+                  "--set' of a value shows it"},
+};
+
+const struct dea_record dea_fabrication_general_record = {"fabrication", "what the workshop needs",
+                                                          general_fields, COUNT(general_fields)};

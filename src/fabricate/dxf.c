@@ -7,6 +7,7 @@
 #include "fabricate/labels.h"
 
 #include <math.h>
+#include <string.h>
 
 enum handle {
   BLOCK_RECORDS = 1,
@@ -38,9 +39,18 @@ enum handle {
   FIRST_ENTITY = 0x30,
 };
 
+/* Names and looks of the layers of a file. */
+struct layers {
+  const char *const *name; // [count]
+  const int *colour;
+  const bool *plotted;
+  size_t count;
+};
+
 struct file {
   struct dea_text *text;
   unsigned handle; // of the next entity
+  int decimals;    // of lengths in mm
 };
 
 static void group(struct file *file, int code, const char *value)
@@ -58,11 +68,12 @@ static void handle(struct file *file, int code, unsigned value)
   dea_text_add(file->text, "%3d\n%X\n", code, value);
 }
 
-/* A length in mm, to the picometre. */
+/* A length in mm. */
 static void length(struct file *file, int code, double si)
 {
   double mm = 1e3 * si;
-  dea_text_add(file->text, "%3d\n%.9f\n", code, fabs(mm) < 5e-10 ? 0 : mm);
+  dea_text_add(file->text, "%3d\n%.*f\n", code, file->decimals,
+               fabs(mm) < 0.5 * pow(10, -file->decimals) ? 0 : mm);
 }
 
 static void point(struct file *file, int code, double x, double y)
@@ -95,7 +106,7 @@ static void begin_entity(struct file *file, const char *type, unsigned own, unsi
 
 /* ---- what stands before the drawing ---- */
 
-static void write_header(struct file *file, const struct dea_sheet_layout *sheet, unsigned handles)
+static void write_header(struct file *file, const double box_m[4], unsigned handles)
 {
   group(file, 999, "libdea " DEA_VERSION);
   begin_section(file, "HEADER");
@@ -108,10 +119,10 @@ static void write_header(struct file *file, const struct dea_sheet_layout *sheet
   group(file, 9, "$MEASUREMENT"); // metric
   number(file, 70, 1);
   group(file, 9, "$EXTMIN");
-  point(file, 10, 0, 0);
+  point(file, 10, box_m[0], box_m[1]);
   length(file, 30, 0);
   group(file, 9, "$EXTMAX");
-  point(file, 10, sheet->width_m, sheet->height_m);
+  point(file, 10, box_m[2], box_m[3]);
   length(file, 30, 0);
   group(file, 9, "$HANDSEED");
   handle(file, 5, handles);
@@ -149,14 +160,15 @@ static void end_table(struct file *file)
   group(file, 0, "ENDTAB");
 }
 
-static void write_viewport(struct file *file, const struct dea_sheet_layout *sheet)
+static void write_viewport(struct file *file, const double box_m[4])
 {
+  double width = box_m[2] - box_m[0], height = box_m[3] - box_m[1];
   begin_table(file, "VPORT", VIEWPORTS, 1);
   begin_entry(file, "VPORT", VIEWPORT, VIEWPORTS, "AcDbViewportTableRecord", "*Active");
   dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 11\n1.0\n 21\n1.0\n");
-  point(file, 12, 0.5 * sheet->width_m, 0.5 * sheet->height_m);
-  length(file, 40, 1.05 * sheet->height_m); // shown height
-  dea_text_add(file->text, " 41\n%.6f\n", sheet->width_m / sheet->height_m);
+  point(file, 12, 0.5 * (box_m[0] + box_m[2]), 0.5 * (box_m[1] + box_m[3]));
+  length(file, 40, 1.05 * height); // shown height
+  dea_text_add(file->text, " 41\n%.6f\n", width / height);
   end_table(file);
 }
 
@@ -179,20 +191,19 @@ static void write_line_types(struct file *file)
   end_table(file);
 }
 
-static void write_layers(struct file *file)
+static void write_layers(struct file *file, const struct layers *layers)
 {
-  begin_table(file, "LAYER", LAYERS, DEA_LAYER_COUNT + 1);
+  begin_table(file, "LAYER", LAYERS, (int)layers->count + 1);
   begin_entry(file, "LAYER", LAYER_ZERO, LAYERS, "AcDbLayerTableRecord", "0");
   number(file, 62, 7);
   group(file, 6, "Continuous");
-#define LAYER_ROW(name, meaning, colour, screen)                                                   \
-  begin_entry(file, "LAYER", FIRST_LAYER + DEA_LAYER_##name, LAYERS, "AcDbLayerTableRecord",       \
-              #name);                                                                              \
-  number(file, 62, colour);                                                                        \
-  group(file, 6, "Continuous");                                                                    \
-  number(file, 290, DEA_LAYER_##name != DEA_LAYER_NOTE); // plotted or not
-  DEA_LAYER_LIST(LAYER_ROW)
-#undef LAYER_ROW
+  for (size_t i = 0; i < layers->count; i++) {
+    begin_entry(file, "LAYER", FIRST_LAYER + (unsigned)i, LAYERS, "AcDbLayerTableRecord",
+                layers->name[i]);
+    number(file, 62, layers->colour[i]);
+    group(file, 6, "Continuous");
+    number(file, 290, layers->plotted[i]);
+  }
   end_table(file);
 }
 
@@ -230,12 +241,12 @@ static void write_block_records(struct file *file)
   end_table(file);
 }
 
-static void write_tables(struct file *file, const struct dea_sheet_layout *sheet)
+static void write_tables(struct file *file, const double box_m[4], const struct layers *layers)
 {
   begin_section(file, "TABLES");
-  write_viewport(file, sheet);
+  write_viewport(file, box_m);
   write_line_types(file);
-  write_layers(file);
+  write_layers(file, layers);
   write_styles(file);
   begin_table(file, "VIEW", VIEWS, 0);
   end_table(file);
@@ -273,6 +284,7 @@ static void begin_dictionary(struct file *file, unsigned own, unsigned owner)
   number(file, 281, 1);
 }
 
+/* What stands after the drawing. */
 static void write_objects(struct file *file)
 {
   begin_section(file, "OBJECTS");
@@ -281,39 +293,40 @@ static void write_objects(struct file *file)
   handle(file, 350, GROUPS);
   begin_dictionary(file, GROUPS, ROOT);
   group(file, 0, "ENDSEC");
+  group(file, 0, "EOF");
 }
 
 /* ---- the drawing ---- */
 
-static const char *layer_name(enum dea_layer layer)
-{
-  static const char *const names[] = {
+// of a sheet, by enum dea_layer
+static const char *const sheet_names[] = {
 #define LAYER_NAME(name, meaning, dxf, screen) #name,
-      DEA_LAYER_LIST(LAYER_NAME)
+    DEA_LAYER_LIST(LAYER_NAME)
 #undef LAYER_NAME
-  };
-  return names[layer];
-}
+};
+static const int sheet_colours[] = {
+#define LAYER_COLOUR(name, meaning, dxf, screen) dxf,
+    DEA_LAYER_LIST(LAYER_COLOUR)
+#undef LAYER_COLOUR
+};
+static const bool sheet_plotted[] = {
+#define LAYER_PLOTTED(name, meaning, dxf, screen) DEA_LAYER_##name != DEA_LAYER_NOTE,
+    DEA_LAYER_LIST(LAYER_PLOTTED)
+#undef LAYER_PLOTTED
+};
 
 static void begin_drawn(struct file *file, const char *type, const char *subclass,
-                        enum dea_layer layer)
+                        const char *layer)
 {
-  begin_entity(file, type, file->handle++, MODEL_RECORD, layer_name(layer), subclass);
+  begin_entity(file, type, file->handle++, MODEL_RECORD, layer, subclass);
 }
 
-static void write_path(struct file *file, const struct dea_part_contour *contour,
-                       const struct dea_vertex *v, size_t count, const double at[2])
+static void write_polyline(struct file *file, const char *layer, bool closed,
+                           const struct dea_vertex *v, size_t count, const double at[2])
 {
-  if (contour->circle) {
-    begin_drawn(file, "CIRCLE", "AcDbCircle", contour->layer);
-    point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
-    length(file, 30, 0);
-    length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
-    return;
-  }
-  begin_drawn(file, "LWPOLYLINE", "AcDbPolyline", contour->layer);
+  begin_drawn(file, "LWPOLYLINE", "AcDbPolyline", layer);
   number(file, 90, (int)count);
-  number(file, 70, contour->closed);
+  number(file, 70, closed);
   length(file, 43, 0);
   for (size_t i = 0; i < count; i++) {
     point(file, 10, at[0] + v[i].x_m, at[1] + v[i].y_m);
@@ -321,6 +334,19 @@ static void write_path(struct file *file, const struct dea_part_contour *contour
       dea_text_add(file->text, " 42\n%.15f\n", v[i].bulge);
     }
   }
+}
+
+static void write_path(struct file *file, const struct dea_part_contour *contour,
+                       const struct dea_vertex *v, size_t count, const double at[2])
+{
+  if (contour->circle) {
+    begin_drawn(file, "CIRCLE", "AcDbCircle", sheet_names[contour->layer]);
+    point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
+    length(file, 30, 0);
+    length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
+    return;
+  }
+  write_polyline(file, sheet_names[contour->layer], contour->closed, v, count, at);
 }
 
 /* Letters beyond ASCII are written as \\U+XXXX. */
@@ -338,7 +364,7 @@ static void add_escaped(struct dea_text *out, const char *text)
 static void write_words(struct file *file, enum dea_layer layer, double x, double y, double height,
                         bool centred, const char *text)
 {
-  begin_drawn(file, "TEXT", "AcDbText", layer);
+  begin_drawn(file, "TEXT", "AcDbText", sheet_names[layer]);
   point(file, 10, x, y);
   length(file, 30, 0);
   length(file, 40, height);
@@ -409,12 +435,121 @@ static unsigned count_entities(const struct dea_workshop *workshop, size_t index
 
 dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
 {
-  struct file file = {out, FIRST_ENTITY};
-  write_header(&file, &workshop->layout[index], FIRST_ENTITY + count_entities(workshop, index));
-  write_tables(&file, &workshop->layout[index]);
+  const struct layers layers = {sheet_names, sheet_colours, sheet_plotted, DEA_LAYER_COUNT};
+  const struct dea_sheet_layout *layout = &workshop->layout[index];
+  const double box[4] = {0, 0, layout->width_m, layout->height_m};
+  struct file file = {out, FIRST_ENTITY, 9}; // to the picometre
+  write_header(&file, box, FIRST_ENTITY + count_entities(workshop, index));
+  write_tables(&file, box, &layers);
   write_blocks(&file);
   dea_status status = write_entities(&file, workshop, index);
   write_objects(&file);
-  group(&file, 0, "EOF");
   return status == DEA_OK && out->failed ? DEA_E_MEMORY : status;
+}
+
+// The shapes of a layout -------------------------------------------------------------------------
+
+static void note(bool *used, size_t region)
+{
+  if (region != DEA_LAYOUT_NONE) {
+    used[region] = true;
+  }
+}
+
+/* Regions that some part is of. */
+static void find_used(const struct dea_layout *l, bool *used)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    note(used, l->plies[i].region);
+  }
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    note(used, l->electrodes[i].region);
+  }
+  for (size_t i = 0; i < l->support_count; i++) {
+    note(used, l->supports[i].region);
+    note(used, l->supports[i].within);
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    note(used, l->bodies[i].region);
+  }
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    note(used, l->pressures[i].region);
+  }
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    note(used, l->monitors[i].region);
+  }
+}
+
+/* The name of a layer: letters of ASCII but for those that DXF keeps for itself. */
+static const char *layer_of(struct dea_arena *memory, const char *name)
+{
+  char *out = dea_arena_alloc(memory, strlen(name) + 1, 1);
+  for (size_t i = 0; out != NULL && name[i] != '\0'; i++) {
+    bool plain = name[i] >= ' ' && name[i] < 0x7f && strchr("<>/\\\":;?*|=,'`", name[i]) == NULL;
+    out[i] = plain ? name[i] : '_';
+  }
+  return out != NULL ? out : "";
+}
+
+static size_t write_shapes(struct file *file, const struct dea_layout *l, const bool *used,
+                           const struct layers *layers)
+{
+  const double origin[2] = {0, 0};
+  size_t layer = 0, count = 0;
+  for (size_t i = 0; i < l->region_count; i++) {
+    for (size_t k = 0; used[i] && k < l->regions[i].region.contour_count; k++, count++) {
+      const struct dea_contour contour = dea_region_contour(&l->regions[i].region, k);
+      if (file != NULL) {
+        write_polyline(file, layers->name[layer], true, contour.vertex, contour.count, origin);
+      }
+    }
+    layer += used[i] ? 1 : 0;
+  }
+  return count;
+}
+
+static void grow(double box[4], const struct dea_region *region)
+{
+  for (size_t i = 0; i < region->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(region, i);
+    dea_contour_grow_box(&contour, box);
+  }
+}
+
+dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text *out)
+{
+  struct dea_arena memory = {.ctx = out->ctx};
+  size_t n = layout->region_count;
+  bool *used = dea_arena_alloc(&memory, n, sizeof *used);
+  bool *plotted = dea_arena_alloc(&memory, n, sizeof *plotted);
+  int *colour = dea_arena_alloc(&memory, n, sizeof *colour);
+  const char **name = dea_arena_alloc(&memory, n, sizeof *name);
+  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  struct layers layers = {name, colour, plotted, 0};
+  if (memory.failed) {
+    dea_arena_free(&memory);
+    return DEA_E_MEMORY;
+  }
+  find_used(layout, used);
+  for (size_t i = 0; i < n; i++) {
+    if (used[i]) {
+      name[layers.count] = layer_of(&memory, layout->regions[i].name);
+      colour[layers.count] = 1 + (int)(layers.count % 7);
+      plotted[layers.count++] = true;
+      grow(box, &layout->regions[i].region);
+    }
+  }
+  unsigned first = FIRST_LAYER + (unsigned)layers.count;
+  first = first > FIRST_ENTITY ? first : FIRST_ENTITY;
+  struct file file = {out, first, 12}; // to the femtometre
+  write_header(&file, box, first + (unsigned)write_shapes(NULL, layout, used, &layers));
+  write_tables(&file, box, &layers);
+  write_blocks(&file);
+  begin_section(&file, "ENTITIES");
+  write_shapes(&file, layout, used, &layers);
+  group(&file, 0, "ENDSEC");
+  write_objects(&file);
+  dea_status status = memory.failed || out->failed ? DEA_E_MEMORY : DEA_OK;
+  dea_arena_free(&memory);
+  return status;
 }

@@ -9,5 +9,9 @@
 
 /* The file of part number `index` with all its copies. DEA_E_MEMORY is the only failure. */
 dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
+/* The shapes of a layout that its parts are of, each on a layer of its name, where they lie in the
+ * flat film and without kerf: what a shape of kind `drawing` reads. Letters that a layer's name may
+ * not have are "_". DEA_E_MEMORY is the only failure. */
+dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text *out);
 
 #endif

@@ -71,7 +71,7 @@ static void fill(struct dea_fab_geometry *plan)
 
 /* ---- checks ---- */
 
-static dea_status check_cutter(struct dea_context *ctx, const struct dea_fab_geometry *plan)
+dea_status dea_fab_check_cutter(struct dea_context *ctx, const struct dea_fab_geometry *plan)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
   if (plan->kerf_m <= plan->feature_m) {
@@ -216,7 +216,7 @@ dea_status dea_fab_geometry_make(struct dea_context *ctx, const struct dea_desig
   *out = (struct dea_fab_geometry){.design = design, .device = device};
   fill(out);
   size_t before = dea_finding_count(ctx, DEA_ERROR);
-  DEA_TRY(ctx, check_cutter(ctx, out));
+  DEA_TRY(ctx, dea_fab_check_cutter(ctx, out));
   DEA_TRY(ctx, check_grid(ctx, out));
   DEA_TRY(ctx, check_leads(ctx, out));
   if (device->fibre_count > 0) {

@@ -8,12 +8,13 @@
 enum { DEA_FAB_MARKS = 3 };
 enum dea_fab_geometry_side { DEA_FAB_TOP, DEA_FAB_BOTTOM };
 
+/* Of a device that is no disc the next five stand alone (fab_room.h has the rest). */
 struct dea_fab_geometry {
   const struct dea_design *design; // lent
   const struct dea_device *device; // lent
-  double stretch;                  // the pre-stretch
   double kerf_m, feature_m;        // where they are cut: not stretched
   int copies;
+  double stretch; // the pre-stretch
 
   double electrode_m;         // radius
   double lead_width_m;        // of both leads
@@ -38,5 +39,7 @@ struct dea_fab_geometry {
  * memory; look at dea_finding_count. */
 dea_status dea_fab_geometry_make(struct dea_context *ctx, const struct dea_design *design,
                                  const struct dea_device *device, struct dea_fab_geometry *out);
+/* A finding when the kerf is too wide for the smallest feature. */
+dea_status dea_fab_check_cutter(struct dea_context *ctx, const struct dea_fab_geometry *plan);
 
 #endif

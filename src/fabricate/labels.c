@@ -10,10 +10,13 @@ void dea_sheet_labels(const struct dea_workshop *workshop, size_t index, struct 
   int copies = workshop->layout[index].count;
   dea_text_add(out, "%.80s: %s; %s; lengths of the %s film in mm; ",
                dea_path_name(workshop->plan.design->file), part->title, part->seen,
-               dea_film_state_name(part->state));
+               dea_part_film_name(part));
   if (part->paper) {
     dea_text_add(out, "not to be cut");
   } else {
+    if (part->quantity > 1) {
+      dea_text_add(out, "to be cut %zu times; ", part->quantity);
+    }
     dea_text_add(out, "%d cop%s, kerf of %.4g mm taken into account", copies,
                  copies > 1 ? "ies" : "y", 1e3 * workshop->plan.kerf_m);
   }

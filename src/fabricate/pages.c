@@ -68,15 +68,39 @@ static void draw_part(const struct dea_paper *paper, const struct dea_part *part
   }
 }
 
+/* By how much a length of the film is larger in the film's other state. */
+static double other_state(const struct dea_part *part, const struct dea_part_measure *m)
+{
+  const double(*F)[2] = part->stretch;
+  double det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+  double x = m->to_m[0] - m->from_m[0], y = m->to_m[1] - m->from_m[1], length = hypot(x, y);
+  if (part->state == DEA_UNSTRETCHED) {
+    return hypot(F[0][0] * x + F[0][1] * y, F[1][0] * x + F[1][1] * y) / length;
+  }
+  return hypot(F[1][1] * x - F[0][1] * y, F[0][0] * y - F[1][0] * x) / (det * length);
+}
+
+/* ", pre-stretch 1.5", along x and y where these differ; nothing of a part without one. */
+static void write_stretch(const struct dea_part *part, char *out, size_t size)
+{
+  const double(*F)[2] = part->stretch;
+  if (F[0][0] == 0) {
+    out[0] = '\0';
+  } else if (F[0][0] == F[1][1]) {
+    snprintf(out, size, ", pre-stretch %.4g", F[0][0]);
+  } else {
+    snprintf(out, size, ", pre-stretch %.4g along x, %.4g along y", F[0][0], F[1][1]);
+  }
+}
+
 /* The label of a dimension; of a part of the film also in the film's other state. */
-static void describe(const struct dea_workshop *w, const struct dea_part *part,
-                     const struct dea_part_measure *m, double length_m, struct dea_callout *out)
+static void describe(const struct dea_part *part, const struct dea_part_measure *m, double length_m,
+                     struct dea_callout *out)
 {
   char here[32], there[32];
-  bool film = part->paper || part->state == DEA_UNSTRETCHED;
-  double factor = part->state == DEA_UNSTRETCHED ? w->plan.stretch : 1 / w->plan.stretch;
+  bool film = (part->paper || part->state == DEA_UNSTRETCHED) && part->stretch[0][0] > 0;
   dea_length_text(here, sizeof here, length_m);
-  dea_length_text(there, sizeof there, length_m * factor);
+  dea_length_text(there, sizeof there, length_m * other_state(part, m));
   snprintf(out->label, sizeof out->label, "%s%s mm",
            m->kind == DEA_MEASURE_DIAMETER ? "\xc3\x98 " : "", here);
   if (film && strcmp(m->what, "stencil") != 0) {
@@ -87,8 +111,8 @@ static void describe(const struct dea_workshop *w, const struct dea_part *part,
   }
 }
 
-static void draw_measures(const struct dea_paper *paper, const struct dea_workshop *w,
-                          const struct dea_part *part, double x, double y)
+static void draw_measures(const struct dea_paper *paper, const struct dea_part *part, double x,
+                          double y)
 {
   struct dea_callout callouts[DEA_PART_MEASURES_MAX];
   double box[4];
@@ -101,7 +125,7 @@ static void draw_measures(const struct dea_paper *paper, const struct dea_worksh
     double length = hypot(to[0] - from[0], to[1] - from[1]);
     callouts[i] =
         (struct dea_callout){.x_mm = 0.5 * (from[0] + to[0]), .y_mm = 0.5 * (from[1] + to[1])};
-    describe(w, part, m, 1e-3 * length, &callouts[i]);
+    describe(part, m, 1e-3 * length, &callouts[i]);
     if (m->kind == DEA_MEASURE_DIAMETER) {
       callouts[i].radius_mm = 0.5 * length;
     } else {
@@ -114,19 +138,21 @@ static void draw_measures(const struct dea_paper *paper, const struct dea_worksh
 static void draw_part_page(const struct dea_paper *paper, const struct dea_workshop *w,
                            const struct dea_part *part, const double size[2])
 {
-  char below[320];
-  double x = 0.5 * size[0], y = 0.5 * size[1];
-  snprintf(below, sizeof below, "%s; %s; lengths of the %s film, pre-stretch %.4g; %.80s",
+  char below[320], stretch[64];
+  double box[4];
+  dea_part_box(part, box);
+  double x = 0.5 * size[0] - 0.5e3 * (box[0] + box[2]), half = 0.5e3 * (box[2] - box[0]);
+  double y = 0.5 * size[1] - 0.5e3 * (box[1] + box[3]);
+  write_stretch(part, stretch, sizeof stretch);
+  snprintf(below, sizeof below, "%s; %s; lengths of the %s film%s; %.80s",
            part->paper ? "not to be cut" : "finished part, without kerf", part->seen,
-           dea_film_state_name(part->state), w->plan.stretch, dea_path_name(w->plan.design->file));
+           dea_part_film_name(part), stretch, dea_path_name(w->plan.design->file));
   dea_dimensions_head(paper, size[0], size[1], part->title, below);
   dea_dimensions_scale(paper, size[0],
                        "1:1 if the bar is 50 mm long: print at 100 %, without fitting to the page");
-  double box[4];
-  dea_part_box(part, box);
-  dea_dimensions_centre(paper, x, y, 1e3 * box[2] + 4);
+  dea_dimensions_centre(paper, x, y, fmax(half, 0.5e3 * (box[3] - box[1])) + 4);
   draw_part(paper, part, x, y);
-  draw_measures(paper, w, part, x, y);
+  draw_measures(paper, part, x, y);
 }
 
 /* All copies on their sheet; the page is the sheet. */

@@ -62,15 +62,24 @@ void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius
   }
 }
 
+void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_vertex *vertices,
+                  size_t count, bool circle)
+{
+  dea_part_begin(part, layer, true);
+  for (size_t i = 0; i < count; i++) {
+    add_vertex(part, vertices[i].x_m, vertices[i].y_m, vertices[i].bulge, vertices[i].location);
+  }
+  if (!part->failed) {
+    part->contour[part->contour_count - 1].circle = circle;
+  }
+}
+
 void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
                      double radius_m, struct dea_location location)
 {
-  dea_part_begin(part, layer, true);
-  add_vertex(part, x_m + radius_m, y_m, 1, location);
-  add_vertex(part, x_m - radius_m, y_m, 1, location);
-  if (!part->failed) {
-    part->contour[part->contour_count - 1].circle = true;
-  }
+  const struct dea_vertex v[2] = {{x_m + radius_m, y_m, 1, location},
+                                  {x_m - radius_m, y_m, 1, location}};
+  dea_part_add(part, layer, v, 2, true);
 }
 
 void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
@@ -101,6 +110,11 @@ void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double 
     part->measure[part->measure_count++] =
         (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what, location};
   }
+}
+
+const char *dea_part_film_name(const struct dea_part *part)
+{
+  return part->flat ? "flat" : dea_film_state_name(part->state);
 }
 
 struct dea_contour dea_part_contour_get(const struct dea_part *part, size_t i)

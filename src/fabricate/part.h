@@ -50,8 +50,11 @@ struct dea_part {
   const char *title; // "Pre-stretch frame"
   const char *seen;  // from where: "seen from the fibres"
   enum dea_film_state state;
-  bool paper;    // printed at 1:1, one for all copies, not cut
-  bool mirrored; // seen from the side away from the fibres
+  bool flat;            // no film of the device is stretched: both states are the same
+  double stretch[2][2]; // of its film, from unstretched to stretched; 0: it has none, or several
+  size_t quantity;      // of it for one actuator
+  bool paper;           // printed at 1:1, one for all copies, not cut
+  bool mirrored;        // seen from the side away from the fibres
   struct dea_vertex *vertex;
   size_t vertex_count, vertex_room;
   struct dea_part_contour *contour;
@@ -71,6 +74,9 @@ void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_lo
 /* Vertices of an arc from an angle to another about a centre, without its end. */
 void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
                   double to_rad, struct dea_location location);
+/* A closed contour of vertices[count]; circle: of two half circles. */
+void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_vertex *vertices,
+                  size_t count, bool circle);
 void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
                      double radius_m, struct dea_location location);
 void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
@@ -81,6 +87,9 @@ void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double 
                       double x1_m, double y1_m, const char *what, struct dea_location location);
 
 /* ---- looking at one ---- */
+
+/* "stretched", "unstretched", or "flat": the film that its lengths are of. */
+const char *dea_part_film_name(const struct dea_part *part);
 
 /* Contour i; lent until the part changes. */
 struct dea_contour dea_part_contour_get(const struct dea_part *part, size_t i);

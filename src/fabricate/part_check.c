@@ -7,10 +7,8 @@ static bool is_cut(enum dea_layer layer)
 }
 
 /* Where something is on a part, for messages. */
-#define AT_FORMAT "at (%.4g, %.4g) mm from the centre of the part '%s' (%s film)"
-#define AT_ARGUMENTS(part, x, y)                                                                   \
-  1e3 * (x), 1e3 * (y), (part)->name,                                                              \
-      (part)->state == DEA_STRETCHED ? "lengths of the stretched" : "lengths of the unstretched"
+#define AT_FORMAT "at (%.4g, %.4g) mm from the centre of the part '%s' (lengths of the %s film)"
+#define AT_ARGUMENTS(part, x, y) 1e3 * (x), 1e3 * (y), (part)->name, dea_part_film_name(part)
 
 static dea_status report_gap(const struct dea_part *part, const struct dea_contour *contour,
                              const struct dea_gap *gap, double feature)
@@ -40,26 +38,27 @@ static dea_status check_circle(const struct dea_part *part, const struct dea_con
       2e3 * piece.radius_m, AT_ARGUMENTS(part, piece.centre[0], piece.centre[1]), 1e3 * feature);
 }
 
-/* A hole lies inside the outer edge and outside of other holes; crossings were found before. */
+/* A hole lies in material: in one outer edge more than in other holes; crossings were found before.
+ */
 static dea_status check_nesting(const struct dea_part *part, size_t hole,
                                 const struct dea_contour *contour)
 {
   const struct dea_vertex *at = &contour->vertex[0];
-  bool inside = false, in_hole = false;
+  int outside = 0, holes = 0;
   for (size_t i = 0; i < part->contour_count; i++) {
     const struct dea_contour other = dea_part_contour_get(part, i);
     if (i != hole && is_cut(part->contour[i].layer) &&
         dea_contour_inside(&other, at->x_m, at->y_m)) {
-      inside |= part->contour[i].layer == DEA_LAYER_CUT_OUTER;
-      in_hole |= part->contour[i].layer == DEA_LAYER_CUT_INNER;
+      outside += part->contour[i].layer == DEA_LAYER_CUT_OUTER ? 1 : 0;
+      holes += part->contour[i].layer == DEA_LAYER_CUT_INNER ? 1 : 0;
     }
   }
-  if (inside && !in_hole) {
+  if (outside == holes + 1) {
     return DEA_OK;
   }
   return dea_finding_add(part->ctx, DEA_ERROR, at->location,
-                         in_hole ? "parts overlap: a hole lies in another one, " AT_FORMAT
-                                 : "a hole lies outside of the part, " AT_FORMAT,
+                         holes > 0 ? "parts overlap: a hole lies in another one, " AT_FORMAT
+                                   : "a hole lies outside of the part, " AT_FORMAT,
                          AT_ARGUMENTS(part, at->x_m, at->y_m));
 }
 

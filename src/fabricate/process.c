@@ -3,11 +3,11 @@
 #include "base/file.h"
 #include "fabricate/dimensions.h"
 #include "fabricate/parts.h"
+#include "fabricate/process_parts.h"
 #include "fabricate/sensitivity.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -28,16 +28,6 @@ static double strip(double r0, double w0, double r1, double w1)
   return 0.5 * (w0 + w1) * (to - from) + segment(r1, w1) - segment(r0, w0);
 }
 
-static const struct dea_part *find_part(const struct dea_workshop *w, const char *name)
-{
-  for (size_t i = 0; i < w->count; i++) {
-    if (strcmp(w->part[i].name, name) == 0) {
-      return &w->part[i];
-    }
-  }
-  return NULL;
-}
-
 /* Area of all holes of a stencil: what is printed through it. */
 static double printed_area(const struct dea_part *stencil)
 {
@@ -50,8 +40,8 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 {
   const struct dea_fab_geometry *plan = &workshop->plan;
   const struct dea_device *d = plan->device;
-  const struct dea_part *top = find_part(workshop, "stencil-top");
-  const struct dea_part *bottom = find_part(workshop, "stencil-bottom");
+  const struct dea_part *top = dea_workshop_find(workshop, "stencil-top");
+  const struct dea_part *bottom = dea_workshop_find(workshop, "stencil-bottom");
   double l2 = plan->stretch * plan->stretch, side = 2 * plan->blank_m / plan->stretch;
   double marks = DEA_FAB_MARKS * pi * plan->mark_m * plan->mark_m / l2;
   *out = (struct dea_amounts){.film_area_m2 = pi * plan->blank_m * plan->blank_m / l2,
@@ -81,43 +71,19 @@ struct sheet {
   int models; // whose sensitivities stand in the check list: without fibres only the first
 };
 
-/* A row: for what, which material, how much of one and of all. */
 static void add_amount(struct sheet *s, const char *item, const char *material, double area_m2,
                        double volume_m3, const char *note)
 {
-  int copies = s->w->plan.copies;
-  dea_document_add(s->to, DEA_BLOCK_ROW, "%s", item);
-  dea_document_cell(s->to, "%s", material);
-  dea_document_cell(s->to,
-                    "%.4g\xc2\xa0"
-                    "cm\xc2\xb2",
-                    1e4 * area_m2);
-  dea_document_cell(s->to,
-                    "%.4g\xc2\xa0"
-                    "cm\xc2\xb2",
-                    1e4 * area_m2 * copies);
-  if (isnan(volume_m3)) {
-    dea_document_cell(s->to, "%s", note);
-  } else {
-    dea_document_cell(s->to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s",
-                      1e9 * volume_m3, 1e9 * volume_m3 * copies, note);
-  }
+  dea_process_add_material(s->to, s->w->plan.copies, item, material, area_m2, volume_m3, note);
 }
 
 static void add_materials(struct sheet *s)
 {
-  static const double widths[] = {0.19, 0.19, 0.12, 0.12, 0.38};
   const struct dea_device *d = s->w->plan.device;
   struct dea_amounts a;
   char text[160];
   dea_amounts_find(s->w, &a);
-  dea_document_add(s->to, DEA_BLOCK_HEADING, "Bill of materials");
-  dea_document_add(s->to, DEA_BLOCK_HEAD, "for");
-  dea_document_cell(s->to, "material");
-  dea_document_cell(s->to, "one");
-  dea_document_cell(s->to, "all %d", s->w->plan.copies);
-  dea_document_cell(s->to, "remarks");
-  dea_document_widths(s->to, widths);
+  dea_process_begin_materials(s->to, s->w->plan.copies);
   snprintf(text, sizeof text, "%.4g \xc2\xb5m thick, before stretching",
            1e6 * d->film_thickness_unstretched_m);
   add_amount(s, "film, as cut", d->film.name, a.film_area_m2, NAN, text);
@@ -365,10 +331,15 @@ dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop 
                    title[0] != '\0' ? title : dea_path_name(design->file));
   dea_document_add(
       document, DEA_BLOCK_NOTE,
-      "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the paper, "
+      "Made by dea fab from %s for %d actuator%s. Steps%s "
       "with the numbers of the design. DXF and SVG files have the kerf of the cutter in "
       "them, parts.pdf shows the finished parts at 1:1.",
-      dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "");
+      dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "",
+      workshop->plan.device->general ? "" : " after section 3.1 of the paper,");
+  if (workshop->plan.device->general) {
+    dea_process_write_layout(workshop, document);
+    return document->failed ? DEA_E_MEMORY : DEA_OK;
+  }
   add_materials(&s);
   dea_document_add(document, DEA_BLOCK_HEADING, "Steps");
   add_printing(&s);

@@ -20,6 +20,11 @@ struct dea_amounts {
 
 void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *out);
 
+/* The same of a device that is no disc: what is printed of one, unstretched and without marks, and
+ * the mass of its plies, NAN when a material has no density. */
+double dea_ink_area_m2(const struct dea_workshop *workshop);
+double dea_plies_mass_kg(const struct dea_layout *layout);
+
 /* Computes the sensitivities and writes it all. document: zero but for its context; to be freed
  * also after a failure. */
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,

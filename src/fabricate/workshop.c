@@ -1,8 +1,10 @@
 #include "fabricate/workshop.h"
 
+#include "fabricate/layout_parts.h"
 #include "fabricate/parts.h"
 
 #include <math.h>
+#include <string.h>
 
 static const struct dea_part_type *const types[] = {
 #define PART_ROW(name) &name,
@@ -12,26 +14,31 @@ static const struct dea_part_type *const types[] = {
 
 /* ---- sheets ---- */
 
-/* Half the size of the largest part of a film state, with its cut around it. */
-static double half_size(const struct dea_workshop *w, enum dea_film_state state, bool paper)
+/* Half the sides of the largest part of a film state, with its cut around it. */
+static void half_size(const struct dea_workshop *w, enum dea_film_state state, bool paper,
+                      double half_m[2])
 {
-  double half = 0;
+  half_m[0] = half_m[1] = 0;
   for (size_t i = 0; i < w->count; i++) {
     const struct dea_part *part = &w->part[i];
     if (part->state == state && part->paper == paper) {
       double box[4];
       dea_part_box(part, box);
-      half = fmax(half, fmax(fmax(-box[0], -box[1]), fmax(box[2], box[3])));
+      for (int k = 0; k < 2; k++) {
+        half_m[k] = fmax(half_m[k], fmax(-box[k], box[2 + k]));
+      }
     }
   }
-  return half + (paper ? 0 : 0.5 * w->plan.kerf_m);
+  for (int k = 0; k < 2; k++) {
+    half_m[k] += paper ? 0 : 0.5 * w->plan.kerf_m;
+  }
 }
 
 /* Paper is as large as it has to be. */
-static struct dea_sheet_layout paper_layout(double half, double margin)
+static struct dea_sheet_layout paper_layout(const double half_m[2], double margin)
 {
-  double side = 2 * (half + margin);
-  return (struct dea_sheet_layout){side, side, {0.5 * side, 0.5 * side}, side, 1, 1, false};
+  double across = 2 * (half_m[0] + margin), up = 2 * (half_m[1] + margin);
+  return (struct dea_sheet_layout){across, up, {0.5 * across, 0.5 * up}, {across, up}, 1, 1, false};
 }
 
 static double whole(double number)
@@ -44,15 +51,18 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   double margin = f->sheet.margin_m.si, gap = f->sheet.gap_m.si;
-  double half = half_size(w, part->state, false), pitch = 2 * half + gap;
+  double half[2];
+  half_size(w, part->state, false, half);
+  const double pitch[2] = {2 * half[0] + gap, 2 * half[1] + gap};
   double across = f->sheet.width_m.si, up = f->sheet.height_m.si;
-  double columns = fmax(0, whole((across - 2 * margin + gap) / pitch));
-  double rows = fmax(0, whole((up - 2 * margin + gap) / pitch));
+  double columns = fmax(0, whole((across - 2 * margin + gap) / pitch[0]));
+  double rows = fmax(0, whole((up - 2 * margin + gap) / pitch[1]));
   *out = (struct dea_sheet_layout){
       .width_m = across,
       .height_m = up,
-      .first_m = {part->mirrored ? across - margin - half : margin + half, up - margin - half},
-      .pitch_m = pitch,
+      .first_m = {part->mirrored ? across - margin - half[0] : margin + half[0],
+                  up - margin - half[1]},
+      .pitch_m = {pitch[0], pitch[1]},
       .columns = (int)fmin(columns, DEA_DESIGN_COPIES_MAX),
       .count = w->plan.copies,
       .mirrored = part->mirrored};
@@ -65,24 +75,27 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
                            "%d",
                            1e3 * across, 1e3 * up, columns * rows, part->name, w->plan.copies);
   }
-  return dea_finding_add(ctx, DEA_ERROR,
-                         columns < 1 ? f->sheet.width_m.location : f->sheet.height_m.location,
-                         "a sheet of %.4g mm x %.4g mm is too small for the part '%s' of %.4g mm, "
-                         "with a margin of %.4g mm",
-                         1e3 * across, 1e3 * up, part->name, 2e3 * half, 1e3 * margin);
+  return dea_finding_add(
+      ctx, DEA_ERROR, columns < 1 ? f->sheet.width_m.location : f->sheet.height_m.location,
+      "a sheet of %.4g mm x %.4g mm is too small for the part '%s' of %.4g mm, "
+      "with a margin of %.4g mm",
+      1e3 * across, 1e3 * up, part->name, 2e3 * half[columns < 1 ? 0 : 1], 1e3 * margin);
 }
 
 void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2])
 {
-  double aside = copy % layout->columns * layout->pitch_m;
+  double aside = copy % layout->columns * layout->pitch_m[0];
   out_m[0] = layout->first_m[0] + (layout->mirrored ? -aside : aside);
-  out_m[1] = layout->first_m[1] - copy / layout->columns * layout->pitch_m;
+  out_m[1] = layout->first_m[1] - copy / layout->columns * layout->pitch_m[0];
 }
 
 /* ---- all of it ---- */
 
 static dea_status build_parts(struct dea_context *ctx, struct dea_workshop *w)
 {
+  double l = w->plan.stretch;
+  w->part = dea_arena_alloc(&w->memory, sizeof types / sizeof types[0], sizeof *w->part);
+  DEA_TRY(ctx, dea_arena_status(&w->memory));
   for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
     const struct dea_part_type *type = types[i];
     if (type->of_fibres && w->plan.device->fibre_count == 0) {
@@ -94,23 +107,35 @@ static dea_status build_parts(struct dea_context *ctx, struct dea_workshop *w)
                               .title = type->title,
                               .seen = type->seen,
                               .state = type->state,
+                              .stretch = {{l, 0}, {0, l}},
+                              .quantity = 1,
                               .paper = type->paper,
                               .mirrored = type->mirrored};
     type->build(&w->plan, part);
-    if (part->failed) {
+  }
+  return DEA_OK;
+}
+
+static dea_status check_parts(struct dea_context *ctx, const struct dea_workshop *w)
+{
+  for (size_t i = 0; i < w->count; i++) {
+    if (w->part[i].failed) {
       return DEA_E_MEMORY;
     }
-    DEA_TRY(ctx, dea_part_check(part, w->plan.feature_m, w->plan.kerf_m));
+    DEA_TRY(ctx, dea_part_check(&w->part[i], w->plan.feature_m, w->plan.kerf_m));
   }
   return DEA_OK;
 }
 
 static dea_status lay_out(struct dea_context *ctx, struct dea_workshop *w)
 {
+  w->layout = dea_arena_alloc(&w->memory, w->count, sizeof *w->layout);
+  DEA_TRY(ctx, dea_arena_status(&w->memory));
   for (size_t i = 0; i < w->count; i++) {
     if (w->part[i].paper) {
-      w->layout[i] = paper_layout(half_size(w, w->part[i].state, true),
-                                  w->plan.design->fabrication.sheet.margin_m.si);
+      double half[2];
+      half_size(w, w->part[i].state, true, half);
+      w->layout[i] = paper_layout(half, w->plan.design->fabrication.sheet.margin_m.si);
     } else {
       DEA_TRY(ctx, sheet_layout(ctx, w, &w->part[i], &w->layout[i]));
     }
@@ -122,9 +147,21 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
                        const struct dea_device *device, struct dea_workshop *w)
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
+  w->memory.ctx = ctx;
+  if (device->general) {
+    w->plan = (struct dea_fab_geometry){.design = design,
+                                        .device = device,
+                                        .kerf_m = design->fabrication.kerf_m.si,
+                                        .feature_m = design->fabrication.minimum_feature_m.si,
+                                        .copies = (int)design->fabrication.copies.si};
+    DEA_TRY(ctx, dea_fab_room_make(ctx, &w->plan, &w->room));
+  } else {
+    DEA_TRY(ctx, dea_device_check(ctx, device));
+    DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
+  }
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
-    DEA_TRY(ctx, build_parts(ctx, w));
+    DEA_TRY(ctx, device->general ? dea_layout_parts_make(ctx, w) : build_parts(ctx, w));
+    DEA_TRY(ctx, check_parts(ctx, w));
     DEA_TRY(ctx, lay_out(ctx, w));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
@@ -137,7 +174,6 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
                                const struct dea_device *device, struct dea_workshop **out)
 {
   *out = NULL;
-  DEA_TRY(ctx, dea_device_check(ctx, device)); // files of other devices are not made yet
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
@@ -157,8 +193,22 @@ void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop
     for (size_t i = 0; i < workshop->count; i++) {
       dea_part_free(&workshop->part[i]);
     }
+    if (workshop->room.hole.ctx != NULL) {
+      dea_fab_room_free(&workshop->room);
+    }
+    dea_arena_free(&workshop->memory);
     dea_free(ctx, workshop);
   }
+}
+
+const struct dea_part *dea_workshop_find(const struct dea_workshop *workshop, const char *name)
+{
+  for (size_t i = 0; i < workshop->count; i++) {
+    if (strcmp(workshop->part[i].name, name) == 0) {
+      return &workshop->part[i];
+    }
+  }
+  return NULL;
 }
 
 dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,

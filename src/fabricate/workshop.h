@@ -3,10 +3,9 @@
 #ifndef DEA_FABRICATE_WORKSHOP_H
 #define DEA_FABRICATE_WORKSHOP_H
 
-#include "fabricate/fab_geometry.h"
+#include "base/arena.h"
+#include "fabricate/fab_room.h"
 #include "fabricate/part.h"
-
-enum { DEA_WORKSHOP_PARTS_MAX = 8 };
 
 /* Copies of a part on its sheet: rows from the upper left corner. All parts of the unstretched film
  * have the same places, and all of the stretched one; on a sheet that is seen from the other side
@@ -14,16 +13,18 @@ enum { DEA_WORKSHOP_PARTS_MAX = 8 };
 struct dea_sheet_layout {
   double width_m, height_m; // of the sheet; origin at its lower left corner
   double first_m[2];        // centre of the first copy
-  double pitch_m;           // from one to the next, sideways and downwards
+  double pitch_m[2];        // from one to the next, sideways and downwards
   int columns, count;
   bool mirrored; // rows go to the left
 };
 
 struct dea_workshop {
   struct dea_fab_geometry plan;
-  struct dea_part part[DEA_WORKSHOP_PARTS_MAX]; // in the order of the work
-  struct dea_sheet_layout layout[DEA_WORKSHOP_PARTS_MAX];
+  struct dea_fab_room room;        // of a device that is no disc
+  struct dea_part *part;           // [count] in the order of the work; owned
+  struct dea_sheet_layout *layout; // [count] owned
   size_t count;
+  struct dea_arena memory; // of these lists, and of names
 };
 
 /* Makes and checks everything. What does not fit gives findings with their place in the design and
@@ -32,6 +33,8 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
                                const struct dea_device *device, struct dea_workshop **out);
 void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop);
 
+/* The part of that name; NULL. */
+const struct dea_part *dea_workshop_find(const struct dea_workshop *workshop, const char *name);
 /* Centre of a copy on its sheet. */
 void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2]);
 /* Tool path of contour i: the kerf's half outside of outer edges and inside of holes; what is only

@@ -119,6 +119,28 @@ static bool face_each_other(const struct dea_piece *a, const struct dea_piece *b
   return -(na[0] * dx + na[1] * dy) * (nb[0] * dx + nb[1] * dy) > 0.1;
 }
 
+/* Whether a contour goes from piece i to piece j without a corner, and by less than this angle
+ * [rad] in all: two places of one round edge, between which there is no web. */
+static bool is_one_bend(const struct dea_contour *contour, size_t i, size_t j)
+{
+  static const double corner = 0.02, most = 2.6;
+  size_t n = dea_contour_pieces(contour);
+  double turn = 0, last[2] = {0, 0};
+  for (size_t k = i;; k = (k + 1) % n) {
+    const struct dea_piece piece = dea_contour_piece(contour, k);
+    double t[2];
+    dea_piece_tangent(&piece, false, t);
+    if (k != i && fabs(last[0] * t[1] - last[1] * t[0]) > corner) {
+      return false;
+    }
+    turn += piece.arc ? piece.sweep : 0;
+    if (k == j || fabs(turn) >= most) {
+      return fabs(turn) < most;
+    }
+    dea_piece_tangent(&piece, true, last);
+  }
+}
+
 /* A circle around a piece, for a quick look. */
 static bool far_apart(const struct dea_piece *a, const struct dea_piece *b, double limit)
 {
@@ -144,7 +166,9 @@ struct dea_gap dea_contour_gap(const struct dea_contour *first, const struct dea
       struct near at = nearest(&a, &b);
       bool crosses = at.distance <= 1e-12;
       if (at.distance < fmin(limit_m, out.width_m) &&
-          (crosses || second != NULL || face_each_other(&a, &b, &at))) {
+          (crosses || second != NULL ||
+           (face_each_other(&a, &b, &at) && !is_one_bend(first, i, j) &&
+            !(first->closed && is_one_bend(first, j, i))))) {
         out =
             (struct dea_gap){at.distance, 0.5 * (at.p[0] + at.q[0]), 0.5 * (at.p[1] + at.q[1]), i};
       }

@@ -1,0 +1,552 @@
+#include "fabricate/layout_parts.h"
+
+#include "device/layout_check.h"
+#include "geometry/boolean.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+// Names ------------------------------------------------------------------------------------------
+
+/* Letters and digits of a name, and dashes for the rest. */
+static void write_slug(const char *name, char out[32])
+{
+  size_t n = 0;
+  for (; *name != '\0' && n < 31; name++) {
+    char c = *name;
+    bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                 c == '_' || c == '-';
+    if (plain || (n > 0 && out[n - 1] != '-')) {
+      out[n++] = plain ? c : '-';
+    }
+  }
+  while (n > 1 && out[n - 1] == '-') {
+    n--;
+  }
+  out[n] = '\0';
+}
+
+/* "KIND-NAME", and the number of the part where the name of another one would give the same. */
+#define WRITE_NAME(kind, items, count, index, out)                                                 \
+  do {                                                                                             \
+    char slug[32], other[32];                                                                      \
+    bool alone = true;                                                                             \
+    write_slug((items)[index].name, slug);                                                         \
+    for (size_t i = 0; i < (count); i++) {                                                         \
+      write_slug((items)[i].name, other);                                                          \
+      alone &= i == (index) || strcmp(slug, other) != 0;                                           \
+    }                                                                                              \
+    if (alone) {                                                                                   \
+      snprintf(out, DEA_PART_NAME, "%s-%s", kind, slug);                                           \
+    } else {                                                                                       \
+      snprintf(out, DEA_PART_NAME, "%s-%s-%zu", kind, slug, (index) + 1);                          \
+    }                                                                                              \
+  } while (0)
+
+void dea_blank_name(const struct dea_layout *layout, size_t ply, char *out)
+{
+  WRITE_NAME("blank", layout->plies, layout->ply_count, ply, out);
+}
+
+void dea_outline_name(const struct dea_layout *layout, size_t ply, char *out)
+{
+  WRITE_NAME("ply", layout->plies, layout->ply_count, ply, out);
+}
+
+void dea_body_name(const struct dea_layout *layout, size_t body, char *out)
+{
+  WRITE_NAME("body", layout->bodies, layout->body_count, body, out);
+}
+
+void dea_stencil_name(const struct dea_layout *layout, size_t ply, bool top, char *out)
+{
+  WRITE_NAME("stencil", layout->plies, layout->ply_count, ply, out);
+  size_t n = strlen(out);
+  snprintf(out + n, DEA_PART_NAME - n, "%s", top ? "-top" : "-bottom");
+}
+
+size_t dea_part_pieces(const struct dea_part *part)
+{
+  size_t pieces = 0;
+  for (size_t i = 0; i < part->contour_count; i++) {
+    pieces += part->contour[i].layer == DEA_LAYER_CUT_OUTER ? 1 : 0;
+  }
+  return pieces;
+}
+
+// From the layout to a part ----------------------------------------------------------------------
+
+/* A part that is being made, and where points of the layout come to lie on it. */
+struct sheet {
+  struct dea_workshop *w;
+  const struct dea_layout *layout;
+  struct dea_part *part;
+  double map[2][2]; // of a distance from the room's centre, in the flat film
+};
+
+static const char *keep(struct dea_workshop *w, const char *format, ...) DEA_PRINTF(2, 3);
+static const char *keep(struct dea_workshop *w, const char *format, ...)
+{
+  va_list args, again;
+  va_start(args, format);
+  va_copy(again, args);
+  size_t length = (size_t)vsnprintf(NULL, 0, format, args);
+  va_end(args);
+  char *text = dea_arena_alloc(&w->memory, length + 1, 1);
+  if (text != NULL) {
+    vsnprintf(text, length + 1, format, again);
+  }
+  va_end(again);
+  return text != NULL ? text : "";
+}
+
+/* Starts the next part: of the flat film, or of the unstretched one of a ply, seen from above or
+ * from below. */
+static struct sheet start(struct dea_workshop *w, const char *name, const char *title,
+                          const struct dea_layout_ply *unstretched, bool below)
+{
+  struct sheet s = {.w = w, .layout = w->plan.device->layout, .map = {{1, 0}, {0, 1}}};
+  s.part = &w->part[w->count++];
+  *s.part = (struct dea_part){.ctx = w->memory.ctx,
+                              .name = name,
+                              .title = title,
+                              .seen = below ? "seen from below" : "seen from above",
+                              .state = DEA_STRETCHED,
+                              .flat = !w->room.stretched,
+                              .quantity = 1,
+                              .mirrored = below};
+  if (unstretched != NULL && dea_ply_is_stretched(unstretched)) {
+    double(*F)[2] = s.part->stretch;
+    dea_ply_stretch(unstretched, F);
+    double det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+    s.part->state = DEA_UNSTRETCHED;
+    s.map[0][0] = F[0][1] == 0 ? 1 / F[0][0] : F[1][1] / det;
+    s.map[1][1] = F[0][1] == 0 ? 1 / F[1][1] : F[0][0] / det;
+    s.map[0][1] = -F[0][1] / det;
+    s.map[1][0] = -F[1][0] / det;
+  }
+  for (int k = 0; k < 2 && below; k++) {
+    s.map[0][k] = -s.map[0][k];
+  }
+  if (below) { // along both axes the film has then the other angle
+    s.part->stretch[0][1] = -s.part->stretch[0][1];
+    s.part->stretch[1][0] = -s.part->stretch[1][0];
+  }
+  return s;
+}
+
+static void place(const struct sheet *s, const double x_m[2], double out[2])
+{
+  double x = x_m[0] - s->w->room.centre_m[0], y = x_m[1] - s->w->room.centre_m[1];
+  out[0] = s->map[0][0] * x + s->map[0][1] * y;
+  out[1] = s->map[1][0] * x + s->map[1][1] * y;
+}
+
+/* Whether circles stay circles. */
+static bool keeps_circles(const struct sheet *s)
+{
+  double shear = fabs(s->map[0][0]) - fabs(s->map[1][1]);
+  return fabs(shear) < 1e-15 && s->map[0][1] == 0;
+}
+
+/* A piece of a contour into vertices of another one, without its end. Arcs that do not stay arcs
+ * become short ones through points of the true curve, less than 0.1 um from it. */
+static void add_piece(const struct sheet *s, const struct dea_piece *piece,
+                      const struct dea_vertex *from, struct dea_vertex *out, size_t *count)
+{
+  static const double step = 5 * 3.14159265358979323846 / 180;
+  bool turned = s->map[0][0] * s->map[1][1] < s->map[0][1] * s->map[1][0];
+  int parts = piece->arc && !keeps_circles(s) ? (int)ceil(fabs(piece->sweep) / step) : 1;
+  for (int i = 0; i < parts; i++) {
+    double at[3][2]; // start, middle, end of it
+    for (int k = 0; k < 3; k++) {
+      double x[2];
+      dea_piece_point(piece, (i + 0.5 * k) / parts, x);
+      place(s, x, at[k]);
+    }
+    double bulge = turned ? -from->bulge : from->bulge;
+    if (parts > 1) { // half of the arc's angle is that by which its two chords turn
+      double a[2] = {at[1][0] - at[0][0], at[1][1] - at[0][1]};
+      double b[2] = {at[2][0] - at[1][0], at[2][1] - at[1][1]};
+      bulge = tan(0.5 * atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]));
+    }
+    out[(*count)++] = (struct dea_vertex){at[0][0], at[0][1], bulge, from->location};
+  }
+}
+
+/* Vertices that a contour can become at most. */
+static size_t room_for(const struct dea_contour *contour)
+{
+  return contour->count * 74;
+}
+
+/* A contour in the coordinates of the part, counter-clockwise. */
+static void add_contour(const struct sheet *s, const struct dea_contour *contour,
+                        enum dea_layer layer)
+{
+  struct dea_part *part = s->part;
+  struct dea_region mapped = {.ctx = part->ctx};
+  struct dea_vertex *v = dea_alloc(part->ctx, room_for(contour), sizeof *v);
+  size_t count = 0;
+  for (size_t i = 0; v != NULL && i < contour->count; i++) {
+    const struct dea_piece piece = dea_contour_piece(contour, i);
+    add_piece(s, &piece, &contour->vertex[i], v, &count);
+  }
+  if (v != NULL) {
+    const struct dea_contour made = {v, count, true};
+    (dea_contour_area_m2(&made) > 0 ? dea_region_add : dea_region_add_reversed)(&mapped, v, count);
+  }
+  if (v == NULL || mapped.failed) {
+    part->failed = true;
+  } else {
+    const struct dea_vertex *to = mapped.vertex;
+    bool circle = count == 2 && fabs(to[0].bulge - 1) < 1e-12 && fabs(to[1].bulge - 1) < 1e-12;
+    dea_part_add(part, layer, to, count, circle);
+  }
+  dea_region_free(&mapped);
+  dea_free(part->ctx, v);
+}
+
+/* Outlines on one layer, holes on another. */
+static void add_region(const struct sheet *s, const struct dea_region *region,
+                       enum dea_layer outlines, enum dea_layer holes)
+{
+  for (size_t i = 0; i < region->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(region, i);
+    add_contour(s, &contour, dea_contour_area_m2(&contour) > 0 ? outlines : holes);
+  }
+}
+
+/* A rectangle about the room's centre, of half sides in the flat film. */
+static void add_box(const struct sheet *s, enum dea_layer layer, const double half_m[2],
+                    struct dea_location location)
+{
+  const double *c = s->w->room.centre_m;
+  struct dea_vertex v[4] = {{0}};
+  for (int k = 0; k < 4; k++) {
+    v[k].x_m = c[0] + (k == 0 || k == 3 ? half_m[0] : -half_m[0]);
+    v[k].y_m = c[1] + (k < 2 ? half_m[1] : -half_m[1]);
+    v[k].location = location;
+  }
+  const struct dea_contour box = {v, 4, true};
+  add_contour(s, &box, layer);
+}
+
+static void add_marks(const struct sheet *s, enum dea_layer layer)
+{
+  const struct dea_fab_room *room = &s->w->room;
+  struct dea_region marks = {.ctx = s->part->ctx};
+  for (int k = 0; k < DEA_FAB_MARKS; k++) {
+    dea_region_add_circle(&marks, room->centre_m[0] + room->mark_at_m[k][0],
+                          room->centre_m[1] + room->mark_at_m[k][1], room->mark_m, false,
+                          s->w->plan.design->fabrication.mark_diameter.length.location);
+  }
+  s->part->failed |= marks.failed;
+  add_region(s, &marks, layer, layer);
+  dea_region_free(&marks);
+}
+
+/* Whether a cross of the grid at a place of the flat film would lie on something else. */
+static bool is_taken(const struct dea_workshop *w, double x, double y)
+{
+  const struct dea_fab_room *room = &w->room;
+  double clear = 1.5 * room->cross_m + w->plan.feature_m;
+  bool taken = (fabs(x) < room->opening_m[0] + clear && fabs(y) < room->opening_m[1] + clear) ||
+               fabs(x) > room->blank_m[0] - clear || fabs(y) > room->blank_m[1] - clear;
+  for (int k = 0; k < DEA_FAB_MARKS; k++) {
+    taken |= hypot(x - room->mark_at_m[k][0], y - room->mark_at_m[k][1]) < room->mark_m + clear;
+  }
+  return taken;
+}
+
+static void add_line(const struct sheet *s, double x0, double y0, double x1, double y1)
+{
+  const double *c = s->w->room.centre_m;
+  const double from[2] = {c[0] + x0, c[1] + y0}, to[2] = {c[0] + x1, c[1] + y1};
+  double a[2], b[2];
+  place(s, from, a);
+  place(s, to, b);
+  dea_part_line(s->part, DEA_LAYER_MARK, a[0], a[1], b[0], b[1],
+                s->w->plan.design->fabrication.grid_spacing.length.location);
+}
+
+/* Crosses of a grid, on the film beyond the opening. */
+static void add_grid(const struct sheet *s)
+{
+  const struct dea_fab_room *room = &s->w->room;
+  int n[2];
+  for (int k = 0; k < 2; k++) {
+    n[k] = (int)fmin(room->blank_m[k] / room->grid_m, 500);
+  }
+  for (int j = -n[1]; j <= n[1]; j++) {
+    for (int i = -n[0]; i <= n[0]; i++) {
+      double x = i * room->grid_m, y = j * room->grid_m, arm = room->cross_m;
+      if (!is_taken(s->w, x, y)) {
+        add_line(s, x - arm, y, x + arm, y);
+        add_line(s, x, y - arm, x, y + arm);
+      }
+    }
+  }
+}
+
+// Dimensions -------------------------------------------------------------------------------------
+
+/* Dimensions of contours from `first` on: diameters of circles, two sides of the boxes around
+ * others; of several alike the first one. */
+static void measure(struct dea_part *part, size_t first, enum dea_layer layer, const char *what)
+{
+  double seen[6][2];
+  size_t count = 0;
+  for (size_t i = first; i < part->contour_count && count < 6; i++) {
+    const struct dea_contour contour = dea_part_contour_get(part, i);
+    double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    dea_contour_grow_box(&contour, box);
+    const double side[2] = {box[2] - box[0], box[3] - box[1]};
+    bool known = part->contour[i].layer != layer || !part->contour[i].closed;
+    for (size_t k = 0; k < count && !known; k++) {
+      known = fabs(seen[k][0] - side[0]) < 1e-7 && fabs(seen[k][1] - side[1]) < 1e-7;
+    }
+    if (known) {
+      continue;
+    }
+    memcpy(seen[count++], side, sizeof side);
+    struct dea_location at = contour.vertex[0].location;
+    double y = 0.5 * (box[1] + box[3]);
+    if (part->contour[i].circle) {
+      dea_part_measure(part, DEA_MEASURE_DIAMETER, box[0], y, box[2], y, what, at);
+    } else {
+      dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what, at);
+      dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[0], box[3], what, at);
+    }
+  }
+}
+
+/* Sides of the box around all that is cut. */
+static void measure_box(struct dea_part *part, const char *what)
+{
+  const struct dea_location nowhere = {0};
+  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = 0; i < part->contour_count; i++) {
+    if (part->contour[i].layer == DEA_LAYER_CUT_OUTER) {
+      const struct dea_contour contour = dea_part_contour_get(part, i);
+      dea_contour_grow_box(&contour, box);
+    }
+  }
+  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what, nowhere);
+  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[0], box[3], what, nowhere);
+}
+
+// Parts ------------------------------------------------------------------------------------------
+
+static void add_blank(struct dea_workshop *w, size_t ply)
+{
+  const struct dea_layout *l = w->plan.device->layout;
+  const struct dea_fabrication *f = &w->plan.design->fabrication;
+  char name[DEA_PART_NAME];
+  dea_blank_name(l, ply, name);
+  struct sheet s = start(w, keep(w, "%s", name),
+                         keep(w, "Film '%.60s' before it is stretched", l->plies[ply].name),
+                         &l->plies[ply], false);
+  s.part->quantity = dea_ply_count_like(l, ply);
+  add_grid(&s);
+  add_marks(&s, DEA_LAYER_MARK);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.blank_m, f->blank.margin.length.location);
+  measure_box(s.part, "film");
+}
+
+/* All electrodes of a face as one region. */
+static dea_status gather(struct dea_context *ctx, const struct dea_layout *l, size_t ply, bool top,
+                         struct dea_region *out)
+{
+  const struct dea_motion still = dea_motion_translation(0, 0);
+  struct dea_region all = {.ctx = ctx};
+  bool overlap = false;
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    const struct dea_layout_electrode *e = &l->electrodes[i];
+    if (e->ply != ply || e->top != top) {
+      continue;
+    }
+    for (size_t j = 0; j < i && !overlap; j++) {
+      const struct dea_layout_electrode *b = &l->electrodes[j];
+      overlap =
+          b->ply == ply && b->top == top && !(dea_layout_overlap_m2(l, e->region, b->region) <= 0);
+    }
+    dea_region_add_moved(&all, &l->regions[e->region].region, &still);
+  }
+  dea_status status = dea_region_status(&all);
+  if (status == DEA_OK && overlap) {
+    status = dea_region_combine(ctx, DEA_UNION, &all, NULL, out);
+  } else if (status == DEA_OK) {
+    dea_region_add_moved(out, &all, &still);
+    status = dea_region_status(out);
+  }
+  dea_region_free(&all);
+  return status;
+}
+
+static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
+{
+  const struct dea_layout *l = w->plan.device->layout;
+  struct dea_context *ctx = w->memory.ctx;
+  struct dea_location edge = w->plan.design->fabrication.blank.margin.length.location;
+  struct dea_region openings = {.ctx = ctx};
+  char name[DEA_PART_NAME];
+  dea_status status = gather(ctx, l, ply, top, &openings);
+  if (status != DEA_OK) {
+    return status;
+  }
+  dea_stencil_name(l, ply, top, name);
+  struct sheet s = start(w, keep(w, "%s", name),
+                         keep(w, "Stencil of the electrodes on the %s of '%.60s'",
+                              top ? "top" : "bottom", l->plies[ply].name),
+                         &l->plies[ply], !top);
+  add_region(&s, &openings, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+  size_t pieces = dea_part_pieces(s.part);
+  measure(s.part, 0, DEA_LAYER_CUT_INNER, "electrode");
+  measure(s.part, 0, DEA_LAYER_CUT_OUTER, "loose piece");
+  add_marks(&s, DEA_LAYER_CUT_INNER);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.blank_m, edge);
+  measure_box(s.part, "stencil");
+  double box[4];
+  dea_part_box(s.part, box);
+  double height = fmin(2e-3, 0.06 * fmin(box[2], box[3]));
+  dea_part_write(s.part, 0, 0.94 * box[1], height, "%s", top ? "TOP" : "BOTTOM");
+  dea_region_free(&openings);
+  if (pieces > 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, l->plies[ply].location,
+                                 "%s: %zu piece%s within an electrode %s loose; cut the stencil "
+                                 "from adhesive foil on a carrier, which keeps places",
+                                 name, pieces, pieces > 1 ? "s" : "", pieces > 1 ? "are" : "is"));
+  }
+  return DEA_OK;
+}
+
+static void add_template(struct dea_workshop *w)
+{
+  const struct dea_fabrication *f = &w->plan.design->fabrication;
+  struct sheet s = start(w, "template", "Template of the flat device, for paper", NULL, false);
+  const struct dea_layout *l = s.layout;
+  const enum dea_layer mark = DEA_LAYER_MARK;
+  s.part->paper = true;
+  add_grid(&s);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_ply_like(l, i) == i) {
+      add_region(&s, &l->regions[l->plies[i].region].region, mark, mark);
+    }
+  }
+  for (size_t i = 0; i < 2 * l->ply_count; i++) {
+    if (dea_face_like(l, i / 2, i % 2 == 1) != i / 2) {
+      continue;
+    }
+    for (size_t e = 0; e < l->electrode_count; e++) {
+      if (l->electrodes[e].ply == i / 2 && l->electrodes[e].top == (i % 2 == 1)) {
+        add_region(&s, &l->regions[l->electrodes[e].region].region, mark, mark);
+      }
+    }
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    add_region(&s, &l->regions[l->bodies[i].region].region, mark, mark);
+  }
+  add_marks(&s, mark);
+  size_t first = s.part->contour_count;
+  if (dea_layout_has_frame(w)) {
+    add_box(&s, mark, w->room.frame_m, f->ring.width_m.location);
+    measure(s.part, first, mark, "frame");
+  }
+  if (w->room.stretched) {
+    first = s.part->contour_count;
+    add_box(&s, mark, w->room.blank_m, f->blank.margin.length.location);
+    measure(s.part, first, mark, "film");
+  }
+}
+
+bool dea_layout_has_frame(const struct dea_workshop *workshop)
+{
+  return workshop->room.held || workshop->room.stretched;
+}
+
+static void add_frame(struct dea_workshop *w)
+{
+  const struct dea_fabrication *f = &w->plan.design->fabrication;
+  struct sheet s = start(w, "frame",
+                         w->room.held ? "Frame, to which the edge of the film is bonded"
+                                      : "Frame that holds the film until it is cut",
+                         NULL, false);
+  if (w->room.held) {
+    add_region(&s, &w->room.hole, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+  } else {
+    add_box(&s, DEA_LAYER_CUT_INNER, w->room.opening_m, f->frame_gap_m.location);
+  }
+  measure(s.part, 0, DEA_LAYER_CUT_INNER, "opening");
+  add_marks(&s, DEA_LAYER_CUT_INNER);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.frame_m, f->ring.width_m.location);
+  measure_box(s.part, "frame");
+}
+
+/* Pieces on a carrier, which has the marks. */
+static void add_outline(struct dea_workshop *w, const char *name, const char *title, size_t region,
+                        size_t quantity)
+{
+  struct sheet s = start(w, keep(w, "%s", name), title, NULL, false);
+  s.part->quantity = quantity;
+  add_region(&s, &s.layout->regions[region].region, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
+  if (dea_part_pieces(s.part) > 1) {
+    measure_box(s.part, "in all");
+  }
+  measure(s.part, 0, DEA_LAYER_CUT_OUTER, "piece");
+  measure(s.part, 0, DEA_LAYER_CUT_INNER, "hole");
+  add_marks(&s, DEA_LAYER_MARK);
+}
+
+bool dea_layout_has_outline(const struct dea_workshop *workshop, size_t ply)
+{
+  const struct dea_layout *l = workshop->plan.device->layout;
+  return dea_ply_like(l, ply) == ply &&
+         !(dea_ply_is_stretched(&l->plies[ply]) && dea_ply_is_held(l, ply));
+}
+
+static void add_plies_and_bodies(struct dea_workshop *w)
+{
+  const struct dea_layout *l = w->plan.device->layout;
+  char name[DEA_PART_NAME];
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_layout_ply *ply = &l->plies[i];
+    if (dea_layout_has_outline(w, i)) {
+      dea_outline_name(l, i, name);
+      bool film = dea_ply_is_stretched(ply);
+      const char *title = keep(w, "%s '%.60s'%s", film ? "Outline of the film" : "Ply", ply->name,
+                               film ? ", cut once it is stretched and bonded" : "");
+      add_outline(w, name, title, ply->region, dea_ply_count_like(l, i));
+    }
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    dea_body_name(l, i, name);
+    add_outline(w, name, keep(w, "Rigid body '%.60s'", l->bodies[i].name), l->bodies[i].region, 1);
+  }
+}
+
+dea_status dea_layout_parts_make(struct dea_context *ctx, struct dea_workshop *w)
+{
+  const struct dea_layout *l = w->plan.device->layout;
+  size_t most = 2 + 4 * l->ply_count + l->body_count;
+  w->part = dea_arena_alloc(&w->memory, most, sizeof *w->part);
+  DEA_TRY(ctx, dea_arena_status(&w->memory));
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_ply_is_stretched(&l->plies[i]) && dea_ply_like(l, i) == i) {
+      add_blank(w, i);
+    }
+    for (int top = 0; top < 2; top++) {
+      if (dea_face_like(l, i, top == 1) == i) {
+        DEA_TRY(ctx, add_stencil(w, i, top == 1));
+      }
+    }
+  }
+  add_template(w);
+  if (dea_layout_has_frame(w)) {
+    add_frame(w);
+  }
+  add_plies_and_bodies(w);
+  return dea_arena_status(&w->memory);
+}

@@ -1,0 +1,18 @@
+/* What the process sheets of all devices have in common. */
+#ifndef DEA_FABRICATE_PROCESS_PARTS_H
+#define DEA_FABRICATE_PROCESS_PARTS_H
+
+#include "fabricate/document.h"
+#include "fabricate/workshop.h"
+
+/* Heading and head of the bill of materials. */
+void dea_process_begin_materials(struct dea_document *document, int copies);
+/* A row of it: for what, which material, how much of one and of all; a volume of NAN is left out.
+ */
+void dea_process_add_material(struct dea_document *document, int copies, const char *item,
+                              const char *material, double area_m2, double volume_m3,
+                              const char *note);
+/* Bill, steps and checks of a device that is no disc (process_layout.c). */
+void dea_process_write_layout(const struct dea_workshop *workshop, struct dea_document *document);
+
+#endif

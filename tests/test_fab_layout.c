@@ -1,0 +1,200 @@
+/* Parts of devices of any layout: sizes and areas against closed forms, in the film in which they
+ * are cut, and what cannot be cut. */
+#include "workshop_fixture.h"
+
+#include "fabricate/dxf.h"
+#include "fabricate/layout_parts.h"
+#include "fabricate/process.h"
+#include "geometry/drawing.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A film of 40 mm x 24 mm, stretched along x and y, with a bottom electrode aside of the middle and
+ * others on top, and a stiff ring on it. */
+#define DEVICE(stretch, more)                                                                      \
+  "dea: 1\n"                                                                                       \
+  "shapes:\n"                                                                                      \
+  "  - {name: film, kind: rectangle, width: 40 mm, height: 24 mm}\n"                               \
+  "  - {name: aside, kind: rectangle, x: 8 mm, y: 3 mm, width: 12 mm, height: 9 mm}\n"             \
+  "  - {name: disc, kind: circle, x: 8 mm, radius: 3 mm}\n"                                        \
+  "  - {name: ring, kind: ring, x: -8 mm, inner_radius: 4 mm, outer_radius: 6 mm}\n"               \
+  "plies:\n"                                                                                       \
+  "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: " stretch "}\n"   \
+  "  - {name: 'a stiff/ring', shape: ring, material: stiff, thickness: 50 um}\n"                   \
+  "electrodes:\n"                                                                                  \
+  "  - {ply: film, side: bottom, shape: aside, channel: ground}\n"                                 \
+  "  - {ply: film, side: top, shape: disc, channel: one}\n"                                        \
+  "  - {ply: film, side: top, shape: ring, channel: two}\n" more FILM_MATERIAL
+
+static const struct dea_part *find(const char *name)
+{
+  const struct dea_part *part = dea_workshop_find(workshop, name);
+  assert_non_null(part);
+  return part;
+}
+
+/* Area of all contours of a layer, and the box around them. */
+static double layer_area(const struct dea_part *part, enum dea_layer layer, double box[4])
+{
+  double area = 0;
+  box[0] = box[1] = INFINITY;
+  box[2] = box[3] = -INFINITY;
+  for (size_t i = 0; i < part->contour_count; i++) {
+    const struct dea_contour contour = dea_part_contour_get(part, i);
+    if (part->contour[i].layer == layer) {
+      area += dea_contour_area_m2(&contour);
+      dea_contour_grow_box(&contour, box);
+    }
+  }
+  return area;
+}
+
+/* What is cut before the film is stretched is smaller by its two pre-stretches. */
+static void test_unstretched(void **state)
+{
+  (void)state;
+  assert_int_equal(workshop_make(DEVICE("[1.25, 1.6]", ""), NULL, 0), DEA_OK);
+  const double l1 = 1.25, l2 = 1.6;
+  double box[4];
+  // film, gap of 5 mm, frame of 10 mm, margin of 10 mm on all sides
+  double area = layer_area(find("blank-film"), DEA_LAYER_CUT_OUTER, box);
+  assert_close(box[2] - box[0], (40 + 50) * 1e-3 / l1, 1e-12, 0);
+  assert_close(box[3] - box[1], (24 + 50) * 1e-3 / l2, 1e-12, 0);
+  assert_close(area, 90e-3 * 74e-3 / (l1 * l2), 1e-12, 0);
+  // what is below is seen from there: its middle lies at -8 mm then; marks are round when stretched
+  const struct dea_part *bottom = find("stencil-film-bottom");
+  assert_true(bottom->mirrored);
+  const struct dea_contour opening = dea_part_contour_get(bottom, 0);
+  double place[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  dea_contour_grow_box(&opening, place);
+  assert_close(place[0], -14e-3 / l1, 1e-12, 0);
+  assert_close(place[2], -2e-3 / l1, 1e-12, 0);
+  assert_close(place[1], -1.5e-3 / l2, 1e-12, 0);
+  double radius = 0.5e-3 * sqrt(l1 * l2), marks = 3 * pi * radius * radius;
+  assert_close(layer_area(bottom, DEA_LAYER_CUT_INNER, box), (108e-6 + marks) / (l1 * l2), 1e-8, 0);
+  // circles become ellipses, and the inside of the ring is a loose piece
+  const struct dea_part *top = find("stencil-film-top");
+  double loose = pi * 16e-6;
+  assert_close(layer_area(top, DEA_LAYER_CUT_INNER, box), (pi * 45e-6 + marks) / (l1 * l2), 1e-7,
+               0);
+  assert_close(dea_part_area_m2(top), (90e-3 * 74e-3 - pi * 29e-6 - marks) / (l1 * l2), 1e-7, 0);
+  assert_int_equal(dea_part_pieces(top), 2);
+  assert_non_null(find_finding(ctx, DEA_NOTE, "1 piece within an electrode is loose"));
+  assert_close(dea_ink_area_m2(workshop), (108e-6 + pi * 45e-6 - loose) / (l1 * l2), 1e-12, 0);
+}
+
+/* What is cut in the flat film has the lengths of the design; the frame goes once the film is cut
+ * along its outline. */
+static void test_flat(void **state)
+{
+  (void)state;
+  assert_int_equal(workshop_make(DEVICE("1.3", ""), NULL, 0), DEA_OK);
+  double box[4];
+  assert_close(dea_part_area_m2(find("ply-a-stiff-ring")), pi * 20e-6, 1e-12, 0);
+  assert_close(dea_part_area_m2(find("ply-film")), 960e-6, 1e-12, 0);
+  layer_area(find("frame"), DEA_LAYER_CUT_OUTER, box);
+  assert_close(box[2] - box[0], 70e-3, 1e-12, 0);
+  double marks = 3 * pi * 0.25e-6 * 1.69; // 1 mm unstretched
+  assert_close(dea_part_area_m2(find("frame")), 70e-3 * 54e-3 - 50e-3 * 34e-3 - marks, 1e-12, 0);
+  assert_true(find("template")->paper);
+  // an edge that is held stays on the frame, whose opening it is
+  assert_int_equal(workshop_make(DEVICE("1.3", "supports: [{edge: film}]\n"), NULL, 0), DEA_OK);
+  assert_null(dea_workshop_find(workshop, "ply-film"));
+  assert_close(dea_part_area_m2(find("frame")), 60e-3 * 44e-3 - 960e-6 - marks, 1e-12, 0);
+  // a film that is not stretched needs no frame, and is cut as it is
+  assert_int_equal(workshop_make(DEVICE("1", ""), NULL, 0), DEA_OK);
+  assert_null(dea_workshop_find(workshop, "frame"));
+  assert_null(dea_workshop_find(workshop, "blank-film"));
+  assert_close(dea_part_area_m2(find("ply-film")), 960e-6, 1e-12, 0);
+  assert_string_equal(dea_part_film_name(find("ply-film")), "flat");
+}
+
+/* Films that are alike have one file, and faces that are. */
+static void test_alike(void **state)
+{
+  (void)state;
+  static const char text[] =
+      "dea: 1\nshapes:\n"
+      "  - {name: film, kind: circle, radius: 10 mm}\n"
+      "  - {name: active, kind: circle, radius: 5 mm}\n"
+      "plies:\n"
+      "  - {name: a b, shape: film, material: film, thickness: 20 um}\n"
+      "  - {name: a-b, shape: film, material: film, thickness: 30 um}\n"
+      "  - {name: c, shape: film, material: film, thickness: 20 um}\n"
+      "electrodes:\n"
+      "  - {ply: a b, side: bottom, shape: active, channel: ground}\n"
+      "  - {ply: a b, side: top, shape: active, channel: drive}\n"
+      "  - {ply: a-b, side: top, shape: active, channel: ground}\n"
+      "  - {ply: c, side: top, shape: active, channel: drive}\n" FILM_MATERIAL;
+  assert_int_equal(workshop_make(text, NULL, 0), DEA_OK);
+  assert_int_equal(find("ply-a-b-1")->quantity, 2); // names that give the same file have numbers
+  assert_int_equal(find("ply-a-b-2")->quantity, 1);
+  assert_null(dea_workshop_find(workshop, "ply-c"));
+  find("stencil-a-b-1-bottom");
+  find("stencil-a-b-1-top");
+  assert_int_equal(dea_face_count_like(device->layout, 0, true), 3);
+  assert_int_equal(workshop->count, 5); // and the template
+}
+
+static void expect_refusal(const char *text, const char *key, const char *value, const char *said)
+{
+  const struct dea_override set = {key, value};
+  assert_int_equal(workshop_make(text, &set, 1), DEA_E_DESIGN);
+  if (find_error(ctx, said) == NULL) {
+    print_findings(ctx);
+    fail_msg("nothing says '%s'", said);
+  }
+}
+
+static void test_refusals(void **state)
+{
+  (void)state;
+  static const char good[] = DEVICE("1.3", "");
+  expect_refusal(good, "fabrication.minimum_feature", "2.5 mm",
+                 "only 2 mm lie between two edges at");
+  // a round edge is no web, however small; what is too small across is told
+  static const char round[] = DEVICE("[1.3, 1.2]", "");
+  expect_refusal(round, "fabrication.marks.diameter", "0.45 mm unstretched", "lie between two");
+  expect_refusal(good, "fabrication.kerf", "1 mm", "makes no features");
+  expect_refusal(good, "fabrication.sheet.width", "50 mm", "is too small for the part");
+  expect_refusal(good, "fabrication.frame.width", "1.5 mm", "alignment marks of 1.3 mm");
+  expect_refusal(good, "fabrication.copies", "30", "copies: a sheet of");
+  expect_refusal(good, "fabrication.leads.width", "1 mm", "part of the shape of its electrode");
+}
+
+/* A sheet as it is written, without kerf, read back. */
+static void test_sheet_read_back(void **state)
+{
+  (void)state;
+  const struct dea_override sharp = {"fabrication.kerf", "0 mm"};
+  const struct dea_location here = {0};
+  assert_int_equal(workshop_make(DEVICE("[1.25, 1.6]", ""), &sharp, 1), DEA_OK);
+  for (size_t i = 0; i < workshop->count; i++) {
+    const struct dea_part *part = &workshop->part[i];
+    struct dea_text text = {.ctx = ctx};
+    struct dea_drawing *drawing;
+    struct dea_region outer = {.ctx = ctx};
+    double box[4];
+    if (part->paper || strncmp(part->name, "stencil", 7) == 0) {
+      continue; // of a stencil with loose pieces one layer is no region by itself
+    }
+    assert_int_equal(dea_dxf_write(workshop, i, &text), DEA_OK);
+    assert_int_equal(dea_drawing_read_dxf(ctx, part->name, text.data, text.length, NULL, &drawing),
+                     DEA_OK);
+    assert_int_equal(dea_drawing_region(drawing, "CUT_OUTER", here, &outer), DEA_OK);
+    assert_close(dea_region_area_m2(&outer), layer_area(part, DEA_LAYER_CUT_OUTER, box), 1e-9, 0);
+    dea_region_free(&outer);
+    dea_drawing_destroy(drawing);
+    dea_text_free(&text);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_unstretched),     cmocka_unit_test(test_flat),
+      cmocka_unit_test(test_alike),           cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_sheet_read_back),
+  };
+  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
+}
