@@ -218,6 +218,9 @@ static const struct dea_model_type of_layouts = {
     .fields = fields,
     .save = save,
     .load = load,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
     .size = size,
 };
 

@@ -9,52 +9,80 @@
     .key = "voltage_V", .kind = DEA_CELL_NUMBER, .si_unit = "V", .display_unit = "kV",             \
     .factor = 1e-3, .title = "V", .meaning = "voltage of the sweep"                                \
   }
+#define TIME                                                                                       \
+  {                                                                                                \
+    .key = "time_s", .kind = DEA_CELL_NUMBER, .si_unit = "s", .display_unit = "s", .factor = 1,    \
+    .title = "time", .meaning = "time since the start of the waveform"                             \
+  }
 #define NAME(name, what)                                                                           \
   {                                                                                                \
     .key = name, .kind = DEA_CELL_TEXT, .title = name, .meaning = what                             \
   }
 
-enum { BEFORE = 2 }; // columns before the quantities
+enum { BEFORE = 2, OF_CHANNEL = 3 }; // columns before the quantities; quantities of a channel
 
 /* In the order of enum dea_observed. */
-static const struct dea_result_column monitor_columns[] = {
-    VOLTAGE,
-    NAME("monitor", "name in the design"),
-    DEA_OBSERVED_COLUMNS,
+#define MONITOR_COLUMNS_AT(where)                                                                  \
+  {                                                                                                \
+    where, NAME("monitor", "name in the design"), DEA_OBSERVED_COLUMNS                             \
+  }
+#define CHANNEL_COLUMNS_AT(where)                                                                  \
+  {                                                                                                \
+    where, NAME("channel", "name in the design"),                                                  \
+        DEA_NUMBER_COLUMN("channel_voltage_V", "V", "kV", 1e-3, "voltage",                         \
+                          "voltage of the channel"),                                               \
+        DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),          \
+        DEA_NUMBER_COLUMN("capacitance_F", "F", "pF", 1e12, "capacitance",                         \
+                          "change of the channel's charge with its voltage, the film held"),       \
+  }
+
+static const struct dea_result_column monitor_columns[] = MONITOR_COLUMNS_AT(VOLTAGE);
+static const struct dea_result_column monitor_time_columns[] = MONITOR_COLUMNS_AT(TIME);
+static const struct dea_result_column channel_columns[] = CHANNEL_COLUMNS_AT(VOLTAGE);
+static const struct dea_result_column channel_time_columns[] = CHANNEL_COLUMNS_AT(TIME);
+enum {
+  MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0],
+  CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0]
 };
-enum { MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0] };
 _Static_assert(MONITOR_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
+_Static_assert(CHANNEL_COLUMNS == BEFORE + OF_CHANNEL, "a column a quantity");
 
-static const struct dea_result_column channel_columns[] = {
-    VOLTAGE,
-    NAME("channel", "name in the design"),
-    DEA_NUMBER_COLUMN("channel_voltage_V", "V", "kV", 1e-3, "voltage", "voltage of the channel"),
-    DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),
-    DEA_NUMBER_COLUMN("capacitance_F", "F", "pF", 1e12, "capacitance",
-                      "change of the channel's charge with its voltage, the film held"),
+/* Tables of a study: against the voltage of a sweep, against time. */
+struct tables {
+  struct dea_result_table_type monitors, channels;
 };
-enum { CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0] };
+static const struct tables of_sweep = {
+    .monitors = {.study = "sweep",
+                 .name = "monitors",
+                 .key = "monitors",
+                 .title = "Monitors",
+                 .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+                 .columns = monitor_columns,
+                 .column_count = MONITOR_COLUMNS},
+    .channels = {.study = "sweep",
+                 .name = "channels",
+                 .key = "channels",
+                 .title = "Channels",
+                 .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+                 .columns = channel_columns,
+                 .column_count = CHANNEL_COLUMNS},
+};
+static const struct tables of_history = {
+    .monitors = {.study = "transient",
+                 .name = "monitors",
+                 .title = "Monitors in time",
+                 .where = DEA_IN_CSV,
+                 .columns = monitor_time_columns,
+                 .column_count = MONITOR_COLUMNS},
+    .channels = {.study = "transient",
+                 .name = "channels",
+                 .title = "Channels in time",
+                 .where = DEA_IN_CSV,
+                 .columns = channel_time_columns,
+                 .column_count = CHANNEL_COLUMNS},
+};
 
-static const struct dea_result_table_type monitors = {
-    .study = "sweep",
-    .name = "monitors",
-    .key = "monitors",
-    .title = "Monitors",
-    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
-    .columns = monitor_columns,
-    .column_count = MONITOR_COLUMNS,
-};
-static const struct dea_result_table_type channels = {
-    .study = "sweep",
-    .name = "channels",
-    .key = "channels",
-    .title = "Channels",
-    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
-    .columns = channel_columns,
-    .column_count = CHANNEL_COLUMNS,
-};
-
-/* The model's table of that type, a new one when there is none; rows: whether any will come. */
+/* The model's table of that type, a new one when there is none. */
 static dea_status get_table(struct dea_context *ctx, const struct dea_result_table_type *type,
                             const char *model, struct dea_result *result,
                             struct dea_result_table **out)
@@ -69,44 +97,58 @@ static dea_status get_table(struct dea_context *ctx, const struct dea_result_tab
   return DEA_OK;
 }
 
-static dea_status add_monitors(struct dea_context *ctx, const char *model, double voltage_V,
-                               const struct dea_observation *seen, struct dea_result *result)
+// What is observed at a point --------------------------------------------------------------------
+
+size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result)
 {
-  const struct dea_layout *layout = result->device->layout;
-  struct dea_result_table *table;
-  if (seen->monitor_count == 0) {
-    return DEA_OK;
+  if (type->observe == NULL || result->device == NULL) {
+    return 0;
   }
-  DEA_TRY(ctx, get_table(ctx, &monitors, model, result, &table));
-  for (size_t i = 0; i < seen->monitor_count; i++) {
-    struct dea_result_table_value row[MONITOR_COLUMNS] = {{.number = voltage_V},
-                                                          {.text = layout->monitors[i].name}};
-    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
-      row[BEFORE + k].number = seen->monitor[i][k];
-    }
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  const struct dea_layout *layout = result->device->layout;
+  return layout->monitor_count * DEA_OBSERVED_COUNT + (layout->channel_count - 1) * OF_CHANNEL;
+}
+
+/* Monitors, then channels without ground, which has what the others have with the other sign. */
+dea_status dea_observe_take(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, double *values)
+{
+  struct dea_observation seen;
+  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
+  for (size_t i = 0; i < seen.monitor_count; i++, values += DEA_OBSERVED_COUNT) {
+    memcpy(values, seen.monitor[i], sizeof seen.monitor[i]);
+  }
+  for (size_t k = 1; k < seen.channel_count; k++) {
+    *values++ = seen.channel[k].voltage_V;
+    *values++ = seen.channel[k].charge_C;
+    *values++ = seen.channel[k].capacitance_F;
   }
   return DEA_OK;
 }
 
-/* Ground, which has what the others have with the other sign, is left out. */
-static dea_status add_channels(struct dea_context *ctx, const char *model, double voltage_V,
-                               const struct dea_observation *seen, struct dea_result *result)
+static dea_status add_row(struct dea_context *ctx, struct dea_result_table *table, double where,
+                          const char *name, const double *values)
+{
+  struct dea_result_table_value row[DEA_RESULT_TABLE_COLUMNS_MAX] = {{.number = where},
+                                                                     {.text = name}};
+  for (size_t k = BEFORE; k < table->type.column_count; k++) {
+    row[k].number = values[k - BEFORE];
+  }
+  return dea_result_table_add_row(ctx, table, row);
+}
+
+/* Rows of one point. */
+static dea_status add_point(struct dea_context *ctx, const struct tables *tables, const char *model,
+                            double where, const double *values, struct dea_result *result)
 {
   const struct dea_layout *layout = result->device->layout;
-  struct dea_result_table *table;
-  if (seen->channel_count < 2) {
-    return DEA_OK;
+  struct dea_result_table *table = NULL;
+  for (size_t i = 0; i < layout->monitor_count; i++, values += DEA_OBSERVED_COUNT) {
+    DEA_TRY(ctx, get_table(ctx, &tables->monitors, model, result, &table));
+    DEA_TRY(ctx, add_row(ctx, table, where, layout->monitors[i].name, values));
   }
-  DEA_TRY(ctx, get_table(ctx, &channels, model, result, &table));
-  for (size_t k = 1; k < seen->channel_count; k++) {
-    const struct dea_channel_values *values = &seen->channel[k];
-    const struct dea_result_table_value row[CHANNEL_COLUMNS] = {{.number = voltage_V},
-                                                                {.text = layout->channels[k].name},
-                                                                {.number = values->voltage_V},
-                                                                {.number = values->charge_C},
-                                                                {.number = values->capacitance_F}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  for (size_t k = 1; k < layout->channel_count; k++, values += OF_CHANNEL) {
+    DEA_TRY(ctx, get_table(ctx, &tables->channels, model, result, &table));
+    DEA_TRY(ctx, add_row(ctx, table, where, layout->channels[k].name, values));
   }
   return DEA_OK;
 }
@@ -114,13 +156,28 @@ static dea_status add_channels(struct dea_context *ctx, const char *model, doubl
 dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, double voltage_V, struct dea_result *result)
 {
-  struct dea_observation seen;
-  if (type->observe == NULL) {
+  size_t width = dea_observe_width(type, result);
+  if (width == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
-  DEA_TRY(ctx, add_monitors(ctx, type->name, voltage_V, &seen, result));
-  DEA_TRY(ctx, add_channels(ctx, type->name, voltage_V, &seen, result));
+  double *values = dea_alloc(ctx, width, sizeof *values);
+  dea_status status = values != NULL ? dea_observe_take(ctx, type, model, values) : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = add_point(ctx, &of_sweep, type->name, voltage_V, values, result);
+  }
+  dea_free(ctx, values);
+  return status;
+}
+
+dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_type *type,
+                               const struct dea_curve *curve, const double *values,
+                               struct dea_result *result)
+{
+  size_t width = dea_observe_width(type, result);
+  for (size_t i = 0; i < curve->count && width > 0; i++) {
+    DEA_TRY(ctx, add_point(ctx, &of_history, type->name, curve->points[i].time_s,
+                           values + i * width, result));
+  }
   return DEA_OK;
 }
 
@@ -161,33 +218,37 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   series->colour = colours[(size_t)line->number % (sizeof colours / sizeof colours[0])];
   for (size_t i = 0, k = 0; i < table->row_count; i++) {
     if (strcmp(dea_result_table_cell(table, i, 1)->text, line->name) == 0) {
-      series->values[k] = 1e-3 * dea_result_table_cell(table, i, 0)->number;
+      series->values[k] =
+          table->type.columns[0].factor * dea_result_table_cell(table, i, 0)->number;
       series->values[count + k++] = factor * dea_result_table_cell(table, i, line->column)->number;
     }
   }
   return DEA_OK;
 }
 
-/* Adds the column of that key for all names of a table of all models. */
+/* Adds the column of that key for all names of a table of all models; of: the table's type. */
 static dea_status add_lines(struct dea_context *ctx, const struct dea_result *result,
-                            const char *table_name, const char *key, const char *suffix,
-                            enum dea_series_style style, struct dea_panel *panel)
+                            const struct dea_result_table_type *of, const char *key,
+                            const char *suffix, enum dea_series_style style,
+                            struct dea_panel *panel)
 {
   for (size_t t = 0; t < result->table_count; t++) {
     struct line line = {.table = &result->tables[t], .suffix = suffix, .style = style};
-    if (strcmp(line.table->type.study, monitors.study) != 0 ||
-        strcmp(line.table->type.name, table_name) != 0) {
+    if (strcmp(line.table->type.study, of->study) != 0 ||
+        strcmp(line.table->type.name, of->name) != 0 || line.table->row_count == 0) {
       continue;
     }
     while (line.column < line.table->type.column_count &&
            strcmp(line.table->type.columns[line.column].key, key) != 0) {
       line.column++;
     }
-    double first_V = dea_result_table_cell(line.table, 0, 0)->number;
-    for (size_t i = 0; i < line.table->row_count && line.column < line.table->type.column_count &&
-                       dea_result_table_cell(line.table, i, 0)->number == first_V;
-         i++) { // the rows of the first voltage have every name
+    const char *first = dea_result_table_cell(line.table, 0, 1)->text;
+    for (size_t i = 0; i < line.table->row_count && line.column < line.table->type.column_count;
+         i++) { // the rows of the first point have every name once
       line.name = dea_result_table_cell(line.table, i, 1)->text;
+      if (i > 0 && strcmp(line.name, first) == 0) {
+        break;
+      }
       line.number = (int)i;
       DEA_TRY(ctx, add_line(ctx, panel, &line));
     }
@@ -195,39 +256,67 @@ static dea_status add_lines(struct dea_context *ctx, const struct dea_result *re
   return DEA_OK;
 }
 
-static void finish(struct dea_panel *panel, const char *label)
+static void finish(const struct tables *of, struct dea_panel *panel, const char *label)
 {
-  dea_panel_voltage_axis(panel);
-  dea_panel_even_tics(panel, 6);
+  if (of == &of_sweep) {
+    dea_panel_voltage_axis(panel);
+    dea_panel_even_tics(panel, 6);
+  } else {
+    snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
+    panel->x_min = 0;
+    panel->x_max = 0;
+    for (size_t i = 0; i < panel->series_count; i++) {
+      const struct dea_series *series = &panel->series[i];
+      panel->x_max = fmax(panel->x_max, series->values[series->count - 1]);
+    }
+  }
   snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
   dea_panel_place_key(panel);
+}
+
+static dea_status show_heights(struct dea_context *ctx, const struct dea_result *result,
+                               const struct tables *of, struct dea_panel *panel)
+{
+  DEA_TRY(ctx, add_lines(ctx, result, &of->monitors, "z_m", "", DEA_LINE, panel));
+  finish(of, panel, "Displacement {/:Italic z} (\302\265m)");
+  return DEA_OK;
+}
+
+static dea_status show_stretches(struct dea_context *ctx, const struct dea_result *result,
+                                 const struct tables *of, struct dea_panel *panel)
+{
+  const struct dea_result_table_type *table = &of->monitors;
+  DEA_TRY(ctx, add_lines(ctx, result, table, "stretch", "", DEA_LINE, panel));
+  DEA_TRY(ctx, add_lines(ctx, result, table, "stretch_x", ", along x", DEA_LINE, panel));
+  DEA_TRY(ctx, add_lines(ctx, result, table, "stretch_y", ", along y", DEA_DASHED, panel));
+  finish(of, panel, "Stretch from the flat film");
+  return DEA_OK;
+}
+
+static dea_status show_charges(struct dea_context *ctx, const struct dea_result *result,
+                               const struct tables *of, struct dea_panel *panel)
+{
+  DEA_TRY(ctx, add_lines(ctx, result, &of->channels, "charge_C", "", DEA_LINE, panel));
+  finish(of, panel, "Charge (nC)");
+  return DEA_OK;
 }
 
 static dea_status build_heights(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
-  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "z_m", "", DEA_LINE, &plot->panels[0]));
-  finish(&plot->panels[0], "Displacement {/:Italic z} (\302\265m)");
-  return DEA_OK;
+  return show_heights(ctx, result, &of_sweep, &plot->panels[0]);
 }
 
 static dea_status build_stretches(struct dea_context *ctx, const struct dea_result *result,
                                   struct dea_plot *plot)
 {
-  struct dea_panel *panel = &plot->panels[0];
-  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch", "", DEA_LINE, panel));
-  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch_x", ", along x", DEA_LINE, panel));
-  DEA_TRY(ctx, add_lines(ctx, result, monitors.name, "stretch_y", ", along y", DEA_DASHED, panel));
-  finish(panel, "Stretch from the flat film");
-  return DEA_OK;
+  return show_stretches(ctx, result, &of_sweep, &plot->panels[0]);
 }
 
 static dea_status build_charges(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
-  DEA_TRY(ctx, add_lines(ctx, result, channels.name, "charge_C", "", DEA_LINE, &plot->panels[0]));
-  finish(&plot->panels[0], "Charge (nC)");
-  return DEA_OK;
+  return show_charges(ctx, result, &of_sweep, &plot->panels[0]);
 }
 
 const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
@@ -244,3 +333,21 @@ const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
      .caption = "charge on the channels",
      .build = build_charges},
 };
+
+dea_status dea_observe_heights_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                       struct dea_plot *plot)
+{
+  return show_heights(ctx, result, &of_history, &plot->panels[0]);
+}
+
+dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                         struct dea_plot *plot)
+{
+  return show_stretches(ctx, result, &of_history, &plot->panels[0]);
+}
+
+dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                       struct dea_plot *plot)
+{
+  return show_charges(ctx, result, &of_history, &plot->panels[0]);
+}

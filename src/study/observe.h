@@ -43,8 +43,24 @@
 dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, double voltage_V, struct dea_result *result);
 
-/* Figures of these tables, for the study sweep. */
+/* How many numbers monitors and channels have at a point; 0 where nothing is observed. */
+size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result);
+/* Those at the last point solved, or of a history at the last step: values [width]. */
+dea_status dea_observe_take(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, double *values);
+/* Tables "monitors" and "channels" of the study transient. values: [curve->count][width]. */
+dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_type *type,
+                               const struct dea_curve *curve, const double *values,
+                               struct dea_result *result);
+
+/* Figures of these tables, for the study sweep; and what builds those of histories. */
 enum { DEA_OBSERVE_FIGURES = 3 };
 extern const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES];
+dea_status dea_observe_heights_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                       struct dea_plot *plot);
+dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                         struct dea_plot *plot);
+dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                       struct dea_plot *plot);
 
 #endif

@@ -3,6 +3,7 @@
 #include "base/schema.h"
 #include "result/time_series.h"
 #include "study/force.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -137,6 +138,11 @@ struct player {
   struct dea_load_point pending; // the last one, if it is not kept yet
   bool has_pending;
   double largest[4]; // voltage, motion, current, z so far
+  /* Monitors and channels (study/observe.h): of the last step, of the pending point, the largest so
+   * far, and of each point of the curve. All owned. */
+  size_t width; // numbers a point
+  double *seen, *seen_pending, *seen_largest, *kept;
+  size_t kept_room; // points that there is room for
   bool inertia;
   size_t told; // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
@@ -150,14 +156,43 @@ static void thin(struct player *p)
   for (size_t i = 1; 2 * i < count; i++) {
     curve->points[i] = curve->points[2 * i];
   }
+  for (size_t i = 1; 2 * i < count && p->width > 0; i++) {
+    memcpy(p->kept + i * p->width, p->kept + 2 * i * p->width, p->width * sizeof *p->kept);
+  }
+  if (p->width > 0) {
+    memcpy(p->kept + count / 2 * p->width, p->kept + (count - 1) * p->width,
+           p->width * sizeof *p->kept);
+  }
   curve->points[count / 2] = curve->points[count - 1];
   curve->count = count / 2 + 1;
   p->interval_s = fmax(2 * p->interval_s, 2 * p->time_s / POINTS_MAX);
 }
 
-static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point)
+/* Keeps what was observed at a point that is added to the curve next. */
+static dea_status keep_seen(struct dea_context *ctx, struct player *p, const double *seen)
+{
+  size_t at = p->curve->count;
+  if (p->width == 0) {
+    return DEA_OK;
+  }
+  if (at >= p->kept_room) {
+    size_t room = p->kept_room > 0 ? 2 * p->kept_room : 64;
+    double *kept = dea_resize(ctx, p->kept, room * p->width, sizeof *kept);
+    if (kept == NULL) {
+      return DEA_E_MEMORY;
+    }
+    p->kept = kept;
+    p->kept_room = room;
+  }
+  memcpy(p->kept + at * p->width, seen, p->width * sizeof *seen);
+  return DEA_OK;
+}
+
+static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point,
+                      const double *seen)
 {
   p->has_pending = false;
+  DEA_TRY(ctx, keep_seen(ctx, p, seen));
   DEA_TRY(ctx, dea_curve_add_point(ctx, p->curve, point));
   if (p->curve->count >= POINTS_MAX) {
     thin(p);
@@ -187,7 +222,13 @@ static bool would_be_missed(struct player *p, const struct dea_load_point *point
       off_line(share, a->current_A, b->current_A, point->current_A, &p->largest[2]),
       off_line(share, a->centre_z_m, b->centre_z_m, point->centre_z_m, &p->largest[3]), // or NAN
   };
-  return p->has_pending && fmax(fmax(off[0], off[1]), fmax(off[2], off[3])) > visible;
+  double most = fmax(fmax(off[0], off[1]), fmax(off[2], off[3]));
+  const double *first = p->kept, *from = first + (p->curve->count - 1) * p->width;
+  for (size_t i = 0; i < p->width; i++) {
+    most = fmax(most, off_line(share, from[i] - first[i], p->seen_pending[i] - first[i],
+                               p->seen[i] - first[i], &p->seen_largest[i]));
+  }
+  return p->has_pending && most > visible;
 }
 
 /* Takes a point to the curve if it is needed there; corner: in any case. */
@@ -197,16 +238,22 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
   struct dea_curve *curve = p->curve;
   point->time_s = p->time_s; // without the rounding of many small steps
   p->last_V = point->voltage_V;
+  if (p->width > 0) {
+    DEA_TRY(ctx, dea_observe_take(ctx, p->type, p->model, p->seen));
+  }
   if (curve->count == 0) {
-    return add(ctx, p, point);
+    return add(ctx, p, point, p->seen);
   }
   if (p->interval_s == 0 && would_be_missed(p, point)) {
-    DEA_TRY(ctx, add(ctx, p, &p->pending));
+    DEA_TRY(ctx, add(ctx, p, &p->pending, p->seen_pending));
   }
   double waited_s = p->time_s - curve->points[curve->count - 1].time_s;
   if (corner || waited_s >= (p->interval_s > 0 ? p->interval_s : p->longest_s) * (1 - 1e-9)) {
-    return add(ctx, p, point);
+    return add(ctx, p, point, p->seen);
   }
+  double *seen = p->seen_pending;
+  p->seen_pending = p->seen;
+  p->seen = seen;
   p->pending = *point;
   p->has_pending = true;
   return DEA_OK;
@@ -215,7 +262,7 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
 /* The last point stays however it ends. */
 static dea_status flush(struct dea_context *ctx, struct player *p)
 {
-  return p->has_pending ? add(ctx, p, &p->pending) : DEA_OK;
+  return p->has_pending ? add(ctx, p, &p->pending, p->seen_pending) : DEA_OK;
 }
 
 /* Why there is no going on, with the event where it ended. */
@@ -385,6 +432,25 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   return keep(ctx, p, &point, true);
 }
 
+static dea_status make_room(struct dea_context *ctx, const struct dea_result *result,
+                            struct player *p)
+{
+  p->width = dea_observe_width(p->type, result);
+  p->seen = dea_alloc(ctx, p->width + 1, sizeof *p->seen);
+  p->seen_pending = dea_alloc(ctx, p->width + 1, sizeof *p->seen_pending);
+  p->seen_largest = dea_alloc(ctx, p->width + 1, sizeof *p->seen_largest);
+  return p->seen != NULL && p->seen_pending != NULL && p->seen_largest != NULL ? DEA_OK
+                                                                               : DEA_E_MEMORY;
+}
+
+static void free_room(struct dea_context *ctx, struct player *p)
+{
+  dea_free(ctx, p->seen);
+  dea_free(ctx, p->seen_pending);
+  dea_free(ctx, p->seen_largest);
+  dea_free(ctx, p->kept);
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
@@ -398,12 +464,17 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient", type->name);
-  dea_status status = dea_model_create(ctx, type, result->design, result->device, &p.model);
+  dea_status status = make_room(ctx, result, &p);
+  status = status == DEA_OK ? dea_model_create(ctx, type, result->design, result->device, &p.model)
+                            : status;
   status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
   status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
   status = status == DEA_OK ? play(ctx, &p) : status;
   dea_status flushed = flush(ctx, &p);
   status = status == DEA_OK ? flushed : status;
+  flushed = dea_observe_history(ctx, type, p.curve, p.kept, result);
+  status = status == DEA_OK ? flushed : status;
+  free_room(ctx, &p);
   if (p.model != NULL) {
     type->destroy(ctx, p.model);
   }
@@ -773,6 +844,24 @@ static const struct dea_figure figures[] = {
         .caption = "current of the supply against time",
         .build = build_current,
     },
+    {
+        .name = "history_monitors_z",
+        .study = study_name,
+        .caption = "displacement of the monitors out of the plane against time",
+        .build = dea_observe_heights_in_time,
+    },
+    {
+        .name = "history_monitors_stretch",
+        .study = study_name,
+        .caption = "stretch of lines and regions against time",
+        .build = dea_observe_stretches_in_time,
+    },
+    {
+        .name = "history_channels",
+        .study = study_name,
+        .caption = "charge on the channels against time",
+        .build = dea_observe_charges_in_time,
+    },
 };
 
 // The study --------------------------------------------------------------------------------------
@@ -788,6 +877,7 @@ const struct dea_study dea_study_transient = {
     .asked = asked,
     .needs = "drive.waveform",
     .own_models = true,
+    .any_layout = true,
     .run = run,
     .tables = tables,
     .figures = figures,

@@ -1,6 +1,8 @@
 #include "model/solid/adapter/circuit_step.h"
-#include "model/solid/adapter/solid_of_actuator.h"
+
+#include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film.h"
+#include "model/solid/assembly/problem.h"
 
 #include <math.h>
 
@@ -16,11 +18,11 @@ struct leap {
 };
 
 struct dea_circuit_step {
-  struct dea_solid *solid;
+  struct dea_driven_solid driven;
   struct dea_solid_time *time;
   struct dea_time_options options;
-  double copies;        // of the grid in the device
-  double leakage_per_s; // conductance over capacitance: 1/(resistivity permittivity)
+  bool leaks_evenly;    // all films have the next
+  double leakage_per_s; // conductance over capacitance
   double time_s, time_next_s;
   struct leap leap;
   double lost_J, lost_next_J; // in leaps from one equilibrium to another
@@ -37,33 +39,56 @@ static double largest_motion(const struct dea_circuit_step *d)
 static dea_status find_film(struct dea_context *ctx, const struct dea_circuit_step *d,
                             struct dea_circuit_film *out)
 {
-  double capacitance_F = 0;
-  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->solid, &capacitance_F));
-  *out = (struct dea_circuit_film){.capacitance_F = d->copies * capacitance_F};
-  out->conductance_S = d->leakage_per_s * out->capacitance_F;
+  double capacitance_F = 0, conductance_S = 0, copies = d->driven.copies;
+  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->driven.solid, &capacitance_F));
+  *out = (struct dea_circuit_film){.capacitance_F = copies * capacitance_F};
+  if (d->leaks_evenly) {
+    out->conductance_S = d->leakage_per_s * out->capacitance_F;
+    return DEA_OK;
+  }
+  DEA_TRY(ctx,
+          dea_solid_conductance(ctx, d->driven.solid, d->driven.leakage_per_s, &conductance_S));
+  out->conductance_S = copies * conductance_S;
   return DEA_OK;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d,
-                          const struct dea_actuator *actuator)
+double dea_leakage_per_s(const struct dea_material *material,
+                         const struct dea_constituent *constituent)
 {
-  const struct dea_device *device = actuator->device;
-  const struct dea_material *material = &device->film;
-  double eps =
-      actuator->constituents[DEA_CONSTITUENT_FILM].permittivity_F_per_m; // as it is pre-stretched
   double rho = material->resistivity_ohm_m;
-  double voltage_V = dea_solid_voltage(d->solid);
-  struct dea_branches branches[DEA_CONSTITUENT_COUNT];
-  const struct dea_solid_time_options options = {
-      .branches = branches, .inertia = d->options.inertia, .spectral_radius = d->options.rho_inf};
-  struct dea_circuit_film film = {.capacitance_F = 0};
-  if (d->options.inertia) {
-    DEA_TRY(ctx, dea_actuator_check_mass(ctx, actuator));
+  return rho > 0 ? 1 / (rho * constituent->permittivity_F_per_m) : 0; // as it is pre-stretched
+}
+
+static void find_leakage(struct dea_circuit_step *d)
+{
+  const struct dea_solid_problem *p = &d->driven.solid->problem;
+  bool any = false;
+  d->leaks_evenly = true;
+  for (size_t i = 0; i < p->constituent_count; i++) {
+    double per_s = d->driven.leakage_per_s[i];
+    if (p->constituents[i].permittivity_F_per_m > 0) {
+      d->leaks_evenly = d->leaks_evenly && (!any || per_s == d->leakage_per_s);
+      d->leakage_per_s = per_s;
+      any = true;
+    }
   }
-  dea_branches_of_device(device, branches);
-  d->copies = dea_actuator_copies(actuator);
-  d->leakage_per_s = rho > 0 ? 1 / (rho * eps) : 0;
-  DEA_TRY(ctx, dea_solid_time_create(ctx, d->solid, &options, &d->time));
+}
+
+static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
+{
+  struct dea_solid *solid = d->driven.solid;
+  double voltage_V = dea_solid_voltage(solid);
+  const struct dea_solid_time_options options = {.branches = d->driven.branches,
+                                                 .inertia = d->options.inertia,
+                                                 .spectral_radius = d->options.rho_inf};
+  struct dea_circuit_film film = {.capacitance_F = 0};
+  if (dea_solid_has_own_voltages(solid)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a history in time is of channels that share the supply's voltage: none may "
+                    "have one of its own (channels[].voltage)");
+  }
+  find_leakage(d);
+  DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
                                           .voltage_V = voltage_V,
@@ -72,13 +97,12 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d,
                                           .capacitance_F = film.capacitance_F,
                                           .conductance_S = film.conductance_S};
   d->circuit_next = d->circuit;
-  d->largest_m = smallest_motion * device->film_thickness_m;
+  d->largest_m = smallest_motion * d->driven.thickness_m;
   d->largest_V = fabs(voltage_V);
   return DEA_OK;
 }
 
-dea_status dea_circuit_step_create(struct dea_context *ctx, struct dea_solid *solid,
-                                   const struct dea_actuator *actuator,
+dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_driven_solid *driven,
                                    const struct dea_time_options *time,
                                    struct dea_circuit_step **out)
 {
@@ -88,9 +112,9 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, struct dea_solid *so
     dea_free(ctx, d);
     return DEA_E_MEMORY;
   }
-  d->solid = solid;
+  d->driven = *driven;
   d->options = *time;
-  dea_status status = prepare(ctx, d, actuator);
+  dea_status status = prepare(ctx, d);
   if (status != DEA_OK) {
     dea_circuit_step_destroy(ctx, d);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -169,7 +193,7 @@ static double unaccounted(const struct dea_circuit_step *d, const struct dea_sol
   const struct dea_circuit_state *a = &d->circuit, *b = &d->circuit_next;
   double film = to->stored + to->branches + to->kinetic + to->dissipated + to->damped -
                 (from->stored + from->branches + from->kinetic + from->dissipated + from->damped);
-  return b->supply_work_J - a->supply_work_J - d->copies * film -
+  return b->supply_work_J - a->supply_work_J - d->driven.copies * film -
          (b->resistance_loss_J - a->resistance_loss_J) - (b->leakage_loss_J - a->leakage_loss_J);
 }
 
@@ -228,7 +252,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   }
   if (dea_circuit_is_ideal(&d->options.circuit)) {
     d->circuit_next.supply_work_J +=
-        d->copies * (to.stored + to.branches - from.stored - from.branches);
+        d->driven.copies * (to.stored + to.branches - from.stored - from.branches);
   }
   d->lost_next_J = d->lost_J;
   *error = 0;
@@ -253,7 +277,7 @@ void dea_circuit_step_point(const struct dea_circuit_step *d, struct dea_load_po
 {
   const struct dea_circuit_state *circuit = &d->circuit_next;
   const struct dea_solid_energies e = dea_solid_time_energies(d->time, true);
-  double copies = d->copies;
+  double copies = d->driven.copies;
   point->time_s = d->time_next_s;
   point->source_voltage_V = circuit->source_voltage_V;
   point->voltage_V = circuit->voltage_V;

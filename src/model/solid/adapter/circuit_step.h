@@ -5,16 +5,27 @@
 #define DEA_MODEL_SOLID_ADAPTER_CIRCUIT_STEP_H
 
 #include "model/model.h"
-#include "model/solid/actuator/actuator.h"
 #include "model/solid/motion/time.h"
 
 struct dea_circuit_step;
 
-/* From the solid's last equilibrium, at rest there for long and charged to its voltage. actuator:
- * what the solid is of; both lent, and the solid in time until *out is destroyed. With inertia also
- * statuses of dea_actuator_check_mass. */
-dea_status dea_circuit_step_create(struct dea_context *ctx, struct dea_solid *solid,
-                                   const struct dea_actuator *actuator,
+/* What is driven. All lent. */
+struct dea_driven_solid {
+  struct dea_solid *solid;
+  const struct dea_branches *branches; // [constituent_count]
+  const double *leakage_per_s;         // [constituent_count] conductance over capacitance
+  double copies;                       // of the grid in the device
+  double thickness_m;                  // of a film: errors are not relative to motions far below
+};
+
+/* 1/(resistivity permittivity) of a film of a material; 0: it does not leak. */
+double dea_leakage_per_s(const struct dea_material *material,
+                         const struct dea_constituent *constituent);
+
+/* From the solid's last equilibrium, at rest there for long and charged to its voltage. driven:
+ * lent, and its solid in time, until *out is destroyed. DEA_E_UNSUPPORTED for channels with a
+ * voltage of their own. */
+dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_driven_solid *driven,
                                    const struct dea_time_options *time,
                                    struct dea_circuit_step **out);
 void dea_circuit_step_destroy(struct dea_context *ctx, struct dea_circuit_step *driven);

@@ -5,6 +5,7 @@
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
+#include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/standing.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
@@ -30,6 +31,8 @@ struct dea_model {
   struct dea_layout_mesh mesh;
   struct dea_constituent *constituents; // [ply_count]
   struct dea_solid_film_data *films;    // [ply_count]
+  struct dea_branches *branches;        // [ply_count]
+  double *leakage_per_s;                // [ply_count] of films, see circuit_step.h
   struct dea_solid_body *bodies;        // [body_count]
   double (*push)[6];                    // [body_count] dead force and moment
   struct dea_spring **springs;          // [spring_count]
@@ -80,6 +83,8 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   out->thickness_m = ply->thickness_m;
   out->density_kg_per_m3 = material->density_kg_per_m3;
   model->films[i] = (struct dea_solid_film_data){dielectric ? material : NULL, sqrt(l[0] * l[1])};
+  model->leakage_per_s[i] = dielectric ? dea_leakage_per_s(material, out) : 0;
+  dea_branches_of_material(material, &model->branches[i]);
   if (dea_constituent_relax(out) != DEA_OK) {
     return dea_fail(ctx, DEA_E_DOMAIN, "ply '%s': the law '%s' ends before the pre-stretch %.4g",
                     ply->name, out->law->name, fmax(l[0], l[1]));
@@ -511,6 +516,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   }
   model->constituents = dea_arena_alloc(&model->memory, plies, sizeof *model->constituents);
   model->films = dea_arena_alloc(&model->memory, plies, sizeof *model->films);
+  model->branches = dea_arena_alloc(&model->memory, plies, sizeof *model->branches);
+  model->leakage_per_s = dea_arena_alloc(&model->memory, plies, sizeof *model->leakage_per_s);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
   DEA_TRY(ctx, say_mesh(ctx, model));
@@ -529,6 +536,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
     return;
   }
   dea_observer_destroy(ctx, model->observer);
+  dea_standing_free(ctx, &model->at);
   dea_solid_destroy(ctx, model->solid);
   for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
     dea_spring_destroy(ctx, model->springs[i]);
@@ -669,6 +677,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
 {
   char why[200];
   DEA_TRY(ctx, check_control(ctx, model, control, value));
+  dea_standing_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
   dea_status status =
@@ -689,6 +698,37 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   }
   DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
   return DEA_OK;
+}
+
+// In time ----------------------------------------------------------------------------------------
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *time, struct dea_load_point *out)
+{
+  const struct dea_driven_solid driven = {.solid = model->solid,
+                                          .branches = model->branches,
+                                          .leakage_per_s = model->leakage_per_s,
+                                          .copies = 1,
+                                          .thickness_m =
+                                              model->layout->plies[model->film].thickness_m};
+  if (time->inertia) {
+    DEA_TRY(ctx, check_densities(ctx, model->layout));
+  }
+  DEA_TRY(ctx, dea_standing_begin(ctx, &model->at, &driven, time, out));
+  return DEA_OK;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  DEA_TRY(ctx, dea_standing_advance(ctx, &model->at, step, out, error));
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *model)
+{
+  dea_standing_accept(&model->at);
 }
 
 // Saved states -----------------------------------------------------------------------------------
@@ -834,5 +874,8 @@ const struct dea_model_type dea_solid_layout_module = {
     .fields = fields,
     .save = save,
     .load = load,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
     .size = size,
 };

@@ -4,7 +4,6 @@
 #include "model/make.h"
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/circuit_step.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
@@ -30,11 +29,11 @@ struct dea_model {
   size_t centre_twin,
       between_twin; // on the other side of the film's middle plane, or the same ones
   struct dea_standing at;
-  double *profile;                 // what the last one lends from
-  struct dea_indent *indent;       // NULL: no probe
-  struct dea_circuit_step *driven; // NULL: no history in time
-  double stored_J;                 // of the film when that began
+  double *profile;           // what the last one lends from
+  struct dea_indent *indent; // NULL: no probe
   struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
+  struct dea_branches branches[DEA_CONSTITUENT_COUNT];
+  double leakage_per_s[DEA_CONSTITUENT_COUNT]; // of films, see circuit_step.h
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -140,6 +139,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
     model->films[i] = (struct dea_solid_film_data){&device->film, device->pre_stretch};
   }
+  dea_branches_of_device(device, model->branches);
+  model->leakage_per_s[DEA_CONSTITUENT_FILM] =
+      dea_leakage_per_s(&device->film, &model->actuator.constituents[DEA_CONSTITUENT_FILM]);
   DEA_TRY(ctx, say_sag(ctx, model));
   return DEA_OK;
 }
@@ -147,7 +149,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
 static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
-    dea_circuit_step_destroy(ctx, model->driven);
+    dea_standing_free(ctx, &model->at);
     dea_solid_destroy(ctx, model->solid);
     dea_indent_destroy(ctx, model->indent);
     dea_grid_destroy(ctx, model->grid);
@@ -299,35 +301,18 @@ static const struct dea_event *limit(const struct dea_model *model)
 
 /* ---- in time ---- */
 
-/* Equilibria are looked for from where the history has come to. */
-static void end_history(struct dea_context *ctx, struct dea_model *model)
-{
-  if (model->driven != NULL) {
-    dea_circuit_step_destroy(ctx, model->driven);
-    model->driven = NULL;
-    model->at.voltage_V = dea_solid_voltage(model->solid);
-  }
-}
-
-static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
-                              struct dea_load_point *out)
-{
-  model->at.voltage_V = dea_solid_voltage(model->solid);
-  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
-  dea_circuit_step_point(model->driven, out);
-  out->stored_energy_J += model->stored_J;
-  out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
-  return DEA_OK;
-}
-
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
-  end_history(ctx, model);
-  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
-  model->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
-  DEA_TRY(ctx, dea_circuit_step_create(ctx, model->solid, &model->actuator, time, &model->driven));
-  DEA_TRY(ctx, report_time(ctx, model, out));
+  const struct dea_driven_solid driven = {.solid = model->solid,
+                                          .branches = model->branches,
+                                          .leakage_per_s = model->leakage_per_s,
+                                          .copies = dea_actuator_copies(&model->actuator),
+                                          .thickness_m = model->device->film_thickness_m};
+  if (time->inertia) {
+    DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  }
+  DEA_TRY(ctx, dea_standing_begin(ctx, &model->at, &driven, time, out));
   return DEA_OK;
 }
 
@@ -335,20 +320,13 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  if (model->driven == NULL) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
-  }
-  if (dea_solid_any(dea_interrupted(ctx))) {
-    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
-  }
-  DEA_TRY(ctx, dea_circuit_step_advance(ctx, model->driven, step, &model->at.report, error));
-  DEA_TRY(ctx, report_time(ctx, model, out));
+  DEA_TRY(ctx, dea_standing_advance(ctx, &model->at, step, out, error));
   return DEA_OK;
 }
 
 static void accept(struct dea_model *model)
 {
-  dea_circuit_step_accept(model->driven);
+  dea_standing_accept(&model->at);
 }
 
 /* ---- equilibria ---- */
@@ -356,7 +334,6 @@ static void accept(struct dea_model *model)
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  end_history(ctx, model);
   DEA_TRY(ctx, dea_standing_solve(ctx, &model->at, voltage_V, out));
   return DEA_OK;
 }
@@ -364,7 +341,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  end_history(ctx, model);
+  dea_standing_end_history(ctx, &model->at);
   if (model->indent == NULL) {
     DEA_TRY(ctx, dea_indent_create(ctx, &model->actuator, model->grid, model->solid, probe,
                                    &model->indent));
@@ -402,8 +379,9 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
                               .centre_twin = model->centre_twin,
                               .tip = model->tip,
                               .has_centre = true,
-                              .has_tip = model->device->fibre_count > 0};
-  dea_motions_set_branches(out, model->device);
+                              .has_tip = model->device->fibre_count > 0,
+                              .branches = model->branches,
+                              .constituent_count = DEA_CONSTITUENT_COUNT};
   return DEA_OK;
 }
 

@@ -1,7 +1,6 @@
 #include "model/solid/adapter/motions.h"
 
 #include "model/solid/adapter/fields.h"
-#include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/motion/response.h"
 
@@ -137,12 +136,13 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
 
 /* ---- answers ---- */
 
-void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device)
+static bool is_viscous(const struct dea_motions *m)
 {
-  dea_branches_of_device(device, motions->branches);
-  for (int l = 0; l < DEA_CONSTITUENT_COUNT; l++) {
-    motions->viscous = motions->viscous || motions->branches[l].count > 0;
+  bool any = false;
+  for (size_t i = 0; i < m->constituent_count; i++) {
+    any = any || m->branches[i].count > 0;
   }
+  return any;
 }
 
 enum { CENTRE, TWIN, TIP, PROBES };
@@ -225,7 +225,8 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
     rad_per_s[i] = 2 * pi * frequency_Hz[i];
   }
   if (status == DEA_OK) {
-    status = (m->viscous ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, nodes, out);
+    status =
+        (is_viscous(m) ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, nodes, out);
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     answer *z = out + i * PROBES;

@@ -3,7 +3,6 @@
 #define DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
 
 #include "model/model.h"
-#include "model/solid/actuator/actuator.h"
 #include "model/solid/assembly/internal_variables.h"
 
 /* A solid with the nodes that are reported. */
@@ -13,12 +12,9 @@ struct dea_motions {
   size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
   size_t tip;
   bool has_centre, has_tip;
-  bool viscous; // a constituent has branches
-  struct dea_branches branches[DEA_CONSTITUENT_COUNT];
+  const struct dea_branches *branches; // [constituent_count]
+  size_t constituent_count;
 };
-
-/* Sets the branches of film and electrodes. */
-void dea_motions_set_branches(struct dea_motions *motions, const struct dea_device *device);
 
 /* As `modes` and `respond` of struct dea_model_type; ply: of the film. */
 dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int ply,

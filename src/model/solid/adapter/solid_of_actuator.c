@@ -22,7 +22,7 @@ dea_status dea_solid_of_actuator(struct dea_context *ctx, const struct dea_actua
   return DEA_OK;
 }
 
-static void set_branches(const struct dea_material *material, struct dea_branches *out)
+void dea_branches_of_material(const struct dea_material *material, struct dea_branches *out)
 {
   out->count = material->branch_count;
   memcpy(out->branch, material->branches, material->branch_count * sizeof *out->branch);
@@ -31,8 +31,8 @@ static void set_branches(const struct dea_material *material, struct dea_branche
 void dea_branches_of_device(const struct dea_device *device, struct dea_branches *out)
 {
   memset(out, 0, DEA_CONSTITUENT_COUNT * sizeof *out);
-  set_branches(&device->film, &out[DEA_CONSTITUENT_FILM]);
+  dea_branches_of_material(&device->film, &out[DEA_CONSTITUENT_FILM]);
   if (device->electrode_thickness_m > 0) {
-    set_branches(&device->electrode, &out[DEA_CONSTITUENT_ELECTRODE]);
+    dea_branches_of_material(&device->electrode, &out[DEA_CONSTITUENT_ELECTRODE]);
   }
 }

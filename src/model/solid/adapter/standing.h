@@ -3,6 +3,7 @@
 #ifndef DEA_MODEL_SOLID_ADAPTER_STANDING_H
 #define DEA_MODEL_SOLID_ADAPTER_STANDING_H
 
+#include "model/solid/adapter/circuit_step.h"
 #include "model/solid/adapter/ending.h"
 #include "result/state.h"
 
@@ -11,13 +12,31 @@ struct dea_standing {
   struct dea_ending ending; // of the last solve
   struct dea_solid_report report;
   double voltage_V, rest_energy_J;
-  bool left_a_state; // a state was left on the way to here: there are several
+  bool left_a_state;               // a state was left on the way to here: there are several
+  struct dea_circuit_step *driven; // NULL: no history in time
+  double stored_J;                 // of the film when that began
 };
+
+/* Ends a history in time. */
+void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing);
 
 /* `solve` and `limit` of struct dea_model_type. */
 dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *standing,
                               double voltage_V, struct dea_load_point *out);
 const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
+
+/* `begin`, `advance` and `accept`. driven: lent until the history ends; its solid is the owner's.
+ */
+dea_status dea_standing_begin(struct dea_context *ctx, struct dea_standing *standing,
+                              const struct dea_driven_solid *driven,
+                              const struct dea_time_options *time, struct dea_load_point *out);
+dea_status dea_standing_advance(struct dea_context *ctx, struct dea_standing *standing,
+                                const struct dea_time_step *step, struct dea_load_point *out,
+                                double *error);
+void dea_standing_accept(struct dea_standing *standing);
+/* Equilibria are looked for from where a history in time has come to: before other ways than
+ * dea_standing_solve. */
+void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing);
 
 /* Where the solid stands as a saved state, and back; as dea_solid_save and dea_solid_load. */
 dea_status dea_standing_save(struct dea_context *ctx, const struct dea_standing *standing,

@@ -140,6 +140,35 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, doubl
   return DEA_OK;
 }
 
+static dea_status add_conductances(struct dea_solid *s, const double *per_s, double *conductance_S)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t i = 0; i < p->own_count; i++) {
+    size_t e = p->own[i];
+    double C;
+    if (!p->active[e]) {
+      continue;
+    }
+    dea_status status = capacitance_of(s, e, &C);
+    if (status != DEA_OK) {
+      return status;
+    }
+    double share = p->share[p->between[e][0]] - p->share[p->between[e][1]];
+    *conductance_S += share * share * per_s[p->constituent_of[e]] * C;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
+                                 double *conductance_S)
+{
+  *conductance_S = 0;
+  DEA_TRY(ctx, refuse_coupled(ctx, s));
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_conductances(s, per_s, conductance_S)));
+  dea_solid_sum(conductance_S, 1);
+  return DEA_OK;
+}
+
 /* ---- how it follows the voltages ---- */
 
 static double largest_voltage(const struct dea_solid *s)

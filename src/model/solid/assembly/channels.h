@@ -18,6 +18,11 @@ void dea_solid_channel_voltages(const struct dea_solid *solid, double *voltage_V
  * coupled field. */
 dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, double *charge_C);
 
+/* Current over the voltage of the whole through films whose conductance is so many times their
+ * capacitance, per_s [constituent_count]. DEA_E_UNSUPPORTED for a coupled field. */
+dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *solid,
+                                 const double *per_s, double *conductance_S);
+
 /* What charges change by with the voltages: capacitance_F [channel_count + 1] squared, symmetric,
  * the change of charge k with voltage l in row k; rows and columns sum to 0. held: of the film as
  * it is held in place; otherwise it moves along, by the tangent at the equilibrium, which has to be

@@ -1,0 +1,234 @@
+/* Histories in time of devices of any layout, against closed forms, vibrations, and the disc. */
+// ctest: solid
+#include "devices.h"
+#include "model/model.h"
+
+#include "layout_device.h"
+
+static const double pi = 3.14159265358979323846;
+
+static struct dea_model *model_of(const struct dea_device *device, enum dea_solid_film film)
+{
+  const struct dea_model_settings settings = {.film = film, .refinement = 1};
+  struct dea_model *model;
+  dea_status status = dea_model_find("3d")->create(ctx, device, &settings, &model);
+  if (status != DEA_OK) {
+    print_message("%s\n", dea_context_message(ctx));
+  }
+  assert_int_equal(status, DEA_OK);
+  return model;
+}
+
+/* From rest as the circuit and inertia say, with a jump of the supply to a voltage. */
+static void begin(struct dea_model *model, double resistance_ohm, bool inertia, double voltage_V,
+                  struct dea_load_point *point)
+{
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_time_options options = {
+      .circuit = {.series_resistance_ohm = resistance_ohm, .current_limit_A = INFINITY},
+      .inertia = inertia,
+      .rho_inf = 1};
+  const struct dea_time_step jump = {0, voltage_V};
+  double error;
+  assert_int_equal(type->begin(ctx, model, &options, point), DEA_OK);
+  assert_int_equal(type->advance(ctx, model, &jump, point, &error), DEA_OK);
+  type->accept(model);
+}
+
+static void step(struct dea_model *model, double step_s, double voltage_V,
+                 struct dea_load_point *point)
+{
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_time_step forward = {step_s, voltage_V};
+  double error;
+  assert_int_equal(type->advance(ctx, model, &forward, point, &error), DEA_OK);
+  type->accept(model);
+}
+
+static const double *first_monitor(struct dea_model *model)
+{
+  struct dea_observation seen;
+  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+  return seen.monitor[0];
+}
+
+/* What the supply gave and no energy has taken, over what it gave. */
+static double unaccounted(const struct dea_load_point *start, const struct dea_load_point *p)
+{
+  double found = p->stored_energy_J - start->stored_energy_J + p->kinetic_energy_J +
+                 p->dissipated_J + p->damped_J;
+  return (p->supply_work_J - found) / p->supply_work_J;
+}
+
+/* A square of film, side 10 mm, electrodes on it. */
+static struct dea_device *square_new(void)
+{
+  struct dea_device *device = device_new();
+  add_rectangle(device, "film", 0, 0, 10e-3, 10e-3);
+  add_film(device, 0, 1, 1);
+  add_electrode(device, 0, false, 0, 0);
+  add_electrode(device, 0, true, 0, 1);
+  return device;
+}
+
+/* Free to move in its plane, with one branch G beside mu: after a small step of the voltage the
+ * strain eps E^2 / (6 mu) comes up as that of the standard linear solid. */
+static void test_creep(void **state)
+{
+  (void)state;
+  struct dea_device *device = square_new();
+  struct dea_layout *l = device->layout;
+  const size_t low = add_rectangle(device, "low", 0, -1e-3, 10e-3, 1e-3);
+  const size_t left = add_rectangle(device, "left", -1e-3, 0, 1e-3, 10e-3);
+  const struct dea_layout_support held[] = {
+      {.region = 0, .edge = true, .within = low, .components = 2},
+      {.region = 0, .edge = true, .within = left, .components = 1},
+      {.region = 0, .edge = false, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
+  };
+  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
+    l->supports[l->support_count++] = held[i];
+  }
+  struct dea_material *film = &l->plies[0].material;
+  double mu = 2 * film->param[0], G = 0.5 * mu, time_s = 0.2;
+  film->branches[0] = (struct dea_branch){.modulus_Pa = G, .time_s = time_s};
+  film->branch_count = 1;
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  struct dea_model *model = model_of(device, DEA_FILM_SOLID);
+  struct dea_load_point start, point;
+  double voltage_V = 400, field = voltage_V / 100e-6;
+  double slow = DEA_EPSILON_0 * 2.8 * field * field / (6 * mu), late_s = time_s * (mu + G) / mu;
+  begin(model, 0, false, 0, &start);
+  begin(model, 0, false, voltage_V, &point);
+  enum { STEPS = 20 };
+  for (int i = 0; i <= STEPS; i++) {
+    double t = 3 * late_s * i / STEPS;
+    double strain = slow * (1 - G / (mu + G) * exp(-t / late_s));
+    assert_close(first_monitor(model)[DEA_OBSERVED_STRETCH_X] - 1, strain, 2e-3, 0);
+    assert_close(first_monitor(model)[DEA_OBSERVED_STRETCH_Y] - 1, strain, 2e-3, 0);
+    if (i < STEPS) {
+      step(model, 3 * late_s / STEPS, voltage_V, &point);
+    }
+  }
+  assert_true(point.dissipated_J > 0);
+  assert_close(unaccounted(&start, &point), 0, 0, 1e-6);
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* Two films that leak in their own ways, all held: a resistance charges them as a capacitor beside
+ * a resistor, exactly for steps of any length. */
+static void test_charging(void **state)
+{
+  (void)state;
+  static const double per_s[2] = {5, 20}; // conductance over capacitance
+  struct dea_device *device = square_new();
+  struct dea_layout *l = device->layout;
+  double one_F = DEA_EPSILON_0 * 2.8 * 1e-4 / 100e-6, ohm = 1e9, supply_V = 1e3;
+  add_film(device, 0, 1, 1);
+  l->plies[0].name = "lower";
+  add_electrode(device, 1, true, 0, 0);
+  for (size_t i = 0; i < 2; i++) {
+    l->plies[i].material.resistivity_ohm_m = 1 / (per_s[i] * DEA_EPSILON_0 * 2.8);
+  }
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = 0, .within = DEA_LAYOUT_NONE, .components = 7};
+  struct dea_model *model = model_of(device, DEA_FILM_SOLID);
+  struct dea_load_point start, point;
+  double farad = 2 * one_F, siemens = (per_s[0] + per_s[1]) * one_F;
+  double end_V = supply_V / (1 + ohm * siemens), time_s = farad / (1 / ohm + siemens), t = 0;
+  begin(model, ohm, false, supply_V, &start);
+  for (int i = 0; i < 6; i++) {
+    double h = time_s * (0.1 + 0.3 * i);
+    step(model, h, supply_V, &point);
+    t += h;
+    assert_close(point.voltage_V, end_V * (1 - exp(-t / time_s)), 1e-7, 0);
+    assert_close(point.charge_C, farad * point.voltage_V, 1e-7, 0);
+  }
+  assert_close(unaccounted(&start, &point), 0, 0, 0.02); // the loss in long steps
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* A disc with a branch on a free mesh creeps as that of the model of discs does. */
+static void test_disc_of_both_models(void **state)
+{
+  (void)state;
+  struct dea_material film = silicone();
+  film.branches[0] = (struct dea_branch){.modulus_Pa = 100e3, .time_s = 0.5};
+  film.branch_count = 1;
+  struct dea_device plain = test_disc(film, 1.5, 3.75e-3, 0.25, 0);
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
+  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
+  add_film(device, 0, 1.5, 1.5);
+  l->plies[0].material = film;
+  add_electrode(device, 0, false, 1, 0);
+  add_electrode(device, 0, true, 1, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  struct dea_model *blocks = model_of(&plain, DEA_FILM_MEMBRANE);
+  struct dea_model *free_mesh = model_of(device, DEA_FILM_MEMBRANE);
+  struct dea_load_point of_blocks, of_free;
+  begin(blocks, 100e6, false, 4e3, &of_blocks);
+  begin(free_mesh, 100e6, false, 4e3, &of_free);
+  for (int i = 0; i < 6; i++) {
+    step(blocks, 0.1 * (i + 1), 4e3, &of_blocks);
+    step(free_mesh, 0.1 * (i + 1), 4e3, &of_free);
+    assert_close(first_monitor(free_mesh)[DEA_OBSERVED_X], of_blocks.electrode_edge_u_m, 1e-3, 0);
+    assert_close(of_free.capacitance_F, of_blocks.capacitance_F, 1e-4, 0);
+    assert_close(of_free.dissipated_J, of_blocks.dissipated_J, 1e-3, 0);
+  }
+  dea_model_find("3d")->destroy(ctx, blocks);
+  dea_model_find("3d")->destroy(ctx, free_mesh);
+  dea_device_destroy(ctx, device);
+}
+
+/* A hub that hangs in a film swings about its new place after a small step of the voltage: half a
+ * period of its lowest vibration later it is as far beyond as it was away. */
+static void test_swing(void **state)
+{
+  (void)state;
+  enum { STEPS = 24 };
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  l->bodies[0].free = 4;
+  l->bodies[0].mass_kg = 20e-3;
+  l->gravity_m_per_s2[2] = -9.81;
+  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
+  struct dea_load_point start, point, mode;
+  struct dea_field_mesh *shapes;
+  assert_int_equal(type->solve(ctx, model, 500, &point), DEA_OK);
+  double there_m = first_monitor(model)[DEA_OBSERVED_Z];
+  assert_int_equal(type->modes(ctx, model, &point, 1, &mode, &shapes), DEA_OK);
+  dea_field_mesh_destroy(ctx, shapes);
+  assert_int_equal(type->solve(ctx, model, 0, &point), DEA_OK);
+  double from_m = first_monitor(model)[DEA_OBSERVED_Z];
+  double half_s = 0.5 / mode.frequency_Hz;
+  begin(model, 0, true, 0, &start);
+  begin(model, 0, true, 500, &point);
+  for (int i = 1; i <= STEPS; i++) {
+    double away = cos(pi * i / STEPS) * (from_m - there_m);
+    step(model, half_s / STEPS, 500, &point);
+    assert_close(first_monitor(model)[DEA_OBSERVED_Z], there_m + away, 0,
+                 0.01 * fabs(from_m - there_m));
+  }
+  assert_close(unaccounted(&start, &point), 0, 0, 1e-4);
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_creep),
+      cmocka_unit_test(test_charging),
+      cmocka_unit_test(test_disc_of_both_models),
+      cmocka_unit_test(test_swing),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
