@@ -215,8 +215,13 @@ static void test_figures(void **state)
   result->surfaces[2].mesh->X[0] -= 1e-9;
   const struct dea_figure_options options = {
       .format = {.svg = true, .pdf = true, .png = true, .width_m = 0.085}, .voltage_V = 1.1e3};
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &options), DEA_OK);
   static const char *const names[] = {"map", "surface", "section", "animation"};
+  struct dea_figure_options animation = options;
+  animation.names = &names[3];
+  animation.name_count = 1;
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &options), DEA_OK);
+  assert_false(there("figures/animation.gp")); // on request only
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &animation), DEA_OK);
   static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
   for (size_t i = 0; i < 4; i++) {
     for (size_t k = 0; k < 6; k++) {

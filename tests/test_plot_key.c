@@ -9,7 +9,8 @@ static const char *key_of(double (*y)(double x), double *top)
 {
   static struct dea_panel panel;
   static double values[3 * POINTS];
-  panel = (struct dea_panel){.key = "", .y_max = NAN, .series_count = 1};
+  panel = (struct dea_panel){
+      .key = "", .x_min = NAN, .x_max = NAN, .y_min = NAN, .y_max = NAN, .series_count = 1};
   panel.series[0] = (struct dea_series){.title = "curve", .count = POINTS, .values = values};
   for (size_t i = 0; i < POINTS; i++) {
     values[i] = (double)i / (POINTS - 1);

@@ -82,7 +82,8 @@ const struct dea_command cmd_plot = {
     .summary = "Draw the figures of a run again",
     .about =
         "Figures: displacement, stretch, field, tension, force, profile; of model 3d map, surface, "
-        "section and animation too; of studies tip_force, load_line, loading, modes, mode_shapes, "
+        "section and, if asked for, animation too; of studies tip_force, load_line, loading, "
+        "modes, mode_shapes, "
         "bode, history, history_force, history_current, convergence, designs, design_tips, "
         "design_profiles.\n\n"
         "Beside each picture lie its gnuplot script and data, for other styles: gnuplot NAME.gp",

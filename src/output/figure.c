@@ -61,14 +61,14 @@ static dea_status check_names(struct dea_context *ctx, const struct dea_figure_o
   return DEA_OK;
 }
 
-static bool is_wanted(const struct dea_figure_options *options, const char *name)
+static bool is_wanted(const struct dea_figure_options *options, const struct dea_figure *figure)
 {
   for (size_t i = 0; options->names != NULL && i < options->name_count; i++) {
-    if (strcmp(options->names[i], name) == 0) {
+    if (strcmp(options->names[i], figure->name) == 0) {
       return true;
     }
   }
-  return options->names == NULL;
+  return options->names == NULL && !figure->on_request;
 }
 
 static dea_status write_plot(struct dea_context *ctx, const struct dea_result *result,
@@ -111,7 +111,7 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
   const struct dea_figure *figure;
   for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && count < DEA_FIGURES_MAX; f++) {
     bool drawn = false;
-    if (is_wanted(options, figure->name)) {
+    if (is_wanted(options, figure)) {
       DEA_TRY(ctx, write_one(ctx, result, directory, options, figure, &drawn));
     }
     if (drawn) {

@@ -13,8 +13,9 @@ enum { DEA_FIGURES_MAX = 64 };
 /* Names of all figures, of those that are plots only if so wanted; returns their number. */
 size_t dea_figure_names(bool plots, const char *out[DEA_FIGURES_MAX]);
 
-/* names: figures wanted (NULL for all); one that does not exist is DEA_E_ARGUMENT with the nearest
- * name. Without any format only the scripts and data are written. */
+/* names: figures wanted (NULL for all but those on request); one that does not exist is
+ * DEA_E_ARGUMENT with the nearest name. Without any format only the scripts and data are written.
+ */
 struct dea_figure_options {
   const char *const *names;
   size_t name_count;

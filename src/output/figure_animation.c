@@ -33,7 +33,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   dea_text_add(gp,
                "]\n\nset terminal gif animate delay 15 loop 0 optimize size %d, %.0f font "
                "\"DejaVuSans,13\"\nset output out.name.\".gif\"\n"
-               "set pm3d interpolate 2, 2\n"
+               "set pm3d border retrace interpolate 2, 2\n"
                "do for [k = 0:%zu] {\n"
                "  set label 1 words[k + 1] at screen 0.03, screen 0.94 front\n",
                WIDTH_PX, height_px, space->count - 1);
@@ -83,5 +83,6 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
 const struct dea_figure dea_figure_animation = {
     .name = name,
     .caption = "the deformed film over the sweep",
+    .on_request = true,
     .write = write,
 };

@@ -10,7 +10,7 @@ static const char caption[] = "displacement out of the plane, over the place in 
 static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
 {
-  double width_mm = 1e3 * format->width_m, left = 12, right = 21.5, bottom = 11.5, top = 3;
+  double width_mm = 1e3 * format->width_m, left = 12, right = 21.5, bottom = 11.5, top = 6;
   double side = width_mm - left - right, height_mm = side + bottom + top;
   double edge_mm = 1.03e3 * space->radius_m;
   dea_script_head(gp, name, caption, format, width_mm, height_mm);
@@ -19,7 +19,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
       gp,
       "set lmargin at screen %.4f\nset rmargin at screen %.4f\n"
       "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
-      "set view map\nset pm3d corners2color mean border retrace\n"
+      "set view map\nset pm3d corners2color mean\n"
       "set surface explicit # lines, not a grid of them\n"
       "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
       "set xtics %.6g\nset ytics %.6g\n"
@@ -33,7 +33,8 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
                "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
-               "  set label 1 \"%s\" at graph 0.02, graph 0.96 front\n"
+               "  set label 1 \"%s\" at graph 0, graph 1.03 front\n"
+               "  eval \"set pm3d \".facets\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
                space->pictures[0].words);

@@ -126,12 +126,12 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space, cons
   dea_script_head(gp, name, words, format, width_mm, 1.16 * cell_mm * (double)rows);
   dea_colour_map_add_palette(gp, -1e-6, 1e-6);
   dea_text_add(gp,
-               "set view map\nset pm3d corners2color mean border retrace\nset surface explicit\n"
+               "set view map\nset pm3d corners2color mean\nset surface explicit\n"
                "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
                "unset border\nunset xtics\nunset ytics\nunset colorbox\n\n",
                -edge_mm, edge_mm, -edge_mm, edge_mm);
   dea_script_terminals(gp);
-  dea_text_add(gp, "  set multiplot\n");
+  dea_text_add(gp, "  eval \"set pm3d \".facets\n  set multiplot\n");
   for (size_t k = 0; k < maps->count; k++) {
     add_map(gp, space, maps, k, rows);
   }

@@ -2,6 +2,7 @@
 #include "result/figure.h"
 #include "result/trust.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,13 +10,14 @@ enum { SHOWN_MAX = 4 };
 
 static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
                       const struct dea_profile_record *record, int column, enum dea_colour colour,
-                      enum dea_series_style style, const char *title)
+                      enum dea_series_style style, double width, const char *title)
 {
   struct dea_series *series;
   size_t n = record->count;
   DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &series));
   series->style = style;
   series->colour = colour;
+  series->width = width;
   snprintf(series->title, sizeof series->title, "%s", title);
   for (size_t i = 0; i < n; i++) {
     series->values[i] = dea_profile_columns[0].factor * record->columns[i];
@@ -30,13 +32,15 @@ static dea_status add_record(struct dea_context *ctx, struct dea_plot *plot,
                              const struct dea_profile_record *record, size_t shown)
 {
   static const enum dea_colour order[SHOWN_MAX] = {DEA_BLACK, DEA_SKY, DEA_ORANGE, DEA_VERMILLION};
+  static const double widths[SHOWN_MAX] = {0.6, 0.9, 1.2, 1.6}; // that count in grey
   char title[64];
   bool doubtful = dea_result_doubts(result, record->model, record->voltage_V) != 0;
   snprintf(title, sizeof title, "%.3g kV%s", 1e-3 * record->voltage_V, doubtful ? " (?)" : "");
   for (int p = 0; p < 2; p++) {
     struct dea_panel *panel = &plot->panels[p];
-    DEA_TRY(ctx, add(ctx, panel, record, 2 + 2 * p, order[shown], DEA_LINE, p == 0 ? title : ""));
-    DEA_TRY(ctx, add(ctx, panel, record, 3 + 2 * p, order[shown], DEA_DASHED, ""));
+    DEA_TRY(ctx, add(ctx, panel, record, 2 + 2 * p, order[shown], DEA_LINE, widths[shown],
+                     p == 0 ? title : ""));
+    DEA_TRY(ctx, add(ctx, panel, record, 3 + 2 * p, order[shown], DEA_DASHED, widths[shown], ""));
   }
   return DEA_OK;
 }
@@ -61,7 +65,7 @@ static void set_labels(struct dea_plot *plot, const struct dea_profile_record *l
     struct dea_panel *panel = &plot->panels[p];
     snprintf(panel->x_label, sizeof panel->x_label,
              "Radius in the stretched flat film {/:Italic R} (mm)");
-    panel->x_min = 0.0;
+    panel->x_min = last->count > 0 ? fmin(0, 1e3 * last->columns[0]) : 0;
     panel->x_max = last->count > 0 ? 1e3 * last->columns[last->count - 1] : panel->x_max;
   }
   plot->panels[0].key = "above horizontal maxrows 1 samplen 1 width key_width";
@@ -90,6 +94,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   if (shown > 0) {
     set_labels(plot, &records[0]);
+    for (size_t i = 0; i < result->profile_count; i++) { // at 0 V the sections do not differ
+      if (strcmp(records[i].model, records[0].model) == 0) {
+        dea_figure_sides(&plot->panels[1], &records[i]);
+      }
+    }
     DEA_TRY(ctx, add_directions(ctx, &plot->panels[1], &records[0]));
     dea_panel_even_tics(&plot->panels[0], 7);
     dea_panel_even_tics(&plot->panels[1], 7);
@@ -100,6 +109,6 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 const struct dea_figure dea_figure_profile = {
     .name = "profile",
     .caption = "stretch and tension along the radius (full: radial, dashed: hoop; ?: not to be "
-               "trusted)",
+               "trusted; of model 3d two sections)",
     .build = build,
 };

@@ -28,6 +28,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "  set label 1 \"%s, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
                "front\n"
                "  set label 2 \"%s\" at screen 0.03, screen 0.06 front\n"
+               "  eval \"set pm3d \".facets\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
                space->pictures[0].words, space->times, dea_view3d_size_words(space, size));

@@ -1,33 +1,15 @@
 /* Smallest tension against the voltage; below zero the film is slack. */
 #include "result/figure.h"
 
-#include <math.h>
 #include <stdio.h>
 
-/* The line below which the film is slack, where the curves come near to it. */
-static dea_status add_zero(struct dea_context *ctx, struct dea_panel *panel)
+/* Marks below what the film is slack, where the curves come near to it. */
+static void add_zero(struct dea_panel *panel)
 {
-  double low = INFINITY, high = -INFINITY;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count; i++) {
-      double tension = series->values[series->count + i];
-      low = isfinite(tension) ? fmin(low, tension) : low;
-      high = isfinite(tension) ? fmax(high, tension) : high;
-    }
+  double low, high;
+  if (dea_panel_range(panel, false, &low, &high) && low < 0.25 * high) {
+    dea_panel_mark(panel, false, 0, "slack below");
   }
-  if (!(low < 0.25 * high) || !isfinite(panel->x_max)) {
-    return DEA_OK;
-  }
-  struct dea_series *zero;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, 2, &zero));
-  zero->style = DEA_DOTTED;
-  zero->colour = DEA_BLACK;
-  snprintf(zero->title, sizeof zero->title, "slack below");
-  zero->values[0] = panel->x_min;
-  zero->values[1] = panel->x_max;
-  zero->values[2] = zero->values[3] = 0.0;
-  return DEA_OK;
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
@@ -41,7 +23,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Smallest principal tension (N/m)");
   dea_panel_voltage_axis(panel);
-  DEA_TRY(ctx, add_zero(ctx, panel));
+  add_zero(panel);
   DEA_TRY(ctx,
           dea_figure_add_events(ctx, panel, result, dea_point_column_find("min_tension_N_per_m"),
                                 1.0, 0.0, false));

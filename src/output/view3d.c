@@ -73,7 +73,7 @@ void dea_view3d_add_settings(struct dea_text *gp, const struct dea_view3d *space
                "z(above,um) = above + 1e-3 * times * um\n"
                "set view map\nset xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
                "unset border\nunset xtics\nunset ytics\nunset ztics\n"
-               "set pm3d depthorder corners2color mean border retrace\n",
+               "set pm3d depthorder corners2color mean\n",
                space->times, TILT, TURN, -half, half, low, high);
 }
 

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/program.h"
 #include "base/write_file.h"
+#include "plot/finish.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -148,6 +149,9 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
   dea_status status = dea_folder_make(ctx, drawing);
   if (status == DEA_OK) {
     status = draw(ctx, directory, drawing, names, count);
+    for (size_t i = 0; i < count && status == DEA_OK; i++) {
+      status = dea_picture_finish(ctx, drawing, directory, names[i]);
+    }
     if (status == DEA_OK) {
       status = empty_folder(ctx, drawing, directory, true);
     } else {

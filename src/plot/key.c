@@ -66,11 +66,16 @@ void dea_panel_place_key(struct dea_panel *panel)
     bool shown = false;
     for (size_t i = 0; i < series->count; i++) {
       shown = shown || isfinite(series->values[series->count + i]);
-      widen(&x, series->values[i]);
-      widen(&y[series->right], series->values[series->count + i]);
+      bool inside = !(series->values[i] < panel->x_min) && !(series->values[i] > panel->x_max);
+      widen(&x, inside ? series->values[i] : NAN);
     }
     lines += shown && series->title[0] != '\0';
   }
+  for (int right = 0; right < 2; right++) {
+    dea_panel_range(panel, right == 1, &y[right].low, &y[right].high);
+  }
+  widen(&y[0], panel->y_min);
+  widen(&y[0], panel->y_max);
   struct box box = {panel->y2_label[0] != '\0' ? key_width_two_axes : key_width,
                     fmin(lines * key_line_height, 0.6), true, true};
   for (size_t c = 0; c < sizeof corners / sizeof corners[0]; c++) {
@@ -79,8 +84,11 @@ void dea_panel_place_key(struct dea_panel *panel)
     box.top = corners[c].top;
     for (size_t s = 0; s < panel->series_count && !crossed; s++) {
       const struct dea_series *series = &panel->series[s];
-      crossed = series->style != DEA_DOTTED && // a limit may pass under the key
-                crosses(series, &x, &y[series->right], &box);
+      crossed = crosses(series, &x, &y[series->right], &box);
+    }
+    for (size_t m = 0; m < panel->mark_count && !crossed; m++) {
+      double at = share(&y[0], panel->marks[m].at);
+      crossed = !panel->marks[m].vertical && (box.top ? at > 1 - box.height : at < box.height);
     }
     if (!crossed) {
       panel->key = corners[c].name;

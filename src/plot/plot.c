@@ -42,6 +42,7 @@ void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel)
   }
   panel->series_count = 0;
   panel->dashed = NULL;
+  panel->sides[0] = panel->sides[1] = NULL;
 }
 
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,

@@ -41,7 +41,9 @@ struct dea_series {
   enum dea_series_style style;
   enum dea_colour colour;
   int marker;
-  bool right; // on the right axis
+  bool right;   // on the right axis
+  bool aside;   // what is not to be trusted, or only a bound: does not set the axis
+  double width; // of the line over that of its style; 0: 1
   size_t count;
   double *values; // [3][count]: x, y, error; owned
 };
@@ -53,7 +55,8 @@ struct dea_mark {
   char text[DEA_LABEL_SIZE]; // gnuplot's enhanced text
 };
 
-/* Labels are gnuplot's enhanced text in UTF-8. Limits that are NAN are left to gnuplot. */
+/* Labels and words are gnuplot's enhanced text in UTF-8. Limits that are NAN are left to gnuplot.
+ */
 struct dea_panel {
   char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE], y2_label[DEA_LABEL_SIZE];
   double x_min, x_max, y_min, y_max, y2_max;
@@ -63,7 +66,8 @@ struct dea_panel {
   double y_step;        // between tics of the left axis; 0: gnuplot's choice
   const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage
   enum dea_colour y2_colour;
-  const char *dashed; // key entry: what dashed parts of curves are; NULL: there are none; static
+  const char *sides[2]; // words left and right of x = 0, which then is marked; NULL: none; static
+  const char *dashed;   // key entry: what dashed parts of curves are; NULL: there are none; static
   size_t series_count, mark_count;
   struct dea_series series[DEA_PANEL_SERIES_MAX];
   struct dea_mark marks[DEA_PANEL_MARKS_MAX];
@@ -91,7 +95,14 @@ dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, si
 void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
 void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
-/* Voltage axis from 0 to the largest voltage of the panel's series, and its label. */
+/* Range of the values of the left or the right axis, where x is within the panel's limits. Values
+ * of series that are aside widen it by half of what the others span at most, to either side. False
+ * when there are no values. */
+bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high);
+/* Limits of the left axis, where it has none, that leave out what dea_panel_range leaves out. */
+void dea_panel_limit(struct dea_panel *panel);
+/* Voltage axis from 0 to the largest voltage of the panel's series, and its label; the left axis as
+ * by dea_panel_limit. */
 void dea_panel_voltage_axis(struct dea_panel *panel);
 /* At most about `most` tics on the left axis, all with the same number of decimals. */
 void dea_panel_even_tics(struct dea_panel *panel, int most);

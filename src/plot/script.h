@@ -4,6 +4,11 @@
 
 #include "plot/plot.h"
 
+/* The family of all figures, which packages.txt installs: the same in all formats. */
+#define DEA_SCRIPT_FONT "DejaVu Sans"
+/* Dots of a PNG in a metre: 300 an inch. */
+#define DEA_SCRIPT_PNG_DOTS_PER_M (300 / 0.0254)
+
 /* The settings that a user may want to change, and those that hold for all figures. */
 void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
                      const struct dea_plot_format *format, double width_mm, double height_mm);

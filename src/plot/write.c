@@ -66,23 +66,24 @@ static void add_style(struct dea_text *gp, const struct dea_series *series)
 {
   const char *colour = colours[series->colour];
   int marker = markers[series->marker % MARKER_COUNT];
+  double width = series->width > 0 ? series->width : 1;
   size_t interval = series->count / 10 > 1 ? series->count / 10 : 1;
   switch (series->style) {
   case DEA_LINE:
-    dea_text_add(gp, "with lines lw 1.5 lc rgb \"%s\"", colour);
+    dea_text_add(gp, "with lines lw %.3g lc rgb \"%s\"", 1.5 * width, colour);
     break;
   case DEA_THIN:
     dea_text_add(gp, "with lines lw 0.5 lc rgb \"%s\"", colour);
     break;
   case DEA_LINE_MARKED:
-    dea_text_add(gp, "with linespoints lw 1.2 pt %d ps 0.6 pi %zu lc rgb \"%s\"", marker, interval,
-                 colour);
+    dea_text_add(gp, "with linespoints lw %.3g pt %d ps 0.6 pi %zu lc rgb \"%s\"", 1.2 * width,
+                 marker, interval, colour);
     break;
   case DEA_DASHED:
-    dea_text_add(gp, "with lines lw 1.2 dt (8,5) lc rgb \"%s\"", colour);
+    dea_text_add(gp, "with lines lw %.3g dt (8,5) lc rgb \"%s\"", 1.2 * width, colour);
     break;
   case DEA_DOTTED:
-    dea_text_add(gp, "with lines lw 1 dt (2,3) lc rgb \"%s\"", colour);
+    dea_text_add(gp, "with lines lw 1.4 dt (2,2) lc rgb \"%s\"", colour);
     break;
   case DEA_MARKERS:
     dea_text_add(gp, "with points lw 1.2 pt %d ps 0.7 lc rgb \"%s\"", marker, colour);
@@ -200,15 +201,10 @@ static int digits_behind(double span)
 /* Characters of the longest tic label of a panel's left axis, as "%h" writes round numbers. */
 static int tic_length(const struct dea_panel *panel)
 {
-  double highest = panel->y_max, lowest = panel->y_min; // NAN where the values decide
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count && !series->right; i++) {
-      double y = series->values[series->count + i];
-      highest = isfinite(y) ? fmax(highest, y) : highest;
-      lowest = isfinite(y) ? fmin(lowest, y) : lowest;
-    }
-  }
+  double highest, lowest;
+  dea_panel_range(panel, false, &lowest, &highest);
+  highest = fmax(highest, panel->y_max); // NAN where the values decide
+  lowest = fmin(lowest, panel->y_min);
   double largest = fmax(fabs(highest), fabs(lowest));
   int behind = digits_behind(highest - lowest);
   return digits_before(largest) + (behind > 0 ? 1 + behind : 0) + (lowest < 0.0);
@@ -239,6 +235,20 @@ static struct layout lay_out(const struct dea_plot *plot, double width_m)
   double key_mm = row_count > 2 ? 4.0 * row_count : row_count == 2 ? 9.5 : 7.0;
   l.height_mm = l.top_mm[0] + (strncmp(key, "above", 5) == 0 ? key_mm : 3.0);
   return l;
+}
+
+/* The key of a panel: in it, or in rows that begin below the figure's upper edge. gnuplot's own
+ * place "above" lets rows run into the frame, since its terminals do not agree on their height. */
+static void add_key(struct dea_text *gp, const struct dea_panel *panel, const struct layout *l)
+{
+  static const char above[] = "above";
+  if (strncmp(panel->key, above, strlen(above)) == 0) {
+    dea_text_add(gp, "  set key at screen 0.5, screen %.4f center top%s\n", 1 - 1 / l->height_mm,
+                 panel->key + strlen(above));
+  } else {
+    dea_text_add(gp, "  set key %s%s\n", strncmp(panel->key, "at ", 3) == 0 ? "" : "inside ",
+                 panel->key);
+  }
 }
 
 /* 1, 2 and 5 of each decade, or of many decades 1 only: those in the range are drawn. */
@@ -290,7 +300,22 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
   } else {
     dea_text_add(gp, "  unset y2label\n  unset y2tics\n");
   }
-  dea_text_add(gp, "  set key %s\n", panel->key);
+}
+
+/* The line between two sections that meet at x = 0, and what they are. */
+static void add_sides(struct dea_text *gp, const struct dea_panel *panel)
+{
+  if (panel->sides[0] == NULL) {
+    return;
+  }
+  dea_text_add(gp,
+               "  set arrow from first 0, graph 0 to first 0, graph 1 nohead back lw 0.8 "
+               "lc rgb \"%s\"\n",
+               colours[DEA_GREY]);
+  for (int k = 0; k < 2; k++) {
+    dea_text_add(gp, "  set label \"%s\" at graph %g, graph 0.06 %s font small front\n",
+                 panel->sides[k], k == 0 ? 0.02 : 0.98, k == 0 ? "left" : "right");
+  }
 }
 
 static void add_panel(struct dea_text *gp, const struct dea_plot *plot, size_t p,
@@ -300,8 +325,10 @@ static void add_panel(struct dea_text *gp, const struct dea_plot *plot, size_t p
   dea_text_add(gp, "  set bmargin at screen %.4f\n  set tmargin at screen %.4f\n",
                l->bottom_mm[p] / l->height_mm, l->top_mm[p] / l->height_mm);
   add_axes(gp, panel, p + 1 == plot->panel_count);
+  add_key(gp, panel, l);
   dea_text_add(gp, "  unset arrow\n  unset label\n");
   add_marks(gp, panel);
+  add_sides(gp, panel);
   bool first = true;
   for (size_t s = 0; s < panel->series_count; s++) {
     if (dea_series_shows(&panel->series[s])) {

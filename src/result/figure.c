@@ -15,15 +15,37 @@ const struct dea_curve *dea_figure_curve(const struct dea_result *result, const 
   return other != NULL && other->count > 0 ? other : NULL;
 }
 
-struct dea_series dea_figure_style(const char *model, size_t m)
+struct dea_series dea_figure_style(const char *name, size_t m)
 {
-  static const enum dea_colour order[] = {DEA_BLUE, DEA_VERMILLION, DEA_GREEN, DEA_PURPLE};
+  static const enum dea_colour order[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN, DEA_PURPLE,
+                                          DEA_ORANGE, DEA_SKY,        DEA_BLACK};
   struct dea_series look = {
       .style = m == 0 ? DEA_LINE : DEA_LINE_MARKED,
-      .colour = order[m % 4],
+      .colour = order[m % (sizeof order / sizeof order[0])],
       .marker = m > 0 ? (int)m - 1 : 0,
   };
-  dea_label_escape(model, look.title, sizeof look.title);
+  dea_label_escape(name, look.title, sizeof look.title);
+  return look;
+}
+
+struct dea_series dea_figure_model_style(const char *model, size_t m)
+{
+  static const struct {
+    const char *model;
+    enum dea_series_style style;
+    enum dea_colour colour;
+    int marker;
+  } known[] = {{"lumped", DEA_LINE, DEA_BLUE, 0},
+               {"axisymmetric", DEA_LINE_MARKED, DEA_VERMILLION, 0},
+               {"3d", DEA_LINE_MARKED, DEA_GREEN, 1}};
+  struct dea_series look = dea_figure_style(model, m + 3); // after those that are known
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+    if (strcmp(model, known[i].model) == 0) {
+      look.style = known[i].style;
+      look.colour = known[i].colour;
+      look.marker = known[i].marker;
+    }
+  }
   return look;
 }
 
@@ -49,6 +71,7 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
   if (!trusted) {
+    series->aside = true;
     series->style = DEA_DASHED;
     series->title[0] = '\0';
   }
@@ -81,6 +104,7 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
   band->style = DEA_BAND;
   band->colour = DEA_GREY;
   band->right = right;
+  band->aside = true;
   for (size_t i = 0; i < n; i++) {
     const struct dea_load_point *p = &curve->points[i];
     double value = factor * (dea_point_get(p, column) + shift);
@@ -115,8 +139,11 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
   struct dea_series shown = *look;
   if (dea_figure_is_bound(curve, column)) {
     size_t n = strlen(shown.title);
-    snprintf(shown.title + n, sizeof shown.title - n, " (upper bound)");
+    if (n > 0) {
+      snprintf(shown.title + n, sizeof shown.title - n, " (upper bound)");
+    }
     shown.style = DEA_DOTTED;
+    shown.aside = true;
   }
   DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
@@ -152,7 +179,7 @@ dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *pane
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
-    struct dea_series look = dea_figure_style(models[m], m);
+    struct dea_series look = dea_figure_model_style(models[m], m);
     const struct dea_curve *curve = dea_figure_curve(result, models[m], prefer_path);
     if (!dea_figure_leaves_out(result, curve, column)) {
       DEA_TRY(ctx, dea_figure_add(ctx, panel, curve, column, dea_point_columns[column].factor, 0.0,
@@ -160,6 +187,21 @@ dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *pane
     }
   }
   return DEA_OK;
+}
+
+void dea_figure_sides(struct dea_panel *panel, const struct dea_profile_record *record)
+{
+  const struct dea_profile profile = dea_profile_of_record(record);
+  double left = 0, right = 0;
+  for (size_t i = 0; i < profile.count; i++) {
+    double size = fabs(profile.displacement_m[i]);
+    left = profile.radius_m[i] < 0 ? fmax(left, size) : left;
+    right = profile.radius_m[i] > 0 ? fmax(right, size) : right;
+  }
+  if (profile.count > 0 && profile.radius_m[0] < 0 && fabs(left - right) > 1e-3 * right) {
+    panel->sides[0] = "between fibres";
+    panel->sides[1] = "along a fibre";
+  }
 }
 
 /* What is drawn: factor * (member + shift). */
@@ -202,6 +244,7 @@ static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel
   DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
   series->style = DEA_MARKERS;
   series->colour = DEA_BLACK;
+  series->aside = true; // they lie on curves
   series->marker = 5 + (int)kind;
   snprintf(series->title, sizeof series->title, "%s", words[kind]);
   for (size_t i = 0; i < result->curve_count; i++) {

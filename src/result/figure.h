@@ -12,6 +12,7 @@ struct dea_figure {
   const char *name; // of its files: "displacement"
   const char *caption;
   const char *study; // that it belongs to; NULL: none
+  bool on_request;   // drawn only when it is asked for by name
   /* Fills the plot; leaves it without series when the result has nothing to show. */
   dea_status (*build)(struct dea_context *ctx, const struct dea_result *result,
                       struct dea_plot *plot);
@@ -40,11 +41,16 @@ bool dea_figure_is_bound(const struct dea_curve *curve, int column);
  * would set the axes. */
 bool dea_figure_leaves_out(const struct dea_result *result, const struct dea_curve *curve,
                            int column);
-/* Look of the m-th model. */
-struct dea_series dea_figure_style(const char *model, size_t m);
+/* Look of the m-th of several curves with that name. */
+struct dea_series dea_figure_style(const char *name, size_t m);
+/* Look of a model, the same in all figures; m, its number among those shown, counts only for names
+ * that are not known. */
+struct dea_series dea_figure_model_style(const char *model, size_t m);
 /* Adds that column of all models, in the units of figures. */
 dea_status dea_figure_add_models(struct dea_context *ctx, struct dea_panel *panel,
                                  const struct dea_result *result, int column, bool prefer_path);
+/* Says what the two halves of a profile are, where they differ: model 3d joins two sections. */
+void dea_figure_sides(struct dea_panel *panel, const struct dea_profile_record *record);
 /* Adds an entry of the key alone, a grey line of that style; of its series only a point shows, at
  * x, y, which lies on a curve that is there. */
 dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel,

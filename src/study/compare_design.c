@@ -224,6 +224,7 @@ static size_t find_shown(const struct dea_result *result, bool profiles,
 {
   static const enum dea_colour order[] = {DEA_BLUE,   DEA_VERMILLION, DEA_GREEN, DEA_PURPLE,
                                           DEA_ORANGE, DEA_SKY,        DEA_BLACK, DEA_GREY};
+  static const double widths[] = {1.7, 1.3, 1, 0.7}; // so that curves below others show
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t model_count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX), count = 0;
   for (size_t m = 0, shown = 0; m < model_count; m++) {
@@ -236,7 +237,9 @@ static size_t find_shown(const struct dea_result *result, bool profiles,
       if (count < SHOWN_MAX && (!profiles || variant->profile.count > 0)) {
         out[count].variant = variant;
         out[count].look = dea_figure_style("", shown);
-        out[count++].look.colour = order[number % (sizeof order / sizeof order[0])];
+        out[count].look.colour = order[number % (sizeof order / sizeof order[0])];
+        out[count].look.marker = (int)number;
+        out[count++].look.width = number < 3 ? widths[number] : widths[3];
       }
       number++;
     }
@@ -250,11 +253,15 @@ static dea_status add_entry(struct dea_context *ctx, struct dea_panel *panel,
                             const struct dea_series *look, const char *title)
 {
   struct dea_series *entry;
-  const struct dea_series *first = &panel->series[0];
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, 1, look, &entry));
   snprintf(entry->title, sizeof entry->title, "%s", title);
-  entry->values[0] = first->values[0];
-  entry->values[1] = first->values[first->count];
+  for (size_t s = 0; s + 1 < panel->series_count && isnan(entry->values[1]); s++) {
+    const struct dea_series *shown = &panel->series[s];
+    for (size_t i = 0; i < shown->count && isnan(entry->values[1]); i++) {
+      entry->values[0] = shown->values[i];
+      entry->values[1] = shown->values[shown->count + i];
+    }
+  }
   return DEA_OK;
 }
 
@@ -269,16 +276,31 @@ static bool is_first(const struct shown list[], size_t i, bool by_name)
   return true;
 }
 
-/* Adds y = factor * (member + shift) of each against V, as dea_figure_add. */
+/* A quantity of each against V: y = factor * (member + shift). */
+struct quantity {
+  int column;
+  double factor, shift;
+};
+
+/* Adds it, as dea_figure_add: where it is a bound, or where it is none. */
 static dea_status add_shown(struct dea_context *ctx, struct dea_panel *panel,
-                            const struct shown list[], size_t count, int column, double factor,
-                            double shift)
+                            const struct shown list[], size_t count, const struct quantity *q,
+                            bool bounds)
 {
   for (size_t i = 0; i < count; i++) {
-    DEA_TRY(ctx, dea_figure_add(ctx, panel, &list[i].variant->curve, column, factor, shift,
-                                &list[i].look));
+    const struct dea_curve *curve = &list[i].variant->curve;
+    if (dea_figure_is_bound(curve, q->column) == bounds) {
+      DEA_TRY(ctx,
+              dea_figure_add(ctx, panel, curve, q->column, q->factor, q->shift, &list[i].look));
+    }
   }
   return DEA_OK;
+}
+
+/* Whether the last point of a curve, where the profile is taken, is to be trusted. */
+static bool ends_trusted(const struct dea_curve *curve)
+{
+  return curve->count == 0 || dea_load_point_trusted(&curve->points[curve->count - 1]);
 }
 
 /* Keys of so many entries, in two columns from the fourth on where their titles are short. */
@@ -307,8 +329,9 @@ static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
       dea_label_escape(list[i].variant->name, title, sizeof title);
       size_t n = strlen(title);
       if (voltages) {
-        snprintf(title + n, sizeof title - n, ", %.3g kV",
-                 1e-3 * list[i].variant->profile.voltage_V);
+        snprintf(title + n, sizeof title - n, ", %.3g kV%s",
+                 1e-3 * list[i].variant->profile.voltage_V,
+                 ends_trusted(&list[i].variant->curve) ? "" : " (?)");
       }
       DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
       entries++;
@@ -330,16 +353,16 @@ static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
     size_t length = strlen(panel->series[i].title);
     longest = length > longest ? length : longest;
   }
-  panel->key = key_of(entries, longest);
+  panel->key = key_of(entries + (panel->dashed != NULL), longest);
   return DEA_OK;
 }
 
-/* True where some design has a displacement beyond noise. */
+/* True where some design has a displacement beyond noise that is no bound. */
 static bool moves(const struct shown list[], size_t count, int column)
 {
   for (size_t i = 0; i < count; i++) {
     const struct dea_curve *curve = &list[i].variant->curve;
-    for (size_t k = 0; k < curve->count; k++) {
+    for (size_t k = 0; k < curve->count && !dea_figure_is_bound(curve, column); k++) {
       if (fabs(dea_point_get(&curve->points[k], column)) > 1e-9) {
         return true;
       }
@@ -357,15 +380,16 @@ static dea_status build_designs(struct dea_context *ctx, const struct dea_result
   int z = dea_point_column_find("centre_z_m"), stretch = dea_point_column_find("electrode_stretch");
   plot->panel_count = moves(list, count, z) ? 2 : 1;
   struct dea_panel *last = &panels[plot->panel_count - 1];
-  if (plot->panel_count == 2) {
-    DEA_TRY(ctx, add_shown(ctx, &panels[0], list, count, z, 1e6, 0));
+  if (plot->panel_count == 2) { // bounds of many times the size are in figure design_tips
+    DEA_TRY(ctx, add_shown(ctx, &panels[0], list, count, &(struct quantity){z, 1e6, 0}, false));
     snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
   }
-  DEA_TRY(ctx, add_shown(ctx, last, list, count, stretch, 100, -1));
+  DEA_TRY(ctx, add_shown(ctx, last, list, count, &(struct quantity){stretch, 100, -1}, false));
   snprintf(last->y_label, DEA_LABEL_SIZE, "Electrode strain (%%)");
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_panel_voltage_axis(&panels[p]);
   }
+  last->dashed = last == panels || panels[0].dashed == NULL ? last->dashed : NULL; // said above
   panels[0].x_max = last->x_max; // all designs have a strain, and the panels share the axis
   if (panels[0].series_count > 0) {
     DEA_TRY(ctx, add_key(ctx, &panels[0], list, count, false));
@@ -373,20 +397,34 @@ static dea_status build_designs(struct dea_context *ctx, const struct dea_result
   return DEA_OK;
 }
 
+/* What models predict, and in a panel of its own, since it is many times as large, what they know
+ * only a bound of. */
 static dea_status build_design_tips(struct dea_context *ctx, const struct dea_result *result,
                                     struct dea_plot *plot)
 {
   struct shown list[SHOWN_MAX];
-  struct dea_panel *panel = &plot->panels[0];
-  size_t count = find_shown(result, false, list);
-  int column = dea_point_column_find("fibre_tip_z_m");
-  DEA_TRY(ctx, add_shown(ctx, panel, list, count, column, 1e6, 0));
-  snprintf(panel->y_label, DEA_LABEL_SIZE, "Fibre tip {/:Italic z} (\302\265m)");
-  dea_panel_voltage_axis(panel);
-  if (panel->series_count > 0) {
-    DEA_TRY(ctx, add_key(ctx, panel, list, count, false));
+  struct dea_panel *panels = plot->panels;
+  size_t count = find_shown(result, false, list), shown = 0;
+  const struct quantity z[2] = {{dea_point_column_find("fibre_tip_z_m"), 1e6, 0},
+                                {dea_point_column_find("fibre_tip_z_m"), 1e3, 0}};
+  for (int bounds = 0; bounds < 2; bounds++) {
+    struct dea_panel *panel = &panels[shown];
+    DEA_TRY(ctx, add_shown(ctx, panel, list, count, &z[bounds], bounds == 1));
+    if (panel->series_count > 0) {
+      snprintf(panel->y_label, DEA_LABEL_SIZE,
+               bounds == 1 ? "Bound of tip {/:Italic z} (mm)"
+                           : "Fibre tip {/:Italic z} (\302\265m)");
+      dea_panel_voltage_axis(panel);
+      shown++;
+    }
   }
-  return DEA_OK;
+  plot->panel_count = shown > 0 ? shown : 1;
+  plot->second_height = 0.7;
+  if (shown == 2) { // they share the axis
+    panels[0].x_max = panels[1].x_max = fmax(panels[0].x_max, panels[1].x_max);
+    panels[1].dashed = panels[0].dashed != NULL ? NULL : panels[1].dashed; // said above
+  }
+  return shown > 0 ? add_key(ctx, &panels[0], list, count, false) : DEA_OK;
 }
 
 static dea_status add(struct dea_context *ctx, struct dea_panel *panel, const struct shown *one,
@@ -432,6 +470,9 @@ static dea_status build_design_profiles(struct dea_context *ctx, const struct de
     }
     DEA_TRY(ctx, add(ctx, last, &list[i], profile.displacement_m));
   }
+  for (size_t i = 0; i < count; i++) {
+    dea_figure_sides(last, &list[i].variant->profile);
+  }
   snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Displacement {/:Italic z} (\302\265m)");
   snprintf(last->y_label, DEA_LABEL_SIZE, "Radial displacement {/:Italic u} (\302\265m)");
   for (size_t p = 0; p < plot->panel_count; p++) {
@@ -463,7 +504,7 @@ static const struct dea_figure figures[] = {
         .study = study_name,
         .caption =
             "displacements of several designs along the radius (of model 3d: to the right along a "
-            "fibre, to the left between fibres)",
+            "fibre, to the left between fibres; ?: not to be trusted)",
         .build = build_design_profiles,
     },
 };

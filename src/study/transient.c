@@ -714,7 +714,7 @@ static dea_status add_models(struct dea_context *ctx, const struct dea_result *r
   for (size_t m = 0; m < count; m++) {
     const struct dea_curve *curve = dea_result_find(result, models[m], "transient");
     if (curve != NULL && curve->count > 1) {
-      struct dea_series look = dea_figure_style(models[m], m);
+      struct dea_series look = dea_figure_model_style(models[m], m);
       look.style = line_of(curve);
       DEA_TRY(ctx, add_in_time(ctx, panel, curve, key, factor, &look));
     }

@@ -64,6 +64,9 @@ static struct view make_view(const struct dea_panel *panel, double top, double h
     limits_x[0] = x.high >= x.low && x.high > x.low ? x.low : NAN;
     limits_x[1] = isfinite(panel->x_max) ? panel->x_max : x.high > x.low ? x.high : NAN;
   }
+  for (int k = 0; k < 2 && !panel->logarithmic; k++) { // without what is aside
+    dea_panel_range(panel, k == 1, &y[k].low, &y[k].high);
+  }
   const double open[2] = {NAN, NAN}, floor_only[2] = {panel->y_min, NAN};
   bool right = panel->y2_label[0] != '\0';
   struct view v = {
@@ -247,6 +250,15 @@ static void add_series(struct dea_text *out, const struct view *v, const struct 
 static void add_marks(struct dea_text *out, const struct dea_panel *panel, const struct view *v)
 {
   dea_text_add(out, "<g class=\"limits\">");
+  if (panel->sides[0] != NULL) {
+    dea_text_add(out, "<path d=\"M%.1f %.1fV%.1f\"/>", dea_axis_place(&v->x, 0), v->bottom, v->top);
+  }
+  for (int k = 0; panel->sides[0] != NULL && k < 2; k++) {
+    dea_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">",
+                 k == 0 ? v->left + 6 : v->right - 6, v->bottom - 8, k == 0 ? "start" : "end");
+    dea_html_label(out, panel->sides[k], DEA_LABEL_SVG);
+    dea_text_add(out, "</text>");
+  }
   for (size_t i = 0; i < panel->mark_count; i++) {
     const struct dea_mark *mark = &panel->marks[i];
     double at = dea_axis_place(mark->vertical ? &v->x : &v->y, mark->at);

@@ -61,11 +61,12 @@ static dea_status add_levels(struct dea_context *ctx, struct dea_panel *panel,
   bool lift = map->lift_step_m > 0, small = map->lift_step_m < 1e-3;
   double step = lift ? map->lift_step_m : map->strain_step;
   size_t rows = map->table->row_count;
+  static const enum dea_colour order[] = {DEA_GREEN, DEA_BLUE, DEA_ORANGE, DEA_BLACK};
   for (size_t k = 0; k < map->table->width && step > 0; k++) {
     struct dea_series *series;
     DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &series));
-    series->style = k % 2 == 0 ? DEA_LINE : DEA_DASHED;
-    series->colour = DEA_GREEN;
+    series->style = k < 4 ? DEA_LINE : DEA_DASHED;
+    series->colour = order[k % 4];
     double level = step * (double)(k + 1);
     snprintf(series->title, sizeof series->title, lift ? "{/:Italic z} = %g %s" : "strain %g %s",
              level * (lift ? (small ? 1e6 : 1e3) : 100), lift ? (small ? "\302\265m" : "mm") : "%");

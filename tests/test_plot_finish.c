@@ -1,0 +1,106 @@
+/* What is added to gnuplot's pictures, and what does not set an axis. */
+#include "context_fixture.h"
+#include "plot/finish.h"
+#include "plot/plot.h"
+#include "plot/script.h"
+#include "testing.h"
+
+#include <string.h>
+
+/* An SVG as gnuplot 5.4 writes it, and what becomes of it. */
+static void test_svg(void **state)
+{
+  (void)state;
+  static const char before[] =
+      "<svg>\n<title>Gnuplot</title>\n<g id=\"gnuplot_plot_1\" ><title>gnuplot_plot_1</title>\n"
+      "\t<g stroke='none' shape-rendering='crispEdges'>\n"
+      "\t\t<polygon fill = 'rgb(  2, 106, 168)' points = '1,2 3,4 5,6 '/>\n"
+      "\t\t<polygon fill = 'rgb(1,2,3)' fill-opacity = '0.5' points = '1,2 3,4 5,6 '/>\n\t</g>\n"
+      "<text font-family=\"DejaVu Sans\" >of</text><text font-family=\"Times\">f</text></g>\n";
+  static const char after[] =
+      "<svg>\n<title>1 &lt; 2 &amp; 3</title>\n<g id=\"gnuplot_plot_1\" >\n"
+      "\t<g stroke='none' stroke-width='0.4' stroke-linejoin='round'>\n"
+      "\t\t<polygon fill='rgb(  2, 106, 168)' stroke='rgb(  2, 106, 168)' points='1,2 3,4 5,6 '/>\n"
+      "\t\t<polygon fill = 'rgb(1,2,3)' fill-opacity = '0.5' points = '1,2 3,4 5,6 '/>\n\t</g>\n"
+      "<text font-family=\"DejaVu Sans, Verdana, sans-serif\" >of</text>"
+      "<text font-family=\"Times\">f</text></g>\n";
+  char *out;
+  assert_int_equal(dea_svg_finish(ctx, before, "1 < 2 & 3", &out), DEA_OK);
+  assert_string_equal(out, after);
+  dea_free(ctx, out);
+  assert_int_equal(dea_svg_finish(ctx, "", "", &out), DEA_OK);
+  assert_string_equal(out, "");
+  dea_free(ctx, out);
+}
+
+/* The chunk of 300 dots an inch, its check as other programs write it. */
+static void test_png(void **state)
+{
+  (void)state;
+  static const unsigned char chunk[21] = {0,    0, 0, 9,    'p',  'H', 'Y',  's',  0,    0,   0x2e,
+                                          0x23, 0, 0, 0x2e, 0x23, 1,   0x78, 0xa5, 0x3f, 0x76};
+  char png[60] = "\211PNG\r\n\032\n", *out, *again;
+  size_t length, same;
+  for (size_t i = 8; i < sizeof png; i++) {
+    png[i] = (char)i;
+  }
+  assert_int_equal(dea_png_finish(ctx, png, sizeof png, DEA_SCRIPT_PNG_DOTS_PER_M, &out, &length),
+                   DEA_OK);
+  assert_int_equal(length, sizeof png + sizeof chunk);
+  assert_memory_equal(out, png, 33);
+  assert_memory_equal(out + 33, chunk, sizeof chunk);
+  assert_memory_equal(out + 33 + sizeof chunk, png + 33, sizeof png - 33);
+  assert_int_equal(dea_png_finish(ctx, out, length, 1000, &again, &same), DEA_OK);
+  assert_int_equal(same, length); // it has one
+  assert_memory_equal(again, out, length);
+  dea_free(ctx, again);
+  dea_free(ctx, out);
+  assert_int_equal(dea_png_finish(ctx, "text", 4, 1000, &out, &length), DEA_OK);
+  assert_int_equal(length, 4);
+  dea_free(ctx, out);
+}
+
+static void add(struct dea_panel *panel, double from, double to, bool aside)
+{
+  struct dea_series *series;
+  assert_int_equal(dea_panel_add(ctx, panel, 2, &series), DEA_OK);
+  memcpy(series->values, (const double[4]){0, 8, from, to}, 4 * sizeof(double));
+  series->aside = aside;
+}
+
+/* Slack points reach to -1766 N/m and are not to be trusted: the axis is that of the others. */
+static void test_what_is_aside_does_not_set_the_axis(void **state)
+{
+  (void)state;
+  struct dea_plot *plot;
+  double low, high;
+  assert_int_equal(dea_plot_create(ctx, "tension", "", &plot), DEA_OK);
+  struct dea_panel *panel = &plot->panels[0];
+  assert_false(dea_panel_range(panel, false, &low, &high));
+  add(panel, 35, 20, false);
+  add(panel, 20, -1766, true);
+  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_close(low, 12.5, 1e-12, 0);
+  assert_close(high, 35, 1e-12, 0);
+  dea_panel_voltage_axis(panel);
+  assert_close(panel->y_min, 10, 1e-12, 0);
+  assert_true(isnan(panel->y_max)); // left to gnuplot
+  add(panel, 36, 38, true);         // little more than the others
+  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_close(high, 38, 1e-12, 0);
+  dea_panel_clear(ctx, panel);
+  add(panel, 20, -1766, true); // nothing else is there
+  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_close(low, -1766, 1e-12, 0);
+  dea_plot_destroy(ctx, plot);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_svg),
+      cmocka_unit_test(test_png),
+      cmocka_unit_test(test_what_is_aside_does_not_set_the_axis),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
