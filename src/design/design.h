@@ -33,7 +33,7 @@ enum dea_solid_film { DEA_FILM_SOLID, DEA_FILM_MEMBRANE };
 enum dea_solid_electrostatics { DEA_FIELD_THIN, DEA_FIELD_COUPLED };
 enum dea_solid_domain { DEA_DOMAIN_SECTOR, DEA_DOMAIN_DISC };
 enum dea_gravity { DEA_GRAVITY_OFF, DEA_GRAVITY_FIBRES_UP, DEA_GRAVITY_FIBRES_DOWN };
-enum dea_buckling_branch { DEA_BRANCH_ANY, DEA_BRANCH_FIBRES, DEA_BRANCH_BACK }; // of the centre
+enum dea_buckling_branch { DEA_BRANCH_ANY, DEA_BRANCH_FIBRES, DEA_BRANCH_BACK };
 
 struct dea_design;
 struct dea_device;

@@ -73,8 +73,8 @@ static const struct dea_field fields[] = {
      .choices = branches,
      .default_text = "any",
      .doc =
-         "side of the centre where a film without tension may buckle to either one; any: the one "
-         "that follows from 0 V",
+         "side that film and fibres are on where a film without tension may buckle to either one; "
+         "any: the one that follows from 0 V",
      .example = "fibres"},
 };
 

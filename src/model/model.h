@@ -31,7 +31,7 @@ struct dea_model_settings {
   enum dea_solid_film film;                 // its elements
   enum dea_solid_domain domain;             // how much of the actuator is computed
   enum dea_solid_electrostatics field;      // where it comes from
-  enum dea_buckling_branch buckling_branch; // side of the centre that a slack film goes to
+  enum dea_buckling_branch buckling_branch; // side that a slack film goes to
   double refinement;                        // of the mesh; up to 1: the coarsest
   int order;                                // of the elements in the plane, 1 to 3; 0: 2
   int order_z;                              // through the thickness of a layer, the same

@@ -6,26 +6,74 @@
 static const double there = 1e-3; // of the film's thickness: on a side, and not flat
 
 struct wanted {
-  size_t centre;
+  const struct dea_grid *grid;
+  const struct dea_fibre_disc *plate;
   double sign, least_m;
 };
 
-static bool on_side(const void *self, const double *displacement_m)
+/* Whether the largest displacement out of the plane is to the side that is wanted: that of the
+ * centre is not where a dimple stands in a dome, nor that of the fibres where clamped ends turn
+ * them away from it. */
+static bool on_side(const void *self, const double *u)
 {
   const struct wanted *wanted = self;
-  return wanted->sign * displacement_m[3 * wanted->centre + 2] > wanted->least_m;
+  double to_m = 0, from_m = 0;
+  for (size_t n = 0; n < wanted->grid->node_count; n++) {
+    double z = wanted->sign * u[3 * n + 2];
+    to_m = fmax(to_m, z);
+    from_m = fmax(from_m, -z);
+  }
+  return to_m > fmax(from_m, wanted->least_m);
+}
+
+/* Displacement of the film's middle in the column of nodes from n on; *end: behind the column. */
+static void find_middle(const struct wanted *wanted, const double *u, size_t n, size_t *end,
+                        double middle[3])
+{
+  const struct dea_grid *grid = wanted->grid;
+  size_t low = n, high = n;
+  double half_m = 0.5 * wanted->plate->film_thickness, lowest = INFINITY, highest = -INFINITY;
+  for (*end = n; *end < grid->node_count && grid->column[*end] == grid->column[n]; ++*end) {
+    double z = grid->X[3 * *end + 2];
+    if (fabs(z) <= half_m * (1 + 1e-9)) {
+      low = z < lowest ? *end : low;
+      high = z > highest ? *end : high;
+      lowest = fmin(lowest, z);
+      highest = fmax(highest, z);
+    }
+  }
+  for (size_t i = 0; i < 3; i++) {
+    middle[i] = 0.5 * (u[3 * low + i] + u[3 * high + i]);
+  }
+}
+
+/* What turns each column on the other side about the middle of its film: that goes to its mirror
+ * image, and the column leans to the other side with it. */
+static void set_push(const struct wanted *wanted, const double *u, double *push)
+{
+  for (size_t n = 0, end; n < wanted->grid->node_count; n = end) {
+    double middle[3];
+    find_middle(wanted, u, n, &end, middle);
+    double part = wanted->sign * middle[2] < 0 ? 2 : 0;
+    for (size_t k = 3 * n; k < 3 * end; k += 3) {
+      push[k] = part * (middle[0] - u[k]);
+      push[k + 1] = part * (middle[1] - u[k + 1]);
+      push[k + 2] = -part * middle[2];
+    }
+  }
 }
 
 dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *solid,
                                     const struct dea_grid *grid, const struct dea_fibre_disc *plate,
-                                    size_t centre, enum dea_buckling_branch side,
-                                    struct dea_solid_report *report, bool *moved)
+                                    enum dea_buckling_branch side, struct dea_solid_report *report,
+                                    bool *moved)
 {
-  const struct wanted wanted = {centre, side == DEA_BRANCH_FIBRES ? 1 : -1,
-                                there * plate->film_thickness};
-  const double *u = dea_solid_displacement(solid);
+  struct wanted wanted = {.grid = grid,
+                          .plate = plate,
+                          .sign = side == DEA_BRANCH_FIBRES ? 1 : -1,
+                          .least_m = there * plate->film_thickness};
   *moved = false;
-  if (side == DEA_BRANCH_ANY || on_side(&wanted, u)) {
+  if (side == DEA_BRANCH_ANY || on_side(&wanted, dea_solid_displacement(solid))) {
     return DEA_OK;
   }
   double *push = dea_alloc(ctx, 3 * grid->node_count, sizeof *push);
@@ -33,12 +81,7 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
     dea_free(ctx, push);
     return DEA_E_MEMORY;
   }
-  // the lowest bending mode of a clamped plate, about as high as the film is thick or as it stands
-  double height = wanted.sign * (plate->film_thickness + 2 * fabs(u[3 * centre + 2]));
-  for (size_t n = 0; n < grid->node_count; n++) {
-    double r = hypot(grid->X[3 * n], grid->X[3 * n + 1]) / plate->electrode_radius;
-    push[3 * n + 2] = r < 1 ? height * (1 - r * r) * (1 - r * r) : 0;
-  }
+  set_push(&wanted, dea_solid_displacement(solid), push);
   dea_status status = dea_solid_push(ctx, solid, push, on_side, &wanted, report, moved);
   dea_free(ctx, push);
   return status;

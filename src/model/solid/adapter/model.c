@@ -271,8 +271,8 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_buckling_branch_take(ctx, model->solid, model->grid, &model->actuator.plate,
-                                        model->centre, model->actuator.settings.buckling_branch,
-                                        &model->at.report, &moved));
+                                        model->actuator.settings.buckling_branch, &model->at.report,
+                                        &moved));
   if (moved) {
     model->at.left_a_state = true;
     double after_m = dea_solid_displacement(model->solid)[3 * model->centre + 2];
