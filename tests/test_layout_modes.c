@@ -5,6 +5,8 @@
 
 #include "layout_device.h"
 
+#include <string.h>
+
 static const double pi = 3.14159265358979323846;
 
 static struct dea_model *model_of(const struct dea_device *device)
@@ -99,11 +101,92 @@ static void test_hub(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* Complex amplitudes of the motions of a monitor at frequencies, per volt about 2 kV. */
+static void find_answers(struct dea_model *model, const double *frequency_Hz, size_t count,
+                         struct dea_load_point *points, const double **answers)
+{
+  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_ac_excitation volt = {.amplitude_V = 1};
+  struct dea_load_point at;
+  assert_int_equal(type->solve(ctx, model, 2e3, &at), DEA_OK);
+  assert_int_equal(type->respond(ctx, model, &at, &volt, frequency_Hz, count, points), DEA_OK);
+  *answers = type->answers(model);
+  assert_non_null(*answers);
+}
+
+/* What monitors show at a voltage. */
+static void look(struct dea_model *model, double voltage_V, double out[][DEA_OBSERVED_COUNT],
+                 size_t count)
+{
+  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  struct dea_load_point at;
+  struct dea_observation seen;
+  assert_int_equal(type->solve(ctx, model, voltage_V, &at), DEA_OK);
+  assert_int_equal(type->observe(ctx, model, &seen), DEA_OK);
+  memcpy(out, seen.monitor, count * sizeof *out);
+}
+
+/* A heavy hub that hangs in a film with hardly a mass: a slow excitation makes what a little more
+ * voltage makes, of a body, a point, a line, and a region; a faster one that over 1 - (f/f_1)^2. A
+ * branch that follows at once changes nothing. */
+static void test_answers(void **state)
+{
+  enum { MONITORS = 4 };
+  (void)state;
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  struct dea_material *film = &l->plies[0].material;
+  l->bodies[0].free = 4;
+  l->bodies[0].mass_kg = 20e-3;
+  l->gravity_m_per_s2[2] = -9.81;
+  film->density_kg_per_m3 = 1e-3;
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{12e-3, 1e-3}}};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "line", .kind = DEA_MONITOR_LINE, .at_m = {{8e-3, 0}, {14e-3, 1e-3}}};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  for (int viscous = 0; viscous < 2; viscous++) {
+    double below[MONITORS][DEA_OBSERVED_COUNT], above[MONITORS][DEA_OBSERVED_COUNT];
+    struct dea_load_point mode, points[2];
+    const double *answers, step_V = 20;
+    film->branches[0] = (struct dea_branch){.modulus_Pa = 1e5, .time_s = 1e-10};
+    film->branch_count = (size_t)viscous;
+    struct dea_model *model = model_of(device);
+    look(model, 2e3 - step_V, below, MONITORS);
+    look(model, 2e3 + step_V, above, MONITORS);
+    find_modes(model, 2e3, 1, &mode);
+    const double frequency_Hz[2] = {1e-4 * mode.frequency_Hz, 0.8 * mode.frequency_Hz};
+    find_answers(model, frequency_Hz, 2, points, &answers);
+    assert_true(isnan(points[0].centre_amplitude_m));
+    for (size_t i = 0; i < MONITORS; i++) {
+      for (int k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
+        size_t at = i * DEA_OBSERVED_MOTIONS + (size_t)k;
+        const double *slow = answers + 2 * at, *fast = slow + 2 * MONITORS * DEA_OBSERVED_MOTIONS;
+        double slope = (above[i][k] - below[i][k]) / (2 * step_V);
+        assert_true(isnan(slope) == isnan(slow[0]));
+        if (k == DEA_OBSERVED_Z || k >= DEA_OBSERVED_STRETCH) {
+          double small = k < DEA_OBSERVED_STRETCH ? 1e-12 : 1e-10; // per volt
+          assert_true(isnan(slope) || fabs(slope) > 100 * small);
+          assert_true(isnan(slope) || fabs(slow[0] - slope) < 5e-4 * fabs(slope) + small);
+          assert_true(isnan(slope) || fabs(slow[1]) < small);
+        }
+        if (i == 0 && k == DEA_OBSERVED_Z) {
+          assert_close(fast[0] / slow[0], 1 / (1 - 0.8 * 0.8), 1e-4, 0);
+        }
+      }
+    }
+    dea_model_find("3d")->destroy(ctx, model);
+  }
+  dea_device_destroy(ctx, device);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_rectangle),
       cmocka_unit_test(test_hub),
+      cmocka_unit_test(test_answers),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

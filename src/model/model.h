@@ -135,6 +135,10 @@ struct dea_model_type {
   dea_status (*respond)(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, const struct dea_ac_excitation *excitation,
                         const double *frequency_Hz, size_t count, struct dea_load_point *points);
+  /* What monitors of the device's layout did in the last `respond`, which succeeded: complex
+   * amplitudes [count][monitor_count][DEA_OBSERVED_MOTIONS][2], real and imaginary part, NAN where
+   * a monitor has no such quantity; lent until the next call. NULL when the model knows none. */
+  const double *(*answers)(const struct dea_model *model);
   /* Fields at the last point solved; NULL when the model has none. out: owned by the caller
    * (dea_field_mesh_destroy), NULL on failure. */
   dea_status (*fields)(struct dea_context *ctx, struct dea_model *model, enum dea_fields_part part,

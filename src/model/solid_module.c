@@ -159,6 +159,11 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static const double *answers(const struct dea_model *model)
+{
+  return model->type->answers != NULL ? model->type->answers(model->inner) : NULL;
+}
+
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
@@ -215,6 +220,8 @@ static const struct dea_model_type of_layouts = {
     .observe = observe,
     .move = move,
     .modes = modes,
+    .respond = respond,
+    .answers = answers,
     .fields = fields,
     .save = save,
     .load = load,

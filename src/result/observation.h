@@ -26,6 +26,9 @@ enum dea_observed {
   DEA_OBSERVED_COUNT
 };
 
+/* The first of them are motions, which answer to an excitation. */
+enum { DEA_OBSERVED_MOTIONS = DEA_OBSERVED_FORCE_X };
+
 /* Of a channel; ground is [0]. */
 struct dea_channel_values {
   double voltage_V;

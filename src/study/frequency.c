@@ -130,6 +130,73 @@ static const struct settings *settings_of(const struct dea_design *design)
   return given != NULL ? given->values : NULL;
 }
 
+// Tables -----------------------------------------------------------------------------------------
+
+/* Amplitude and phase of a motion of monitors. */
+#define MOTION(key, unit_suffix, si, display, scale, head)                                         \
+  DEA_NUMBER_COLUMN(key "_amplitude" unit_suffix, si, display, scale, "amplitude " head,           \
+                    "of the motion that the excitation makes"),                                    \
+      DEA_NUMBER_COLUMN(key "_phase_rad", "rad", "deg", 57.29577951308232, "phase " head,          \
+                        "against the excitation")
+
+enum { BEFORE = 3 }; // columns before the motions
+
+/* In the order of enum dea_observed. */
+static const struct dea_result_column monitor_columns[] = {
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "bias"),
+    DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "of the excitation"),
+    {.key = "monitor", .kind = DEA_CELL_TEXT, .title = "monitor", .meaning = "name in the design"},
+    MOTION("x", "_m", "m", "nm", 1e9, "x"),
+    MOTION("y", "_m", "m", "nm", 1e9, "y"),
+    MOTION("z", "_m", "m", "nm", 1e9, "z"),
+    MOTION("turn_x", "_rad", "rad", "deg", 57.29577951308232, "turn x"),
+    MOTION("turn_y", "_rad", "rad", "deg", 57.29577951308232, "turn y"),
+    MOTION("turn_z", "_rad", "rad", "deg", 57.29577951308232, "turn z"),
+    MOTION("stretch", "", "1", "1", 1, "stretch"),
+    MOTION("stretch_x", "", "1", "1", 1, "stretch x"),
+    MOTION("stretch_y", "", "1", "1", 1, "stretch y"),
+    MOTION("area_stretch", "", "1", "1", 1, "area stretch"),
+};
+enum { MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0] };
+_Static_assert(MONITOR_COLUMNS == BEFORE + 2 * DEA_OBSERVED_MOTIONS, "two columns a motion");
+
+static const struct dea_result_table_type monitors = {.study = study_name,
+                                                      .name = "monitors",
+                                                      .title = "Monitors by frequency",
+                                                      .where = DEA_IN_CSV,
+                                                      .columns = monitor_columns,
+                                                      .column_count = MONITOR_COLUMNS};
+
+/* Rows of what monitors did at the frequencies of one bias. */
+static dea_status add_monitors(struct dea_context *ctx, const char *model,
+                               const struct dea_load_point *points, size_t count,
+                               const double *answers, struct dea_result *result)
+{
+  const struct dea_layout *layout = result->device->layout;
+  const struct dea_result_table *there =
+      dea_result_find_table(result, model, study_name, monitors.name);
+  struct dea_result_table *table = NULL;
+  if (there == NULL) {
+    DEA_TRY(ctx, dea_result_add_table(ctx, result, &monitors, model, 0, &table));
+  } else {
+    table = &result->tables[there - result->tables];
+  }
+  for (size_t i = 0; i < count * layout->monitor_count; i++) {
+    const struct dea_load_point *p = &points[i / layout->monitor_count];
+    struct dea_result_table_value row[MONITOR_COLUMNS] = {
+        {.number = p->voltage_V},
+        {.number = p->frequency_Hz},
+        {.text = layout->monitors[i % layout->monitor_count].name}};
+    for (size_t k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
+      const double *part = answers + 2 * (i * DEA_OBSERVED_MOTIONS + k);
+      row[BEFORE + 2 * k].number = hypot(part[0], part[1]);
+      row[BEFORE + 2 * k + 1].number = atan2(part[1], part[0]);
+    }
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
 // Study ------------------------------------------------------------------------------------------
 
 /* All frequencies at one bias. */
@@ -157,6 +224,10 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = dea_curve_add_point(ctx, curve, &points[i]);
+  }
+  const double *answers = type->answers != NULL ? type->answers(model) : NULL;
+  if (status == DEA_OK && answers != NULL) {
+    status = add_monitors(ctx, type->name, points, count, answers, result);
   }
   dea_free(ctx, frequency_Hz);
   dea_free(ctx, points);
@@ -193,26 +264,60 @@ static size_t count_bias(const struct dea_curve *curve, size_t from)
   return count;
 }
 
+/* Frequencies, amplitudes and phases of a line, [count] each. */
+struct line {
+  size_t count;
+  double *frequency_Hz, *amplitude_m, *phase_rad;
+};
+
+/* Memory of the first array is that of all. */
+static dea_status line_create(struct dea_context *ctx, size_t count, struct line *out)
+{
+  double *memory = dea_alloc(ctx, 3 * count, sizeof *memory);
+  *out = (struct line){.count = count, .frequency_Hz = memory};
+  if (memory == NULL) {
+    return DEA_E_MEMORY;
+  }
+  out->amplitude_m = memory + count;
+  out->phase_rad = memory + 2 * count;
+  return DEA_OK;
+}
+
 /* Amplitude in nm into the upper panel, phase in degrees without jumps into the lower one. */
-static dea_status add_answer(struct dea_context *ctx, struct dea_plot *plot,
-                             const struct dea_load_point *points, size_t count, bool tip,
-                             const struct dea_series *look)
+static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const struct line *line,
+                           const struct dea_series *look)
 {
   double turns = 0, before = 0;
   for (int p = 0; p < 2; p++) {
     struct dea_series *series;
-    DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], count, look, &series));
+    DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], line->count, look, &series));
     series->title[0] = p == 0 ? series->title[0] : '\0';
-    for (size_t i = 0; i < count; i++) {
-      double phase = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
-      double amplitude = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
+    for (size_t i = 0; i < line->count; i++) {
+      double phase = line->phase_rad[i];
       turns += i == 0 ? (phase < 0 ? 1 : 0) : round((before - phase) / (2 * pi)) - turns;
       before = phase + 2 * pi * turns;
-      series->values[i] = points[i].frequency_Hz;
-      series->values[count + i] = p == 0 ? 1e9 * amplitude : before * 180 / pi;
+      series->values[i] = line->frequency_Hz[i];
+      series->values[line->count + i] = p == 0 ? 1e9 * line->amplitude_m[i] : before * 180 / pi;
     }
   }
   return DEA_OK;
+}
+
+/* Of the centre or of the tip. */
+static dea_status add_answer(struct dea_context *ctx, struct dea_plot *plot,
+                             const struct dea_load_point *points, size_t count, bool tip,
+                             const struct dea_series *look)
+{
+  struct line line;
+  DEA_TRY(ctx, line_create(ctx, count, &line));
+  for (size_t i = 0; i < count; i++) {
+    line.frequency_Hz[i] = points[i].frequency_Hz;
+    line.amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
+    line.phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
+  }
+  dea_status status = add_line(ctx, plot, &line, look);
+  dea_free(ctx, line.frequency_Hz);
+  return status;
 }
 
 static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
@@ -223,7 +328,7 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
     const struct dea_load_point *points = curve->points + from;
     size_t count = count_bias(curve, from);
     bool tip = isfinite(points[0].fibre_tip_amplitude_m);
-    for (int k = 0; k < (tip ? 2 : 1); k++) {
+    for (int k = 0; k < (tip ? 2 : 1) && isfinite(points[0].centre_amplitude_m); k++) {
       struct dea_series look = {.style = k == 0 ? DEA_LINE : DEA_DASHED,
                                 .colour = (enum dea_colour)(bias % COLOURS)};
       snprintf(look.title, sizeof look.title, "%.4g kV, %s", 1e-3 * points[0].voltage_V,
@@ -252,17 +357,10 @@ static void set_limits(struct dea_panel *panel, bool amplitude)
   panel->y_max = amplitude ? high * 1.5 : 90 * ceil(high / 90 + 0.05);
 }
 
-static dea_status build(struct dea_context *ctx, const struct dea_result *result,
-                        struct dea_plot *plot)
+/* Of two panels with lines. */
+static void finish(struct dea_plot *plot, double ripple_V)
 {
-  double ripple_V = NAN;
   plot->panel_count = 2;
-  for (size_t i = 0; i < result->curve_count; i++) {
-    if (strcmp(result->curves[i].kind, study_name) == 0 && result->curves[i].count > 0) {
-      ripple_V = result->curves[i].points[0].ripple_V;
-      DEA_TRY(ctx, add_curve(ctx, plot, &result->curves[i]));
-    }
-  }
   for (int p = 0; p < 2; p++) {
     struct dea_panel *panel = &plot->panels[p];
     snprintf(panel->x_label, sizeof panel->x_label, "Frequency {/:Italic f} (Hz)");
@@ -276,6 +374,89 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Phase (degrees)");
   plot->panels[0].key = "top left samplen 2";
   plot->second_height = 0.7;
+}
+
+/* Amplitude of the excitation; NAN where there is no such curve. */
+static double ripple_of(const struct dea_result *result)
+{
+  double ripple_V = NAN;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
+      ripple_V = curve->points[0].ripple_V;
+    }
+  }
+  return ripple_V;
+}
+
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  for (size_t i = 0; i < result->curve_count; i++) {
+    if (strcmp(result->curves[i].kind, study_name) == 0) {
+      DEA_TRY(ctx, add_curve(ctx, plot, &result->curves[i]));
+    }
+  }
+  finish(plot, ripple_of(result));
+  return DEA_OK;
+}
+
+/* z of the monitor in a row, in all rows of its name and bias; nothing for one without z. */
+static dea_status add_monitor(struct dea_context *ctx, struct dea_plot *plot,
+                              const struct dea_result_table *table, size_t row,
+                              enum dea_colour colour, enum dea_series_style style)
+{
+  enum { MONITOR = 2, Z = BEFORE + 2 * DEA_OBSERVED_Z };
+  double bias_V = dea_result_table_cell(table, row, 0)->number;
+  const char *name = dea_result_table_cell(table, row, MONITOR)->text;
+  struct dea_series look = {.style = style, .colour = colour};
+  char title[DEA_LABEL_SIZE];
+  struct line line;
+  if (isnan(dea_result_table_cell(table, row, Z)->number)) {
+    return DEA_OK;
+  }
+  snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * bias_V, name);
+  dea_label_escape(title, look.title, sizeof look.title);
+  DEA_TRY(ctx, line_create(ctx, table->row_count, &line));
+  line.count = 0;
+  for (size_t i = row; i < table->row_count; i++) {
+    if (dea_result_table_cell(table, i, 0)->number == bias_V &&
+        strcmp(dea_result_table_cell(table, i, MONITOR)->text, name) == 0) {
+      line.frequency_Hz[line.count] = dea_result_table_cell(table, i, 1)->number;
+      line.amplitude_m[line.count] = dea_result_table_cell(table, i, Z)->number;
+      line.phase_rad[line.count++] = dea_result_table_cell(table, i, Z + 1)->number;
+    }
+  }
+  dea_status status = add_line(ctx, plot, &line, &look);
+  dea_free(ctx, line.frequency_Hz);
+  return status;
+}
+
+/* A colour a bias, a style a monitor. */
+static dea_status build_monitors(struct dea_context *ctx, const struct dea_result *result,
+                                 struct dea_plot *plot)
+{
+  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
+  for (size_t t = 0; t < result->table_count; t++) {
+    const struct dea_result_table *table = &result->tables[t];
+    size_t bias = 0, monitor = 0;
+    if (strcmp(table->type.study, study_name) != 0 ||
+        strcmp(table->type.name, monitors.name) != 0) {
+      continue;
+    }
+    for (size_t i = 0; i < table->row_count; i++) {
+      double V = dea_result_table_cell(table, i, 0)->number;
+      bool first = i == 0 || dea_result_table_cell(table, i - 1, 0)->number != V;
+      bias += first && i > 0 ? 1 : 0;
+      monitor = first ? 0 : monitor + 1;
+      double lowest_Hz = dea_result_table_cell(table, i - monitor, 1)->number;
+      if (dea_result_table_cell(table, i, 1)->number == lowest_Hz) {
+        DEA_TRY(ctx, add_monitor(ctx, plot, table, i, (enum dea_colour)(bias % COLOURS),
+                                 styles[monitor % (sizeof styles / sizeof styles[0])]));
+      }
+    }
+  }
+  finish(plot, ripple_of(result));
   return DEA_OK;
 }
 
@@ -285,6 +466,13 @@ static const struct dea_figure figures[] = {
         .study = study_name,
         .caption = "displacement that a small AC excitation of the voltage makes, and its phase",
         .build = build,
+    },
+    {
+        .name = "bode_monitors",
+        .study = study_name,
+        .caption = "displacement of the monitors that a small AC excitation of the voltage makes, "
+                   "and its phase",
+        .build = build_monitors,
     },
 };
 
@@ -302,6 +490,7 @@ const struct dea_study dea_study_frequency = {
     .asked = asked,
     .needs = "compute.frequency.bias",
     .own_models = true,
+    .any_layout = true,
     .run = run,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],

@@ -48,6 +48,8 @@ struct dea_model {
   double flat_m;          // the same as they are in the flat state
   double pressure_factor; // on all pressures
   struct dea_standing at;
+  double *answers;    // of the last response, as in model/model.h
+  double *answer;     // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
   struct marks marks; // of saved states, made by the first
 };
 
@@ -517,6 +519,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->constituents = dea_arena_alloc(&model->memory, plies, sizeof *model->constituents);
   model->films = dea_arena_alloc(&model->memory, plies, sizeof *model->films);
   model->branches = dea_arena_alloc(&model->memory, plies, sizeof *model->branches);
+  model->answer =
+      dea_arena_alloc(&model->memory, device->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
+                      sizeof *model->answer);
   model->leakage_per_s = dea_arena_alloc(&model->memory, plies, sizeof *model->leakage_per_s);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
@@ -537,6 +542,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
   dea_observer_destroy(ctx, model->observer);
   dea_standing_free(ctx, &model->at);
+  dea_free(ctx, model->answers);
   dea_solid_destroy(ctx, model->solid);
   for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
     dea_spring_destroy(ctx, model->springs[i]);
@@ -808,16 +814,71 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* What small motions are of. */
+static dea_status find_motions(struct dea_context *ctx, const struct dea_model *model,
+                               struct dea_motions *out)
+{
+  *out = (struct dea_motions){.solid = model->solid,
+                              .grid = model->mesh.grid,
+                              .branches = model->branches,
+                              .constituent_count = model->layout->ply_count};
+  DEA_TRY(ctx, check_densities(ctx, model->layout));
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                         "model 3d: frequencies are those in vacuo; the air that moves with a film "
+                         "makes it slower");
+}
+
+/* Monitors of the answer at one frequency, per volt. */
+static dea_status take_answer(struct dea_context *ctx, void *user, size_t i, const double *real,
+                              const double *imaginary)
+{
+  const struct dea_model *model = user;
+  size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
+  const double *parts[2] = {real, imaginary};
+  for (int p = 0; p < 2; p++) {
+    DEA_TRY(ctx, dea_observer_differentiate(ctx, model->observer, model->solid, parts[p],
+                                            model->answer));
+    for (size_t k = 0; k < width; k++) {
+      model->answers[2 * (i * width + k) + (size_t)p] = model->answer[k];
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status respond(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_load_point *at,
+                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                          size_t count, struct dea_load_point *points)
+{
+  struct dea_motions motions;
+  size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
+  double *answers = dea_resize(ctx, model->answers, 2 * count * width + 1, sizeof *answers);
+  model->answers = answers != NULL ? answers : model->answers;
+  if (dea_solid_any(answers == NULL)) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
+  motions.take = take_answer;
+  motions.user = model;
+  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points));
+  for (size_t i = 0; i < 2 * count * width; i++) {
+    model->answers[i] *= excitation->amplitude_V;
+  }
+  return DEA_OK;
+}
+
+static const double *answers(const struct dea_model *model)
+{
+  return model->answers;
+}
+
 static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
-  const struct dea_motions motions = {.solid = model->solid, .grid = model->mesh.grid};
+  struct dea_motions motions;
   *shapes = NULL;
-  DEA_TRY(ctx, check_densities(ctx, model->layout));
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                               "model 3d: frequencies are those in vacuo; the air that moves with "
-                               "a film makes it slower"));
+  DEA_TRY(ctx, find_motions(ctx, model, &motions));
   DEA_TRY(ctx, dea_motions_modes(ctx, &motions, (int)model->film, at, count, points, shapes));
   return DEA_OK;
 }
@@ -871,6 +932,8 @@ const struct dea_model_type dea_solid_layout_module = {
     .observe = observe,
     .move = move,
     .modes = modes,
+    .respond = respond,
+    .answers = answers,
     .fields = fields,
     .save = save,
     .load = load,

@@ -150,6 +150,25 @@ enum { CENTRE, TWIN, TIP, PROBES };
 /* z of the probes by the frequency, real and imaginary part in the third component. */
 typedef double answer[2][3];
 
+/* Gives away the whole answers of a response. */
+static dea_status take_whole(struct dea_context *ctx, const struct dea_motions *m,
+                             const struct dea_solid_response *response,
+                             const struct dea_damping *damping, const double *rad_per_s,
+                             size_t count)
+{
+  size_t nodes = m->grid->node_count;
+  double *real = dea_alloc(ctx, 6 * nodes, sizeof *real), *imaginary = real + 3 * nodes;
+  dea_status status = dea_solid_any(real == NULL) ? DEA_E_MEMORY : DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    for (size_t n = 0; n < nodes; n++) {
+      dea_solid_response_at(response, n, rad_per_s[i], damping, real + 3 * n, imaginary + 3 * n);
+    }
+    status = m->take(ctx, m->user, i, real, imaginary);
+  }
+  dea_free(ctx, real);
+  return status;
+}
+
 static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m,
                             const struct dea_damping *damping, const double *rad_per_s,
                             size_t count, const size_t nodes[PROBES], answer *out)
@@ -160,12 +179,14 @@ static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m
     highest = fmax(highest, rad_per_s[i]);
   }
   DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
-  for (size_t i = 0; i < count * PROBES; i++) {
+  for (size_t i = 0; i < count * PROBES && m->has_centre; i++) {
     dea_solid_response_at(response, nodes[i % PROBES], rad_per_s[i / PROBES], damping, out[i][0],
                           out[i][1]);
   }
+  dea_status status =
+      m->take != NULL ? take_whole(ctx, m, response, damping, rad_per_s, count) : DEA_OK;
   dea_solid_response_destroy(ctx, response);
-  return DEA_OK;
+  return status;
 }
 
 /* At one frequency there are no modes: the ratio becomes shares of mass and stiffness that make it
@@ -195,6 +216,11 @@ static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *
 {
   struct dea_damping spread = *damping;
   DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
+  if (m->take != NULL) {
+    DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, m->solid, m->branches, &spread, rad_per_s,
+                                                count, m->take, m->user));
+    return DEA_OK;
+  }
   DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
                                          nodes, PROBES, out));
   return DEA_OK;
@@ -234,7 +260,9 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
     *p = *at;
     p->frequency_Hz = frequency_Hz[i];
     p->ripple_V = excitation->amplitude_V;
-    amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
+    if (m->has_centre) {
+      amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
+    }
     if (m->has_tip) {
       amplitude_of(z[TIP], z[TIP], p->ripple_V, &p->fibre_tip_amplitude_m, &p->fibre_tip_phase_rad);
     }

@@ -296,8 +296,7 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
   return DEA_OK;
 }
 
-dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
-                             struct dea_solid *solid, struct dea_observation *out)
+static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
 {
   const struct dea_layout *l = o->mesh->layout;
   const double *u = dea_solid_displacement(solid);
@@ -324,6 +323,13 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
       break;
     }
   }
+}
+
+dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
+                             struct dea_solid *solid, struct dea_observation *out)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  observe_monitors(o, solid);
   DEA_TRY(ctx, observe_channels(ctx, o, solid));
   *out = (struct dea_observation){.monitor_count = l->monitor_count,
                                   .body_count = l->body_count,
@@ -331,5 +337,41 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
                                   .monitor = (const double(*)[DEA_OBSERVED_COUNT])o->monitor,
                                   .body = (const double(*)[DEA_OBSERVED_COUNT])o->body,
                                   .channel = o->channel};
+  return DEA_OK;
+}
+
+/* By a difference over a motion as small as rounding lets it be: most of them are linear. */
+dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *o,
+                                      struct dea_solid *solid, const double *v, double *out)
+{
+  static const double little = 1e-5; // of the size of the mesh
+  const struct dea_grid *grid = o->mesh->grid;
+  size_t count = 3 * grid->node_count;
+  double *u = dea_solid_displacement(solid), *keep = dea_alloc(ctx, count, sizeof *keep);
+  double most = 0, size = 0;
+  if (dea_solid_any(keep == NULL)) {
+    dea_free(ctx, keep);
+    return DEA_E_MEMORY;
+  }
+  memcpy(keep, u, count * sizeof *keep);
+  for (size_t i = 0; i < count; i++) {
+    most = fmax(most, fabs(v[i]));
+    size = fmax(size, fabs(grid->X[i]));
+  }
+  double scale = most > 0 ? little * size / most : 0;
+  for (int side = -1; side <= 1; side += 2) {
+    for (size_t i = 0; i < count; i++) {
+      u[i] = keep[i] + side * scale * v[i];
+    }
+    observe_monitors(o, solid);
+    for (size_t i = 0; i < o->mesh->layout->monitor_count; i++) {
+      for (int k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
+        double *to = &out[i * DEA_OBSERVED_MOTIONS + (size_t)k], value = o->monitor[i][k];
+        *to = side < 0 ? -value : scale > 0 ? (*to + value) / (2 * scale) : 0 * value;
+      }
+    }
+  }
+  memcpy(u, keep, count * sizeof *u);
+  dea_free(ctx, keep);
   return DEA_OK;
 }

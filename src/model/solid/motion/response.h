@@ -39,6 +39,16 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
                                      size_t count, const size_t *nodes, size_t node_count,
                                      double (*out)[2][3]);
 
+/* The same; take gets the whole answer of each frequency i, [3 node_count] of both parts. */
+dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_solid *solid,
+                                          const struct dea_branches *branches,
+                                          const struct dea_damping *damping,
+                                          const double *rad_per_s, size_t count,
+                                          dea_status (*take)(struct dea_context *ctx, void *user,
+                                                             size_t i, const double *real,
+                                                             const double *imaginary),
+                                          void *user);
+
 /* Modes that it has. */
 size_t dea_solid_response_modes(const struct dea_solid_response *response);
 

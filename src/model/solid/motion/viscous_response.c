@@ -249,9 +249,16 @@ static dea_status set_right(struct dea_context *ctx, struct system *y, double *f
   return DEA_OK;
 }
 
+/* Who takes the answers. */
+struct taker {
+  dea_status (*take)(struct dea_context *ctx, void *user, size_t i, const double *real,
+                     const double *imaginary);
+  void *user;
+};
+
 static dea_status respond(struct dea_context *ctx, struct system *y,
                           const struct dea_damping *damping, const double *rad_per_s, size_t count,
-                          const size_t *nodes, size_t node_count, double (*out)[2][3])
+                          const struct taker *taker)
 {
   struct dea_solid *s = y->solid;
   const struct dea_solid_problem *p = &s->problem;
@@ -271,10 +278,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
       break;
     }
     status = solve_at(ctx, y, rad_per_s[i], damping, sum, real, imaginary);
-    for (size_t n = 0; n < node_count && status == DEA_OK; n++) {
-      memcpy(out[i * node_count + n][0], real + 3 * nodes[n], 3 * sizeof *real);
-      memcpy(out[i * node_count + n][1], imaginary + 3 * nodes[n], 3 * sizeof *real);
-    }
+    status = status == DEA_OK ? taker->take(ctx, taker->user, i, real, imaginary) : status;
   }
   dea_free(ctx, sum);
   dea_free(ctx, only);
@@ -282,12 +286,16 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   return status;
 }
 
-dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
-                                     const struct dea_branches *branches,
-                                     const struct dea_damping *damping, const double *rad_per_s,
-                                     size_t count, const size_t *nodes, size_t node_count,
-                                     double (*out)[2][3])
+dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_solid *s,
+                                          const struct dea_branches *branches,
+                                          const struct dea_damping *damping,
+                                          const double *rad_per_s, size_t count,
+                                          dea_status (*take)(struct dea_context *ctx, void *user,
+                                                             size_t i, const double *real,
+                                                             const double *imaginary),
+                                          void *user)
 {
+  const struct taker taker = {take, user};
   Mat parts[PARTS + CONSTITUENTS_MAX] = {NULL};
   size_t constituents[PARTS + CONSTITUENTS_MAX] = {0};
   struct system y = {.solid = s, .branches = branches, .part = parts, .constituent = constituents};
@@ -298,7 +306,7 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
         "constituents",
         CONSTITUENTS_MAX);
   }
-  dea_status status = respond(ctx, &y, damping, rad_per_s, count, nodes, node_count, out);
+  dea_status status = respond(ctx, &y, damping, rad_per_s, count, &taker);
   for (size_t p = 0; p < PARTS + CONSTITUENTS_MAX; p++) {
     MatDestroy(&parts[p]);
   }
@@ -308,4 +316,36 @@ dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *
   VecDestroy(&y.answer);
   s->found.factor_fits = s->found.predicted_fits = false;
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* Nodes that are wanted of the whole answer. */
+struct wanted {
+  const size_t *nodes;
+  size_t count;
+  double (*out)[2][3];
+};
+
+static dea_status take_nodes(struct dea_context *ctx, void *user, size_t i, const double *real,
+                             const double *imaginary)
+{
+  const struct wanted *wanted = user;
+  (void)ctx;
+  for (size_t n = 0; n < wanted->count; n++) {
+    double(*out)[3] = wanted->out[i * wanted->count + n];
+    memcpy(out[0], real + 3 * wanted->nodes[n], sizeof out[0]);
+    memcpy(out[1], imaginary + 3 * wanted->nodes[n], sizeof out[1]);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
+                                     const struct dea_branches *branches,
+                                     const struct dea_damping *damping, const double *rad_per_s,
+                                     size_t count, const size_t *nodes, size_t node_count,
+                                     double (*out)[2][3])
+{
+  struct wanted wanted = {nodes, node_count, out};
+  DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, s, branches, damping, rad_per_s, count,
+                                              take_nodes, &wanted));
+  return DEA_OK;
 }
