@@ -245,6 +245,14 @@ static const struct dea_result_column point_columns[] = {
      .kind = DEA_CELL_COUNT,
      .title = "unstable modes",
      .meaning = "of the device as it is held"},
+    {.key = "trusted",
+     .kind = DEA_CELL_FLAG,
+     .title = "trusted",
+     .meaning = "whether the numbers are to be trusted"},
+    {.key = "flags",
+     .kind = DEA_CELL_TEXT,
+     .title = "flags",
+     .meaning = "what has to be known of them (docs/theory/trust.md)"},
 };
 
 static const struct dea_result_column line_columns[] = {
@@ -392,7 +400,7 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   struct dea_load_point at;
   struct dea_observation seen;
   double v[VALUES];
-  char what[DEA_NAME_SIZE + 16];
+  char what[DEA_NAME_SIZE + 16], flags[DEA_FLAGS_SIZE];
   if (dea_interrupted(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", l->point);
   }
@@ -400,19 +408,22 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
   look_at_body(l, &seen, value, v);
   l->point++;
-  const struct dea_result_table_value row[] = {{.number = l->voltage_V},
-                                               {.number = (double)l->point},
-                                               {.number = back},
-                                               {.number = v[AT_SHIFT]},
-                                               {.number = v[AT_TURN]},
-                                               {.number = v[OF_FORCE]},
-                                               {.number = v[OF_MOMENT]},
-                                               {.number = v[AT_PRESSURE]},
-                                               {.number = at.highest_z_m},
-                                               {.number = at.lowest_z_m},
-                                               {.number = at.energy_J},
-                                               {.number = at.min_tension_N_per_m},
-                                               {.number = at.unstable_modes}};
+  const struct dea_result_table_value row[] = {
+      {.number = l->voltage_V},
+      {.number = (double)l->point},
+      {.number = back},
+      {.number = v[AT_SHIFT]},
+      {.number = v[AT_TURN]},
+      {.number = v[OF_FORCE]},
+      {.number = v[OF_MOMENT]},
+      {.number = v[AT_PRESSURE]},
+      {.number = at.highest_z_m},
+      {.number = at.lowest_z_m},
+      {.number = at.energy_J},
+      {.number = at.min_tension_N_per_m},
+      {.number = at.unstable_modes},
+      {.number = dea_load_point_trusted(&at)},
+      {.text = dea_flags_text(dea_load_point_flags(&at), flags)}};
   _Static_assert(COUNT(row) == COUNT(point_columns), "a value a column");
   DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[POINTS]], row));
   DEA_TRY(ctx, add_monitors(ctx, l, &seen));
@@ -633,7 +644,41 @@ static size_t part_end(const struct dea_result_table *table, size_t first)
   return end;
 }
 
-/* Rows [first, end) as the number-th line; one back joins the turning point to its rows. */
+/* Whether there is nothing against a row but that its film is a membrane, which all rows share. */
+static bool is_sound(const struct dea_result_table *table, size_t row)
+{
+  static const char key[] = "flags";
+  const unsigned preview = 1u << DEA_FLAG_PREVIEW;
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    if (strcmp(table->type.columns[c].key, key) == 0) {
+      unsigned flags = dea_flags_of_text(dea_result_table_cell(table, row, c)->text);
+      return (flags & ~preview) == 0;
+    }
+  }
+  return true; // of a run from before there were flags
+}
+
+/* The rows that are not sound, and the next ones, so that no gap is left. */
+static dea_status add_unsound(struct dea_context *ctx, struct dea_panel *panel,
+                              const struct dea_result_table *table, const struct axes *axes,
+                              size_t first, size_t count)
+{
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->style = DEA_DASHED;
+  series->colour = DEA_GREY;
+  for (size_t i = 0; i < count; i++) {
+    bool shown = !is_sound(table, first + i) || (i > 0 && !is_sound(table, first + i - 1)) ||
+                 (i + 1 < count && !is_sound(table, first + i + 1));
+    series->values[i] = axes->x_factor * dea_result_table_number(table, first + i, axes->x, 0);
+    series->values[count + i] =
+        shown ? axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0) : NAN;
+  }
+  return DEA_OK;
+}
+
+/* Rows [first, end) as the number-th line; one back joins the turning point to its rows. Stretches
+ * that are not sound are grey beside the line. */
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct dea_result_table *table, const struct axes *axes,
                            size_t number, size_t first, size_t end)
@@ -652,12 +697,15 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
     snprintf(series->title, sizeof series->title, "%.4g kV",
              1e-3 * dea_result_table_number(table, first, "voltage_V", 0));
   }
+  bool all_sound = true;
   for (size_t i = 0; i < count; i++) {
+    bool sound = is_sound(table, first + i);
     series->values[i] = axes->x_factor * dea_result_table_number(table, first + i, axes->x, 0);
     series->values[count + i] =
-        axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0);
+        sound ? axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0) : NAN;
+    all_sound = all_sound && sound;
   }
-  return DEA_OK;
+  return all_sound ? DEA_OK : add_unsound(ctx, panel, table, axes, first, count);
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
@@ -694,7 +742,8 @@ static const struct dea_figure figures[] = {
         .name = "loading",
         .study = study_name,
         .caption = "force that holds or pushes a body against its displacement, or displacement "
-                   "against the pressure, for each voltage; dashed: the way back",
+                   "against the pressure, for each voltage; dashed: the way back; grey: not to be "
+                   "trusted",
         .build = build,
     },
 };
