@@ -328,7 +328,7 @@ static void test_pictures(void **state)
   const char *svg;
   assert_int_equal(dea_design_svg(ctx, design, &svg), DEA_OK);
   assert_int_equal(strncmp(svg, "<svg xmlns=", 11), 0);
-  assert_non_null(strstr(svg, "frame 15 mm"));
+  assert_non_null(strstr(svg, "\303\230 30 mm"));
   assert_int_equal(dea_result_svg(ctx, result, "stretch", &svg), DEA_OK);
   assert_non_null(strstr(svg, "class=\"line"));
   assert_int_equal(dea_result_svg(ctx, result, "", &svg), DEA_OK);

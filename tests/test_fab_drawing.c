@@ -73,6 +73,11 @@ static void fake_stroke(struct dea_canvas *canvas, double width_mm, unsigned col
   (void)canvas, (void)width_mm, (void)colour, (void)dash_mm;
 }
 
+static void fake_clip(struct dea_canvas *canvas)
+{
+  (void)canvas;
+}
+
 static double fake_width(struct dea_canvas *canvas, double size_mm, bool bold, const char *text)
 {
   (void)canvas;
@@ -98,6 +103,8 @@ static const struct dea_canvas_type fake = {.page = fake_page,
                                             .box = fake_line,
                                             .fill = fake_fill,
                                             .stroke = fake_stroke,
+                                            .clip = fake_clip,
+                                            .unclip = fake_clip,
                                             .text = fake_text,
                                             .text_width = fake_width};
 static const struct dea_paper paper = {&fake, NULL};
@@ -166,6 +173,40 @@ static void test_words_do_not_overlap(void **state)
     dea_document_pages(&paper, &document);
     check_page();
     assert_true(pages >= 2 && pages <= 4);
+    dea_document_free(&document);
+  }
+}
+
+/* The same of devices of any layout: drawing, parts, and process sheet. */
+static void test_words_of_devices(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"quadrants", "stack-10",   "two-electrodes",
+                                      "bender",    "pure-shear", "diaphragm"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char path[500], text[8000];
+    snprintf(path, sizeof path, "%s/examples/devices/%s.yaml", DEA_SOURCE_DIR, names[i]);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    assert_int_equal(workshop_make(text, NULL, 0), DEA_OK);
+    double size[2];
+    dea_picture_size(workshop, size);
+    begin(size[0], size[1]);
+    dea_picture_draw(&paper, workshop);
+    check_page();
+    assert_true(word_count > 12);
+    dea_pages_first_size(workshop, size);
+    begin(size[0], size[1]);
+    dea_pages_draw(&paper, workshop);
+    check_page();
+    assert_int_equal(pages, workshop->count);
+    struct dea_document document = {.ctx = ctx};
+    assert_int_equal(dea_process_write(ctx, workshop, &document), DEA_OK);
+    begin(210, 297);
+    dea_document_pages(&paper, &document);
+    check_page();
     dea_document_free(&document);
   }
 }
@@ -323,11 +364,9 @@ static void test_each_allocation(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_words_do_not_overlap),
-      cmocka_unit_test(test_long_words),
-      cmocka_unit_test(test_amounts),
-      cmocka_unit_test(test_sensitivities),
-      cmocka_unit_test(test_each_allocation),
+      cmocka_unit_test(test_words_do_not_overlap), cmocka_unit_test(test_words_of_devices),
+      cmocka_unit_test(test_long_words),           cmocka_unit_test(test_amounts),
+      cmocka_unit_test(test_sensitivities),        cmocka_unit_test(test_each_allocation),
   };
   return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

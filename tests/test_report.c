@@ -259,7 +259,8 @@ static void test_page_of_an_example(void **state)
   assert_contains(page, "compute.voltage"); // a value of the design
   assert_contains(page, "--set");           // and that it was overridden
   assert_contains(page, "smallest breakdown margin");
-  assert_contains(page, "class=\"fibre\"");         // drawing
+  assert_contains(page, "<figure class=\"layout\"><svg"); // drawing
+  assert_contains(page, ">fibres, 100 ");
   assert_contains(page, "upper bounds, far above"); // what lumped says of itself
   const char *figures = page;
   size_t count = 0;

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
-#include "output/report/section.h"
+#include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 
 #include <math.h>
@@ -380,14 +380,9 @@ dea_status dea_design_svg(dea_context *ctx, dea_design *design, const char **out
   DEA_TRY(inner_ctx, door_check_owner(ctx, design->ctx, "design"));
   if (design->svg.length == 0) {
     struct dea_device *device = NULL;
-    struct dea_text fragment = {.ctx = inner_ctx};
     DEA_TRY(inner_ctx, dea_device_build(inner_ctx, design->inner, &device));
-    void *locale = dea_c_locale_enter();
-    dea_device_add_svg(&fragment, device, 1);
-    door_svg_add(&design->svg, dea_text_get(&fragment));
-    dea_c_locale_leave(locale);
-    bool failed = fragment.failed || design->svg.failed;
-    dea_text_free(&fragment);
+    const struct dea_device_drawing drawing = {.layout = device->layout};
+    bool failed = dea_device_drawing_add_svg(&drawing, 1, &design->svg) != DEA_OK;
     dea_device_destroy(inner_ctx, device);
     if (failed) {
       dea_text_free(&design->svg);

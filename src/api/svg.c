@@ -18,10 +18,7 @@ static const char style[] =
     ".limits path{stroke:#707070;stroke-dasharray:4 3}.limits text{font-size:12px}"
     ".c0{stroke:#0072b2}.c1{stroke:#d55e00}.c2{stroke:#009e73}.c3{stroke:#b85c94}.c4{stroke:#"
     "c98a00}"
-    ".c5{stroke:#3d9fd6}.c6{stroke:#1c2430}.c7{stroke:#707070}.film{fill:#dbe7f2;stroke:#8ea9c2}"
-    ".electrode{fill:#5b6673}.fibre{fill:#e0a04a;stroke:#fff;stroke-width:.8}.ring{fill:#c9ced6}"
-    ".glue{fill:#f1dc9a}.axis{stroke:#566173;stroke-dasharray:10 3 2 3;fill:none}"
-    ".measure{stroke:#566173;fill:none}";
+    ".c5{stroke:#3d9fd6}.c6{stroke:#1c2430}.c7{stroke:#707070}";
 
 /* A drawing within a fragment. */
 struct drawing {

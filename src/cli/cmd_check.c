@@ -4,7 +4,7 @@
 #include "base/write_file.h"
 #include "cli/print_layout.h"
 #include "device/device.h"
-#include "output/layout_svg.h"
+#include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
 
@@ -190,9 +190,11 @@ static dea_status write_drawing(struct dea_cli *cli, const char *file,
                                 const struct dea_device *device)
 {
   struct dea_text out = {.ctx = cli->ctx};
-  dea_layout_svg(device->layout, 0, &out);
-  dea_status status =
-      out.failed ? DEA_E_MEMORY : dea_file_write(cli->ctx, file, dea_text_get(&out), out.length);
+  const struct dea_device_drawing drawing = {.layout = device->layout};
+  dea_status status = dea_device_drawing_add_svg(&drawing, 1, &out);
+  if (status == DEA_OK) {
+    status = dea_file_write(cli->ctx, file, dea_text_get(&out), out.length);
+  }
   dea_text_free(&out);
   return status;
 }

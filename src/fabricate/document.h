@@ -4,7 +4,7 @@
 #define DEA_FABRICATE_DOCUMENT_H
 
 #include "base/text.h"
-#include "fabricate/canvas.h"
+#include "output/drawing/canvas.h"
 
 enum { DEA_CELLS_MAX = 6 };
 

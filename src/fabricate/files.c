@@ -2,13 +2,13 @@
 #include "fabricate/files.h"
 
 #include "base/write_file.h"
+#include "fabricate/canvas.h"
 #include "fabricate/dxf.h"
 #include "fabricate/pages.h"
 #include "fabricate/parts.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"
 #include "fabricate/svg.h"
-#include "output/layout_svg.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -28,7 +28,6 @@ struct drawing {
   const char *name;
   enum dea_canvas_format format;
   bool always; // with drawing_only too
-  bool disc;   // not of other devices
   void (*size)(const struct dea_workshop *workshop, double out_mm[2]);
   void (*draw)(const struct dea_paper *paper, const struct dea_workshop *workshop);
 };
@@ -38,26 +37,19 @@ struct drawing {
 #define PROCESS_HTML "process.html"
 
 static const struct drawing drawings[] = {
-    {"drawing.svg", DEA_CANVAS_SVG, true, true, dea_picture_size, dea_picture_draw},
-    {"drawing.pdf", DEA_CANVAS_PDF, true, true, dea_picture_size, dea_picture_draw},
-    {"drawing.png", DEA_CANVAS_PNG, true, true, dea_picture_size, dea_picture_draw},
-    {"parts.pdf", DEA_CANVAS_PDF, false, false, dea_pages_first_size, dea_pages_draw},
+    {"drawing.svg", DEA_CANVAS_SVG, true, dea_picture_size, dea_picture_draw},
+    {"drawing.pdf", DEA_CANVAS_PDF, true, dea_picture_size, dea_picture_draw},
+    {"drawing.png", DEA_CANVAS_PNG, true, dea_picture_size, dea_picture_draw},
+    {"parts.pdf", DEA_CANVAS_PDF, false, dea_pages_first_size, dea_pages_draw},
 };
 enum { DRAWINGS = sizeof drawings / sizeof drawings[0] };
 
-// of a device that is no disc: its shapes, and a drawing of them
+// of a device that is no disc: its shapes
 #define LAYOUT_DXF "layout.dxf"
-#define LAYOUT_SVG "drawing.svg"
 
 static bool is_general(const struct dea_workshop *workshop)
 {
   return workshop->plan.device->general;
-}
-
-static bool is_written(const struct dea_workshop *workshop,
-                       const struct dea_workshop_options *options, const struct drawing *drawing)
-{
-  return (drawing->always || !options->drawing_only) && !(drawing->disc && is_general(workshop));
 }
 
 dea_status dea_workshop_files(const struct dea_workshop *workshop,
@@ -72,12 +64,11 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
       status = sink(user, name);
     }
   }
-  if (status == DEA_OK && is_general(workshop)) {
-    status = options->drawing_only ? DEA_OK : sink(user, LAYOUT_DXF);
-    status = status == DEA_OK ? sink(user, LAYOUT_SVG) : status;
+  if (status == DEA_OK && is_general(workshop) && !options->drawing_only) {
+    status = sink(user, LAYOUT_DXF);
   }
   for (size_t i = 0; i < DRAWINGS && status == DEA_OK; i++) {
-    if (is_written(workshop, options, &drawings[i])) {
+    if (drawings[i].always || !options->drawing_only) {
       status = sink(user, drawings[i].name);
     }
   }
@@ -205,38 +196,23 @@ static dea_status write_process_pdf(struct dea_context *ctx, const struct dea_ca
   return status;
 }
 
-/* Adds the drawing of the actuator as SVG. */
-static dea_status add_drawing(struct dea_context *ctx, const struct dea_canvas_type *type,
-                              const struct dea_workshop *workshop, struct dea_text *out)
-{
-  if (is_general(workshop)) {
-    dea_layout_svg(workshop->plan.device->layout, 1, out);
-    return out->failed ? DEA_E_MEMORY : DEA_OK;
-  }
-  struct dea_canvas *canvas = NULL;
-  const char *bytes;
-  size_t length;
-  dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
-  if (status == DEA_OK) {
-    dea_text_add(out, "%.*s", (int)length, bytes);
-    status = out->failed ? DEA_E_MEMORY : DEA_OK;
-  }
-  type->destroy(canvas);
-  return status;
-}
-
 /* With the drawing of the actuator in it. */
 static dea_status write_process_html(struct dea_context *ctx, const struct dea_canvas_type *type,
                                      const struct dea_workshop *workshop,
                                      const struct dea_document *document, const char *directory)
 {
+  struct dea_canvas *canvas = NULL;
+  const char *bytes;
+  size_t length;
   struct dea_text svg = {.ctx = ctx}, html = {.ctx = ctx};
-  dea_status status = add_drawing(ctx, type, workshop, &svg);
+  dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
   if (status == DEA_OK) {
+    dea_text_add(&svg, "%.*s", (int)length, bytes);
     const char *start = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
     dea_document_html(document, start != NULL ? start : "", &html);
-    status = dea_text_write(ctx, &html, directory, PROCESS_HTML);
+    status = svg.failed ? DEA_E_MEMORY : dea_text_write(ctx, &html, directory, PROCESS_HTML);
   }
+  type->destroy(canvas);
   dea_text_free(&svg);
   dea_text_free(&html);
   return status;
@@ -263,31 +239,24 @@ static dea_status write_drawings(struct dea_context *ctx, const struct dea_works
   const struct dea_canvas_type *type = NULL;
   DEA_TRY(ctx, dea_canvas_open(ctx, &type));
   for (size_t i = 0; i < DRAWINGS; i++) {
-    if (is_written(workshop, options, &drawings[i])) {
+    if (drawings[i].always || !options->drawing_only) {
       DEA_TRY(ctx, write_drawing(ctx, type, workshop, directory, &drawings[i]));
     }
   }
   return options->drawing_only ? DEA_OK : write_process(ctx, type, workshop, directory);
 }
 
-/* Shapes and drawing of a device that is no disc. */
 static dea_status write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,
-                               const char *directory, const struct dea_workshop_options *options)
+                               const char *directory)
 {
-  const struct dea_layout *layout = workshop->plan.device->layout;
-  struct dea_text dxf = {.ctx = ctx}, svg = {.ctx = ctx};
+  struct dea_text dxf = {.ctx = ctx};
   void *locale = dea_c_locale_enter();
-  dea_status status = dea_dxf_write_layout(layout, &dxf);
-  dea_layout_svg(layout, 1, &svg);
+  dea_status status = dea_dxf_write_layout(workshop->plan.device->layout, &dxf);
   dea_c_locale_leave(locale);
-  if (status == DEA_OK && !options->drawing_only) {
+  if (status == DEA_OK) {
     status = dea_text_write(ctx, &dxf, directory, LAYOUT_DXF);
   }
-  if (status == DEA_OK) {
-    status = dea_text_write(ctx, &svg, directory, LAYOUT_SVG);
-  }
   dea_text_free(&dxf);
-  dea_text_free(&svg);
   return status;
 }
 
@@ -299,8 +268,8 @@ dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop
       DEA_TRY(ctx, write_sheet(ctx, workshop, directory, i, f));
     }
   }
-  if (is_general(workshop)) {
-    DEA_TRY(ctx, write_layout(ctx, workshop, directory, options));
+  if (is_general(workshop) && !options->drawing_only) {
+    DEA_TRY(ctx, write_layout(ctx, workshop, directory));
   }
   return write_drawings(ctx, workshop, directory, options);
 }

@@ -1,7 +1,7 @@
 #include "fabricate/pages.h"
 
 #include "base/file.h"
-#include "fabricate/dimensions.h"
+#include "output/drawing/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 #ifndef DEA_FABRICATE_PAGES_H
 #define DEA_FABRICATE_PAGES_H
 
-#include "fabricate/canvas.h"
 #include "fabricate/workshop.h"
+#include "output/drawing/canvas.h"
 
 /* Draws all pages on a canvas that begins with a page of dea_pages_first_size. */
 void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);

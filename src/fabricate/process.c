@@ -1,10 +1,10 @@
 #include "fabricate/process.h"
 
 #include "base/file.h"
-#include "fabricate/dimensions.h"
 #include "fabricate/parts.h"
 #include "fabricate/process_parts.h"
 #include "fabricate/sensitivity.h"
+#include "output/drawing/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>

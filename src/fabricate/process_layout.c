@@ -1,9 +1,9 @@
 /* The process sheet of a device of any layout: what is cut and printed, and how it goes together.
  */
-#include "fabricate/dimensions.h"
 #include "fabricate/layout_parts.h"
 #include "fabricate/process.h"
 #include "fabricate/process_parts.h"
+#include "output/drawing/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -199,6 +199,17 @@ static void stroke(struct dea_canvas *canvas, double width_mm, unsigned colour, 
   cairo_stroke(canvas->cr);
 }
 
+static void clip(struct dea_canvas *canvas)
+{
+  cairo_save(canvas->cr);
+  cairo_clip(canvas->cr);
+}
+
+static void unclip(struct dea_canvas *canvas)
+{
+  cairo_restore(canvas->cr);
+}
+
 static void choose_font(struct dea_canvas *canvas, double size_mm, bool bold)
 {
   cairo_select_font_face(canvas->cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
@@ -261,6 +272,8 @@ const struct dea_canvas_type dea_cairo_module = {
     .box = box,
     .fill = fill,
     .stroke = stroke,
+    .clip = clip,
+    .unclip = unclip,
     .text = text,
     .text_width = text_width,
     .finish = finish,

@@ -49,7 +49,4 @@ void dea_explorer_add_core(struct dea_report *report);
 /* Of all runs: curves in one figure, last points in one table. */
 dea_status dea_section_compare(struct dea_report *report);
 
-/* The actuator from above and cut along a fibre, with its measures. */
-void dea_device_add_svg(struct dea_text *out, const struct dea_device *device, int number);
-
 #endif

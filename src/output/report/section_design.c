@@ -1,4 +1,5 @@
 /* The design: drawing, every value with its place, materials with their sources. */
+#include "output/drawing/device_drawing.h"
 #include "output/report/section.h"
 
 #include <math.h>
@@ -51,7 +52,12 @@ dea_status dea_section_design(struct dea_report *report, const struct dea_report
     dea_section_end(report);
     return DEA_OK;
   }
-  dea_device_add_svg(&report->text, run->device, run->number);
+  const struct dea_device_drawing drawing = {.layout = run->device->layout};
+  dea_text_add(&report->text, "<figure class=\"layout\">");
+  DEA_TRY(report->ctx, dea_device_drawing_add_svg(&drawing, run->number, &report->text));
+  dea_text_add(&report->text,
+               "<figcaption>From above and cut, to scale but for the thickness, as it "
+               "is stretched when parts are bonded to it</figcaption></figure>");
   dea_text_add(&report->text, "<details><summary>All values</summary>");
   add_values(report, run);
   dea_text_add(&report->text, "</details>");

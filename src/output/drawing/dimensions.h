@@ -1,9 +1,9 @@
 /* What technical drawings are made of: labels with leaders, dimensions with arrows, title and scale
  * of a page. Lengths in mm on the page. */
-#ifndef DEA_FABRICATE_DIMENSIONS_H
-#define DEA_FABRICATE_DIMENSIONS_H
+#ifndef DEA_OUTPUT_DRAWING_DIMENSIONS_H
+#define DEA_OUTPUT_DRAWING_DIMENSIONS_H
 
-#include "fabricate/canvas.h"
+#include "output/drawing/canvas.h"
 
 enum { DEA_CALLOUT_LABEL = 72, DEA_CALLOUT_NOTE = 96 };
 
@@ -18,6 +18,9 @@ struct dea_callout {
 /* Labels in two columns left and right of a box {x min, y min, x max, y max}. */
 void dea_dimensions_callouts(const struct dea_paper *paper, const double box_mm[4],
                              const struct dea_callout *callouts, size_t count);
+/* Height that these take, the box's at least; callouts are told apart by their x alone. */
+double dea_dimensions_height(const double box_mm[4], const struct dea_callout *callouts,
+                             size_t count);
 /* A line between two points with arrows at its ends: inside, or outside where it is short; sets the
  * place where a leader starts. */
 void dea_dimensions_dimension(const struct dea_paper *paper, const double from_mm[2],

@@ -1,4 +1,4 @@
-#include "fabricate/dimensions.h"
+#include "output/drawing/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -109,12 +109,12 @@ static void draw_column(const struct dea_paper *paper, const double box[4], int 
   }
 }
 
-void dea_dimensions_callouts(const struct dea_paper *paper, const double box_mm[4],
-                             const struct dea_callout *callouts, size_t count)
+/* Labels of the left and the right column. */
+static void share_out(const double box_mm[4], const struct dea_callout *callouts, size_t count,
+                      struct label column[2][COLUMN_MAX], size_t used[2])
 {
-  struct label column[2][COLUMN_MAX];
-  size_t used[2] = {0, 0};
   double middle = 0.5 * (box_mm[0] + box_mm[2]), width = box_mm[2] - box_mm[0];
+  used[0] = used[1] = 0;
   for (int central = 0; central < 2; central++) { // those in the middle fill up the columns
     for (size_t i = 0; i < count; i++) {
       const struct dea_callout *c = &callouts[i];
@@ -128,8 +128,25 @@ void dea_dimensions_callouts(const struct dea_paper *paper, const double box_mm[
       }
     }
   }
+}
+
+void dea_dimensions_callouts(const struct dea_paper *paper, const double box_mm[4],
+                             const struct dea_callout *callouts, size_t count)
+{
+  struct label column[2][COLUMN_MAX];
+  size_t used[2];
+  share_out(box_mm, callouts, count, column, used);
   draw_column(paper, box_mm, -1, column[0], used[0]);
   draw_column(paper, box_mm, 1, column[1], used[1]);
+}
+
+double dea_dimensions_height(const double box_mm[4], const struct dea_callout *callouts,
+                             size_t count)
+{
+  struct label column[2][COLUMN_MAX];
+  size_t used[2];
+  share_out(box_mm, callouts, count, column, used);
+  return fmax(box_mm[3] - box_mm[1], spacing * (double)(used[0] > used[1] ? used[0] : used[1]));
 }
 
 /* ---- page ---- */
