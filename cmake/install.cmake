@@ -14,7 +14,7 @@ endforeach()
 # The one public header.
 install(FILES ${PROJECT_SOURCE_DIR}/src/api/dea.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-foreach(folder IN ITEMS materials)
+foreach(folder IN ITEMS materials schema)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/dea
     PATTERN ".gitkeep" EXCLUDE)
 endforeach()

@@ -11,10 +11,28 @@ struct wanted {
   const char *part;
 };
 
+/* Leaves a bad file and its first error in the folder that DEA_CASES names, for the test of the
+ * JSON Schema. */
+static void leave(const char *text, const char *part)
+{
+  static int number;
+  const char *folder = getenv("DEA_CASES");
+  char name[512];
+  for (int k = 0; folder != NULL && k < 2; k++) {
+    snprintf(name, sizeof name, "%s/%03d.%s", folder, number, k == 0 ? "yaml" : "error");
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    fputs(k == 0 ? text : part, file);
+    assert_int_equal(fclose(file), 0);
+  }
+  number++;
+}
+
 static void check_errors(const char *text, const struct wanted *wanted, size_t count)
 {
   struct dea_design *design;
   struct dea_device *device;
+  leave(text, wanted[0].part);
   dea_finding_clear(ctx);
   assert_int_equal(read_and_build(ctx, text, NULL, 0, &design, &device), DEA_E_DESIGN);
   assert_null(device);
