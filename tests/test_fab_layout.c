@@ -109,6 +109,29 @@ static void test_flat(void **state)
   assert_string_equal(dea_part_film_name(find("ply-film")), "flat");
 }
 
+/* Axes of the pre-stretch at an angle: a square of film becomes a parallelogram, of which
+ * stretching makes the square again. */
+static void test_turned_axes(void **state)
+{
+  (void)state;
+  assert_int_equal(workshop_make(DEVICE("[1.2, 1.5], angle: 30 degree", ""), NULL, 0), DEA_OK);
+  const struct dea_part *blank = find("blank-film");
+  const double c = cos(pi / 6), s = sin(pi / 6);
+  for (size_t i = 0; i < blank->contour_count; i++) {
+    const struct dea_contour contour = dea_part_contour_get(blank, i);
+    for (size_t k = 0; k < contour.count && blank->contour[i].layer == DEA_LAYER_CUT_OUTER; k++) {
+      double x = contour.vertex[k].x_m, y = contour.vertex[k].y_m;
+      double first = 1.2 * (c * x + s * y), across = 1.5 * (c * y - s * x); // along the axes
+      assert_close(fabs(c * first - s * across), 45e-3, 1e-12, 0);
+      assert_close(fabs(s * first + c * across), 37e-3, 1e-12, 0);
+    }
+  }
+  double box[4];
+  const struct dea_part *bottom = find("stencil-film-bottom");
+  double marks = 3 * pi * 0.25e-6 * 1.8;
+  assert_close(layer_area(bottom, DEA_LAYER_CUT_INNER, box), (108e-6 + marks) / 1.8, 1e-7, 0);
+}
+
 /* Films that are alike have one file, and faces that are. */
 static void test_alike(void **state)
 {
@@ -192,9 +215,9 @@ static void test_sheet_read_back(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_unstretched),     cmocka_unit_test(test_flat),
-      cmocka_unit_test(test_alike),           cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_sheet_read_back),
+      cmocka_unit_test(test_unstretched), cmocka_unit_test(test_flat),
+      cmocka_unit_test(test_turned_axes), cmocka_unit_test(test_alike),
+      cmocka_unit_test(test_refusals),    cmocka_unit_test(test_sheet_read_back),
   };
   return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

@@ -84,17 +84,17 @@ bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply)
   return false;
 }
 
+bool dea_support_is_frame(const struct dea_layout_support *support)
+{
+  return support->edge && support->within == DEA_LAYOUT_NONE && support->components == 7;
+}
+
 void dea_layout_box_m(const struct dea_layout *layout, double out[4])
 {
   out[0] = out[1] = INFINITY;
   out[2] = out[3] = -INFINITY;
   for (size_t i = 0; i < layout->ply_count; i++) {
-    double box[4];
-    dea_region_box_m(&layout->regions[layout->plies[i].region].region, box);
-    for (int k = 0; k < 2; k++) {
-      out[k] = fmin(out[k], box[k]);
-      out[2 + k] = fmax(out[2 + k], box[2 + k]);
-    }
+    dea_region_grow_box(&layout->regions[layout->plies[i].region].region, out);
   }
 }
 

@@ -138,6 +138,8 @@ size_t dea_layout_find_region(const struct dea_layout *layout, const char *name)
 size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
+/* Whether it holds a whole boundary in all directions, as a frame does. */
+bool dea_support_is_frame(const struct dea_layout_support *support);
 /* {x min, y min, x max, y max} of all plies. */
 void dea_layout_box_m(const struct dea_layout *layout, double out[4]);
 /* Mirrors and rotations that plies, electrodes with their channels, supports, bodies, and pressures

@@ -508,14 +508,6 @@ static size_t write_shapes(struct file *file, const struct dea_layout *l, const 
   return count;
 }
 
-static void grow(double box[4], const struct dea_region *region)
-{
-  for (size_t i = 0; i < region->contour_count; i++) {
-    const struct dea_contour contour = dea_region_contour(region, i);
-    dea_contour_grow_box(&contour, box);
-  }
-}
-
 dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text *out)
 {
   struct dea_arena memory = {.ctx = out->ctx};
@@ -536,7 +528,7 @@ dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text
       name[layers.count] = layer_of(&memory, layout->regions[i].name);
       colour[layers.count] = 1 + (int)(layers.count % 7);
       plotted[layers.count++] = true;
-      grow(box, &layout->regions[i].region);
+      dea_region_grow_box(&layout->regions[i].region, box);
     }
   }
   unsigned first = FIRST_LAYER + (unsigned)layers.count;

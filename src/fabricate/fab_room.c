@@ -13,15 +13,11 @@ bool dea_ply_is_stretched(const struct dea_layout_ply *ply)
   return fabs(ply->pre_stretch[0] - 1) > 1e-12 || fabs(ply->pre_stretch[1] - 1) > 1e-12;
 }
 
-static bool is_frame(const struct dea_layout_support *support)
-{
-  return support->edge && support->within == DEA_LAYOUT_NONE && support->components == 7;
-}
-
 bool dea_ply_is_held(const struct dea_layout *layout, size_t ply)
 {
   for (size_t i = 0; i < layout->support_count; i++) {
-    if (is_frame(&layout->supports[i]) && layout->supports[i].region == layout->plies[ply].region) {
+    if (dea_support_is_frame(&layout->supports[i]) &&
+        layout->supports[i].region == layout->plies[ply].region) {
       return true;
     }
   }
@@ -132,16 +128,6 @@ static double largest_stretch(const struct dea_layout *layout)
   return largest;
 }
 
-static void grow(double box[4], const struct dea_region *region)
-{
-  double own[4];
-  dea_region_box_m(region, own);
-  for (int k = 0; k < 2; k++) {
-    box[k] = fmin(box[k], own[k]);
-    box[2 + k] = fmax(box[2 + k], own[2 + k]);
-  }
-}
-
 /* The opening of a frame that stays: all that it holds the edge of. */
 static dea_status make_hole(struct dea_context *ctx, const struct dea_layout *layout,
                             struct dea_fab_room *out)
@@ -151,7 +137,7 @@ static dea_status make_hole(struct dea_context *ctx, const struct dea_layout *la
   size_t last = DEA_LAYOUT_NONE, count = 0;
   for (size_t i = 0; i < layout->support_count; i++) {
     size_t region = layout->supports[i].region;
-    if (is_frame(&layout->supports[i]) && region != last) {
+    if (dea_support_is_frame(&layout->supports[i]) && region != last) {
       dea_region_add_moved(&all, &layout->regions[region].region, &still);
       last = region;
       count++;
@@ -220,10 +206,10 @@ dea_status dea_fab_room_make(struct dea_context *ctx, const struct dea_fab_geome
   DEA_TRY(ctx, make_hole(ctx, layout, out));
   dea_layout_box_m(layout, box);
   for (size_t i = 0; i < layout->body_count; i++) {
-    grow(box, &layout->regions[layout->bodies[i].region].region);
+    dea_region_grow_box(&layout->regions[layout->bodies[i].region].region, box);
   }
   if (out->held) {
-    grow(box, &out->hole);
+    dea_region_grow_box(&out->hole, box);
   }
   for (int k = 0; k < 2; k++) {
     out->centre_m[k] = 0.5 * (box[k] + box[2 + k]);

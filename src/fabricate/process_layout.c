@@ -317,15 +317,22 @@ static void add_supports(const struct sheet *s)
     const struct dea_layout_spring *p = &l->springs[i];
     static const char *const along[] = {"along x", "along y", "along z",
                                         "about x", "about y", "about z"};
-    dea_document_add(s->to, DEA_BLOCK_STEP, "Fasten the spring %s to %s%s.", along[p->component],
-                     l->bodies[p->body].name,
-                     p->count > 0 ? ", whose force is the table of the design" : "");
+    char force[WORDS] = "with the force of its table";
+    if (p->count == 0) {
+      snprintf(force, sizeof force, "%.4g %s", p->stiffness, p->component < 3 ? "N/m" : "N m/rad");
+    }
+    dea_document_add(s->to, DEA_BLOCK_STEP, "Fasten the spring %s to %s, %s.", along[p->component],
+                     l->bodies[p->body].name, force);
   }
   for (size_t i = 1; i < l->channel_count; i++) {
     const struct dea_layout_channel *c = &l->channels[i];
     if (c->own_V != 0) {
       dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.",
                        c->name, c->ratio, c->own_V);
+    } else if (c->ratio == 0) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to ground.", c->name);
+    } else if (c->ratio == 1) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to the voltage.", c->name);
     } else {
       dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage.", c->name,
                        c->ratio);

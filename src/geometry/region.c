@@ -111,14 +111,19 @@ double dea_region_boundary_m(const struct dea_region *region)
   return length;
 }
 
+void dea_region_grow_box(const struct dea_region *region, double box[4])
+{
+  for (size_t i = 0; i < region->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(region, i);
+    dea_contour_grow_box(&contour, box);
+  }
+}
+
 void dea_region_box_m(const struct dea_region *region, double out[4])
 {
   out[0] = out[1] = INFINITY;
   out[2] = out[3] = -INFINITY;
-  for (size_t i = 0; i < region->contour_count; i++) {
-    const struct dea_contour contour = dea_region_contour(region, i);
-    dea_contour_grow_box(&contour, out);
-  }
+  dea_region_grow_box(region, out);
 }
 
 double dea_region_size_m(const struct dea_region *region)

@@ -41,6 +41,8 @@ void dea_region_centroid_m(const struct dea_region *region, double out[2]);
 double dea_region_boundary_m(const struct dea_region *region);
 /* {x min, y min, x max, y max}; of an empty region {INFINITY, INFINITY, -INFINITY, -INFINITY}. */
 void dea_region_box_m(const struct dea_region *region, double out[4]);
+/* Grows a box {x min, y min, x max, y max} so that it holds the region. */
+void dea_region_grow_box(const struct dea_region *region, double box[4]);
 /* Whether a point, not on the boundary, lies in the region. */
 bool dea_region_inside(const struct dea_region *region, double x_m, double y_m);
 /* Distance of a point from the boundary; INFINITY of an empty region. */

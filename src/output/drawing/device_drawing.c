@@ -173,11 +173,6 @@ static void say(const struct view *v, double x, double y, double size, bool bold
 
 /* ---- from above ---- */
 
-static bool is_frame(const struct dea_layout_support *s)
-{
-  return s->edge && s->within == DEA_LAYOUT_NONE && s->components == 7;
-}
-
 static void draw_shapes(const struct view *v, bool over)
 {
   for (size_t i = 0; i < v->drawing->shape_count; i++) {
@@ -196,7 +191,7 @@ static void draw_frame(const struct view *v)
 {
   const struct dea_canvas_type *type = v->paper->type;
   for (size_t i = 0; i < v->layout->support_count; i++) {
-    if (is_frame(&v->layout->supports[i]) && v->drawing->shape_count == 0) {
+    if (dea_support_is_frame(&v->layout->supports[i]) && v->drawing->shape_count == 0) {
       add_region(v, v->layout->supports[i].region);
       type->stroke(v->paper->canvas, 2 * band, FRAME, 0);
       add_region(v, v->layout->supports[i].region);
@@ -625,7 +620,7 @@ static void draw_clamps(const struct view *v, double top)
 {
   const struct dea_canvas_type *type = v->paper->type;
   for (size_t i = 0; i < v->layout->support_count; i++) {
-    if (is_frame(&v->layout->supports[i])) {
+    if (dea_support_is_frame(&v->layout->supports[i])) {
       double box[4];
       dea_region_box_m(&v->layout->regions[v->layout->supports[i].region].region, box);
       type->box(v->paper->canvas, x_of(v, box[0]) - clamp_width, v->section_y - 4, clamp_width,
@@ -930,12 +925,7 @@ static void find_box(struct view *v)
   const struct dea_layout *l = v->layout;
   dea_layout_box_m(l, v->box);
   for (size_t i = 0; i < l->body_count; i++) {
-    double own[4];
-    dea_region_box_m(&l->regions[l->bodies[i].region].region, own);
-    for (int k = 0; k < 2; k++) {
-      v->box[k] = fmin(v->box[k], own[k]);
-      v->box[2 + k] = fmax(v->box[2 + k], own[2 + k]);
-    }
+    dea_region_grow_box(&l->regions[l->bodies[i].region].region, v->box);
   }
   for (size_t i = 0; i < v->drawing->shape_count; i++) {
     dea_contour_grow_box(&v->drawing->shapes[i].contour, v->box);
