@@ -37,6 +37,9 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
       {"materials nothing", 3, "there is no material 'nothing'"},
       {"schema --json --markdown", 2, "exclude each other"},
+      {"optimise x", 2, "'optimise' is not a command; did you mean 'fit'?"},
+      {"run @/examples/fit/silicone.yaml", 3, "this is a fit, not a design: it is for 'dea fit'"},
+      {"check @/data/materials/pet.yaml", 3, "this is a material, not a design"},
   };
   command_write("text.yaml", "hello\n");
   command_write("design.yaml", "my own\n");
@@ -87,6 +90,45 @@ static void test_check_lists_values_and_what_follows(void **state)
                   "electrodes.thickness               0 um                      default");
   assert_contains(command_out, "fibre length                      11.25 mm");
   assert_contains(command_out, "film thickness (stretched)        88.8889 um");
+}
+
+/* The reader finds the unknown key after a missing one, and a section's range after its list. */
+static void test_errors_in_the_order_of_the_file(void **state)
+{
+  (void)state;
+  command_write("wrong.yaml", "dea: 1\nfilm:\n  thicknes: 1 um\n  thickness: -1 um\n"
+                              "compute: {coverage: 2, voltage: {to: 8}}\n");
+  assert_int_equal(command_run("check wrong.yaml"), 3);
+  size_t before = 0, count = 0;
+  for (const char *line = command_err; (line = strstr(line, "wrong.yaml:")) != NULL; count++) {
+    unsigned long at = 0, column = 0;
+    assert_int_equal(sscanf(line, "wrong.yaml:%lu:%lu:", &at, &column), 2);
+    assert_true(100 * at + column >= before);
+    before = 100 * at + column;
+    line++;
+  }
+  assert_true(count >= 7);
+}
+
+static void test_only_what_was_changed(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml --changed --set pre_stretch=2"), 0);
+  assert_contains(command_out, "--set\n");
+  assert_contains(command_out, "film.thickness ");
+  assert_null(strstr(command_out, "  default\n"));
+  assert_null(strstr(command_out, "  not given\n"));
+}
+
+static void test_quiet_keeps_the_result(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml -m lumped --no-figures -o q --quiet"),
+                   0);
+  assert_contains(command_out, "stretch");
+  assert_null(strstr(command_out, "results:"));
+  assert_null(strstr(command_err, "note:"));
+  assert_null(strstr(command_err, "81 points"));
 }
 
 static void test_check_shows_the_band_of_the_breakdown_field(void **state)
@@ -217,6 +259,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_bad_file_has_its_exit_code),
       cmocka_unit_test(test_check_lists_values_and_what_follows),
+      cmocka_unit_test(test_errors_in_the_order_of_the_file),
+      cmocka_unit_test(test_only_what_was_changed),
+      cmocka_unit_test(test_quiet_keeps_the_result),
       cmocka_unit_test(test_check_shows_the_band_of_the_breakdown_field),
       cmocka_unit_test(test_check_as_json),
       cmocka_unit_test(test_schema),

@@ -85,6 +85,20 @@ static void test_units_names_and_uncertainties(void **state)
   dea_measurement_destroy(ctx, m);
 }
 
+/* As people title them: an uncertainty without a quantity is that of the column before it. */
+static void test_titles_of_spreadsheets(void **state)
+{
+  (void)state;
+  struct dea_measurement *m =
+      read_good("Voltage (V),Displacement (mm),err (um),force (mN),Force uncertainty (uN)\n"
+                "1000,-0.012,3,5,20\n");
+  assert_close(m->curve.points[0].centre_z_m, -12e-6, 1e-12, 0);
+  assert_close(m->std[0].centre_z_m, 3e-6, 1e-12, 0);
+  assert_close(m->curve.points[0].force_N, 5e-3, 1e-12, 0);
+  assert_close(m->std[0].force_N, 20e-6, 1e-12, 0);
+  dea_measurement_destroy(ctx, m);
+}
+
 static void test_keys_carry_their_unit(void **state)
 {
   (void)state;
@@ -233,6 +247,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       CSV_TEST(test_units_names_and_uncertainties),
+      CSV_TEST(test_titles_of_spreadsheets),
       CSV_TEST(test_keys_carry_their_unit),
       CSV_TEST(test_decimal_comma_quotes_and_windows_lines),
       CSV_TEST(test_errors_have_places),

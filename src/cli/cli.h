@@ -21,6 +21,10 @@ struct dea_cli {
   bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
   bool colour;   // stderr takes colours (terminal, no NO_COLOR)
   const char *command_line; // the whole of it, for provenance
+  struct {                  // for the progress that is shown
+    char what[64];
+    double began_s, last_s; // when this part began, and the last call
+  } progress;
 };
 
 struct cli_option;

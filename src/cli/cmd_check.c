@@ -15,7 +15,7 @@
 struct request {
   const char *design, *svg;
   struct cli_overrides overrides;
-  bool json;
+  bool json, changed;
 };
 
 enum { DERIVED_MAX = 16 };
@@ -50,7 +50,13 @@ static size_t derive(const struct dea_device *device, struct derived rows[DERIVE
   return n;
 }
 
-static void print_values(const struct dea_design *design)
+/* Whether a value is listed: with `changed` only one that the file or --set gives. */
+static bool is_listed(const struct dea_listed *value, bool changed)
+{
+  return !changed || value->origin == DEA_GIVEN || value->origin == DEA_OVERRIDE;
+}
+
+static void print_values(const struct dea_design *design, bool changed)
 {
   int width = 0;
   for (size_t i = 0; i < design->values.count; i++) {
@@ -59,6 +65,9 @@ static void print_values(const struct dea_design *design)
   }
   for (size_t i = 0; i < design->values.count; i++) {
     const struct dea_listed *value = &design->values.items[i];
+    if (!is_listed(value, changed)) {
+      continue;
+    }
     printf("  %-*s  %-24s  ", width, value->path, value->text);
     if (value->origin == DEA_GIVEN) {
       printf("line %zu\n", value->location.line);
@@ -130,10 +139,11 @@ static void print_disc(const struct dea_design *design, const struct dea_device 
   print_material("fibres", &device->fibre);
 }
 
-static void print_text(const struct dea_design *design, const struct dea_device *device)
+static void print_text(const struct dea_design *design, const struct dea_device *device,
+                       bool changed)
 {
   printf("%s\n\nValues\n", design->file);
-  print_values(design);
+  print_values(design, changed);
   puts("\nDerived");
   if (device->general) {
     print_voltages(design);
@@ -143,11 +153,14 @@ static void print_text(const struct dea_design *design, const struct dea_device 
   }
 }
 
-static json_t *values_json(const struct dea_design *design)
+static json_t *values_json(const struct dea_design *design, bool changed)
 {
   json_t *array = json_array();
   for (size_t i = 0; i < design->values.count; i++) {
     const struct dea_listed *value = &design->values.items[i];
+    if (!is_listed(value, changed)) {
+      continue;
+    }
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:I, s:I}", "key", value->path, "text", value->text, "origin",
                   origin_names[value->origin], "line", (json_int_t)value->location.line, "column",
@@ -162,14 +175,14 @@ static json_t *values_json(const struct dea_design *design)
 }
 
 /* design and device may be NULL after an error. */
-static void print_json(const struct dea_cli *cli, const char *file, const struct dea_design *design,
-                       const struct dea_device *device)
+static void print_json(const struct dea_cli *cli, const struct request *request,
+                       const struct dea_design *design, const struct dea_device *device)
 {
-  json_t *json = json_pack("{s:s, s:b, s:o}", "file", file, "good",
+  json_t *json = json_pack("{s:s, s:b, s:o}", "file", request->design, "good",
                            dea_finding_count(cli->ctx, DEA_ERROR) == 0 && device != NULL,
                            "findings", cli_findings_json(cli->ctx));
   if (design != NULL) {
-    json_object_set_new(json, "values", values_json(design));
+    json_object_set_new(json, "values", values_json(design, request->changed));
   }
   if (device != NULL && device->general) {
     json_object_set_new(json, "derived", cli_layout_json(device->layout));
@@ -221,9 +234,9 @@ static int run(struct dea_cli *cli, void *user)
     status = write_drawing(cli, request->svg, device);
   }
   if (request->json) {
-    print_json(cli, request->design, design, device);
+    print_json(cli, request, design, device);
   } else if (status == DEA_OK) {
-    print_text(design, device);
+    print_text(design, device, request->changed);
     fflush(stdout);
   }
   int code = cli_report(cli, status);
@@ -235,6 +248,8 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_SET_ROW(0, CLI_KEY, "film.thickness=200um; 'null' takes a key away"),
+    {"changed", 0, CLI_FLAG, NULL, "only the values that the file or --set gives, no defaults",
+     CLI_AT(changed)},
     {"svg", 0, CLI_FILE, "FILE", "a drawing of the device", CLI_AT(svg)},
     CLI_JSON_ROW("values, derived numbers and findings as JSON"),
     {0}};

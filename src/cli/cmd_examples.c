@@ -217,7 +217,7 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     {NULL, 0, CLI_EXAMPLE, "EXAMPLE", "print this design file to standard output", CLI_AT(name)},
     {"copy", 0, CLI_FOLDER, "DIR", "copy all examples to a folder", CLI_AT(folder)},
-    CLI_FORCE_ROW(0, "overwrite files that are there"),
+    CLI_FORCE_ROW('f', "overwrite files that are there"),
     {0}};
 
 const struct dea_command cmd_examples = {

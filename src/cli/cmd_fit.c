@@ -101,7 +101,7 @@ static const struct cli_option options[] = {
      "profile likelihood of every parameter, not only where the normal form is poor",
      CLI_AT(options.profile)},
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .fit)"),
-    CLI_FORCE_ROW(0, "replace an earlier fit in that folder"),
+    CLI_FORCE_ROW('f', "replace an earlier fit in that folder"),
     CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),
     CLI_WIDTH_ROW("width of the figures (default 85)"),
     CLI_JSON_ROW("print fit.json in place of the tables"),

@@ -293,7 +293,7 @@ static const struct cli_option options[] = {
      "put this design inside, so that 'dea reduce' knows the geometry", CLI_AT(design)},
     {"list", 0, CLI_FLAG, NULL, "show columns and what they would be taken for; write nothing",
      CLI_AT(list)},
-    CLI_FORCE_ROW(0, "replace the recording"),
+    CLI_FORCE_ROW('f', "replace the recording"),
     CLI_JSON_ROW("print what was read as JSON"),
     {0}};
 

@@ -258,7 +258,7 @@ static const struct cli_option options[] = {
     {"settle", 0, CLI_TEXT, "SHARE", "last share of each part of a cycle that is averaged (0.2)",
      CLI_AT(options.settle), take_settle},
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .reduced)"),
-    CLI_FORCE_ROW(0, "replace an earlier reduction in that folder"),
+    CLI_FORCE_ROW('f', "replace an earlier reduction in that folder"),
     CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),
     CLI_WIDTH_ROW("width of the figures (default 85)"),
     CLI_JSON_ROW("print reduction.json in place of the table"),

@@ -272,13 +272,14 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     dea_free(ctx, text);
   }
   dea_status status = dea_job_write(ctx, &run->job, run->result);
-  if (!request->json && !cli->quiet) {
+  if (!request->json) {
     puts(run->design->title.text);
     for (size_t i = 0; i < run->job.model_count; i++) {
       print_model(run->result, run->job.models[i]->name);
       DEA_TRY(ctx, cli_print_tables(ctx, run->result, run->job.models[i]->name));
     }
-    if (status == DEA_OK || status == DEA_E_TOOL) { // without gnuplot the data are there
+    if (!cli->quiet &&
+        (status == DEA_OK || status == DEA_E_TOOL)) { // without gnuplot the data are there
       printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", run->job.folder,
              request->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
     }

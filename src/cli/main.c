@@ -31,6 +31,28 @@ static void print_help(void)
       "Start with:  dea examples frdea-4 > my.yaml && dea run my.yaml");
 }
 
+/* The command that does what another word asks for, or NULL. */
+static const char *meant_by(const char *word)
+{
+  static const struct {
+    const char *word, *command;
+  } others[] = {{"optimise", "fit"},    {"optimize", "fit"},    {"calibrate", "fit"},
+                {"identify", "fit"},    {"simulate", "run"},    {"solve", "run"},
+                {"compute", "run"},     {"sweep", "run"},       {"validate", "check"},
+                {"lint", "check"},      {"draw", "plot"},       {"figures", "plot"},
+                {"view", "report"},     {"play", "drive"},      {"measure", "drive"},
+                {"new", "examples"},    {"init", "examples"},   {"material", "materials"},
+                {"make", "fab"},        {"fabricate", "fab"},   {"analyse", "reduce"},
+                {"analyze", "reduce"},  {"evaluate", "reduce"}, {"convert", "import"},
+                {"export", "recording"}};
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+    if (strcmp(others[i].word, word) == 0) {
+      return others[i].command;
+    }
+  }
+  return NULL;
+}
+
 static const struct dea_command *find_command(const char *name)
 {
   const char *names[COMMAND_COUNT];
@@ -40,7 +62,8 @@ static const struct dea_command *find_command(const char *name)
       return commands[i];
     }
   }
-  const char *nearest = dea_nearest_name(name, names, COMMAND_COUNT);
+  const char *nearest = meant_by(name);
+  nearest = nearest != NULL ? nearest : dea_nearest_name(name, names, COMMAND_COUNT);
   fprintf(stderr, "dea: '%s' is not a command", name);
   fprintf(stderr, nearest != NULL ? "; did you mean '%s'?\n" : "; see 'dea --help'\n", nearest);
   return NULL;

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include <stdarg.h>
+#include <string.h>
 
 static const char *const severity_names[] = {"note", "warning", "error"};
 
@@ -23,17 +24,61 @@ static void print_place(const struct dea_location *location)
   }
 }
 
-int cli_report(struct dea_cli *cli, dea_status status)
+/* Whether b stands before a in the same file. */
+static bool stands_before(const struct dea_finding *b, const struct dea_finding *a)
+{
+  const struct dea_location *x = &b->location, *y = &a->location;
+  bool same = x->file != NULL && y->file != NULL && strcmp(x->file, y->file) == 0;
+  return same && x->line > 0 && y->line > 0 &&
+         (x->line < y->line || (x->line == y->line && x->column < y->column));
+}
+
+/* Findings in the order of their file, others as they came; some hundreds: insertion. NULL without
+ * memory. Owned by the caller. */
+static const struct dea_finding **sort(struct dea_context *ctx, const struct dea_finding *findings,
+                                       size_t count)
+{
+  const struct dea_finding **sorted = dea_alloc(ctx, count, sizeof *sorted);
+  for (size_t i = 0; sorted != NULL && i < count; i++) {
+    size_t k = i;
+    for (; k > 0 && stands_before(&findings[i], sorted[k - 1]); k--) {
+      sorted[k] = sorted[k - 1];
+    }
+    sorted[k] = &findings[i];
+  }
+  return sorted;
+}
+
+/* A note that said the same before, of another place. */
+static bool is_repeated(const struct dea_finding *const sorted[], size_t i)
+{
+  for (size_t k = 0; k < i && sorted[i]->severity == DEA_NOTE; k++) {
+    if (sorted[k]->severity == DEA_NOTE && strcmp(sorted[k]->text, sorted[i]->text) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static void print_findings(struct dea_cli *cli)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(cli->ctx, &count);
+  const struct dea_finding **sorted = count > 0 ? sort(cli->ctx, findings, count) : NULL;
   for (size_t i = 0; i < count; i++) {
-    if (findings[i].severity == DEA_NOTE && cli->quiet) {
-      continue;
+    const struct dea_finding *finding = sorted != NULL ? sorted[i] : &findings[i];
+    bool repeated = sorted != NULL && !cli->verbose && is_repeated(sorted, i);
+    if (!repeated && !(finding->severity == DEA_NOTE && cli->quiet)) {
+      print_place(&finding->location);
+      fprintf(stderr, "%s: %s\n", severity_text(finding->severity, cli->colour), finding->text);
     }
-    print_place(&findings[i].location);
-    fprintf(stderr, "%s: %s\n", severity_text(findings[i].severity, cli->colour), findings[i].text);
   }
+  dea_free(cli->ctx, sorted);
+}
+
+int cli_report(struct dea_cli *cli, dea_status status)
+{
+  print_findings(cli);
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
   if (status != DEA_OK && !said) {
     const char *message = dea_context_message(cli->ctx);

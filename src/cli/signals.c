@@ -4,6 +4,8 @@
 
 #include <poll.h>
 #include <signal.h>
+#include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t interrupt_flag, voltage_flag;
@@ -24,23 +26,55 @@ static bool has_room(void)
   return poll(&entry, 1, 0) > 0 && (entry.revents & POLLOUT) != 0;
 }
 
+static double now_s(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* ", 0:41, 1:10 left" after a second of work, "" before. A part begins where the one before it was
+ * last heard of. */
+static void add_times(struct dea_cli *cli, const char *what, size_t done, size_t total,
+                      char out[64])
+{
+  double now = now_s();
+  if (strncmp(cli->progress.what, what, sizeof cli->progress.what - 1) != 0) {
+    snprintf(cli->progress.what, sizeof cli->progress.what, "%s", what);
+    cli->progress.began_s = cli->progress.last_s;
+  }
+  cli->progress.last_s = now;
+  double gone = now - cli->progress.began_s;
+  double left = done > 0 ? gone * ((double)total / (double)done - 1) : 0;
+  out[0] = '\0';
+  if (gone >= 1 && gone < 1e6 && left < 1e6) {
+    int length = snprintf(out, 64, ", %d:%02d", (int)gone / 60, (int)gone % 60);
+    if (done < total) {
+      snprintf(out + length, 64 - (size_t)length, ", %d:%02d left", (int)left / 60, (int)left % 60);
+    }
+  }
+}
+
 /* One line that is rewritten on a terminal, a plain line otherwise. */
 static void show_progress(void *user, const char *what, size_t done, size_t total)
 {
-  const struct dea_cli *cli = user;
+  struct dea_cli *cli = user;
+  char times[64];
+  add_times(cli, what, done, total, times);
   if (cli->quiet || (voltage_flag != 0 && !has_room())) {
     return;
   }
   if (cli->terminal) {
-    fprintf(stderr, "\r\033[K%s %zu/%zu%s", what, done, total, done == total ? "\n" : "");
+    fprintf(stderr, "\r\033[K%s %zu/%zu%s%s", what, done, total, times, done == total ? "\n" : "");
     fflush(stderr);
   } else if (done == total) {
-    fprintf(stderr, "%s: %zu points\n", what, done);
+    fprintf(stderr, "%s: %zu points%s\n", what, done, times);
   }
 }
 
 void cli_watch(struct dea_cli *cli)
 {
+  cli->progress.last_s = now_s();
   dea_context_set_progress(cli->ctx, show_progress, cli);
   dea_context_set_interrupt(cli->ctx, &interrupt_flag);
   struct sigaction action = {.sa_handler = on_signal};

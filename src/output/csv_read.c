@@ -40,6 +40,7 @@ static const struct {
     {"z tip", "fibre_tip_z_m"},       {"z fiber tip", "fibre_tip_z_m"},
     {"field", "true_field_V_per_m"},  {"electrode edge u", "electrode_edge_u_m"},
     {"u edge", "electrode_edge_u_m"}, {"tension", "min_tension_N_per_m"},
+    {"displacement", "centre_z_m"},   {"z", "centre_z_m"},
 };
 enum { OTHER_NAMES = sizeof other_names / sizeof other_names[0] };
 
@@ -158,22 +159,51 @@ static bool find_state(const char *name, enum role *role)
   return false;
 }
 
+/* Cuts the word for an uncertainty from the end of a name; whether there was one. */
+static bool take_std(char *name)
+{
+  static const char *const words[] = {"std", "err", "error", "uncertainty"};
+  size_t length = strlen(name);
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    size_t n = strlen(words[i]);
+    bool alone = strcmp(name, words[i]) == 0;
+    if (alone ||
+        (length > n && name[length - n - 1] == ' ' && strcmp(name + length - n, words[i]) == 0)) {
+      name[alone ? 0 : length - n - 1] = '\0';
+      return true;
+    }
+  }
+  return false;
+}
+
+/* The quantity that a name means: of an uncertainty without one, that of the column before it. */
+static int column_of(struct reader *r, const char *title, const char *name, size_t place,
+                     bool *by_key)
+{
+  *by_key = false;
+  if (name[0] == '\0' && r->field_count > 0) {
+    return r->fields[r->field_count - 1].column;
+  }
+  if (strcmp(name, "displacement") == 0) {
+    dea_finding_add(r->ctx, DEA_NOTE, place_of(r, place),
+                    "'%s' is taken for that of the centre; 'z fibre tip' is that of the tip",
+                    title);
+  }
+  return find_column(name, by_key);
+}
+
 static void read_title(struct reader *r, const char *title, size_t column,
                        struct field_meaning *field)
 {
   char name[FIELD_MAX], unit[FIELD_MAX];
   bool by_key;
   dea_csv_split_title(title, name, unit);
-  size_t length = strlen(name);
-  bool is_std = length > 4 && strcmp(name + length - 4, " std") == 0;
-  if (is_std) {
-    name[length - 4] = '\0';
-  }
+  bool is_std = take_std(name);
   *field = (struct field_meaning){.role = is_std ? ROLE_STD : ROLE_VALUE, .factor = 1.0};
   if (find_state(name, &field->role)) {
     field->column = -1;
   } else {
-    field->column = find_column(name, &by_key);
+    field->column = column_of(r, title, name, column, &by_key);
     if (field->column < 0) {
       unknown_title(r, title, name, column);
       return;
