@@ -7,13 +7,15 @@
 #include <string.h>
 
 /* Displacements of less than half a millimetre are read in micrometres. */
-static double z_factor(const struct dea_result *result, const int columns[2])
+static double z_factor(const struct dea_result *result, const char *const models[], size_t count,
+                       const int columns[2])
 {
-  for (size_t i = 0; i < result->curve_count; i++) {
-    for (size_t k = 0; k < result->curves[i].count; k++) {
+  for (size_t m = 0; m < count; m++) {
+    const struct dea_curve *curve = dea_figure_curve(result, models[m], false);
+    for (size_t k = 0; curve != NULL && k < curve->count; k++) {
       for (int c = 0; c < 2; c++) {
-        bool shown = !dea_figure_leaves_out(result, &result->curves[i], columns[c]);
-        if (shown && fabs(dea_point_get(&result->curves[i].points[k], columns[c])) > 0.5e-3) {
+        bool shown = !dea_figure_leaves_out(result, curve, columns[c]);
+        if (shown && fabs(dea_point_get(&curve->points[k], columns[c])) > 0.5e-3) {
           return 1e3;
         }
       }
@@ -63,7 +65,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   struct dea_panel *strain = &plot->panels[0], *height = &plot->panels[1];
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
-  double factor = z_factor(result, z);
+  double factor = z_factor(result, models, count, z);
   for (size_t m = 0; m < count; m++) {
     const struct dea_curve *curve = dea_figure_curve(result, models[m], false);
     struct dea_series look = dea_figure_model_style(models[m], m);

@@ -33,7 +33,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
                "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
                "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
-               "  set label 1 \"%s\" at graph 0, graph 1.03 front\n"
+               "  set label 1 \"%s\" at graph 0, graph 1.045 front\n"
                "  eval \"set pm3d \".facets\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
