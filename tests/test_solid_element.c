@@ -253,6 +253,64 @@ static void check_prediction(struct sample *s)
   }
 }
 
+/* b and L say how pressures push and how theta grows, against differences of both; and L L^T is the
+ * volume between two constant pressures. */
+static void check_constraint(struct sample *s)
+{
+  enum { PRESSURES = DEA_HEX_PRESSURES_MAX };
+  static double b[PRESSURES * DEA_HEX_DOFS_MAX], L[PRESSURES * PRESSURES];
+  static double start[DEA_HEX_DOFS_MAX], way[DEA_HEX_DOFS_MAX], multiplier[PRESSURES];
+  const struct dea_element_type *type = s->element->type;
+  int count = s->element->pressures, dofs = 3 * s->element->nodes, per = type->per_node;
+  double step = 1e-6;
+  if (type->constraint == NULL) {
+    return;
+  }
+  shake(s);
+  assert_int_equal(type->constraint(s->element, &s->in, b, L), DEA_OK);
+  memcpy(start, s->u, sizeof start);
+  memcpy(multiplier, s->in.multiplier, (size_t)count * sizeof *multiplier);
+  const double *lent = s->in.multiplier;
+  for (int m = 0; m < count; m++) { // forces are linear in pressures
+    evaluate(s, &at);
+    s->in.multiplier = multiplier;
+    multiplier[m] += 1e3;
+    evaluate(s, &up);
+    multiplier[m] -= 1e3;
+    s->in.multiplier = lent;
+    for (int i = 0; i < dofs; i++) {
+      double push = 0;
+      for (int c = 0; c <= m; c++) {
+        push += L[m * count + c] * b[c * dofs + i];
+      }
+      int place = i / 3 * per + i % 3;
+      assert_close((up.g[place] - at.g[place]) / 1e3, push, 0,
+                   1e-7 * largest(b, count * dofs) * largest(L, count * count));
+    }
+  }
+  for (int i = 0; i < dofs; i++) {
+    way[i] = 1e-4 * sin(1.7 * i + 0.3);
+  }
+  for (int side = -1; side <= 1; side += 2) {
+    for (int i = 0; i < dofs; i++) {
+      s->u[i] = start[i] + side * step * way[i];
+    }
+    evaluate(s, side < 0 ? &at : &up);
+  }
+  memcpy(s->u, start, sizeof start);
+  for (int m = 0; m < count; m++) { // L^T times the change of theta is b times that of u
+    double moment = 0, squeeze = 0, size = 0;
+    for (int c = m; c < count; c++) {
+      moment += L[c * count + m] * (up.theta[c] - at.theta[c]) / (2 * step);
+    }
+    for (int i = 0; i < dofs; i++) {
+      squeeze += b[m * dofs + i] * way[i];
+      size += fabs(b[m * dofs + i] * way[i]);
+    }
+    assert_close(moment, squeeze, 0, 1e-5 * size);
+  }
+}
+
 static void check_inverted(struct sample *s)
 {
   static struct dea_element_strains strains;
@@ -276,9 +334,9 @@ static void test_every_kind(void **state)
     struct dea_element_set set;
     assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
     for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
-      static void (*const checks[])(struct sample * s) = {check_derivatives, check_rigid_motion,
-                                                          check_patch,       check_integrals,
-                                                          check_prediction,  check_inverted};
+      static void (*const checks[])(struct sample * s) = {
+          check_derivatives, check_rigid_motion, check_patch,   check_integrals,
+          check_prediction,  check_constraint,   check_inverted};
       for (size_t i = 0; i < 2 * sizeof checks / sizeof checks[0]; i++) {
         static struct sample s;
         fill(order, &set.of[kind], i % 2 == 1, &s);

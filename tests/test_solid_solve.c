@@ -98,6 +98,35 @@ static double exact_strain(double voltage_V)
   return point.electrode_stretch - 1;
 }
 
+/* With the factor of the last equilibrium a step takes one factorisation, and comes to the state
+ * that tangents of its own find. */
+static void test_steps_with_one_factor(void **state)
+{
+  (void)state;
+  struct disc follows = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct disc alone = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct dea_solid_report one, many;
+  size_t count = 3 * follows.grid->node_count;
+  dea_solid_settings_of(alone.solid)->follow_part = 2; // never
+  for (int step = 0; step <= 8; step++) {
+    double V = 500 * step, apart = 0, most = 0;
+    assert_int_equal(dea_load_steps_solve(ctx, follows.solid, V, &one), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, alone.solid, V, &many), DEA_OK);
+    const double *u = dea_solid_displacement(follows.solid);
+    const double *w = dea_solid_displacement(alone.solid);
+    for (size_t i = 0; i < count; i++) {
+      apart = fmax(apart, fabs(u[i] - w[i]));
+      most = fmax(most, fabs(w[i]));
+    }
+    assert_true(apart <= 1e-8 * most + 1e-18);
+    assert_true(one.residual < 1e-9 && one.theta_max < 1e-7);
+    assert_int_equal(one.unstable_modes, 0);
+    assert_true(step == 0 || (one.factorisations == 1 && many.factorisations > 1));
+  }
+  disc_destroy(&follows);
+  disc_destroy(&alone);
+}
+
 /* 0 to 11 kV in steps of 1 kV without help, no unstable mode on the way, within 0.4 % of the disc
  * without thickness. Elements of 0.2 mm at the electrode edge. */
 static void test_plain_disc_to_11_kV(void **state)
@@ -292,6 +321,7 @@ static void test_each_allocation_of_a_solid(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_steps_with_one_factor),
       cmocka_unit_test(test_plain_disc_to_11_kV),
       cmocka_unit_test(test_difference_goes_with_the_thickness),
       cmocka_unit_test(test_no_false_modes_at_rest),

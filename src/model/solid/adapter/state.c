@@ -1,8 +1,7 @@
 #include "model/solid/adapter/state.h"
 
-#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/controls.h"
-#include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/newton.h"
 
 #include <string.h>
 
@@ -73,12 +72,8 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
 /* The factor that the equilibrium has left for the start of the next step. */
 static dea_status factorise(struct dea_context *ctx, struct dea_solid *s)
 {
-  double energy;
-  int negative;
-  s->found.factor_fits = s->found.predicted_fits = false;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
-  s->found.factor_fits = negative == 0;
+  struct dea_solid_report report = {0};
+  DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   return DEA_OK;
 }
 

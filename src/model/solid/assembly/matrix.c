@@ -354,6 +354,7 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
+  s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
   *negative = (int)(minus + zero) - (int)s->problem.free_potentials;

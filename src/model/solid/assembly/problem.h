@@ -127,6 +127,7 @@ struct dea_solid_found {
   bool checked;            // dea_solid_check has nothing to say
   bool predicted_fits;     // work.predicted belongs to state.u, by dea_solid_predict
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
+  bool stiff_factor_fits;  // it is so of K with the raised kappa; until the next factor
 };
 
 struct dea_solid {

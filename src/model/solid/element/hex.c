@@ -219,24 +219,37 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
   return DEA_OK;
 }
 
-/* K = kappa b^T M^-1 b with M = L L^T, b_m = int phi_m dJ/du. */
-static void set_projected(const struct dea_hex_shape *s, double kappa, struct hex_work *work,
-                          double *K)
+/* b = L^-1 int phi_m dJ/du, row by row; the integrals are the columns of the sums from the third.
+ */
+static void set_constraint(const struct dea_hex_shape *s, int pressures,
+                           const struct hex_work *work, double *all)
 {
-  int dofs = 3 * s->nodes, pressures = work->columns / 3 - 1;
+  int dofs = 3 * s->nodes;
   for (int m = 0; m < pressures; m++) {
-    double *b = work->b + m * dofs, inverse = 1 / work->factor[m][m]; // b = L^-1 b row by row
+    double *b = all + m * dofs, inverse = 1 / work->factor[m][m];
     for (int j = 0; j < dofs; j++) {
       b[j] = work->sums[j / 3 * work->columns + 3 * m + 3 + j % 3];
     }
     for (int c = 0; c < m; c++) {
       for (int j = 0; j < dofs; j++) {
-        b[j] -= work->factor[m][c] * work->b[c * dofs + j];
+        b[j] -= work->factor[m][c] * all[c * dofs + j];
       }
     }
     for (int j = 0; j < dofs; j++) {
       b[j] *= inverse;
-      work->kappa_b[j * pressures + m] = kappa * b[j];
+    }
+  }
+}
+
+/* K = kappa b^T M^-1 b with M = L L^T, b_m = int phi_m dJ/du. */
+static void set_projected(const struct dea_hex_shape *s, double kappa, struct hex_work *work,
+                          double *K)
+{
+  int dofs = 3 * s->nodes, pressures = work->columns / 3 - 1;
+  set_constraint(s, pressures, work, work->b);
+  for (int m = 0; m < pressures; m++) {
+    for (int j = 0; j < dofs; j++) {
+      work->kappa_b[j * pressures + m] = kappa * work->b[m * dofs + j];
     }
   }
   if (pressures == 0) {
@@ -286,6 +299,41 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
   if (order >= DEA_TANGENT) {
     set_projected(shape, constituent->kappa_Pa, &work, out->K);
     dea_hex_add_tangent(shape, work.A, out->K);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_hex_constraint(const struct dea_element *element, const struct dea_element_input *in,
+                              double *b, double *L)
+{
+  struct hex_work work;
+  double theta[DEA_HEX_PRESSURES_MAX];
+  const struct dea_hex_shape *s = element->basis;
+  size_t count = (size_t)s->pressures, dofs = 3 * (size_t)s->nodes;
+  memset(b, 0, count * dofs * sizeof *b);
+  memset(L, 0, count * count * sizeof *L);
+  if (!dea_constituent_takes_pressure(in->constituent)) {
+    return DEA_OK;
+  }
+  dea_status status = dea_hex_find_points(s, in->X, in->u, work.points);
+  if (status == DEA_OK) {
+    status = dea_hex_project(s, work.points, work.factor, work.moment, theta);
+  }
+  if (status != DEA_OK) {
+    return status;
+  }
+  work.columns = 3 + 3 * s->pressures;
+  memset(work.flux, 0, (size_t)(3 * s->gauss * work.columns) * sizeof *work.flux);
+  for (int q = 0; q < s->gauss; q++) {
+    const struct dea_hex_point *at = &work.points[q];
+    for (int m = 0; m < s->pressures; m++) {
+      set_flux(s, q, at->weight * s->pressure[q][m], at->cof, 3 * m + 3, &work);
+    }
+  }
+  dea_hex_sum_flux(s, work.columns, work.flux, work.sums);
+  set_constraint(s, s->pressures, &work, b);
+  for (size_t m = 0; m < count; m++) {
+    memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
   }
   return DEA_OK;
 }
@@ -733,6 +781,7 @@ const struct dea_element_type dea_element_hexahedron = {
     .check = dea_hex_check,
     .evaluate = dea_hex_evaluate,
     .predict = dea_hex_predict,
+    .constraint = dea_hex_constraint,
     .mass = dea_hex_mass,
     .metric = dea_hex_metric,
     .strains = dea_hex_strains,

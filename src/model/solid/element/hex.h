@@ -47,6 +47,8 @@ dea_status dea_hex_create(int order, int order_z, struct dea_element *out);
 dea_status dea_hex_check(const struct dea_constituent *constituent);
 dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_element_input *in,
                             enum dea_eval_order order, struct dea_element_result *out);
+dea_status dea_hex_constraint(const struct dea_element *element, const struct dea_element_input *in,
+                              double *b, double *L);
 dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
                            const double *step, double share, bool stresses, double *predicted);
 dea_status dea_hex_mass(const struct dea_element *element,

@@ -226,6 +226,7 @@ const struct dea_element_type dea_element_potential_hexahedron = {
     .check = dea_hex_check,
     .evaluate = evaluate,
     .predict = dea_hex_predict,
+    .constraint = dea_hex_constraint,
     .mass = dea_hex_mass,
     .metric = dea_hex_metric,
     .strains = dea_hex_strains,

@@ -7,6 +7,7 @@
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/check.h"
 #include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"
 
@@ -283,19 +284,26 @@ static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid 
   return status;
 }
 
+/* path->at: the controls a share of the way to the goal, to the solid. */
+static void set_share(struct dea_solid *s, double way)
+{
+  struct dea_load_steps *path = &s->work.load_steps;
+  const double *from = path->controls_from;
+  for (size_t i = 0; i < path->control_count; i++) {
+    path->at[i] =
+        way >= 1 ? path->controls_goal[i] : from[i] + way * (path->controls_goal[i] - from[i]);
+  }
+  dea_solid_controls_set(s, path->at);
+}
+
 /* The equilibrium a share of the way to the goal; the solid stays as it was when it fails. */
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, double way,
                                  struct dea_solid_report *report)
 {
   struct dea_load_steps *path = &s->work.load_steps;
-  const double *from = path->controls_from;
-  double *next = path->at;
-  for (size_t i = 0; i < path->control_count; i++) {
-    next[i] =
-        way >= 1 ? path->controls_goal[i] : from[i] + way * (path->controls_goal[i] - from[i]);
-  }
+  const double *next = path->at;
   dea_solid_state_get(s, path->keep);
-  dea_solid_controls_set(s, next);
+  set_share(s, way);
   dea_status status = DEA_OK;
   if (dea_solid_controls_increment(s, next)) {
     status = dea_solid_prescribed_increment(ctx, s, report);
@@ -315,6 +323,61 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
+/* Whether loads and supports are such that a factor may be kept: nothing is brought in by
+ * multipliers that follow from outside, no support moves. */
+static bool may_follow(struct dea_solid *s)
+{
+  for (size_t i = 0; i < s->problem.load_count; i++) {
+    if (s->problem.loads[i].update != NULL) {
+      return false;
+    }
+  }
+  return !dea_solid_controls_increment(s, s->work.load_steps.controls_goal);
+}
+
+/* With the factors of points on the way, report->way, in steps that are halved where one is too
+ * long. *there: at the last of them is an equilibrium. */
+static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
+                            struct dea_solid_report *report, bool *there)
+{
+  double part = 1;
+  *there = true;
+  while (report->way < 1 && part >= s->settings.follow_part) {
+    double way = fmin(report->way + part, 1);
+    set_share(s, way);
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, there));
+    if (*there) {
+      report->way = way;
+    } else {
+      part = s->found.factor_fits || s->found.stiff_factor_fits ? part / 2 : 0;
+    }
+  }
+  set_share(s, report->way);
+  *there = report->way == 0 || report->way >= 1;
+  if (!*there) { // it is only near one
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
+  }
+  return DEA_OK;
+}
+
+/* As far as that goes, to an equilibrium at report->way. */
+static dea_status follow_in_steps(struct dea_context *ctx, struct dea_solid *s,
+                                  struct dea_solid_report *report)
+{
+  struct dea_load_steps *path = &s->work.load_steps;
+  bool there = false;
+  dea_solid_state_get(s, path->keep);
+  dea_status status = follow_on(ctx, s, report, &there);
+  if (status != DEA_OK || !there) {
+    report->way = 0;
+    set_share(s, 0);
+    dea_solid_state_set(s, path->keep);
+    s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+  }
+  memcpy(path->controls, path->at, path->control_count * sizeof(double));
+  return status;
+}
+
 /* In steps that are halved where one fails, down to `least` of the way, and grow again after. */
 static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, double least,
                                  struct dea_solid_report *report)
@@ -323,6 +386,12 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, d
   bool moves = memcmp(path->controls_from, path->controls_goal,
                       path->control_count * sizeof *path->controls_from) != 0;
   double part = 1;
+  if (moves && may_follow(s)) {
+    DEA_TRY(ctx, follow_in_steps(ctx, s, report));
+    if (report->way >= 1) {
+      return DEA_OK;
+    }
+  }
   for (;;) {
     double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
     dea_status status = solve_at_share(ctx, s, way, report);

@@ -262,20 +262,20 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   return DEA_OK;
 }
 
-/* Inertia of the tangent at the equilibrium; its factor is the start of the next step. */
-static dea_status count_unstable(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
-                                 bool tangent)
+dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s, bool tangent,
+                                    struct dea_solid_report *report)
 {
-  s->found.predicted_fits = false;
+  s->found.factor_fits = s->found.predicted_fits = false;
   if (!tangent) {
-    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &d->report->energy_J));
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &d->report->unstable_modes));
-  d->report->factorisations++;
-  s->found.factor_fits = d->report->unstable_modes == 0;
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &report->unstable_modes));
+  report->factorisations++;
+  s->found.factor_fits = report->unstable_modes == 0;
   if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible
-    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &d->report->unstable_modes));
-    d->report->factorisations++;
+    DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &report->unstable_modes));
+    report->factorisations++;
+    s->found.stiff_factor_fits = report->unstable_modes == 0;
   }
   return DEA_OK;
 }
@@ -300,7 +300,8 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double 
     DEA_TRY(ctx, evaluate(ctx, s, &d));
     bool fits = d.strict || report->theta_max < o->theta;
     if (i > 0 && fits && (report->residual < o->residual || d.unresolved > 2)) {
-      return count_unstable(ctx, s, &d, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits);
+      return dea_solid_count_unstable(
+          ctx, s, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits, report);
     }
     if (d.chord) {
       DEA_TRY(ctx, chord_step(ctx, s, &d));
@@ -308,7 +309,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double 
       DEA_TRY(ctx, newton_step(ctx, s, &d, &done));
     }
     if (done && fits) {
-      return count_unstable(ctx, s, &d, false);
+      return dea_solid_count_unstable(ctx, s, false, report);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",

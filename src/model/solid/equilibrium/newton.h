@@ -13,6 +13,11 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
                                           struct dea_solid_report *report);
 
+/* Counts the unstable modes at an equilibrium; a factor without any starts the next step.
+ * tangent: K of there has been assembled. */
+dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s, bool tangent,
+                                    struct dea_solid_report *report);
+
 /* ---- for continuation, which is Newton's method too ---- */
 
 /* Before u goes on by share step: stresses there into work.predicted, pressures there into the

@@ -1,0 +1,453 @@
+#include "model/solid/equilibrium/follow.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/newton.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* Newton's method on displacements u and pressures q = p + kappa theta with the tangent of the
+ * start kept:
+ *
+ *   A0 du + B0 dq = -r(u, q),   B0^T du - dq / kappa = -theta(u)
+ *
+ * in which dq is eliminated, so that K0 = A0 + kappa B0 B0^T is the factor that is there:
+ *
+ *   K0 du = -(r + kappa B0 theta),   dq = kappa (theta + B0^T du).
+ *
+ * B0 is that of the start on both sides: with that of where the solid is, kappa (B - B0) theta
+ * would be a force on what only shears, kappa/mu times too large. Steps f = (du, dq) are mixed by
+ * Anderson's rule. */
+
+enum { DEPTH = 6 };                   // steps that are remembered
+static const double compliance = 100; // of a pressure, in 1/kappa
+
+struct follow {
+  struct dea_arena memory; // of the arrays
+  struct dea_solid *s;
+  struct dea_solid_report *report;
+  size_t dofs, pressures, count; // of u, of q, of both
+  double *keep, *first;          // [count] u and multipliers, u and q at the start
+  double *b, *L;                 // of each own element there, see find_constraints
+  double *weight;                // [pressures] dq weight dq is an energy
+  double *theta;                 // [pressures] of this iteration
+  double *x, *f, *h;             // [count], [count], [dofs] of this iteration; h = -K0 du
+  double *x_old, *f_old, *h_old; // of the one before
+  double *dx[DEPTH], *df[DEPTH]; // [count] differences between iterations, newest first
+  double *dh[DEPTH];             // [dofs]
+  int depth;                     // of them that there are
+  double size_first, size;       // of f, at first and now
+  double accuracy;               // of the last f over the first
+  bool equilibrium;              // forces and theta are to be those of one
+  double stiff;                  // kappa of the factor over that of the solid
+};
+
+static dea_status allocate(struct follow *w)
+{
+  double **const both[] = {&w->keep, &w->first, &w->x, &w->f, &w->x_old, &w->f_old};
+  double **const moves[] = {&w->h, &w->h_old};
+  double **const pressures[] = {&w->theta, &w->weight};
+  size_t own = w->s->problem.own_count, most = (size_t)w->s->problem.elements.pressures;
+  w->b = dea_arena_alloc(&w->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
+  w->L = dea_arena_alloc(&w->memory, own * most * most, sizeof(double));
+  for (size_t i = 0; i < sizeof both / sizeof both[0]; i++) {
+    *both[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
+  }
+  for (size_t i = 0; i < sizeof moves / sizeof moves[0]; i++) {
+    *moves[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
+  }
+  for (size_t i = 0; i < sizeof pressures / sizeof pressures[0]; i++) {
+    *pressures[i] = dea_arena_alloc(&w->memory, w->pressures, sizeof(double));
+  }
+  for (int i = 0; i < DEPTH; i++) {
+    w->dx[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
+    w->df[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
+    w->dh[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
+  }
+  return dea_solid_agree(w->memory.ctx, dea_arena_status(&w->memory));
+}
+
+/* u and multipliers to and from one vector. */
+static void get(const struct follow *w, double *x)
+{
+  memcpy(x, w->s->state.u, w->dofs * sizeof *x);
+  memcpy(x + w->dofs, w->s->state.multiplier, w->pressures * sizeof *x);
+}
+
+static void set(const struct follow *w, const double *x)
+{
+  memcpy(w->s->state.u, x, w->dofs * sizeof *x);
+  memcpy(w->s->state.multiplier, x + w->dofs, w->pressures * sizeof *x);
+}
+
+static double kappa_of(const struct follow *w, size_t pressure)
+{
+  return w->stiff *
+         dea_solid_bulk_modulus(w->s, pressure / (size_t)w->s->problem.elements.pressures);
+}
+
+/* ---- the mixing of steps ---- */
+
+static double product(const struct follow *w, const double *a, const double *b_h, const double *b)
+{
+  double sum = -dea_solid_dot(w->s, a, b_h);
+  for (size_t i = 0; i < w->pressures; i++) {
+    sum += w->weight[i] * a[w->dofs + i] * b[w->dofs + i];
+  }
+  return sum;
+}
+
+/* Puts what changed since the iteration before among what is remembered. */
+static void remember(struct follow *w)
+{
+  int last = w->depth < DEPTH ? w->depth++ : DEPTH - 1;
+  double *dx = w->dx[last], *df = w->df[last], *dh = w->dh[last];
+  for (int i = last; i > 0; i--) {
+    w->dx[i] = w->dx[i - 1];
+    w->df[i] = w->df[i - 1];
+    w->dh[i] = w->dh[i - 1];
+  }
+  w->dx[0] = dx;
+  w->df[0] = df;
+  w->dh[0] = dh;
+  for (size_t i = 0; i < w->count; i++) {
+    dx[i] = w->x[i] - w->x_old[i];
+    df[i] = w->f[i] - w->f_old[i];
+  }
+  for (size_t i = 0; i < w->dofs; i++) {
+    dh[i] = w->h[i] - w->h_old[i];
+  }
+}
+
+/* share [depth] that makes the size of f - sum of share df least; how many of the differences, the
+ * newest ones, say enough for that. */
+static int mix(const struct follow *w, double *share)
+{
+  double scale[DEPTH], A[DEPTH * DEPTH];
+  for (int n = w->depth; n > 0; n--) {
+    bool fine = true;
+    for (int i = 0; i < n; i++) {
+      scale[i] = sqrt(fmax(product(w, w->df[i], w->dh[i], w->df[i]), 0));
+      fine = fine && scale[i] > 0;
+    }
+    for (int i = 0; i < n && fine; i++) {
+      share[i] = product(w, w->df[i], w->h, w->f) / scale[i];
+      for (int j = 0; j < n; j++) {
+        A[i * n + j] =
+            0.5 *
+            (product(w, w->df[i], w->dh[j], w->df[j]) + product(w, w->df[j], w->dh[i], w->df[i])) /
+            (scale[i] * scale[j]);
+      }
+      A[i * n + i] += 1e-10;
+    }
+    if (fine && LAPACKE_dposv(LAPACK_ROW_MAJOR, 'U', n, 1, A, n, share, 1) == 0) {
+      for (int i = 0; i < n; i++) {
+        share[i] /= scale[i];
+      }
+      return n;
+    }
+  }
+  return 0;
+}
+
+/* The next x from x, f and what is remembered. */
+static void advance(struct follow *w)
+{
+  double share[DEPTH];
+  int n = mix(w, share);
+  memcpy(w->x_old, w->x, w->count * sizeof *w->x);
+  memcpy(w->f_old, w->f, w->count * sizeof *w->f);
+  memcpy(w->h_old, w->h, w->dofs * sizeof *w->h);
+  for (size_t i = 0; i < w->count; i++) {
+    w->x[i] += w->f[i];
+    for (int k = 0; k < n; k++) {
+      w->x[i] -= share[k] * (w->dx[k][i] + w->df[k][i]);
+    }
+  }
+}
+
+/* ---- the slope of theta at the start ---- */
+
+/* b and L of dea_element_type.constraint of every own element. */
+static dea_status find_constraints(struct dea_context *ctx, struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t most = (size_t)p->elements.pressures;
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
+    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
+    const struct dea_element *element = dea_solid_element(s, e);
+    struct dea_solid_element_place place;
+    struct dea_element_input in;
+    double *L = w->L + k * most * most;
+    if (element->type->constraint != NULL) {
+      dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+      status = element->type->constraint(element, &in, w->b + k * most * DEA_HEX_DOFS_MAX, L);
+      for (size_t m = 0; m < count; m++) {
+        for (size_t c = 0; c <= m && kappa_of(w, e * most) > 0; c++) {
+          w->weight[e * most + m] +=
+              L[m * count + c] * L[m * count + c] * compliance / kappa_of(w, e * most);
+        }
+      }
+    }
+  }
+  status = dea_solid_agree(ctx, status);
+  dea_solid_sum(w->weight, w->pressures);
+  return status;
+}
+
+/* h += kappa B0 theta. */
+static void add_pressures(struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t most = (size_t)p->elements.pressures;
+  double *sum = s->work.trial;
+  memset(sum, 0, w->dofs * sizeof *sum);
+  for (size_t k = 0; k < p->own_count && most > 0; k++) {
+    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
+    const double *b = w->b + k * most * DEA_HEX_DOFS_MAX, *L = w->L + k * most * most;
+    const int *nodes;
+    size_t dofs = 3 * (size_t)dea_solid_nodes(s, e, &nodes);
+    for (size_t m = 0; m < count; m++, b += dofs) {
+      double push = 0;
+      for (size_t c = m; c < count; c++) {
+        push += kappa_of(w, e * most) * L[c * count + m] * w->theta[e * most + c];
+      }
+      for (size_t i = 0; i < dofs; i++) {
+        sum[3 * (size_t)nodes[i / 3] + i % 3] += push * b[i];
+      }
+    }
+  }
+  dea_solid_sum(sum, w->dofs);
+  dea_solid_bodies_collect(s, sum);
+  dea_solid_release_held(s, sum);
+  for (size_t i = 0; i < w->dofs; i++) {
+    w->h[i] += sum[i];
+  }
+}
+
+/* dq = kappa (theta + L^-T b du) into f. */
+static void find_pressures(struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  const struct dea_solid_problem *p = &s->problem;
+  size_t most = (size_t)p->elements.pressures;
+  double du[DEA_HEX_DOFS_MAX], *dq = w->f + w->dofs;
+  memset(dq, 0, w->pressures * sizeof *dq);
+  for (size_t k = 0; k < p->own_count && most > 0; k++) {
+    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
+    const double *b = w->b + k * most * DEA_HEX_DOFS_MAX, *L = w->L + k * most * most;
+    size_t dofs = 3 * (size_t)dea_solid_gather(s, e, w->f, du);
+    double *grown = dq + e * most;
+    for (size_t m = 0; m < count; m++) {
+      for (size_t i = 0; i < dofs; i++) {
+        grown[m] += b[m * dofs + i] * du[i];
+      }
+    }
+    for (size_t m = count; m-- > 0 && L[0] > 0;) {
+      for (size_t c = m + 1; c < count; c++) {
+        grown[m] -= L[c * count + m] * grown[c];
+      }
+      grown[m] /= L[m * count + m];
+    }
+    for (size_t m = 0; m < count; m++) {
+      grown[m] = L[0] > 0 ? kappa_of(w, e * most) * (w->theta[e * most + m] + grown[m]) : 0;
+    }
+  }
+  dea_solid_sum(dq, w->pressures);
+}
+
+/* ---- one step ---- */
+
+/* r at u and q, both x; theta. */
+static dea_status find_forces(struct dea_context *ctx, struct follow *w)
+{
+  static const double none = 0x1p-100; // of kappa
+  struct dea_solid *s = w->s;
+  set(w, w->x);
+  dea_solid_scale_bulk_modulus(s, none);
+  dea_status status =
+      dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &w->report->energy_J);
+  dea_solid_scale_bulk_modulus(s, 1 / none);
+  if (status == DEA_OK) {
+    memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
+    memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);
+  }
+  return status;
+}
+
+/* f at x, where h is r and theta is known. */
+static dea_status find_step(struct dea_context *ctx, struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  memcpy(s->state.u, w->first, w->dofs * sizeof *w->first); // where bodies turned to at the start
+  dea_solid_bodies_prepare(s);
+  add_pressures(w);
+  for (size_t i = 0; i < w->dofs; i++) {
+    s->work.trial[i] = -w->h[i];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, w->f));
+  find_pressures(w);
+  w->size = sqrt(fmax(product(w, w->f, w->h, w->f), 0));
+  return DEA_OK;
+}
+
+/* Whether iteration k and those that it promises are worth their while. */
+static bool pays(const struct follow *w, int k)
+{
+  const struct dea_solid_settings *o = &w->s->settings;
+  double size = w->size / w->size_first; // after k steps
+  return k == 0 ||
+         (size < o->follow_rate && (k < 2 || k * log(w->accuracy) / log(size) < o->follow_steps));
+}
+
+/* One iteration: a step, which is the last one where *there, or none where they do not pay (*ends).
+ */
+static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool *there, bool *ends)
+{
+  struct dea_solid *s = w->s;
+  const struct dea_solid_settings *o = &s->settings;
+  DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+  DEA_TRY(ctx, find_forces(ctx, w));
+  w->report->residual = sqrt(dea_solid_dot(s, w->h, w->h)) /
+                        (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  w->report->theta_max = dea_solid_theta_max(s);
+  DEA_TRY(ctx, find_step(ctx, w));
+  w->size_first = k == 0 ? w->size : w->size_first;
+  bool small = k > 0 && w->size < w->accuracy * w->size_first;
+  *there = small && (!w->equilibrium ||
+                     (w->report->theta_max < o->theta && w->report->residual < o->residual));
+  *ends = !*there && !pays(w, k);
+  if (!*ends) {
+    if (k > 0) {
+      remember(w);
+    }
+    advance(w);
+    w->report->corrections++;
+  }
+  return DEA_OK;
+}
+
+/* Multipliers with which the pressures at x are q. */
+static void give_back(struct follow *w)
+{
+  set(w, w->x);
+  for (size_t i = 0; i < w->pressures; i++) {
+    w->s->state.multiplier[i] -= kappa_of(w, i) / w->stiff * w->theta[i];
+  }
+}
+
+/* u, pressures and theta at the start. */
+static dea_status begin(struct dea_context *ctx, struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  double energy;
+  DEA_TRY(ctx, allocate(w));
+  get(w, w->keep);
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
+  memcpy(w->first, w->keep, w->count * sizeof *w->first);
+  for (size_t i = 0; i < w->pressures; i++) {
+    w->first[w->dofs + i] += kappa_of(w, i) / w->stiff * s->state.theta[i];
+  }
+  memcpy(w->x, w->first, w->count * sizeof *w->x);
+  return find_constraints(ctx, w);
+}
+
+/* Iterations until *there; otherwise the solid is as it was. Fails only where no shorter step would
+ * help. */
+static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *there)
+{
+  bool ends = false;
+  dea_status status = begin(ctx, w);
+  if (status != DEA_OK) {
+    return status;
+  }
+  for (int k = 0; k <= w->s->settings.follow_steps && status == DEA_OK && !*there && !ends; k++) {
+    status = iterate(ctx, w, k, there, &ends);
+  }
+  if (*there) {
+    give_back(w);
+  } else {
+    set(w, w->keep);
+  }
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+/* A step with the new factor and the force that was found along with it: Newton's own. */
+static dea_status take_last_step(struct dea_context *ctx, struct follow *w)
+{
+  struct dea_solid *s = w->s;
+  bool stiff = s->found.stiff_factor_fits;
+  for (size_t i = 0; i < w->dofs; i++) {
+    s->work.trial[i] = -s->work.g[i];
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  if (stiff) {
+    dea_solid_raise_bulk_modulus(s);
+  }
+  dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, 1, false, true);
+  if (stiff) {
+    dea_solid_restore_bulk_modulus_at_pressure(s);
+  }
+  for (size_t i = 0; i < w->dofs && status == DEA_OK; i++) {
+    s->state.u[i] += s->work.step[i];
+  }
+  return status;
+}
+
+/* Unstable modes where the solid has come to; it goes back where there are some. */
+static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
+{
+  struct dea_solid *s = w->s;
+  dea_status status = dea_solid_count_unstable(ctx, s, false, w->report);
+  if (status == DEA_OK && w->report->unstable_modes == 0) {
+    status = take_last_step(ctx, w);
+  }
+  *there = status == DEA_OK && w->report->unstable_modes == 0;
+  if (!*there) {
+    set(w, w->keep);
+    s->found.factor_fits = s->found.stiff_factor_fits = false;
+  }
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
+                            struct dea_solid_report *report, bool *there)
+{
+  struct follow w = {.memory = {.ctx = ctx},
+                     .s = s,
+                     .accuracy =
+                         on_the_way ? s->settings.follow_on_the_way : s->settings.follow_accuracy,
+                     .equilibrium = !on_the_way,
+                     .report = report,
+                     .dofs = s->problem.dofs,
+                     .pressures = dea_solid_pressure_count(s),
+                     .count = s->problem.dofs + dea_solid_pressure_count(s),
+                     .stiff = s->found.factor_fits ? 1 : s->settings.bulk_stiff};
+  *there = false;
+  if (s->problem.field != NULL || !(s->found.factor_fits || s->found.stiff_factor_fits)) {
+    return DEA_OK;
+  }
+  s->found.predicted_fits = false;
+  dea_status status = iterate_all(ctx, &w, there);
+  if (status == DEA_OK && *there) {
+    status = count(ctx, &w, there);
+  }
+  dea_arena_free(&w.memory);
+  return status;
+}
