@@ -191,6 +191,12 @@ static const struct {
     {SHAPES,
      THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [1 mm, 1 mm], [1 mm, 2]]}]",
      "'2' has no unit", "2]]"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: ring, inner_radius: 3 mm, outer_radius: 2 mm}]",
+     "the ring's inner radius is not below the outer one", "a, kind"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: array, of: far, count_x: 0}]",
+     "count_x must be at least 1, not '0'", "0}]"},
+    {SHAPES, THREE_SHAPES ", {name: far, kind: circle, radius: 1 mm}]",
+     "the name 'far' is taken by the shape in line 2", "far, kind: circle, radius: 1"},
     {SHAPES, THREE_SHAPES ", {name: c, kind: intersection, of: [film, far]}]",
      "nothing is left of the shape 'c'", "c, kind"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: drawing, file: no.dxf, layer: CUT}]", "no.dxf",
@@ -202,6 +208,9 @@ static const struct {
      "electrodes of the channels 'one' and 'two' lie on each other on one face of 'upper', about "
      "(0, 0) mm: 240 mm2",
      "film, channel: two"},
+    {PLIES, "plies: [{name: lower, shape: film, thickness: 1 um}]", "lacks 'material'", NULL},
+    {PLIES, "plies: [{name: lower, shape: film, material: film, thickness: 1 kV}]",
+     "'1 kV' is a voltage, but a length is due", "1 kV"},
     {ELECTRODES, "electrodes: [{ply: lower, side: top, shape: far, channel: drive}]",
      "the electrode 'drive' does not lie on its ply 'lower' at all", "far"},
     {PLIES,
@@ -277,6 +286,41 @@ static void test_one_error_each(void **state)
       }
     }
   }
+}
+
+/* Each electrode that is too large is said at its shape. */
+static void test_electrodes_beyond_their_film(void **state)
+{
+  (void)state;
+  dea_finding_clear(ctx);
+  const char *text = write_design(SHAPES, "shapes: [{name: film, kind: circle, radius: 20 mm}, "
+                                          "{name: active, kind: rectangle, width: 50 mm, "
+                                          "height: 8 mm}]");
+  assert_int_equal(read_and_build(ctx, text, NULL, 0, &design, &device), DEA_E_DESIGN);
+  drop();
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 2);
+  const struct dea_finding *finding = find_error(ctx, "'drive' reaches beyond its ply 'lower'");
+  assert_non_null(finding);
+  assert_int_equal(finding->location.line, ELECTRODES);
+  assert_int_equal(finding->location.column,
+                   strstr(usual[ELECTRODES], "active, channel: drive") - usual[ELECTRODES] + 1);
+}
+
+/* What is not held is said before anything is computed. */
+static void test_parts_that_nothing_holds(void **state)
+{
+  (void)state;
+  dea_finding_clear(ctx);
+  const char *text =
+      write_design(SHAPES, "shapes: [{name: one, kind: rectangle, width: 40 mm, height: 10 mm}, "
+                           "{name: two, kind: circle, x: 90 mm, radius: 2 mm}, "
+                           "{name: film, kind: union, of: [one, two]}, "
+                           "{name: active, kind: rectangle, width: 30 mm, height: 8 mm}]");
+  const struct dea_override held = {"supports", "[{edge: one}]"};
+  assert_int_equal(read_and_build(ctx, text, &held, 1, &design, &device), DEA_E_DESIGN);
+  drop();
+  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 1);
+  assert_non_null(find_error(ctx, "nothing holds the part of the device at (92, 0) mm"));
 }
 
 /* Keys of the general form in a file of the short one. */
@@ -360,6 +404,8 @@ int main(void)
       TEST(test_bodies_springs_monitors),
       TEST(test_shapes_of_shapes),
       TEST(test_one_error_each),
+      TEST(test_electrodes_beyond_their_film),
+      TEST(test_parts_that_nothing_holds),
       TEST(test_short_form_says_where_parts_belong),
       TEST(test_override_by_name),
       TEST(test_failing_memory),

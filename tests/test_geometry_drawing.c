@@ -127,6 +127,7 @@ static void expect_fault(const char *entities, const char *layer, size_t line, c
              message);
   }
   assert_int_equal(finding->location.line, line);
+  assert_true(finding->location.column > 0);
   assert_int_equal(region.contour_count, 0);
   dea_drawing_destroy(drawing);
 }

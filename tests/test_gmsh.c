@@ -146,8 +146,11 @@ static void expect(const char *script, const char *message)
   assert_int_equal(chmod(name, 0700), 0);
   other.program = name;
   other.time_limit_s = 1;
+  assert_int_equal(mkdir(in_folder("work"), 0700), 0);
+  assert_int_equal(setenv("TMPDIR", in_folder("work"), 1), 0);
   assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_TOOL);
   assert_null(mesh);
+  assert_int_equal(rmdir(in_folder("work")), 0); // nothing is left in it
   if (strstr(dea_context_message(ctx), message) == NULL) {
     fail_msg("'%s' should hold '%s'", dea_context_message(ctx), message);
   }
@@ -167,7 +170,7 @@ static void test_faults_of_gmsh(void **state)
   expect("kill -SEGV $$", "gmsh crashed (signal 11)");
   expect("echo meshing; exec sleep 60",
          "gmsh took more than 1 s and was ended; it said last:\nmeshing");
-  expect("echo done", "gmsh wrote no mesh; it said last:\ndone");
+  expect("echo done; echo something >other.tmp", "gmsh wrote no mesh; it said last:\ndone");
   expect("echo hello >mesh.msh", "gmsh made a mesh that cannot be used: this is no .msh file");
   other.size_m = 0;
   assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_ARGUMENT);

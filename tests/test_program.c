@@ -1,11 +1,15 @@
 /* Other programs as processes: what they say, how they end, how long they may take. */
+#define _POSIX_C_SOURCE 200809L // kill, nanosleep
 #include "base/clock.h"
 #include "base/program.h"
 #include "testing.h"
 
 #include <errno.h>
 #include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "context_fixture.h"
 
@@ -64,6 +68,31 @@ static void test_ended_by_us(void **state)
   assert_true(dea_clock_s() - start_s < 50); // not those of the programs
 }
 
+/* What a program starts ends with it. */
+static void test_ended_with_its_own(void **state)
+{
+  (void)state;
+  assert_int_equal(shell("sleep 60 & echo $!; wait", true, 0.5), DEA_PROGRAM_TOO_LONG);
+  pid_t child = (pid_t)strtol(said, NULL, 10);
+  assert_true(child > 1);
+  for (int k = 0; k < 200 && kill(child, 0) == 0; k++) { // until whoever reaps orphans did
+    char path[64], state_of = 'Z';
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)child);
+    FILE *stat = fopen(path, "r");
+    if (stat != NULL) {
+      int found = fscanf(stat, "%*d %*s %c", &state_of);
+      fclose(stat);
+      if (found == 1 && state_of == 'Z') {
+        return;
+      }
+    }
+    nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+    if (k == 199) {
+      fail_msg("%d still runs", (int)child);
+    }
+  }
+}
+
 static void test_missing(void **state)
 {
   (void)state;
@@ -77,6 +106,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ends), cmocka_unit_test(test_last_words),
                                      cmocka_unit_test(test_ended_by_us),
+                                     cmocka_unit_test(test_ended_with_its_own),
                                      cmocka_unit_test(test_missing)};
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -37,9 +37,15 @@ int dea_program_start(char *const argv[], const char *directory, bool all,
     posix_spawn_file_actions_destroy(&actions);
     return reason;
   }
-  reason = actions_make(&actions, directory, ends[1], all)
-               ? posix_spawnp(&program->process, argv[0], &actions, NULL, argv, environ)
-               : ENOMEM;
+  posix_spawnattr_t group; // its own: what it starts ends with it
+  reason = posix_spawnattr_init(&group);
+  if (reason == 0) {
+    reason = actions_make(&actions, directory, ends[1], all) &&
+                     posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP) == 0
+                 ? posix_spawnp(&program->process, argv[0], &actions, &group, argv, environ)
+                 : ENOMEM;
+    posix_spawnattr_destroy(&group);
+  }
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   if (reason != 0) {
@@ -88,7 +94,7 @@ enum dea_program_end dea_program_wait(const struct dea_context *ctx,
       end = DEA_PROGRAM_TOO_LONG;
     }
     if (end != DEA_PROGRAM_DONE) {
-      kill(program->process, SIGKILL);
+      kill(-program->process, SIGKILL);
       break;
     }
   }

@@ -15,23 +15,28 @@ static const struct dea_region *region_of(const struct dea_layout *l, size_t num
 }
 
 /* What two regions have in common; false where it cannot be told. out: to be freed. */
-static bool common_of(const struct dea_layout *l, size_t a, size_t b, struct dea_region *out)
+static bool common_of_regions(struct dea_context *ctx, const struct dea_region *a,
+                              const struct dea_region *b, struct dea_region *out)
 {
   double one[4], two[4];
-  *out = (struct dea_region){.ctx = l->ctx};
-  dea_region_box_m(region_of(l, a), one);
-  dea_region_box_m(region_of(l, b), two);
+  *out = (struct dea_region){.ctx = ctx};
+  dea_region_box_m(a, one);
+  dea_region_box_m(b, two);
   if (one[0] >= two[2] || two[0] >= one[2] || one[1] >= two[3] || two[1] >= one[3]) {
     return true;
   }
-  size_t errors = dea_finding_trial_begin(l->ctx);
-  dea_status status =
-      dea_region_combine(l->ctx, DEA_INTERSECTION, region_of(l, a), region_of(l, b), out);
-  dea_finding_trial_end(l->ctx, errors);
+  size_t errors = dea_finding_trial_begin(ctx);
+  dea_status status = dea_region_combine(ctx, DEA_INTERSECTION, a, b, out);
+  dea_finding_trial_end(ctx, errors);
   if (status != DEA_OK && status != DEA_E_MEMORY) {
-    dea_context_clear(l->ctx);
+    dea_context_clear(ctx);
   }
   return status == DEA_OK;
+}
+
+static bool common_of(const struct dea_layout *l, size_t a, size_t b, struct dea_region *out)
+{
+  return common_of_regions(l->ctx, region_of(l, a), region_of(l, b), out);
 }
 
 double dea_layout_overlap_m2(const struct dea_layout *l, size_t a, size_t b)
@@ -216,7 +221,6 @@ static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *
 
 static dea_status check_supports(struct dea_context *ctx, const struct dea_layout *l)
 {
-  bool held = l->support_count > 0;
   for (size_t i = 0; i < l->support_count; i++) {
     const struct dea_layout_support *s = &l->supports[i];
     bool there = s->edge ? edge_is_there(l, s->region, s->within)
@@ -231,13 +235,118 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_layou
                                    s->within != DEA_LAYOUT_NONE ? "'" : ""));
     }
   }
+  return DEA_OK;
+}
+
+/* All plies as one region; empty where that cannot be told. */
+static dea_status unite_plies(struct dea_context *ctx, const struct dea_layout *l,
+                              struct dea_region *out)
+{
+  struct dea_region copies = {.ctx = ctx};
+  const struct dea_motion none = dea_motion_translation(0, 0);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    bool again = false;
+    for (size_t k = 0; k < i; k++) {
+      again = again || l->plies[k].region == l->plies[i].region;
+    }
+    if (!again) {
+      dea_region_add_moved(&copies, region_of(l, l->plies[i].region), &none);
+    }
+  }
+  dea_status status = dea_region_status(&copies);
+  if (status == DEA_OK) {
+    size_t errors = dea_finding_trial_begin(ctx);
+    status = dea_region_combine(ctx, DEA_UNION, &copies, NULL, out);
+    dea_finding_trial_end(ctx, errors);
+    if (status != DEA_OK && status != DEA_E_MEMORY) {
+      dea_context_clear(ctx);
+      status = DEA_OK;
+    }
+  }
+  dea_region_free(&copies);
+  return status;
+}
+
+/* Whether some of a support's edge lies on a part of the device. */
+static bool edge_meets(const struct dea_layout *l, const struct dea_layout_support *support,
+                       const struct dea_region *part)
+{
+  const struct dea_region *r = region_of(l, support->region);
+  double near = 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r);
+  for (size_t c = 0; c < r->contour_count; c++) {
+    const struct dea_contour contour = dea_region_contour(r, c);
+    for (size_t i = 0; i < SAMPLES * dea_contour_pieces(&contour); i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i / SAMPLES);
+      double at[2];
+      dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
+      if ((support->within == DEA_LAYOUT_NONE || dea_layout_holds(l, support->within, at)) &&
+          (dea_region_inside(part, at[0], at[1]) || dea_region_distance_m(part, at) <= near)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* Whether a region and a part of the device have an area in common, or it cannot be told. */
+static bool region_meets(const struct dea_layout *l, size_t region, const struct dea_region *part)
+{
+  struct dea_region common;
+  bool meets =
+      !common_of_regions(l->ctx, region_of(l, region), part, &common) || common.contour_count > 0;
+  dea_region_free(&common);
+  return meets;
+}
+
+/* Whether a part of the device has a support, or a body: that body may be tied to another part, or
+ * have a spring. Whether they hold every motion of it, the model says. */
+static bool part_is_held(const struct dea_layout *l, const struct dea_region *part)
+{
+  bool held = false;
+  for (size_t i = 0; i < l->support_count && !held; i++) {
+    const struct dea_layout_support *s = &l->supports[i];
+    held = s->edge ? edge_meets(l, s, part) : region_meets(l, s->region, part);
+  }
+  for (size_t i = 0; i < l->body_count && !held; i++) {
+    held = region_meets(l, l->bodies[i].region, part);
+  }
+  return held;
+}
+
+/* Each part of the device that hangs together is held somewhere; of a device without errors. One
+ * that nothing holds at all can still be made. */
+static dea_status check_held(struct dea_context *ctx, const struct dea_layout *l)
+{
+  struct dea_region all = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  bool held = l->support_count > 0;
   for (size_t i = 0; i < l->body_count; i++) {
     held |= l->bodies[i].free != 63;
   }
-  return held ? DEA_OK
-              : dea_finding_add(ctx, DEA_WARNING, l->plies[0].location,
-                                "nothing holds the device: it has neither a support nor a body "
-                                "that may not do everything");
+  if (!held) {
+    return dea_finding_add(ctx, DEA_WARNING, l->plies[0].location,
+                           "nothing holds the device: it has neither a support nor a body that "
+                           "may not do everything");
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) == 0) {
+    status = unite_plies(ctx, l, &all);
+  }
+  for (size_t c = 0; c < all.contour_count && status == DEA_OK; c++) {
+    const struct dea_contour outline = dea_region_contour(&all, c);
+    struct dea_region part = {.ctx = ctx};
+    dea_region_add(&part, outline.vertex, outline.count);
+    status = dea_region_status(&part);
+    if (status == DEA_OK && dea_contour_area_m2(&outline) > 0 && !part_is_held(l, &part)) {
+      status = dea_finding_add(ctx, DEA_ERROR, l->plies[0].location,
+                               "nothing holds the part of the device at (%.4g, %.4g) mm: it has "
+                               "neither a support nor a body",
+                               1e3 * outline.vertex[0].x_m, 1e3 * outline.vertex[0].y_m);
+      c = all.contour_count - 1; // one is enough
+    }
+    dea_region_free(&part);
+  }
+  dea_region_free(&all);
+  return status;
 }
 
 static dea_status check_bodies(struct dea_context *ctx, const struct dea_layout *l)
@@ -302,8 +411,8 @@ static dea_status check_monitors(struct dea_context *ctx, const struct dea_layou
 dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout)
 {
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
-  static const check_fn checks[] = {check_electrodes, check_plies,     check_supports,
-                                    check_bodies,     check_pressures, check_monitors};
+  static const check_fn checks[] = {check_electrodes, check_plies,     check_supports, check_bodies,
+                                    check_held,       check_pressures, check_monitors};
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));
   }

@@ -11,7 +11,7 @@
 static const double pi = 3.14159265358979323846;
 
 /* Of a drawing: more than any mesh could follow. */
-enum { VERTICES_MAX = 400000 };
+enum { VERTICES_MAX = 100000 };
 
 enum state { NEW, BEING_MADE, MADE, WRONG };
 

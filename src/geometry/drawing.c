@@ -48,7 +48,7 @@ dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, con
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  const struct dea_location location = {drawing->file, line, 0};
+  const struct dea_location location = {drawing->file, line, line > 0};
   DEA_TRY(drawing->ctx, dea_finding_add(drawing->ctx, DEA_ERROR, location, "%s", text));
   return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
 }
@@ -109,7 +109,7 @@ dea_status dea_drawing_add_vertex(struct dea_drawing *drawing, double x_m, doubl
   DEA_TRY(d->ctx,
           make_room(d->ctx, &vertices, d->vertex_count, &d->vertex_room, sizeof *d->vertex));
   d->vertex = vertices;
-  d->vertex[d->vertex_count++] = (struct dea_vertex){x_m, y_m, bulge, {d->file, line, 0}};
+  d->vertex[d->vertex_count++] = (struct dea_vertex){x_m, y_m, bulge, {d->file, line, line > 0}};
   return DEA_OK;
 }
 
@@ -138,7 +138,7 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
                             size_t line)
 {
   struct dea_drawing *d = drawing;
-  struct dea_drawing_skipped entry = {"", layer, 1, {d->file, line, 0}};
+  struct dea_drawing_skipped entry = {"", layer, 1, {d->file, line, line > 0}};
   snprintf(entry.kind, sizeof entry.kind, "%s", kind);
   for (size_t i = 0; i < d->skipped_count; i++) {
     bool full = d->skipped_count == DEA_DRAWING_LAYERS_MAX && i + 1 == d->skipped_count;

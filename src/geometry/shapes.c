@@ -42,17 +42,18 @@ static const struct dea_shape_parameter ring[] = {
     {"inner_radius", DEA_SHAPE_LENGTH, false, 0, "of the hole"},
     {"outer_radius", DEA_SHAPE_LENGTH, false, 0, "of the outline"}};
 
+/* What is wrong with the numbers of a shape: no place in the plane is. */
 static dea_status fault(const struct dea_region *region, struct dea_location location,
-                        const double *at, const char *what)
+                        const char *what)
 {
-  return dea_region_fault(region->ctx, location, at[0], at[1], what);
+  return dea_region_fault(region->ctx, location, NAN, NAN, what);
 }
 
 ADD(ring)
 {
   NO_POINTS;
   if (value[2] >= value[3]) {
-    return fault(region, location, value, "the ring's inner radius is not below the outer one");
+    return fault(region, location, "the ring's inner radius is not below the outer one");
   }
   dea_region_add_circle(region, value[0], value[1], value[3], false, location);
   dea_region_add_circle(region, value[0], value[1], value[2], true, location);
@@ -86,10 +87,10 @@ static dea_status add_ring_sector(struct dea_region *region, const double *centr
 {
   double sweep = end - start;
   if (inner >= outer) {
-    return fault(region, location, centre, "the sector's inner radius is not below the outer one");
+    return fault(region, location, "the sector's inner radius is not below the outer one");
   }
   if (!(sweep > 0 && sweep < 2 * pi)) {
-    return fault(region, location, centre,
+    return fault(region, location,
                  "the sector does not end within a turn counter-clockwise of its start");
   }
   struct dea_vertex v[6];
@@ -154,7 +155,7 @@ ADD(rounded_rectangle)
   NO_POINTS;
   double a = 0.5 * value[2], b = 0.5 * value[3], r = value[4], bulge = tan(pi / 8);
   if (r > fmin(a, b)) {
-    return fault(region, location, value,
+    return fault(region, location,
                  "the corners' radius is larger than half of the shorter side of the rectangle");
   }
   double x = value[0], y = value[1], in = a - r, up = b - r; // 0 where two arcs meet
@@ -211,7 +212,7 @@ ADD(stadium)
   NO_POINTS;
   double half = 0.5 * (value[2] - value[3]), r = 0.5 * value[3];
   if (half <= 0) {
-    return fault(region, location, value, "the stadium is not longer than wide");
+    return fault(region, location, "the stadium is not longer than wide");
   }
   double c = cos(value[4]), s = sin(value[4]);
   static const int along[4] = {-1, 1, 1, -1}, across[4] = {-1, -1, 1, 1};
@@ -237,7 +238,7 @@ ADD(arc_strip)
 {
   NO_POINTS;
   if (0.5 * value[3] >= value[2]) {
-    return fault(region, location, value, "the strip is wider than its arc's diameter");
+    return fault(region, location, "the strip is wider than its arc's diameter");
   }
   return add_ring_sector(region, value, value[2] - 0.5 * value[3], value[2] + 0.5 * value[3],
                          value[4], value[5], location);
@@ -268,19 +269,19 @@ dea_status dea_region_add_shape(struct dea_region *region, const struct dea_shap
     if (!good) {
       snprintf(what, sizeof what, "%s of the %s must be %s, not %g", p->name, type->name,
                p->unit == DEA_SHAPE_LENGTH ? "a length above 0" : "a number", full[i]);
-      return fault(region, location, full, what);
+      return fault(region, location, what);
     }
   }
   for (size_t i = 0; i < point_count; i++) {
     if (!isfinite(point_m[i][0]) || !isfinite(point_m[i][1])) {
       snprintf(what, sizeof what, "point %zu of the %s is no number", i + 1, type->name);
-      return fault(region, location, point_m[i], what);
+      return fault(region, location, what);
     }
   }
   if (point_count < type->points_min) {
     snprintf(what, sizeof what, "the %s needs %zu points or more, not %zu", type->name,
              type->points_min, point_count);
-    return fault(region, location, point_count > 0 ? point_m[0] : full, what);
+    return fault(region, location, what);
   }
   return type->add(region, full, point_m, point_count, location);
 }

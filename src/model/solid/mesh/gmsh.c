@@ -11,6 +11,7 @@
 #include "base/write_file.h"
 #include "model/solid/mesh/msh_read.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -282,15 +283,16 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   return status;
 }
 
-static void remove_folder(struct dea_context *ctx, const char *folder)
+/* With all files in it: gmsh may have left some of its own. */
+static void remove_folder(const char *folder)
 {
-  static const char *const files[] = {"mesh.geo", "mesh.msh"};
-  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-    char *path = dea_path_join(ctx, folder, files[i]);
-    if (path != NULL) {
-      unlink(path);
+  DIR *all = opendir(folder);
+  if (all != NULL) {
+    const struct dirent *entry = readdir(all);
+    for (; entry != NULL; entry = readdir(all)) {
+      unlinkat(dirfd(all), entry->d_name, 0); // "." and "..": refused
     }
-    dea_free(ctx, path);
+    closedir(all);
   }
   rmdir(folder);
 }
@@ -317,7 +319,7 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
       status = DEA_E_DESIGN;
     }
   }
-  remove_folder(ctx, folder);
+  remove_folder(folder);
   if (status == DEA_E_DESIGN) {
     char said[400];
     snprintf(said, sizeof said, "%s", dea_context_message(ctx));
