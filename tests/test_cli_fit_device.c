@@ -137,13 +137,52 @@ static void test_folder(void **state)
   assert_contains(command_out, "1 of them, from 6 kV on, are left out: the model's film is slack");
 }
 
+/* A known film on the simulated bench, its recording reduced and fitted from another design: back
+ * within three standard uncertainties. verify/fit-round-trip.sh counts over many recordings. */
+static void test_round_trip(void **state)
+{
+  static const char film[] =
+      "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um, viscosity: none}\n"
+      "pre_stretch: %g\nframe: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+      "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
+      "compute: {models: [lumped], voltage: {to: 4 kV, step: 500 V}}\n";
+  char text[1000];
+  (void)state;
+  snprintf(text, sizeof text, film, 1.42);
+  command_write("true.yaml", text);
+  snprintf(text, sizeof text, film, 1.5);
+  command_write("meant.yaml", text);
+  command_write("protocol.yaml",
+                "dea-protocol: 1\ntitle: back\ndesign: true.yaml\nsequence:\n"
+                "  - label: a\n    waveform: {kind: staircase, from: 0 kV, to: 4 kV, step: 1 kV, "
+                "cycles: 4, frequency: 2 Hz, duty: 50 %}\n"
+                "amplifier: {name: a, output: ao0, gain: 1000 V/V, control: 10 V, "
+                "max_voltage: 10 kV, slew_limit: 700 V/us, current_limit: 10 mA}\nrate: 1 kHz\n"
+                "channels:\n  - {name: v, quantity: voltage, input: ai0, range: 10 V, per_volt: 1 "
+                "kV}\n  - {name: i, quantity: current, input: ai1, range: 10 V, per_volt: 1 mA}\n"
+                "  - {name: z, quantity: displacement, input: ai2, range: 10 V, per_volt: 1 mm}\n"
+                "safety: {largest_field: 320 V/um, field_reason: simulated, trip_current: 1 mA, "
+                "trip_time: 10 ms, voltage_error: 200 V, ramp: 5 kV/s}\n");
+  command_write("back.yaml", "dea_fit: 1\nname: back\ndesign: meant.yaml\nmodel: lumped\n"
+                             "parameters: [{name: pre_stretch, low: 1.2, high: 1.8}]\n"
+                             "curves: [{name: s, file: bench.reduced}]\n");
+  assert_int_equal(command_run("drive protocol.yaml --sim -o bench.h5 --force"), 0);
+  assert_int_equal(command_run("reduce bench.h5 -o bench.reduced --force"), 0);
+  assert_int_equal(command_run("fit back.yaml --force"), 0);
+  double value, std;
+  const char *row = strstr(command_out, "1.5 ->");
+  assert_non_null(row);
+  assert_int_equal(sscanf(row, "1.5 -> %lf +- %lf", &value, &std), 2);
+  assert_true(std < 0.002);
+  assert_close(value, 1.42, 0, 3 * std);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_parameters),
-      cmocka_unit_test(test_curves),
-      cmocka_unit_test(test_example),
-      cmocka_unit_test(test_folder),
+      cmocka_unit_test(test_parameters), cmocka_unit_test(test_curves),
+      cmocka_unit_test(test_example),    cmocka_unit_test(test_folder),
+      cmocka_unit_test(test_round_trip),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double slack_share =
-    0.002; // of the largest stress: below it a stretched strip is slack
+/* Of the stress on a straight line from rest to the largest one: below it a stretched strip is
+ * slack. */
+static const double slack_share = 0.002;
 static const double early_share = 0.02; // stress at rest above it: the zero is not where it seems
 
 struct work {
@@ -136,6 +137,15 @@ static double largest_stress(const struct work *w)
   return most;
 }
 
+static double largest_stretch(const struct work *w)
+{
+  double most = 1;
+  for (size_t i = 0; i < w->raw->rows; i++) {
+    most = fmax(most, w->out->stretch[i]);
+  }
+  return most;
+}
+
 static dea_status check_zero(struct work *w)
 {
   const double most = largest_stress(w);
@@ -226,7 +236,7 @@ static void keep_row(struct dea_fit_series *out, size_t to, size_t from)
 static dea_status cut(struct work *w)
 {
   struct dea_fit_series *out = w->out;
-  const double most = largest_stress(w);
+  const double most = largest_stress(w), reach = fmax(largest_stretch(w) - 1, 1e-9);
   size_t kept = 0;
   double from = INFINITY, to = 0;
   for (size_t i = 0; i < w->raw->rows; i++) {
@@ -234,7 +244,7 @@ static dea_status cut(struct work *w)
     const bool same = kept > 0 && l == out->stretch[kept - 1] && s == out->stress_Pa[kept - 1] &&
                       (out->time_s == NULL || out->time_s[i] == out->time_s[kept - 1]);
     const bool at_rest = fabs(l - 1) < 1e-9 && fabs(s) <= slack_share * most;
-    if (w->measured && l > 1 && s <= slack_share * most) {
+    if (w->measured && l > 1 && s <= slack_share * most * (l - 1) / reach) {
       out->slack++;
       from = fmin(from, l);
       to = fmax(to, l);

@@ -175,20 +175,32 @@ static dea_status read_table(struct reading *r, const char *path)
   return status;
 }
 
+/* Reads a table, or of a folder of dea reduce the one with the uncertainties of means where it has
+ * that. */
+static dea_status read_path(struct reading *r, const char *path)
+{
+  if (!dea_path_is_folder(path)) {
+    return read_table(r, path);
+  }
+  char *means = dea_path_join(r->ctx, path, "means.csv");
+  char *cycles = dea_path_join(r->ctx, path, "measurement.csv");
+  dea_status status = means != NULL && cycles != NULL
+                          ? read_table(r, dea_path_exists(means) ? means : cycles)
+                          : DEA_E_MEMORY;
+  dea_free(r->ctx, cycles);
+  dea_free(r->ctx, means);
+  return status;
+}
+
 dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit *fit)
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_status worst = DEA_OK;
   for (size_t k = 0; k < fit->file->curve_count; k++) { // all of them, for all that is wrong
     struct reading r = {.ctx = ctx, .fit = fit, .text = &fit->file->curves[k]};
-    char *path = dea_path_beside(ctx, fit->file->head.file, r.text->file.text), *inside = NULL;
-    if (path != NULL && dea_path_is_folder(path)) {
-      inside = dea_path_join(ctx, path, "measurement.csv");
-    }
-    const char *name = path != NULL && dea_path_is_folder(path) ? inside : path;
-    dea_status status = name != NULL ? read_table(&r, name) : DEA_E_MEMORY;
+    char *path = dea_path_beside(ctx, fit->file->head.file, r.text->file.text);
+    dea_status status = path != NULL ? read_path(&r, path) : DEA_E_MEMORY;
     worst = status != DEA_OK ? status : worst;
-    dea_free(ctx, inside);
     dea_free(ctx, path);
   }
   DEA_TRY(ctx, worst);

@@ -31,8 +31,9 @@ enum dea_reduced_kind dea_reduced_timed(const struct dea_reduction *reduction);
  */
 struct dea_reduced_row {
   double voltage_V;
-  size_t cycles, levels; // levels: how many from the first on
-  double mean[DEA_REDUCED_KINDS], std[DEA_REDUCED_KINDS];
+  size_t cycles, levels;                                  // levels: how many from the first on
+  double mean[DEA_REDUCED_KINDS], std[DEA_REDUCED_KINDS]; // std: of one cycle
+  double uncertainty[DEA_REDUCED_KINDS];                  // of the mean, NAN: not known
 };
 /* The row that begins with a level. */
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level);

@@ -215,11 +215,13 @@ struct gathered {
 };
 
 /* Mean, scatter and their uncertainty. Neighbours share a rest, so that their amplitudes are
- * correlated: each pair adds twice their covariance. */
+ * correlated: each pair adds twice their covariance. Where the noise is not known, a third of the
+ * scatter's variance: that of a rest and of an active part are then taken as the same, v, which
+ * gives the scatter 1.5 v and two neighbours the covariance v/4. */
 static void amplitude_of(const struct gathered *g, int kind, struct dea_voltage_level *level)
 {
   double sum = 0.0, squares = 0.0, noise = 0.0, shared = 0.0;
-  size_t n = 0;
+  size_t n = 0, pairs = 0;
   const struct dea_cycle_value *before = NULL;
   for (size_t i = 0; i < g->count; i++) {
     const struct dea_cycle_value *v = &g->cycles[i]->values[kind];
@@ -229,7 +231,10 @@ static void amplitude_of(const struct gathered *g, int kind, struct dea_voltage_
     }
     sum += v->amplitude;
     noise += v->uncertainty * v->uncertainty;
-    shared += before != NULL && g->cycles[i - 1] + 1 == g->cycles[i] ? 2.0 * before->shared : 0.0;
+    if (before != NULL && g->cycles[i - 1] + 1 == g->cycles[i]) {
+      shared += 2.0 * before->shared;
+      pairs++;
+    }
     before = v;
     n++;
   }
@@ -246,6 +251,9 @@ static void amplitude_of(const struct gathered *g, int kind, struct dea_voltage_
   level->noise[kind] = sqrt(noise / (double)n);
   // Of the sum; scatter of less than the noise is chance.
   double variance = n > 1 ? fmax(noise, squares * (double)n / (double)(n - 1)) : noise;
+  if (isnan(noise) && n > 1) {
+    shared = (double)pairs * squares / (double)(n - 1) / 3.0;
+  }
   level->uncertainty[kind] = sqrt(variance + shared) / (double)n;
 }
 

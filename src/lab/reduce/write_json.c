@@ -186,10 +186,10 @@ json_t *dea_reduction_json(struct dea_context *ctx, const struct dea_recording *
 
 dea_status dea_reduction_folder(struct dea_context *ctx, const char *directory, bool force)
 {
-  static const char *const names[] = {"reduction.json", "measurement.csv", "levels.csv",
-                                      "cycles.csv",     "discharges.csv",  "profiles.csv",
-                                      "history.csv",    "profiles",        "history",
-                                      "history_force",  "amplitude",       "cycles"};
+  static const char *const names[] = {
+      "reduction.json", "measurement.csv", "means.csv",   "levels.csv", "cycles.csv",
+      "discharges.csv", "profiles.csv",    "history.csv", "profiles",   "history",
+      "history_force",  "amplitude",       "cycles"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, names[i], force));
   }

@@ -47,6 +47,24 @@ enum dea_reduced_kind dea_reduced_timed(const struct dea_reduction *reduction)
   return dea_reduced_main(reduction);
 }
 
+/* Standard uncertainty of the mean of all cycles of some levels: that of each, and what their means
+ * differ by where that is more. */
+static double row_uncertainty(const struct dea_voltage_level *first, size_t levels, int kind,
+                              double mean)
+{
+  double n = 0.0, own = 0.0, between = 0.0;
+  for (size_t l = 0; l < levels; l++) {
+    const double m = (double)first[l].cycles, off = first[l].mean[kind] - mean;
+    if (!isnan(off)) {
+      n += m;
+      own += pow(m * first[l].uncertainty[kind], 2.0);
+      between += m * off * off;
+    }
+  }
+  between = levels > 1 ? between / n / (double)(levels - 1) : 0.0;
+  return sqrt(isnan(own) ? NAN : fmax(own / (n * n), between));
+}
+
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level)
 {
   const struct dea_voltage_level *first = &reduction->levels[level];
@@ -76,6 +94,7 @@ struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction,
     double scatter = n > 1.0 ? sqrt(squares / (n - 1.0)) : 0.0;
     double std = fmax(scatter, n > 0.0 ? sqrt(noise / n) : 0.0);
     row.std[kind] = std > 0.0 ? std : NAN;
+    row.uncertainty[kind] = row_uncertainty(first, row.levels, kind, row.mean[kind]);
   }
   return row;
 }
@@ -122,10 +141,9 @@ static void add_source(struct dea_text *text, const struct dea_recording *record
 static const enum dea_reduced_kind measured_centre[2] = {DEA_REDUCED_CENTRE,
                                                          DEA_REDUCED_DISPLACEMENT};
 
-static dea_status write_measurement(struct dea_context *ctx, const struct dea_recording *recording,
-                                    const struct dea_reduction *r, const char *directory)
+/* Kinds of the columns that `dea compare` and `dea fit` read. */
+static size_t measured_kinds(const struct dea_reduction *r, enum dea_reduced_kind kinds[3])
 {
-  enum dea_reduced_kind kinds[3];
   size_t count = 0;
   for (int k = 0; k < 2 && count == 0; k++) {
     if (dea_reduced_has(r, measured_centre[k])) {
@@ -138,19 +156,57 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
   if (dea_reduced_has(r, DEA_REDUCED_FORCE)) {
     kinds[count++] = DEA_REDUCED_FORCE;
   }
+  return count;
+}
+
+/* Mean square of the uncertainties of a kind over all rows; NAN where one is not known. */
+static double usual_variance(const struct dea_reduction *r, enum dea_reduced_kind kind)
+{
+  double sum = 0.0, count = 0.0;
+  for (size_t l = 0; l < r->level_count;) {
+    const struct dea_reduced_row row = dea_reduced_row_at(r, l);
+    if (!isnan(row.mean[kind])) {
+      sum += row.uncertainty[kind] * row.uncertainty[kind];
+      count += 1.0;
+    }
+    l += row.levels;
+  }
+  return sum / count;
+}
+
+/* Uncertainty of a mean. Few cycles tell their scatter badly (five to 35 %), which would give some
+ * rows far too much weight: theirs is drawn to that of all rows as if that were ten cycles more. */
+static double mean_uncertainty(const struct dea_reduced_row *row, enum dea_reduced_kind kind,
+                               double usual)
+{
+  const double own = row->cycles > 1 ? (double)row->cycles - 1.0 : 0.0, more = 10.0;
+  const double variance = row->uncertainty[kind] * row->uncertainty[kind];
+  return sqrt((own * variance + more * usual) / (own + more));
+}
+
+/* measurement.csv with the scatter of one cycle, means.csv with the uncertainty of the mean. */
+static dea_status write_measurement(struct dea_context *ctx, const struct dea_recording *recording,
+                                    const struct dea_reduction *r, bool means,
+                                    const char *directory)
+{
+  enum dea_reduced_kind kinds[3];
+  const size_t count = measured_kinds(r, kinds);
   if (count == 0) {
     return DEA_OK;
   }
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
+  double usual[3];
   add_source(&text, recording);
-  dea_text_add(&text,
-               "# std: of one cycle, the larger of the standard deviation from cycle to cycle "
-               "and of what the noise of its samples gives\nV (kV)");
+  dea_text_add(&text, means ? "# std: of the mean of all cycles; what is common to them (gain, "
+                              "position) is not in it\nV (kV)"
+                            : "# std: of one cycle, the larger of the standard deviation from "
+                              "cycle to cycle and of what the noise of its samples gives\nV (kV)");
   for (size_t k = 0; k < count; k++) {
     enum dea_reduced_kind named =
         kinds[k] == DEA_REDUCED_DISPLACEMENT ? DEA_REDUCED_CENTRE : kinds[k];
     const struct dea_reduced_meaning *m = &dea_reduced_meanings[named];
+    usual[k] = usual_variance(r, kinds[k]);
     add_title(&text, m->name, "", m->unit);
     add_title(&text, m->name, "std", m->unit);
   }
@@ -158,13 +214,14 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
     struct dea_reduced_row row = dea_reduced_row_at(r, l);
     dea_text_add(&text, "\n%.10g", 1e-3 * row.voltage_V);
     for (size_t k = 0; k < count; k++) {
+      const double std = means ? mean_uncertainty(&row, kinds[k], usual[k]) : row.std[kinds[k]];
       add(&text, dea_reduced_meanings[kinds[k]].factor * row.mean[kinds[k]]);
-      add(&text, dea_reduced_meanings[kinds[k]].factor * row.std[kinds[k]]);
+      add(&text, dea_reduced_meanings[kinds[k]].factor * std);
     }
     l += row.levels;
   }
   dea_text_add(&text, "\n");
-  return write(ctx, &text, before, directory, "measurement.csv");
+  return write(ctx, &text, before, directory, means ? "means.csv" : "measurement.csv");
 }
 
 static dea_status write_levels(struct dea_context *ctx, const struct dea_reduction *r,
@@ -338,7 +395,8 @@ dea_status dea_reduction_write_tables(struct dea_context *ctx,
                                       const struct dea_reduction *reduction, const char *directory)
 {
   if (reduction->level_count > 0) {
-    DEA_TRY(ctx, write_measurement(ctx, recording, reduction, directory));
+    DEA_TRY(ctx, write_measurement(ctx, recording, reduction, false, directory));
+    DEA_TRY(ctx, write_measurement(ctx, recording, reduction, true, directory));
     DEA_TRY(ctx, write_levels(ctx, reduction, directory));
     DEA_TRY(ctx, write_cycles(ctx, reduction, directory));
   }
