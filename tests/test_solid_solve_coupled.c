@@ -102,7 +102,8 @@ static void solve(struct body *body, double voltage_V)
   assert_true(body->report.residual < 1e-8 && body->report.theta_max < 1e-6);
 }
 
-/* Strain of the electrode at the same fields; what is left between the two is the fringe. */
+/* Strain of the electrode at the same fields; what is left between the two is the fringe as one
+ * element through the film has it (docs/theory/coupled.md). */
 static double strain(enum dea_solid_field_kind field, double h)
 {
   struct body body = disc(field, h, 2, 2 * h);
@@ -311,8 +312,10 @@ static double lift(enum dea_solid_field_kind field, bool axes)
   return out;
 }
 
-/* The tip is at the electrode's edge and feels the fringe: 4 % less lift here, 5.4 % on a finer
- * mesh, 3.0 % with half the thickness. The axes at the nodes of a mirror plane change nothing. */
+/* The tip is at the electrode's edge and feels the fringe: 4 % less lift on this mesh, which does
+ * not resolve it (docs/verification/coupled.md). The axes at the nodes of a mirror plane change
+ * nothing.
+ */
 static void test_fibres_loads_and_axes(void **state)
 {
   (void)state;

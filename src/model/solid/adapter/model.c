@@ -70,6 +70,14 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
                                whole ? "the whole disc"
                                      : "one sector of the actuator; it is blind to motions that "
                                        "break its symmetry (compute.solid.domain: disc)"));
+  if (model->actuator.settings.field == DEA_FIELD_COUPLED) {
+    DEA_TRY(ctx, dea_finding_add(
+                     ctx, DEA_WARNING, (struct dea_location){0},
+                     "model 3d: one element through the film does not resolve the coupled field at "
+                     "the electrode's edge: capacitance comes out up to 0.8 %% too large, and what "
+                     "a fibre tip there loses against V/h is not to be trusted, not even in its "
+                     "sign (docs/theory/coupled.md)"));
+  }
   if (p->membrane) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d with a membrane film is a preview: %s"
