@@ -341,6 +341,9 @@ static void test_pull_in_is_told(void **state)
     // below it there is nothing to tell; beyond it lies a state that is told to be one of several
     bool told = ((point.told >> DEA_FLAG_STATES) & 1) != 0;
     assert_true(found != DEA_OK || told == (V > pull_in_V));
+    if (found == DEA_OK && type->passed(model) != NULL) { // where it has gone past it
+      assert_close(type->passed(model)->point.voltage_V, pull_in_V, 1e-3, 0);
+    }
   }
   if (found != DEA_OK) {
     assert_int_equal(found, DEA_E_NO_EQUILIBRIUM);
@@ -349,6 +352,39 @@ static void test_pull_in_is_told(void **state)
     assert_close(type->limit(model)->point.voltage_V, pull_in_V, 1e-3, 0);
   }
   exact_type->destroy(ctx, exact);
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* The cone with the bistable spring of docs/verification/cone.md: a sweep leaps past both limit
+ * points, and tells where they are. */
+static void test_leaps_are_located(void **state)
+{
+  static const double at[] = {0, 0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3};
+  static const double force[] = {-0.1, -0.097, -0.096, -0.16, -0.33, -0.4, -0.43, -0.43};
+  static const struct {
+    double kV, passed_kV; // 0: none
+  } steps[] = {{3, 0}, {4, 0}, {4.5, 4.30488}, {3, 0}, {2, 0}, {1, 0}, {0, 0.69665}};
+  (void)state;
+  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  l->bodies[0].free = 4;
+  l->springs[l->spring_count++] = (struct dea_layout_spring){
+      .body = 0, .component = 2, .count = sizeof at / sizeof at[0], .at = at, .force = force};
+  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE, 1);
+  for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+    struct dea_load_point point;
+    assert_int_equal(type->solve(ctx, model, 1e3 * steps[i].kV, &point), DEA_OK);
+    const struct dea_event *passed = type->passed(model);
+    assert_true((passed != NULL) == (steps[i].passed_kV > 0));
+    if (passed != NULL) {
+      bool out = i < 3;
+      assert_int_equal(passed->kind, out ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
+      assert_close(1e-3 * passed->point.voltage_V, steps[i].passed_kV, out ? 5e-5 : 1e-3, 0);
+      assert_true(((point.told >> DEA_FLAG_STATES) & 1) != 0);
+    }
+  }
   type->destroy(ctx, model);
   dea_device_destroy(ctx, device);
 }
@@ -412,6 +448,7 @@ int main(void)
       cmocka_unit_test(test_stack),
       cmocka_unit_test(test_disc_of_both_models),
       cmocka_unit_test(test_pull_in_is_told),
+      cmocka_unit_test(test_leaps_are_located),
       cmocka_unit_test(test_saved_state),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

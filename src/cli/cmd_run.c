@@ -161,7 +161,11 @@ static void print_breakdown(const struct dea_load_point *p, const struct dea_bre
 static void print_event(const struct dea_event *event, const struct dea_breakdown *film)
 {
   const struct dea_load_point *p = &event->point;
-  printf("  at %.4g kV, electrode stretch %.5g: ", 1e-3 * p->voltage_V, p->electrode_stretch);
+  printf("  at %.4g kV", 1e-3 * p->voltage_V);
+  if (!isnan(p->electrode_stretch)) { // of a disc
+    printf(", electrode stretch %.5g", p->electrode_stretch);
+  }
+  fputs(": ", stdout);
   switch (event->kind) {
   case DEA_EVENT_PULL_IN:
     puts("pull-in");

@@ -98,6 +98,9 @@ struct dea_model_type {
   /* Where the last solve that failed came to an end, a limit point or a loss of tension; lent until
    * the next one. NULL: none was located, or the model does not look for one. */
   const struct dea_event *(*limit)(const struct dea_model *model);
+  /* A limit point that the last solve or move, which succeeded, has gone past to another state;
+   * lent until the next one. NULL: none is known, or the model does not look for one. */
+  const struct dea_event *(*passed)(const struct dea_model *model);
   /* The whole equilibrium path by arc-length from 0 V, through limit points; events (may be NULL)
    * are located to solver accuracy. Ends at the options' limits, at a law's domain or where the
    * path itself ends, with DEA_OK. NULL when the model has none. */

@@ -107,6 +107,11 @@ static const struct dea_event *limit(const struct dea_model *model)
   return model->type->limit != NULL ? model->type->limit(model->inner) : NULL;
 }
 
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return model->type->passed != NULL ? model->type->passed(model->inner) : NULL;
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -216,6 +221,7 @@ static const struct dea_model_type of_layouts = {
     .create = create,
     .destroy = destroy,
     .limit = limit,
+    .passed = passed,
     .solve = solve,
     .observe = observe,
     .move = move,
@@ -239,6 +245,7 @@ const struct dea_model_type dea_model_3d = {
     .destroy = destroy,
     .check = check,
     .limit = limit,
+    .passed = passed,
     .solve = solve,
     .indent = indent,
     .modes = modes,

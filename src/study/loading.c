@@ -407,6 +407,10 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, l->scale * value, &at));
   DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
   look_at_body(l, &seen, value, v);
+  const struct dea_event *passed = l->type->passed != NULL ? l->type->passed(l->model) : NULL;
+  if (passed != NULL && l->range == FORCE && isnan(l->peak) && !back) {
+    l->peak = passed->point.force_N;
+  }
   l->point++;
   const struct dea_result_table_value row[] = {
       {.number = l->voltage_V},

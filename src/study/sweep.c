@@ -109,6 +109,14 @@ static dea_status restore(struct dea_context *ctx, const struct dea_model_type *
 
 // Sweep ------------------------------------------------------------------------------------------
 
+/* A limit point that the model has gone past on its way here. */
+static dea_status add_passed(struct dea_context *ctx, const struct dea_model_type *type,
+                             const struct dea_model *model, struct dea_curve *curve)
+{
+  const struct dea_event *passed = type->passed != NULL ? type->passed(model) : NULL;
+  return passed != NULL ? dea_curve_add_event(ctx, curve, passed) : DEA_OK;
+}
+
 /* Solves one voltage and adds its point, profile and surface. */
 static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, double voltage_V, struct dea_result *result,
@@ -120,6 +128,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
                     1e-3 * voltage_V, curve->count);
   }
   DEA_TRY(ctx, type->solve(ctx, model, voltage_V, &point));
+  DEA_TRY(ctx, add_passed(ctx, type, model, curve));
   point.pull_in_distance_V =
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));

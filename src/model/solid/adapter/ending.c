@@ -8,6 +8,8 @@
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
 static const double leap = 1.5;
+/* Neither does what moves so many times as far by its way as in the step before. */
+static const double rush = 5;
 
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
@@ -129,6 +131,15 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
 static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
                            double before)
 {
+  if (e->has_passed) {
+    return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                           "model 3d: from %.6g to %.6g kV it leaps past a limit point, %s at %.6g "
+                           "kV, to another state",
+                           1e-3 * e->from_V, 1e-3 * voltage_V,
+                           e->passed.kind == DEA_EVENT_PULL_IN ? "pull-in or snapping through"
+                                                               : "snapping back",
+                           1e-3 * e->passed.point.voltage_V);
+  }
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: from %.6g to %.6g kV the film's area grows at once, from %.3g "
                          "to %.3g times that of the flat film: there may be pull-in between, and "
@@ -136,26 +147,89 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
                          1e-3 * e->from_V, 1e-3 * voltage_V, before, e->area);
 }
 
+/* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
+ * there is none. */
+static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
+                            const struct dea_solid_stand *from, double *share)
+{
+  struct dea_solid_stop stop;
+  const struct dea_ending kept = *e; // what the points of the path change
+  e->limited = false;
+  DEA_TRY(ctx, dea_solid_look_back(ctx, e->owner.solid, from, see_point, e, &stop));
+  struct dea_event found = e->limit;
+  bool passed = stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
+  *e = kept;
+  *share = passed ? stop.way : NAN;
+  if (passed) {
+    e->passed = found;
+    e->has_passed = true;
+  }
+  return DEA_OK;
+}
+
+/* Whether the last step moved much farther by its way than the one before; keeps what it did. */
+static bool rushes(struct dea_ending *e, double *rate, double way,
+                   const struct dea_solid_stand *from)
+{
+  double before = *rate;
+  *rate = way != 0 ? dea_solid_moved_m(e->owner.solid, from) / fabs(way) : 0;
+  return before > 0 && *rate > rush * before;
+}
+
+/* Where a load step has come to. */
+static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
+                               const struct dea_solid_stand *from, bool snapped)
+{
+  double before = e->area, share = NAN, from_V = e->from_V;
+  bool taut = is_taut(e);
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
+  bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
+  if (thins || (rushed && taut && is_taut(e) && !snapped)) {
+    DEA_TRY(ctx, look_back(ctx, e, from, &share));
+  }
+  e->leapt = thins || !isnan(share);
+  return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
+}
+
 /* One load step. */
 static dea_status step(struct dea_context *ctx, struct dea_ending *e, double from_V,
                        double voltage_V, struct dea_solid_report *report)
 {
+  struct dea_solid_stand from;
   struct dea_solid_stop stop;
   e->from_V = from_V;
   e->limited = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
-  dea_status status =
-      dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
+  dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
-    double before = e->area;
-    e->limited = false;
-    DEA_TRY(ctx, look_at_tension(ctx, e));
-    e->leapt = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
-    return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
+    status =
+        dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
+    if (status != DEA_OK) {
+      e->rate[0] = 0;
+      status = dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
+                   ? stopped(ctx, e, voltage_V, &stop, status)
+                   : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    } else {
+      e->limited = false;
+      status = look_at_step(ctx, e, voltage_V, &from, report->snapped);
+    }
   }
-  return dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
-             ? stopped(ctx, e, voltage_V, &stop, status)
-             : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  dea_solid_stand_free(&from);
+  return status;
+}
+
+dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *e, double way,
+                            const struct dea_solid_stand *from, double *share)
+{
+  *share = NAN;
+  e->has_passed = false;
+  e->from_V = dea_solid_voltage(e->owner.solid);
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  if (rushes(e, &e->rate[1], way, from) && is_taut(e)) {
+    DEA_TRY(ctx, look_back(ctx, e, from, share));
+  }
+  return DEA_OK;
 }
 
 /* Where the way to a voltage has turned unstable and the solid has gone down from it. */
@@ -173,7 +247,7 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
   double way = voltage_V - from_V, at_V = from_V;
   int steps = isfinite(e->owner.step_V) ? (int)ceil(fabs(way) / e->owner.step_V - 1e-9) : 1;
   steps = steps < 1 ? 1 : steps;
-  e->limited = false;
+  e->limited = e->has_passed = false;
   for (int i = 1; i <= steps; i++) {
     if (dea_solid_any(dea_interrupted(ctx))) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
@@ -191,4 +265,9 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
 const struct dea_event *dea_ending_limit(const struct dea_ending *e)
 {
   return e->limited ? &e->limit : NULL;
+}
+
+const struct dea_event *dea_ending_passed(const struct dea_ending *e)
+{
+  return e->has_passed ? &e->passed : NULL;
 }

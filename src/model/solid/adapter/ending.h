@@ -27,11 +27,14 @@ struct dea_ending_owner {
 /* Zeroed at first but for the owner. */
 struct dea_ending {
   struct dea_ending_owner owner;
-  double from_V;          // where the last way began
-  struct dea_event limit; // where the last way came to its end
-  bool limited;           // it is known
-  bool leapt;             // on the last way the film has thinned so much at once that it may have
-                          // gone past a limit point to another state
+  double from_V;           // where the last way began
+  struct dea_event limit;  // where the last way came to its end
+  bool limited;            // it is known
+  struct dea_event passed; // a limit point that the last way has gone past to another state
+  bool has_passed;         // it is known
+  bool leapt;              // on the last step the film may have gone past one
+  double rate[2]; // motion of the last step over its way, of the voltage and of another control; 0:
+                  // none
   double tension[2], tension_V[2]; // smallest of the film [N/m], at the last two points looked at
   double area;                     // largest area stretch at the last of them
 };
@@ -43,5 +46,13 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *ending, dou
                          double voltage_V, struct dea_solid_report *report);
 /* Where the last way came to its end, NULL where it did not; lent. */
 const struct dea_event *dea_ending_limit(const struct dea_ending *ending);
+/* A limit point that the last way has gone past to another state, NULL where none is known; lent.
+ */
+const struct dea_event *dea_ending_passed(const struct dea_ending *ending);
+
+/* Before and after a step of another control than the voltage, of such a way: as a way to a voltage
+ * it may leap past a limit point. *share: of the way to it, NAN where there was none. */
+dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *ending, double way,
+                            const struct dea_solid_stand *from, double *share);
 
 #endif

@@ -48,9 +48,10 @@ struct dea_model {
   double flat_m;          // the same as they are in the flat state
   double pressure_factor; // on all pressures
   struct dea_standing at;
-  double *answers;    // of the last response, as in model/model.h
-  double *answer;     // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
-  struct marks marks; // of saved states, made by the first
+  struct dea_control moved; // of the last move
+  double *answers;          // of the last response, as in model/model.h
+  double *answer;           // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
+  struct marks marks;       // of saved states, made by the first
 };
 
 // Materials --------------------------------------------------------------------------------------
@@ -617,6 +618,11 @@ static const struct dea_event *limit(const struct dea_model *model)
   return dea_standing_limit(&model->at);
 }
 
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return dea_standing_passed(&model->at);
+}
+
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
@@ -678,6 +684,55 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static bool is_same(const struct dea_control *a, const struct dea_control *b)
+{
+  return a->kind == b->kind && a->body == b->body && a->component == b->component;
+}
+
+/* After the way of a control that succeeded; from: the state before. */
+static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
+                               const struct dea_control *control, double from_value, double value,
+                               const struct dea_solid_stand *from)
+{
+  struct dea_ending *ending = &model->at.ending;
+  bool force = control->kind == DEA_CONTROL_FORCE, turns = control->component >= 3;
+  double share;
+  if (!is_same(control, &model->moved)) {
+    ending->rate[1] = 0;
+  }
+  model->moved = *control;
+  DEA_TRY(ctx, dea_ending_watch(ctx, ending, value - from_value, from, &share));
+  if (isnan(share)) {
+    return DEA_OK;
+  }
+  double limit = from_value + share * (value - from_value);
+  model->at.left_a_state = true;
+  ending->passed.point.force_N = force && !turns ? limit : NAN;
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         "model 3d: at %.4g kV it leaps past a limit point at %.6g %s to another "
+                         "state",
+                         1e-3 * model->at.voltage_V, force ? 1e3 * limit : limit,
+                         !force  ? "of the control"
+                         : turns ? "mN m"
+                                 : "mN");
+}
+
+/* To what the control has been set to. */
+static dea_status follow_control(struct dea_context *ctx, struct dea_model *model,
+                                 const struct dea_control *control, double from_value, double value)
+{
+  struct dea_solid_stand from;
+  dea_status status = dea_solid_stand_keep(ctx, model->solid, &from);
+  if (status == DEA_OK) {
+    status = dea_load_steps_solve(ctx, model->solid, model->at.voltage_V, &model->at.report);
+  }
+  if (status == DEA_OK && !model->at.report.snapped) {
+    status = look_at_move(ctx, model, control, from_value, value, &from);
+  }
+  dea_solid_stand_free(&from);
+  return status;
+}
+
 static dea_status move(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_control *control, double value, struct dea_load_point *out)
 {
@@ -686,8 +741,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   dea_standing_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
-  dea_status status =
-      dea_load_steps_solve(ctx, model->solid, model->at.voltage_V, &model->at.report);
+  dea_status status = follow_control(ctx, model, control, from, value);
   if (status != DEA_OK) {
     double reached = from + model->at.report.way * (value - from);
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
@@ -929,6 +983,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .destroy = destroy,
     .solve = solve,
     .limit = limit,
+    .passed = passed,
     .observe = observe,
     .move = move,
     .modes = modes,

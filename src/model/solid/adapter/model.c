@@ -307,6 +307,11 @@ static const struct dea_event *limit(const struct dea_model *model)
   return dea_standing_limit(&model->at);
 }
 
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return dea_standing_passed(&model->at);
+}
+
 /* ---- in time ---- */
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
@@ -496,6 +501,7 @@ const struct dea_model_type dea_solid_module = {
     .destroy = destroy,
     .solve = solve,
     .limit = limit,
+    .passed = passed,
     .indent = indent,
     .modes = modes,
     .respond = respond,

@@ -29,6 +29,11 @@ const struct dea_event *dea_standing_limit(const struct dea_standing *standing)
   return dea_ending_limit(&standing->ending);
 }
 
+const struct dea_event *dea_standing_passed(const struct dea_standing *standing)
+{
+  return dea_ending_passed(&standing->ending);
+}
+
 // In time ----------------------------------------------------------------------------------------
 
 void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing)

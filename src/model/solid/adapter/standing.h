@@ -20,10 +20,11 @@ struct dea_standing {
 /* Ends a history in time. */
 void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing);
 
-/* `solve` and `limit` of struct dea_model_type. */
+/* `solve`, `limit` and `passed` of struct dea_model_type. */
 dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *standing,
                               double voltage_V, struct dea_load_point *out);
 const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
+const struct dea_event *dea_standing_passed(const struct dea_standing *standing);
 
 /* `begin`, `advance` and `accept`. driven: lent until the history ends; its solid is the owner's.
  */

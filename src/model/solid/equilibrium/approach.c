@@ -17,6 +17,7 @@ struct search {
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
   bool went_on; // the solid is at a stable equilibrium further on
+  bool looks;   // it is known where the solid goes, and only asked what is on the way
 };
 
 /* Displacement that counts as much as the whole load: a share of that on the way, as far as the
@@ -47,6 +48,7 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   }
   DEA_TRY(ctx, status);
   a->stop->voltage_V = at->voltage_V;
+  a->stop->way = at->load;
   DEA_TRY(ctx, a->points(ctx, a->user, kind));
   return DEA_OK;
 }
@@ -82,6 +84,13 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
       return DEA_OK;
     }
     DEA_TRY(ctx, a->points(ctx, a->user, DEA_STOP_UNKNOWN));
+    if (a->looks && at.unstable_modes > 0) {
+      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at));
+      return DEA_OK;
+    }
+    if (a->looks && at.load >= 1) {
+      return DEA_OK;
+    }
     if (at.load >= 1 || at.unstable_modes > 0) {
       dea_status status = leave_path(ctx, a, &at);
       if (!dea_solid_may_shorten(status) || at.unstable_modes == 0) {
@@ -180,5 +189,79 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
     status = go(ctx, &a, voltage_V, taut);
   }
   dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+// What load steps have gone past ------------------------------------------------------------------
+
+dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *s,
+                                struct dea_solid_stand *out)
+{
+  *out = (struct dea_solid_stand){.memory = {.ctx = ctx}};
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  const struct dea_load_steps *steps = &s->work.load_steps;
+  out->state = dea_arena_alloc(&out->memory, steps->state_count, sizeof *out->state);
+  out->controls = dea_arena_alloc(&out->memory, steps->control_count, sizeof *out->controls);
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&out->memory)));
+  dea_solid_state_get(s, out->state);
+  dea_solid_controls_get(s, out->controls);
+  return DEA_OK;
+}
+
+void dea_solid_stand_free(struct dea_solid_stand *stand)
+{
+  dea_arena_free(&stand->memory);
+}
+
+double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_stand *from)
+{
+  size_t count = 3 * s->problem.grid->node_count;
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    double way = s->state.u[i] - from->state[i];
+    sum += way * way;
+  }
+  return sqrt(3 * sum / (double)count);
+}
+
+static void stand_again(struct dea_solid *s, const struct dea_solid_stand *at)
+{
+  dea_solid_state_set(s, at->state);
+  dea_solid_controls_set(s, at->controls);
+  s->found.factor_fits = s->found.predicted_fits = false;
+}
+
+/* At `from` with room for a search. */
+static dea_status search_back(struct dea_context *ctx, struct search *a,
+                              const struct dea_solid_stand *from, const struct dea_solid_stand *now)
+{
+  struct dea_solid_stand room;
+  dea_status status = dea_solid_stand_keep(ctx, a->s, &room);
+  a->state = room.state;
+  a->from = room.controls;
+  a->goal = now->controls;
+  if (status == DEA_OK) {
+    stand_again(a->s, from);
+    status = search_path(ctx, a);
+  }
+  dea_solid_stand_free(&room);
+  return status;
+}
+
+dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
+                               const struct dea_solid_stand *from, dea_solid_path_sink points,
+                               void *user, struct dea_solid_stop *stop)
+{
+  struct dea_solid_report report = {0};
+  struct search a = {
+      .s = s, .points = points, .user = user, .report = &report, .stop = stop, .looks = true};
+  struct dea_solid_stand now;
+  *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  dea_status status = dea_solid_stand_keep(ctx, s, &now);
+  if (status == DEA_OK && s->problem.field == NULL) {
+    status = search_back(ctx, &a, from, &now);
+    stand_again(s, &now);
+  }
+  dea_solid_stand_free(&now);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

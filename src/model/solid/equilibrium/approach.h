@@ -3,6 +3,7 @@
 #ifndef DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
 #define DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
 
+#include "base/arena.h"
 #include "model/solid/assembly/solid.h"
 
 enum dea_solid_stop_kind {
@@ -14,6 +15,7 @@ enum dea_solid_stop_kind {
 struct dea_solid_stop {
   enum dea_solid_stop_kind kind;
   double voltage_V;   // of the limit point; where the path is first known to be unstable
+  double way;         // share of the way to there
   int unstable_modes; // there
 };
 
@@ -30,5 +32,25 @@ typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                               bool taut, dea_solid_path_sink points, void *user,
                               struct dea_solid_report *report, struct dea_solid_stop *stop);
+
+/* Where the solid has been. */
+struct dea_solid_stand {
+  struct dea_arena memory;
+  double *state, *controls;
+};
+/* out: freed by the caller, also on failure. */
+dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *solid,
+                                struct dea_solid_stand *out);
+void dea_solid_stand_free(struct dea_solid_stand *stand);
+/* Root of the mean square of how far the nodes are from there. */
+double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
+
+/* Whether load steps from there to where the solid is have gone past a limit point or a
+ * bifurcation: follows the path from there towards the controls as they are. The solid is then
+ * where it was. *stop: where, which `points` has seen last; DEA_STOP_UNKNOWN: there was none, or
+ * none was found. */
+dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *solid,
+                               const struct dea_solid_stand *from, dea_solid_path_sink points,
+                               void *user, struct dea_solid_stop *stop);
 
 #endif
