@@ -117,6 +117,12 @@ static void test_derivatives(void **state)
       set_parameters(&load);
       check_derivatives(&load);
       dea_pressure_destroy(ctx, pressure);
+      assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &pressure), DEA_OK);
+      dea_pressure_set(pressure, 3);
+      load = dea_pressure_load(pressure);
+      set_parameters(&load);
+      check_derivatives(&load);
+      dea_pressure_destroy(ctx, pressure);
       dea_foundation_destroy(ctx, springs);
       dea_surface_destroy(ctx, surface);
     }

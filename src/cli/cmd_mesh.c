@@ -67,7 +67,12 @@ static void print_layout(const struct request *request, const struct dea_layout_
         (json_int_t)(3 * grid->node_count), "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
     return;
   }
-  printf("%-20s the whole device, a free mesh\n", "domain");
+  size_t copies = dea_layout_sector_copies(&mesh->sector);
+  if (copies > 1) {
+    printf("%-20s one of %zu mirrored sectors, a free mesh\n", "domain", copies);
+  } else {
+    printf("%-20s the whole device, a free mesh\n", "domain");
+  }
   print_size(grid, 3 * grid->node_count);
   print_quality(request, grid);
 }

@@ -9,7 +9,7 @@
 static const char *const films[] = {"solid", "membrane", NULL};
 static const char *const electrostatics[] = {"thin", "coupled",
                                              NULL}; // enum dea_solid_electrostatics
-static const char *const domains[] = {"sector", "disc", NULL};
+static const char *const domains[] = {"sector", "disc", "whole", NULL}; // whole: as disc
 static const char *const branches[] = {"any", "fibres", "back", NULL};
 
 static const struct dea_field fields[] = {
@@ -27,8 +27,9 @@ static const struct dea_field fields[] = {
      .offset = AT(domain),
      .choices = domains,
      .default_text = "sector",
-     .doc =
-         "from a fibre's axis halfway to the next, or all of it with motions that break symmetry",
+     .doc = "from a fibre's axis halfway to the next, or between two lines of the device's "
+            "symmetry; or "
+            "all of it with motions that break symmetry (disc and whole are the same)",
      .example = "sector"},
     {.key = "refinement",
      .kind = DEA_FIELD_NUMBER,

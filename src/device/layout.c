@@ -150,6 +150,11 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
   LIKE_ONES(b, layout->body_count, false);
   LIKE_ONES(p, layout->pressure_count,
             p[j].ply == p[i].ply && p[j].top == p[i].top && p[j].pressure_Pa == p[i].pressure_Pa);
+  for (size_t i = 0; i < layout->monitor_count; i++) {
+    if (layout->monitors[i].kind == DEA_MONITOR_REGION) {
+      add(out, layout, layout->monitors[i].region, first + (int)i);
+    }
+  }
 }
 
 /* Of what a symmetry has, what a film with two axes of pre-stretch keeps: half a turn, and mirrors
@@ -171,7 +176,7 @@ static void keep_axes(struct dea_symmetry *symmetry, double angle_rad)
 dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *layout)
 {
   size_t most = layout->ply_count + layout->electrode_count + 2 * layout->support_count +
-                layout->body_count + layout->pressure_count;
+                layout->body_count + layout->pressure_count + layout->monitor_count;
   struct dea_arena arena = {.ctx = ctx};
   struct labelled all = {.region = dea_arena_alloc(&arena, most + 1, sizeof *all.region),
                          .label = dea_arena_alloc(&arena, most + 1, sizeof *all.label)};
@@ -179,6 +184,7 @@ dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *
   if (status == DEA_OK) {
     label_all(layout, &all);
     status = dea_symmetry_find(ctx, all.region, all.label, all.count, 0, &layout->symmetry);
+    layout->symmetry_found = status == DEA_OK;
   }
   for (size_t i = 0; i < layout->ply_count && status == DEA_OK; i++) {
     if (layout->plies[i].pre_stretch[0] != layout->plies[i].pre_stretch[1]) {

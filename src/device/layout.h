@@ -129,6 +129,7 @@ struct dea_layout {
   size_t spring_count, pressure_count, monitor_count;
   double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight
   struct dea_symmetry symmetry; // of all of it
+  bool symmetry_found;          // it was looked for
 };
 
 /* Whether a ply is between electrodes of two channels somewhere. */
@@ -142,8 +143,8 @@ size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name
 bool dea_support_is_frame(const struct dea_layout_support *support);
 /* {x min, y min, x max, y max} of all plies. */
 void dea_layout_box_m(const struct dea_layout *layout, double out[4]);
-/* Mirrors and rotations that plies, electrodes with their channels, supports, bodies, and pressures
- * share, into `symmetry`; a generator calls it last. DEA_E_MEMORY. */
+/* Mirrors and rotations that plies, electrodes with their channels, supports, bodies, pressures,
+ * and regions of monitors share, into `symmetry`; a generator calls it last. DEA_E_MEMORY. */
 dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *layout);
 
 /* An empty one with ground for its only channel. The lists are made by the generator in `memory`.

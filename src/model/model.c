@@ -11,7 +11,8 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 {
   return (struct dea_model_settings){
       .film = (enum dea_solid_film)design->compute.solid.film.value,
-      .domain = (enum dea_solid_domain)design->compute.solid.domain.value,
+      .domain = design->compute.solid.domain.value == DEA_DOMAIN_SECTOR ? DEA_DOMAIN_SECTOR
+                                                                        : DEA_DOMAIN_DISC,
       .field = (enum dea_solid_electrostatics)design->compute.solid.field.value,
       .buckling_branch = (enum dea_buckling_branch)design->compute.solid.buckling_branch.value,
       .refinement = design->compute.solid.refinement.si,
@@ -30,14 +31,30 @@ dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type 
   return DEA_OK;
 }
 
+static dea_status create(struct dea_context *ctx, const struct dea_model_type *type,
+                         const struct dea_design *design, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_check(ctx, type, design, device));
+  DEA_TRY(ctx, type->create(ctx, device, settings, out));
+  return DEA_OK;
+}
+
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_design *design, const struct dea_device *device,
                             struct dea_model **out)
 {
   const struct dea_model_settings settings = dea_model_settings_of(design);
-  DEA_TRY(ctx, dea_model_check(ctx, type, design, device));
-  DEA_TRY(ctx, type->create(ctx, device, &settings, out));
-  return DEA_OK;
+  return create(ctx, type, design, device, &settings, out);
+}
+
+dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_model_type *type,
+                                  const struct dea_design *design, const struct dea_device *device,
+                                  struct dea_model **out)
+{
+  struct dea_model_settings settings = dea_model_settings_of(design);
+  settings.domain = device->general ? DEA_DOMAIN_DISC : settings.domain;
+  return create(ctx, type, design, device, &settings, out);
 }
 
 static dea_status lacks(struct dea_context *ctx, const struct dea_model_type *type,

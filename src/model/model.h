@@ -196,6 +196,11 @@ dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *de
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_design *design, const struct dea_device *device,
                             struct dea_model **out);
+/* The same of all of a device of the general form, where the design may leave a sector of it: for
+ * what breaks its symmetry. Discs are computed as the design says. */
+dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_model_type *type,
+                                  const struct dea_design *design, const struct dea_device *device,
+                                  struct dea_model **out);
 
 /* Calls to what not every model can: DEA_E_UNSUPPORTED, with a message, where it is NULL. */
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,

@@ -1,7 +1,7 @@
 #include "output/surface_lattice.h"
 
 #include "base/quadrature.h"
-#include "output/copies.h"
+#include "result/copies.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "base/bytes.h"
 #include "base/version.h"
 #include "base/write_file.h"
-#include "output/copies.h"
+#include "result/copies.h"
 
 #include <stdio.h>
 #include <string.h>

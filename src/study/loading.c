@@ -461,7 +461,9 @@ static dea_status go(struct dea_context *ctx, struct loading *l)
 {
   size_t steps = (size_t)l->settings->steps.si;
   struct dea_load_point at;
-  DEA_TRY(ctx, dea_model_create(ctx, l->type, l->result->design, l->result->device, &l->model));
+  bool upright = l->control.kind == DEA_CONTROL_PRESSURE || l->control.component == 2;
+  DEA_TRY(ctx, (upright ? dea_model_create : dea_model_create_whole)(
+                   ctx, l->type, l->result->design, l->result->device, &l->model));
   if (l->control.kind == DEA_CONTROL_PLACE) {
     DEA_TRY(ctx, block(ctx, l));
   } else {

@@ -57,7 +57,7 @@ dea_status dea_study_stop_by_stop(
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
   curve->listed = true;
   snprintf(what, sizeof what, "%s %s", type->name, kind);
-  dea_status status = dea_model_create(ctx, type, result->design, result->device, &model);
+  dea_status status = dea_model_create_whole(ctx, type, result->design, result->device, &model);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     struct dea_load_point at;
     if (dea_interrupted(ctx)) {

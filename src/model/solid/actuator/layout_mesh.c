@@ -76,44 +76,84 @@ static double size_at_edge(const struct dea_layout *l, size_t region, double lar
   return fmin(is_fine(l, region, largest_m2) ? edge_share * size_m : size_m, across * finer);
 }
 
+/* All plies, and the sector, of which no more than these is left; an empty one: the whole. */
+static dea_status join_plies(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             struct dea_region *plies, struct dea_region *sector)
+{
+  const struct dea_layout *l = mesh->layout;
+  struct dea_region both = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < l->ply_count && status == DEA_OK; i++) {
+    const struct dea_region *region = &l->regions[l->plies[i].region].region;
+    status = dea_region_combine(ctx, DEA_UNION, region, i > 0 ? plies : NULL, &both);
+    dea_region_free(plies);
+    *plies = both;
+    both = (struct dea_region){.ctx = ctx};
+  }
+  if (mesh->sector.fold > 0 && status == DEA_OK) {
+    dea_layout_sector_region(&mesh->sector, 2 * dea_region_size_m(plies), sector);
+    status = dea_region_combine(ctx, DEA_INTERSECTION, plies, sector, &both);
+    dea_region_free(plies);
+    *plies = both;
+  }
+  return status;
+}
+
+/* What of region i lies on the plies; where none of it does, what lies in the sector. */
+static dea_status clip_region(struct dea_context *ctx, const struct dea_layout_mesh *mesh, size_t i,
+                              const struct dea_region *plies, const struct dea_region *sector,
+                              struct dea_region *clipped)
+{
+  const struct dea_region *region = &mesh->layout->regions[i].region;
+  DEA_TRY(ctx, dea_region_combine(ctx, DEA_INTERSECTION, region, plies, clipped));
+  if (clipped->contour_count == 0 && mesh->sector.fold > 0) {
+    DEA_TRY(ctx, dea_region_combine(ctx, DEA_INTERSECTION, region, sector, clipped));
+    mesh->group[i] = clipped->contour_count > 0 ? mesh->group[i] : DEA_LAYOUT_NONE;
+  }
+  if (clipped->contour_count > 0 &&
+      dea_region_area_m2(clipped) > (1 - 1e-6) * dea_region_area_m2(region)) {
+    dea_region_free(clipped);
+  }
+  return DEA_OK;
+}
+
 /* What of each region lies on the plies, into clipped[region_count]; empty where all of it does,
  * and where none: what a support or a body has beyond them would be meshed for nothing, and badly
- * where it runs out in a cusp. Without GEOS nothing is clipped. */
+ * where it runs out in a cusp. What lies in other copies of the sector only is not meshed. Without
+ * GEOS nothing is clipped. */
 static dea_status clip(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                        struct dea_region *clipped)
 {
   const struct dea_layout *l = mesh->layout;
-  struct dea_region plies = {.ctx = ctx}, both = {.ctx = ctx};
+  struct dea_region plies = {.ctx = ctx}, sector = {.ctx = ctx};
   char module[1024];
-  dea_status status = DEA_OK;
   if (!dea_boolean_find(module, sizeof module)) {
     return DEA_OK;
   }
-  for (size_t i = 0; i < l->ply_count && status == DEA_OK; i++) {
-    const struct dea_region *region = &l->regions[l->plies[i].region].region;
-    status = dea_region_combine(ctx, DEA_UNION, region, i > 0 ? &plies : NULL, &both);
-    dea_region_free(&plies);
-    plies = both;
-    both = (struct dea_region){.ctx = ctx};
-  }
+  dea_status status = join_plies(ctx, mesh, &plies, &sector);
   for (size_t i = 0; i < l->region_count && status == DEA_OK; i++) {
-    const struct dea_region *region = &l->regions[i].region;
     clipped[i].ctx = ctx;
-    if (mesh->group[i] == DEA_LAYOUT_NONE) {
-      continue;
-    }
-    status = dea_region_combine(ctx, DEA_INTERSECTION, region, &plies, &clipped[i]);
-    if (status == DEA_OK && clipped[i].contour_count > 0 &&
-        dea_region_area_m2(&clipped[i]) > (1 - 1e-6) * dea_region_area_m2(region)) {
-      dea_region_free(&clipped[i]);
+    if (mesh->group[i] != DEA_LAYOUT_NONE) {
+      status = clip_region(ctx, mesh, i, &plies, &sector, &clipped[i]);
     }
   }
   dea_region_free(&plies);
+  dea_region_free(&sector);
   return status;
 }
 
+/* Contours of a region, NULL for want of memory. */
+static struct dea_contour *contours_of(struct dea_arena *memory, const struct dea_region *region)
+{
+  struct dea_contour *contours = dea_arena_alloc(memory, region->contour_count, sizeof *contours);
+  for (size_t k = 0; contours != NULL && k < region->contour_count; k++) {
+    contours[k] = dea_region_contour(region, k);
+  }
+  return contours;
+}
+
 /* The layout's regions as shapes, clipped ones in their place; their contours come from `memory`.
- */
+ * Where a sector cuts a region nothing changes, so sizes there are not those at its boundary. */
 static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_mesh *mesh,
                             const struct dea_model_settings *settings,
                             const struct dea_region *clipped, struct dea_gmsh_plan *plan)
@@ -121,10 +161,12 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
   const struct dea_layout *l = mesh->layout;
   double largest_m2 = largest_ply_m2(l), finer = exp2(1 - fmax(1, settings->refinement));
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
-  if (shapes == NULL) {
+  struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
+  if (shapes == NULL || curves == NULL) {
     return DEA_E_MEMORY;
   }
   *plan = (struct dea_gmsh_plan){.shapes = shapes,
+                                 .curves = curves,
                                  .order = settings->order == 1 ? 1 : 2,
                                  .size_m = size_share * sqrt(largest_m2) * finer,
                                  .growth = growth};
@@ -134,20 +176,20 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
     if (mesh->group[i] == DEA_LAYOUT_NONE) {
       continue;
     }
-    struct dea_contour *contours = dea_arena_alloc(memory, region->contour_count, sizeof *contours);
-    if (contours == NULL) {
-      return DEA_E_MEMORY;
-    }
-    for (size_t k = 0; k < region->contour_count; k++) {
-      contours[k] = dea_region_contour(region, k);
-    }
-    shapes[plan->shape_count++] =
+    struct dea_gmsh_shape *shape = &shapes[plan->shape_count++];
+    *shape =
         (struct dea_gmsh_shape){.name = l->regions[i].name,
-                                .contours = contours,
+                                .contours = contours_of(memory, region),
                                 .count = region->contour_count,
                                 .edge_size_m = size_at_edge(l, i, largest_m2, plan->size_m, finer)};
+    if (mesh->sector.fold > 0) {
+      curves[plan->curve_count] = *shape;
+      curves[plan->curve_count].contours = contours_of(memory, &l->regions[i].region);
+      curves[plan->curve_count++].count = l->regions[i].region.contour_count;
+      shape->edge_size_m = 0;
+    }
   }
-  return DEA_OK;
+  return dea_arena_status(memory);
 }
 
 static dea_status make_plane(struct dea_context *ctx, const struct dea_model_settings *settings,
@@ -160,12 +202,14 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   mesh->group = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *mesh->group);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
   mark_used(l, used);
-  size_t groups = 0;
   for (size_t i = 0; i < l->region_count; i++) {
-    mesh->group[i] = used[i] ? groups++ : DEA_LAYOUT_NONE;
+    mesh->group[i] = used[i] ? 0 : DEA_LAYOUT_NONE;
   }
   struct dea_region *clipped = dea_arena_alloc(&memory, l->region_count, sizeof *clipped);
   dea_status status = clipped != NULL ? clip(ctx, mesh, clipped) : DEA_E_MEMORY;
+  for (size_t i = 0, groups = 0; i < l->region_count; i++) {
+    mesh->group[i] = mesh->group[i] != DEA_LAYOUT_NONE ? groups++ : DEA_LAYOUT_NONE;
+  }
   if (status == DEA_OK) {
     status = fill_plan(&memory, mesh, settings, clipped, &plan);
   }
@@ -323,8 +367,12 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out)
 {
+  char module[1024]; // that cuts a sector out
   *out = (struct dea_layout_mesh){
       .memory = {.ctx = ctx}, .layout = layout, .membrane = settings->film == DEA_FILM_MEMBRANE};
+  if (settings->domain == DEA_DOMAIN_SECTOR && dea_boolean_find(module, sizeof module)) {
+    out->sector = dea_layout_sector_of(layout);
+  }
   dea_status status = fill(ctx, settings, out);
   if (status != DEA_OK) {
     dea_layout_mesh_free(ctx, out);
@@ -348,15 +396,42 @@ bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, 
   return is_within(mesh, (size_t)mesh->grid->region[element], region);
 }
 
+double dea_layout_mesh_near_m(const struct dea_layout_mesh *mesh)
+{
+  double box[4];
+  dea_layout_box_m(mesh->layout, box);
+  return near_share * hypot(box[2] - box[0], box[3] - box[1]);
+}
+
+bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
+                                size_t within)
+{
+  const struct dea_layout_region *regions = mesh->layout->regions;
+  double near_m = dea_layout_mesh_near_m(mesh);
+  bool any = false;
+  for (size_t i = 0; i < mesh->plane->node_count * dea_layout_sector_copies(&mesh->sector); i++) {
+    struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, i / mesh->plane->node_count);
+    const size_t where[2] = {region, within};
+    double x[2];
+    bool on = true;
+    dea_motion_apply(&copy, mesh->plane->x + 2 * (i % mesh->plane->node_count), x);
+    for (int k = 0; k < 2 && where[k] != DEA_LAYOUT_NONE; k++) {
+      const struct dea_region *r = &regions[where[k]].region;
+      on = on && (dea_region_distance_m(r, x) <= near_m ||
+                  ((k == 1 || !edge) && dea_region_inside(r, x[0], x[1])));
+    }
+    any = any || on;
+  }
+  return any;
+}
+
 size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                             size_t within, bool *marked)
 {
   const struct dea_plane_mesh *plane = mesh->plane;
   const struct dea_layout_region *regions = mesh->layout->regions;
   size_t per = (size_t)((plane->order + 1) * (plane->order + 1)), count = 0;
-  double box[4];
-  dea_layout_box_m(mesh->layout, box);
-  double near_m = near_share * hypot(box[2] - box[0], box[3] - box[1]);
+  double near_m = dea_layout_mesh_near_m(mesh);
   memset(marked, 0, plane->node_count * sizeof *marked);
   for (size_t q = 0; q < plane->quad_count; q++) {
     for (size_t n = 0; n < per && (edge || is_within(mesh, (size_t)plane->region[q], region));

@@ -3,7 +3,7 @@
 #ifndef DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
 #define DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
 
-#include "device/layout.h"
+#include "device/layout_sector.h"
 #include "model/model.h"
 #include "model/solid/mesh/grid.h"
 
@@ -16,16 +16,19 @@ struct dea_layout_mesh {
   struct dea_arena memory;
   const struct dea_layout *layout; // lent
   bool membrane;                   // dielectric plies are surfaces
+  struct dea_layout_sector sector; // what is meshed of the layout; its fold is 0: the whole
   struct dea_plane_mesh *plane;    // its groups are regions of the layout; owned
-  size_t *group; // [region_count of the layout] group of a region; DEA_LAYOUT_NONE: not meshed
+  size_t *group; // [region_count of the layout] group of a region; DEA_LAYOUT_NONE: not meshed,
+                 // also what lies in other copies of the sector only
   bool *present; // [region_count of the plane][ply_count]
   struct dea_layout_field *field; // [region_count of the plane][ply_count]
   bool *dielectric;      // [ply_count] plies that are between electrodes of two channels somewhere
   struct dea_grid *grid; // its regions are those of the plane mesh; owned
 };
 
-/* DEA_E_DESIGN with a finding for plies that do not lie flat on each other; DEA_E_TOOL as
- * dea_gmsh_mesh. layout: lent, outlives the mesh. On failure out is empty. */
+/* Of the sector that the settings' domain and the layout leave, or of the whole. DEA_E_DESIGN with
+ * a finding for plies that do not lie flat on each other; DEA_E_TOOL as dea_gmsh_mesh. layout:
+ * lent, outlives the mesh. On failure out is empty. */
 dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out);
@@ -38,5 +41,10 @@ bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, 
  * marked: [node_count of the plane mesh]. */
 size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                             size_t within, bool *marked);
+/* Whether that marks a node of any copy of the sector. */
+bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
+                                size_t within);
+/* What is near enough to a line to lie on it [m]. */
+double dea_layout_mesh_near_m(const struct dea_layout_mesh *mesh);
 
 #endif

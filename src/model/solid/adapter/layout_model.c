@@ -10,6 +10,7 @@
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
+#include "result/copies.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,6 +42,9 @@ struct dea_model {
   struct dea_solid *solid;
   struct dea_observer *observer;
   int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
+  int *on_side;           // [nodes of the mesh] components that the sides of a sector hold
+  double near_m;          // of a place on such a side
+  double copies;          // of the sector in the device
   bool *on;               // [nodes of the plane mesh] for who marks them
   size_t mesh_node_count; // without those of bodies
   size_t film;            // the first dielectric ply, or the first of all
@@ -157,11 +161,18 @@ static void channels(const void *self, int region, int ply, int *top, int *botto
   *bottom = field_of(self, region, ply)->bottom;
 }
 
-static int nothing_held(const void *self, const double X[3])
+static int sides_hold(const void *self, const double X[3])
 {
-  (void)self;
-  (void)X;
-  return 0;
+  const struct dea_model *model = self;
+  double Q[9];
+  return dea_layout_sector_holds(&model->mesh.sector, X, model->near_m, Q);
+}
+
+/* Axes of a node on a side of a sector that is along neither x nor y. */
+static bool sides_turn(const void *self, const double X[3], double Q[9])
+{
+  const struct dea_model *model = self;
+  return dea_layout_sector_holds(&model->mesh.sector, X, model->near_m, Q) != 0 && Q[1] != 0;
 }
 
 // Bodies -----------------------------------------------------------------------------------------
@@ -196,6 +207,7 @@ static dea_status add_body(struct dea_context *ctx, struct dea_model *model, siz
   const struct dea_layout_body *body = &model->layout->bodies[i];
   struct dea_grid *grid = model->mesh.grid;
   double X[6], low = INFINITY, high = -INFINITY, length = 0;
+  int keeps = dea_layout_sector_keeps(&model->mesh.sector);
   dea_region_centroid_m(&model->layout->regions[body->region].region, X);
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     if (model->follows[n] == (int)i + 1) {
@@ -207,7 +219,7 @@ static dea_status add_body(struct dea_context *ctx, struct dea_model *model, siz
   X[2] = 0.5 * (low + high);
   memcpy(X + 3, X, 3 * sizeof *X);
   DEA_TRY(ctx, dea_grid_add_nodes(ctx, grid, 2, X, &model->bodies[i].node));
-  model->bodies[i].held = ALL_COMPONENTS & ~(body->free | body->moved);
+  model->bodies[i].held = ALL_COMPONENTS & ~((body->free | body->moved) & keeps);
   model->bodies[i].length_m = length;
   return DEA_OK;
 }
@@ -225,7 +237,7 @@ static dea_status add_bodies(struct dea_context *ctx, struct dea_model *model, d
     DEA_TRY(ctx, mark_body(ctx, model, i, &found));
     for (size_t n = 0; n < model->mesh_node_count; n++) {
       if (model->follows[n] == (int)i + 1) {
-        (*point_mass)[n] = l->bodies[i].mass_kg / (double)found;
+        (*point_mass)[n] = l->bodies[i].mass_kg / model->copies / (double)found;
       }
     }
   }
@@ -249,12 +261,17 @@ static dea_status hold(struct dea_context *ctx, struct dea_model *model,
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     bool lowest = n == 0 || grid->column[n] != grid->column[n - 1];
     if (on[grid->column[n]] && follows[n] == 0 && (!support->hinged || lowest)) {
-      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, support->components,
-                                       moved ? support->move_m : no_motion));
+      double Q[9], move_m[3] = {0};
+      dea_layout_sector_holds(&model->mesh.sector, grid->X + 3 * n, model->near_m, Q);
+      for (int k = 0; k < 9 && moved; k++) {
+        move_m[k / 3] += Q[k] * support->move_m[k % 3];
+      }
+      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, support->components, move_m));
       held++;
     }
   }
-  if (held == 0) {
+  if (held == 0 &&
+      !dea_layout_mesh_marks_copy(&model->mesh, support->region, support->edge, support->within)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, support->location,
                                  "this support holds nothing: no ply is there"));
     return dea_fail(ctx, DEA_E_DESIGN, "a support holds nothing");
@@ -267,15 +284,20 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_model *model, s
   const struct dea_layout_spring *spring = &model->layout->springs[i];
   const struct dea_solid_body *body = &model->bodies[spring->body];
   bool turns = spring->component >= 3;
+  double *force = dea_arena_alloc(&model->memory, spring->count, sizeof *force);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  for (size_t k = 0; k < spring->count; k++) {
+    force[k] = spring->force[k] / model->copies;
+  }
   const struct dea_spring_options options = {
       .node = body->node + (turns ? 1 : 0),
       .component = spring->component % 3,
       .unit_m = turns ? body->length_m : 0,
       .place = spring->free_at,
-      .stiffness = spring->stiffness,
+      .stiffness = spring->stiffness / model->copies,
       .count = spring->count,
       .at = spring->at,
-      .force = spring->force,
+      .force = force,
   };
   DEA_TRY(ctx, dea_spring_create(ctx, &options, &model->springs[i]));
   const struct dea_solid_load load = dea_spring_load(model->springs[i]);
@@ -295,23 +317,47 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
   const struct dea_layout_mesh *mesh = &of->model->mesh;
   size_t group = mesh->group[of->pressure->region];
   (void)middle;
-  return (size_t)ply == of->pressure->ply &&
+  return (size_t)ply == of->pressure->ply && group != DEA_LAYOUT_NONE &&
          mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
 }
 
+/* Of a sector without a face in it: none. */
 static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model, size_t i)
 {
   const struct dea_layout_pressure *pressure = &model->layout->pressures[i];
   const struct face_of of = {model, pressure};
-  double origin[3] = {0};
-  dea_region_centroid_m(&model->layout->regions[pressure->region].region, origin);
+  struct dea_surface **surface = &model->surfaces[i];
+  if (model->mesh.group[pressure->region] == DEA_LAYOUT_NONE) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx,
           dea_surface_create(ctx, model->mesh.grid, pressure->top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                             is_loaded, &of, &model->surfaces[i]));
-  DEA_TRY(ctx, dea_pressure_create(ctx, model->surfaces[i], origin, &model->pressures[i]));
+                             is_loaded, &of, surface));
+  double height_m = model->mesh.grid->X[3 * (*surface)->nodes[0] + 2];
+  DEA_TRY(ctx, dea_pressure_create_flat(ctx, *surface, height_m, &model->pressures[i]));
   const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
   DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
   return DEA_OK;
+}
+
+/* All pressures at once, times a factor. */
+static void set_pressures(const struct dea_model *model, double factor)
+{
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->pressures[i] != NULL) {
+      dea_pressure_set(model->pressures[i], factor * model->layout->pressures[i].pressure_Pa);
+    }
+  }
+}
+
+/* The force and moment on a body, or the sector's part of them. */
+static void push_body(const struct dea_model *model, size_t body)
+{
+  double part[6];
+  for (int k = 0; k < 6; k++) {
+    part[k] = model->push[body][k] / model->copies;
+  }
+  dea_solid_body_push(model->solid, body, part, part + 3);
 }
 
 static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
@@ -320,7 +366,7 @@ static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
     const struct dea_layout_body *body = &model->layout->bodies[i];
     memcpy(model->push[i], body->force_N, sizeof body->force_N);
     memcpy(model->push[i] + 3, body->moment_N_m, sizeof body->moment_N_m);
-    dea_solid_body_push(model->solid, i, model->push[i], model->push[i] + 3);
+    push_body(model, i);
     if (body->moved != 0) {
       DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i, body->moved, body->shift_m,
                                             body->turn_rad));
@@ -368,9 +414,11 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_model *model)
 
 // Release ----------------------------------------------------------------------------------------
 
-static int free_components(const struct dea_layout_body *body)
+enum { ALL = 7 }; // components of a node
+
+static int free_components(const struct dea_model *model, size_t body)
 {
-  return body->free | body->moved;
+  return ALL_COMPONENTS & ~model->bodies[body].held;
 }
 
 /* The flat state, everything held in it. */
@@ -378,13 +426,12 @@ static dea_status hold_all(struct dea_context *ctx, struct dea_model *model)
 {
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     if (model->follows[n] == 0) {
-      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, 7, no_motion));
+      DEA_TRY(ctx, dea_solid_prescribe(ctx, model->solid, n, ALL & ~model->on_side[n], no_motion));
     }
   }
   for (size_t i = 0; i < model->layout->body_count; i++) {
-    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i,
-                                          free_components(&model->layout->bodies[i]), no_motion,
-                                          no_motion));
+    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i, free_components(model, i),
+                                          no_motion, no_motion));
   }
   return DEA_OK;
 }
@@ -394,12 +441,11 @@ static dea_status hold_supports(struct dea_context *ctx, struct dea_model *model
 {
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     if (model->follows[n] == 0) {
-      DEA_TRY(ctx, dea_solid_release(ctx, model->solid, n, 7));
+      DEA_TRY(ctx, dea_solid_release(ctx, model->solid, n, ALL & ~model->on_side[n]));
     }
   }
   for (size_t i = 0; i < model->layout->body_count; i++) {
-    DEA_TRY(ctx, dea_solid_body_release(ctx, model->solid, i,
-                                        free_components(&model->layout->bodies[i])));
+    DEA_TRY(ctx, dea_solid_body_release(ctx, model->solid, i, free_components(model, i)));
   }
   for (size_t i = 0; i < model->layout->support_count; i++) {
     DEA_TRY(ctx, hold(ctx, model, &model->layout->supports[i], moved));
@@ -423,9 +469,7 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   for (size_t k = 1; k < model->layout->channel_count; k++) {
     dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
   }
-  for (size_t i = 0; i < model->layout->pressure_count; i++) {
-    dea_pressure_set(model->pressures[i], model->layout->pressures[i].pressure_Pa);
-  }
+  set_pressures(model, 1);
   DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
@@ -438,10 +482,16 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
 static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_grid *grid = model->mesh.grid;
+  char what[160] = "the whole device";
+  if (model->mesh.sector.fold > 0) {
+    snprintf(what, sizeof what,
+             "one of %g mirrored sectors of the device; it is blind to motions that break this "
+             "symmetry (compute.solid.domain: whole)",
+             model->copies);
+  }
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                               "model 3d: %zu elements, %zu unknowns, a free mesh of the whole "
-                               "device",
-                               grid->element_count, 3 * grid->node_count));
+                               "model 3d: %zu elements, %zu unknowns, a free mesh of %s",
+                               grid->element_count, 3 * grid->node_count, what));
   if (model->mesh.membrane) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d with a membrane film is a preview: it has no bending of "
@@ -460,6 +510,11 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->mesh_node_count = model->mesh.grid->node_count;
   DEA_TRY(ctx, add_bodies(ctx, model, &point_mass));
+  model->on_side = dea_arena_alloc(&model->memory, model->mesh_node_count, sizeof *model->on_side);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  for (size_t n = 0; n < model->mesh_node_count; n++) {
+    model->on_side[n] = sides_hold(model, model->mesh.grid->X + 3 * n);
+  }
   for (size_t k = 1; k < l->channel_count; k++) {
     share[k - 1] = l->channels[k].ratio;
   }
@@ -472,7 +527,8 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
       .channels = channels,
       .channel_count = l->channel_count > 1 ? l->channel_count - 1 : 1,
       .share = share,
-      .held = nothing_held,
+      .held = sides_hold,
+      .frame = sides_turn,
       .body_count = l->body_count,
       .bodies = model->bodies,
       .body_of = l->body_count > 0 ? model->follows : NULL,
@@ -526,6 +582,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->leakage_per_s = dea_arena_alloc(&model->memory, plies, sizeof *model->leakage_per_s);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
+  model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
+  model->near_m = dea_layout_mesh_near_m(&model->mesh);
   DEA_TRY(ctx, say_mesh(ctx, model));
   DEA_TRY(ctx, fill_constituents(ctx, model));
   DEA_TRY(ctx, make_solid(ctx, model));
@@ -593,11 +651,11 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
       isinf(extremes.min_tension_N_per_m) ? NAN : extremes.min_tension_N_per_m; // without a film
   out->locking_share = extremes.reach.locking_share;
   out->range_share = extremes.reach.range_share;
-  out->compression_ratio = extremes.compression_ratio;
+  out->compression_ratio = model->copies * extremes.compression_ratio;
   out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->mesh.membrane << DEA_FLAG_PREVIEW;
-  out->energy_J = model->at.report.energy_J - model->at.rest_energy_J;
-  out->capacitance_F = capacitance_F;
+  out->energy_J = model->copies * (model->at.report.energy_J - model->at.rest_energy_J);
+  out->capacitance_F = model->copies * capacitance_F;
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
   return DEA_OK;
@@ -643,6 +701,12 @@ static dea_status check_control(struct dea_context *ctx, const struct dea_model 
     return dea_fail(ctx, DEA_E_ARGUMENT, "the device has no such %s to be moved",
                     pressure ? "pressure" : "body");
   }
+  int keeps = dea_layout_sector_keeps(&model->mesh.sector);
+  if (!pressure && ((keeps >> control->component) & 1) == 0) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a sector of the device cannot show this motion, which breaks its symmetry "
+                    "(compute.solid.domain: whole)");
+  }
   return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a control has to be a number");
 }
 
@@ -661,7 +725,6 @@ static double where_control_is(const struct dea_model *model, const struct dea_c
 static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
                               const struct dea_control *control, double value)
 {
-  const struct dea_layout *l = model->layout;
   size_t body = control->body;
   double place[6] = {0};
   switch (control->kind) {
@@ -672,13 +735,11 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
     break;
   case DEA_CONTROL_FORCE:
     model->push[body][control->component] = value;
-    dea_solid_body_push(model->solid, body, model->push[body], model->push[body] + 3);
+    push_body(model, body);
     break;
   case DEA_CONTROL_PRESSURE:
     model->pressure_factor = value;
-    for (size_t i = 0; i < l->pressure_count; i++) {
-      dea_pressure_set(model->pressures[i], value * l->pressures[i].pressure_Pa);
-    }
+    set_pressures(model, value);
     break;
   }
   return DEA_OK;
@@ -768,7 +829,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   const struct dea_driven_solid driven = {.solid = model->solid,
                                           .branches = model->branches,
                                           .leakage_per_s = model->leakage_per_s,
-                                          .copies = 1,
+                                          .copies = model->copies,
                                           .thickness_m =
                                               model->layout->plies[model->film].thickness_m};
   if (time->inertia) {
@@ -879,7 +940,11 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
   DEA_TRY(ctx, check_densities(ctx, model->layout));
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                          "model 3d: frequencies are those in vacuo; the air that moves with a film "
-                         "makes it slower");
+                         "makes it slower%s",
+                         model->mesh.sector.fold == 0
+                             ? ""
+                             : ". A sector has only those motions that have its symmetry "
+                               "(compute.solid.domain: whole has all)");
 }
 
 /* Monitors of the answer at one frequency, per volt. */
@@ -926,6 +991,30 @@ static const double *answers(const struct dea_model *model)
   return model->answers;
 }
 
+/* All copies of the sector in the place of *mesh. */
+static dea_status make_whole(struct dea_context *ctx, const struct dea_model *model,
+                             struct dea_field_mesh **mesh)
+{
+  const struct dea_layout_sector *sector = &model->mesh.sector;
+  struct dea_field_mesh *part = *mesh, *whole = NULL;
+  if (sector->fold == 0) {
+    return DEA_OK;
+  }
+  part->fold = sector->fold; // about the z axis, where the centre is for a moment
+  part->symmetry_angle = sector->angle_rad;
+  for (size_t i = 0; i < 2 * part->point_count; i++) {
+    part->X[3 * (i / 2) + i % 2] -= sector->centre_m[i % 2];
+  }
+  dea_status status = dea_field_mesh_whole(ctx, part, &whole);
+  dea_field_mesh_destroy(ctx, part);
+  *mesh = whole;
+  DEA_TRY(ctx, status);
+  for (size_t i = 0; i < 2 * whole->point_count; i++) {
+    whole->X[3 * (i / 2) + i % 2] += sector->centre_m[i % 2];
+  }
+  return DEA_OK;
+}
+
 static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
@@ -934,6 +1023,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
   *shapes = NULL;
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
   DEA_TRY(ctx, dea_motions_modes(ctx, &motions, (int)model->film, at, count, points, shapes));
+  DEA_TRY(ctx, make_whole(ctx, model, shapes));
   return DEA_OK;
 }
 
@@ -943,6 +1033,7 @@ static dea_status fields(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
                    ? dea_solid_volume(ctx, model->solid, out)
                    : dea_solid_surface(ctx, model->solid, (int)model->film, out));
+  DEA_TRY(ctx, make_whole(ctx, model, out));
   return DEA_OK;
 }
 

@@ -13,6 +13,7 @@ struct probe {
   int count;
   int node[2][PLANE_MAX]; // of the lowest and the highest element of the ply there
   double weight[PLANE_MAX];
+  size_t copy; // of the sector, that the point lies in
 };
 
 struct dea_observer {
@@ -22,7 +23,8 @@ struct dea_observer {
   double (*monitor)[DEA_OBSERVED_COUNT];
   double (*body)[DEA_OBSERVED_COUNT];
   struct dea_channel_values *channel;
-  double *work; // of channels
+  double *work;         // of channels
+  size_t channel_count; // of the solid, ground counted; at least those of the layout
 };
 
 // Where points are -------------------------------------------------------------------------------
@@ -102,8 +104,17 @@ static void faces(const struct dea_grid *grid, size_t e, const int **lower, cons
   *upper = *lower + (grid->levels[e] - 1) * per;
 }
 
-static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
-                       struct probe *out)
+/* From a copy into the sector: a mirror is its own inverse, a rotation goes back. */
+static struct dea_motion back_to_sector(const struct dea_layout_mesh *mesh, size_t copy)
+{
+  struct dea_motion out = dea_layout_sector_copy(&mesh->sector, copy);
+  out.sine = out.mirrored ? out.sine : -out.sine;
+  return out;
+}
+
+/* In the sector itself. */
+static bool find_in_sector(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
+                           struct probe *out)
 {
   const struct dea_grid *grid = mesh->grid;
   double low = INFINITY, high = -INFINITY;
@@ -130,6 +141,27 @@ static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const dou
     high = fmax(high, z[1]);
   }
   return out->count > 0;
+}
+
+/* A point of any copy of the sector, reflected into it. */
+static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
+                       struct probe *out)
+{
+  const double *centre = mesh->sector.centre_m, from[2] = {x_m[0] - centre[0], x_m[1] - centre[1]};
+  for (size_t k = 0; k < dea_layout_sector_copies(&mesh->sector); k++) {
+    struct dea_motion back = back_to_sector(mesh, k);
+    double x[2] = {x_m[0], x_m[1]};
+    if (k > 0) {
+      dea_layout_sector_turn(&back, from, x);
+      x[0] += centre[0];
+      x[1] += centre[1];
+    }
+    out->copy = k;
+    if (find_in_sector(mesh, ply, x, out)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
@@ -167,7 +199,8 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
   o->body = dea_arena_alloc(&o->memory, l->body_count + 1, sizeof *o->body);
   o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
-  o->work = dea_arena_alloc(&o->memory, (l->channel_count + 2) * l->channel_count, sizeof(double));
+  o->channel_count = l->channel_count > 1 ? l->channel_count : 2; // a solid has one beside ground
+  o->work = dea_arena_alloc(&o->memory, (o->channel_count + 2) * o->channel_count, sizeof(double));
   dea_status status = dea_arena_status(&o->memory);
   if (status == DEA_OK) {
     status = find_probes(ctx, o);
@@ -197,7 +230,8 @@ static void nothing_observed(double *values)
   }
 }
 
-static void displacement_at(const struct probe *probe, const double *u, double out[3])
+static void displacement_at(const struct dea_layout_mesh *mesh, const struct probe *probe,
+                            const double *u, double out[3])
 {
   for (int i = 0; i < 3; i++) {
     out[i] = 0;
@@ -206,20 +240,49 @@ static void displacement_at(const struct probe *probe, const double *u, double o
           0.5 * probe->weight[n] * (u[3 * probe->node[0][n] + i] + u[3 * probe->node[1][n] + i]);
     }
   }
+  if (probe->copy > 0) {
+    struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, probe->copy);
+    dea_layout_sector_turn(&copy, out, out);
+  }
 }
 
-static void observe_line(const struct dea_layout_monitor *m, const struct probe probe[2],
-                         const double *u, double *out)
+static void observe_line(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                         const struct probe probe[2], const double *u, double *out)
 {
   double v[2][3], flat = 0, now = 0;
-  displacement_at(&probe[0], u, v[0]);
-  displacement_at(&probe[1], u, v[1]);
+  displacement_at(mesh, &probe[0], u, v[0]);
+  displacement_at(mesh, &probe[1], u, v[1]);
   for (int i = 0; i < 3; i++) {
     double d = i < 2 ? m->at_m[1][i] - m->at_m[0][i] : 0, e = d + v[1][i] - v[0][i];
     flat += d * d;
     now += e * e;
   }
   out[DEA_OBSERVED_STRETCH] = sqrt(now / flat);
+}
+
+/* Adds displacement v, lengths of the two tangents and area by their products C (11 22 12) times
+ * dA: their mean over the copies of the sector. */
+static void add_copies(const struct dea_layout_mesh *mesh, const double v[3], const double C[3],
+                       double dA, double sum[6])
+{
+  size_t copies = dea_layout_sector_copies(&mesh->sector);
+  for (size_t k = 0; k < copies; k++) {
+    double values[6] = {v[0], v[1], v[2], sqrt(C[0]), sqrt(C[1]), sqrt(C[0] * C[1] - C[2] * C[2])};
+    if (k > 0) {
+      struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, k);
+      struct dea_motion back = back_to_sector(mesh, k);
+      dea_layout_sector_turn(&copy, v, values);
+      for (int i = 0; i < 2; i++) { // along x and y, as they lie in the sector
+        const double axis[2] = {i == 0, i == 1};
+        double a[2];
+        dea_layout_sector_turn(&back, axis, a);
+        values[3 + i] = sqrt(a[0] * a[0] * C[0] + 2 * a[0] * a[1] * C[2] + a[1] * a[1] * C[1]);
+      }
+    }
+    for (int i = 0; i < 6; i++) {
+      sum[i] += dA * values[i] / (double)copies;
+    }
+  }
 }
 
 /* Means over the middle surface: of displacements, of the lengths of its two tangents, of its area.
@@ -262,12 +325,9 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
         mixed += F[i][0] * F[i][1];
       }
       double dA = det * weight[p % points] * weight[p / points];
-      const double values[6] = {v[0],       v[1],       v[2],
-                                sqrt(c[0]), sqrt(c[1]), sqrt(c[0] * c[1] - mixed * mixed)};
+      const double C[3] = {c[0], c[1], mixed};
       area += dA;
-      for (int i = 0; i < 6; i++) {
-        sum[i] += dA * values[i];
-      }
+      add_copies(mesh, v, C, dA, sum);
     }
   }
   for (int i = 0; i < 3; i++) {
@@ -276,22 +336,33 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
   }
 }
 
-static void observe_body(const struct dea_solid *solid, size_t body, double *out)
+/* What holds a body along what keeps the symmetry of a sector is the same in all copies; the rest
+ * of it they take from each other. */
+static void observe_body(const struct dea_layout_mesh *mesh, const struct dea_solid *solid,
+                         size_t body, double *out)
 {
+  int keeps = dea_layout_sector_keeps(&mesh->sector);
+  double copies = (double)dea_layout_sector_copies(&mesh->sector);
   dea_solid_body_place(solid, body, out + DEA_OBSERVED_X, out + DEA_OBSERVED_TURN_X);
   dea_solid_body_reaction(solid, body, out + DEA_OBSERVED_FORCE_X, out + DEA_OBSERVED_MOMENT_X);
+  for (int k = 0; k < 6; k++) {
+    double *of = &out[DEA_OBSERVED_FORCE_X + k];
+    *of = (keeps >> k) & 1 ? copies * *of : 0;
+  }
 }
 
 static dea_status observe_channels(struct dea_context *ctx, struct dea_observer *o,
                                    struct dea_solid *solid)
 {
-  size_t count = o->mesh->layout->channel_count;
+  size_t count = o->channel_count;
+  double copies = (double)dea_layout_sector_copies(&o->mesh->sector);
   double *voltage = o->work, *charge = voltage + count, *capacitance = charge + count;
   dea_solid_channel_voltages(solid, voltage);
   DEA_TRY(ctx, dea_solid_charges(ctx, solid, charge));
   DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
-  for (size_t k = 0; k < count; k++) {
-    o->channel[k] = (struct dea_channel_values){voltage[k], charge[k], capacitance[k * count + k]};
+  for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
+    o->channel[k] = (struct dea_channel_values){voltage[k], copies * charge[k],
+                                                copies * capacitance[k * count + k]};
   }
   return DEA_OK;
 }
@@ -302,7 +373,7 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
   const double *u = dea_solid_displacement(solid);
   for (size_t i = 0; i < l->body_count; i++) {
     nothing_observed(o->body[i]);
-    observe_body(solid, i, o->body[i]);
+    observe_body(o->mesh, solid, i, o->body[i]);
   }
   for (size_t i = 0; i < l->monitor_count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
@@ -310,10 +381,10 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
     nothing_observed(values);
     switch (m->kind) {
     case DEA_MONITOR_POINT:
-      displacement_at(&o->probes[i][0], u, values);
+      displacement_at(o->mesh, &o->probes[i][0], u, values);
       break;
     case DEA_MONITOR_LINE:
-      observe_line(m, o->probes[i], u, values);
+      observe_line(o->mesh, m, o->probes[i], u, values);
       break;
     case DEA_MONITOR_REGION:
       observe_region(o->mesh, m, u, values);

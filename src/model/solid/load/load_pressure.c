@@ -1,4 +1,5 @@
-/* Follower pressure: E = (p/3) int r . (x,1 x x,2) dxi, r = x - o. */
+/* Follower pressure: E = (p/3) int r . (x,1 x x,2) dxi, r = x - o; of a part of a flat face in its
+ * place E = p int r_z (x,1 x x,2)_z dxi (docs/theory/loads.md). */
 #include "model/solid/load/loads.h"
 
 #include <string.h>
@@ -7,6 +8,7 @@ struct dea_pressure {
   const struct dea_surface *surface;
   struct dea_face_shape shape;
   double origin[3], now, goal; // o, p [Pa]
+  bool flat;
 };
 
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
@@ -19,6 +21,14 @@ dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface
   (*out)->surface = surface;
   memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
   dea_face_shape_create(surface, DEA_FACE_GAUSS, &(*out)->shape);
+  return DEA_OK;
+}
+
+dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
+                                    double height_m, struct dea_pressure **out)
+{
+  DEA_TRY(ctx, dea_pressure_create(ctx, surface, (double[3]){0, 0, height_m}, out));
+  (*out)->flat = true;
   return DEA_OK;
 }
 
@@ -82,6 +92,35 @@ static void add_tangent(const struct dea_face_shape *s, int q, double f, const s
   }
 }
 
+/* One point of a patch of a flat face: E += f r_z J, J = (A x B)_z, and its derivatives. */
+static void add_flat(const struct dea_face_shape *s, int q, double f, const struct place *at,
+                     enum dea_eval_order level, struct dea_load_piece *out)
+{
+  double J = at->A[0] * at->B[1] - at->A[1] * at->B[0], slope[DEA_FACE_NODES_MAX][2]; // of J
+  int dofs = 3 * s->nodes;
+  out->energy_J += f * at->r[2] * J;
+  for (int n = 0; n < s->nodes; n++) {
+    const double N1 = s->slope[q][0][n], N2 = s->slope[q][1][n];
+    slope[n][0] = N1 * at->B[1] - N2 * at->A[1];
+    slope[n][1] = N2 * at->A[0] - N1 * at->B[0];
+    out->g[3 * n] += f * at->r[2] * slope[n][0];
+    out->g[3 * n + 1] += f * at->r[2] * slope[n][1];
+    out->g[3 * n + 2] += f * s->value[q][n] * J;
+  }
+  for (int n = 0; n < s->nodes && level >= DEA_TANGENT; n++) {
+    for (int m = 0; m < s->nodes; m++) {
+      double mixed = s->slope[q][0][n] * s->slope[q][1][m] - s->slope[q][1][n] * s->slope[q][0][m];
+      for (int i = 0; i < 2; i++) {
+        double c = f * s->value[q][m] * slope[n][i];
+        out->K[(3 * n + i) * dofs + 3 * m + 2] += c;
+        out->K[(3 * m + 2) * dofs + 3 * n + i] += c;
+      }
+      out->K[3 * n * dofs + 3 * m + 1] += f * at->r[2] * mixed;
+      out->K[(3 * m + 1) * dofs + 3 * n] += f * at->r[2] * mixed;
+    }
+  }
+}
+
 static dea_status evaluate(const void *self, size_t piece, const double *u,
                            enum dea_eval_order level, struct dea_load_piece *out)
 {
@@ -107,6 +146,10 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
     struct place at;
     double AB[3], Br[3], rA[3], f = p->now / 3 * s->weight[q];
     place_at(p, q, x, &at);
+    if (p->flat) {
+      add_flat(s, q, 3 * f, &at, level, out);
+      continue;
+    }
     cross(at.A, at.B, AB);
     cross(at.B, at.r, Br);
     cross(at.r, at.A, rA);

@@ -63,6 +63,11 @@ struct dea_pressure;
  * one on which it slides. At first 0 Pa. out: owned by the caller. */
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
                                const double origin_m[3], struct dea_pressure **out);
+/* On a part of a flat face at z = height_m at rest, whose boundary is free to move: its forces
+ * along z are exact, and those in the plane but for p times what the boundary has risen, per length
+ * of it. */
+dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
+                                    double height_m, struct dea_pressure **out);
 void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);

@@ -1,6 +1,6 @@
 /* The mirrored copies of a part that make up the whole (struct dea_field_mesh). */
-#ifndef DEA_OUTPUT_COPIES_H
-#define DEA_OUTPUT_COPIES_H
+#ifndef DEA_RESULT_COPIES_H
+#define DEA_RESULT_COPIES_H
 
 #include "result/field_mesh.h"
 
@@ -17,5 +17,10 @@ size_t dea_copy_count(const struct dea_field_mesh *mesh);
 struct dea_copy dea_copy_at(const struct dea_field_mesh *mesh, size_t number);
 /* A place or a vector in a copy. */
 void dea_copy_move(const struct dea_copy *copy, const double in[3], double out[3]);
+
+/* All copies of a part as one mesh; of a whole a copy of it. DEA_E_UNSUPPORTED for one with too
+ * many points. out: owned by the caller, NULL on failure. */
+dea_status dea_field_mesh_whole(struct dea_context *ctx, const struct dea_field_mesh *mesh,
+                                struct dea_field_mesh **out);
 
 #endif
