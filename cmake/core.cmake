@@ -4,7 +4,7 @@
 set(DEA_CORE)
 find_program(DEA_WASM_CC NAMES clang-14 clang)
 set(core_flags --target=wasm32-wasi -mexec-model=reactor)
-if(DEA_WASM_CC AND NOT DEFINED DEA_WASM_WORKS)
+if(DEA_WASM_CC AND NOT DEA_WASM_WORKS) # a "no" is tried again: packages may have come
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/core_check.c "#include <math.h>\nextern double x;\ndouble x;\n\
 __attribute__((export_name(\"f\"))) int f(void) { return pow(x, 2) > 1; }\n")
   execute_process(COMMAND ${DEA_WASM_CC} ${core_flags} core_check.c -o core_check.wasm

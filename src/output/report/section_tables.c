@@ -196,7 +196,31 @@ static void add_worst(struct dea_text *out, const struct dea_curve *sweep)
   dea_text_add(out, ".</li>");
 }
 
-dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run)
+/* The first limit of a kind of a model: on its path, or of one without a path the first point of
+ * the sweep that is beyond it. Whether *out is set. */
+static bool find_limit(const struct dea_curve *path, const struct dea_curve *sweep,
+                       enum dea_event_kind kind, struct dea_event *out)
+{
+  const struct dea_event *event = dea_curve_first_event(path != NULL ? path : sweep, kind);
+  if (event != NULL) {
+    *out = *event;
+    return true;
+  }
+  for (size_t i = 0; path == NULL && i < sweep->count; i++) {
+    const struct dea_load_point *p = &sweep->points[i];
+    if (kind == DEA_EVENT_SLACK       ? p->min_tension_N_per_m < 0
+        : kind == DEA_EVENT_BREAKDOWN ? !dea_load_point_safe(p)
+                                      : false) {
+      *out = (struct dea_event){.kind = kind, .point = *p};
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Rows of a model. Of one without a path, what its sweep did not meet is not said to be none. */
+static void add_model_limits(struct dea_text *out, const struct dea_result *result,
+                             const char *model)
 {
   static const struct {
     enum dea_event_kind kind;
@@ -205,6 +229,34 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
                 {DEA_EVENT_BREAKDOWN, "breakdown"},
                 {DEA_EVENT_PULL_IN, "pull-in"},
                 {DEA_EVENT_SNAP_BACK, "snap-back"}};
+  const struct dea_curve *path = dea_result_find(result, model, "path");
+  const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
+  double last_V =
+      sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].voltage_V : NAN;
+  for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
+    struct dea_event event;
+    bool found = find_limit(path, sweep, limits[k].kind, &event);
+    if (found || (path != NULL && limits[k].kind != DEA_EVENT_SNAP_BACK)) {
+      add_limit(out, model, limits[k].what, found ? &event : NULL, last_V);
+    }
+  }
+}
+
+/* Whether a curve is the one that rows of its model come from: the path, or without one a sweep
+ * that met a limit. */
+static bool has_limits(const struct dea_result *result, const struct dea_curve *curve)
+{
+  struct dea_event event;
+  bool path = strcmp(curve->kind, "path") == 0, sweep = strcmp(curve->kind, "sweep") == 0;
+  bool alone = sweep && dea_result_find(result, curve->model, "path") == NULL;
+  return curve->count > 0 &&
+         (path || (alone && (find_limit(NULL, curve, DEA_EVENT_SLACK, &event) ||
+                             find_limit(NULL, curve, DEA_EVENT_BREAKDOWN, &event) ||
+                             find_limit(NULL, curve, DEA_EVENT_PULL_IN, &event))));
+}
+
+dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run)
+{
   const struct dea_result *result = run->run->result;
   struct dea_text *out = &report->text;
   if (result->curve_count == 0) {
@@ -213,15 +265,14 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
   bool any = false;
   dea_section_begin(report, "limits", run->number, "Stability and limits");
   for (size_t c = 0; c < result->curve_count; c++) {
-    const struct dea_curve *path = &result->curves[c];
-    if (strcmp(path->kind, "path") != 0 || path->count == 0) {
+    const struct dea_curve *curve = &result->curves[c];
+    if (!has_limits(result, curve)) {
       continue;
     }
-    const struct dea_curve *sweep = dea_result_find(result, path->model, "sweep");
-    double last_V =
-        sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].voltage_V : NAN;
     if (!any) {
-      dea_table_begin(report, "First event of each kind along the equilibrium path",
+      dea_table_begin(report,
+                      "First event of each kind along the equilibrium path; of models without one, "
+                      "the first point of the sweep beyond it",
                       "<th scope=\"col\">Model</th><th scope=\"col\">Limit</th>"
                       "<th scope=\"col\" class=\"n\">V (kV)</th>"
                       "<th scope=\"col\" class=\"n\">electrode stretch</th>"
@@ -229,12 +280,7 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
                       "<th scope=\"col\">Sweep</th>");
       any = true;
     }
-    for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
-      const struct dea_event *event = dea_curve_first_event(path, limits[k].kind);
-      if (event != NULL || limits[k].kind != DEA_EVENT_SNAP_BACK) {
-        add_limit(out, path->model, limits[k].what, event, last_V);
-      }
-    }
+    add_model_limits(out, result, curve->model);
   }
   if (any) {
     dea_table_end(report);
