@@ -362,6 +362,20 @@ static void test_no_dielectric_is_a_note(void **state)
   drop();
 }
 
+/* A ply may span what is open below it; what reaches beyond all of that is said. */
+static void test_overhang_is_a_note(void **state)
+{
+  (void)state;
+  build(0, NULL);
+  assert_null(find_finding(ctx, DEA_NOTE, "overhangs"));
+  drop();
+  build(PLIES, "plies: [{name: lower, shape: active, material: film, thickness: 100 um}, "
+               "{name: upper, shape: film, material: film, thickness: 50 um}]");
+  assert_non_null(
+      find_finding(ctx, DEA_NOTE, "the ply 'upper' overhangs the plies below it by up"));
+  drop();
+}
+
 static dea_status build_example(struct dea_context *own)
 {
   struct dea_design *read;
@@ -410,6 +424,7 @@ int main(void)
       TEST(test_override_by_name),
       TEST(test_failing_memory),
       TEST(test_no_dielectric_is_a_note),
+      TEST(test_overhang_is_a_note),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

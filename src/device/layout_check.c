@@ -7,7 +7,8 @@
 
 /* Parts of an area that rounding may leave. */
 static const double rounding = 1e-6;
-enum { SAMPLES = 16 }; // of a piece of a contour
+enum { SAMPLES = 16 };                     // of a piece of a contour
+static const double overhang_share = 1e-3; // of a ply's size: what lies over the edge on purpose
 
 static const struct dea_region *region_of(const struct dea_layout *l, size_t number)
 {
@@ -219,6 +220,50 @@ static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *
   return status;
 }
 
+/* How far a ply reaches beyond the convex hull of those before it, at most: by the directions in
+ * which each goes how far [m]. */
+static double overhang_m(const struct dea_layout *l, size_t ply)
+{
+  enum { DIRECTIONS = 72 };
+  double most = 0;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    double angle = 2 * acos(-1.0) * k / DIRECTIONS, reach[2] = {-INFINITY, -INFINITY};
+    for (size_t p = 0; p <= ply; p++) {
+      const struct dea_region *r = region_of(l, l->plies[p].region);
+      for (size_t i = 0; i < r->contour_count * SAMPLES; i++) {
+        const struct dea_contour contour = dea_region_contour(r, i / SAMPLES);
+        for (size_t c = 0; c < dea_contour_pieces(&contour); c++) {
+          const struct dea_piece piece = dea_contour_piece(&contour, c);
+          double at[2], *to = &reach[p == ply ? 1 : 0];
+          dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
+          *to = fmax(*to, at[0] * cos(angle) + at[1] * sin(angle));
+        }
+      }
+    }
+    most = fmax(most, reach[1] - reach[0]);
+  }
+  return most;
+}
+
+/* A film may span what is open below it; what reaches beyond all that is below hangs in the air. */
+static dea_status check_overhang(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 1; i < l->ply_count; i++) {
+    const struct dea_layout_ply *ply = &l->plies[i];
+    double beyond_m = overhang_m(l, i);
+    bool lies_on = false;
+    for (size_t j = 0; j < i; j++) {
+      lies_on |= dea_layout_overlap_m2(l, ply->region, l->plies[j].region) > 0;
+    }
+    if (lies_on && beyond_m > overhang_share * dea_region_size_m(region_of(l, ply->region))) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, ply->location,
+                                   "the ply '%s' overhangs the plies below it by up to %.3g mm",
+                                   ply->name, 1e3 * beyond_m));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_supports(struct dea_context *ctx, const struct dea_layout *l)
 {
   for (size_t i = 0; i < l->support_count; i++) {
@@ -411,8 +456,8 @@ static dea_status check_monitors(struct dea_context *ctx, const struct dea_layou
 dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout)
 {
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
-  static const check_fn checks[] = {check_electrodes, check_plies,     check_supports, check_bodies,
-                                    check_held,       check_pressures, check_monitors};
+  static const check_fn checks[] = {check_electrodes, check_plies, check_overhang,  check_supports,
+                                    check_bodies,     check_held,  check_pressures, check_monitors};
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));
   }
