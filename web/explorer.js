@@ -105,7 +105,7 @@
   }));
 
   const dress = (section, number, core) => {
-    const base = JSON.parse(section.querySelector('.device').textContent);
+    const base = JSON.parse(section.querySelector('script.device').textContent);
     const host = section.querySelector('.explorer');
     const initial = {
       voltage_V: base.voltage_V, pre_stretch: base.pre_stretch, thickness_m: base.thickness_m,
@@ -259,9 +259,9 @@
   };
 
   dea.waits.push(start().then((core) => {
-    document.querySelectorAll('section:has(.device)').forEach((section, i) => dress(section, i + 1, core));
+    document.querySelectorAll('section:has(script.device)').forEach((section, i) => dress(section, i + 1, core));
   }).catch((error) => {
-    document.querySelectorAll('section:has(.device) .still').forEach((still) => {
+    document.querySelectorAll('section:has(script.device) .still').forEach((still) => {
       still.textContent = `The explorer does not work in this browser: ${error.message}`;
     });
   }));
