@@ -120,8 +120,12 @@ static void fill_patch(const struct dea_field_mesh *mesh, const struct dea_mesh_
     evaluate(mesh, block, element, copy, 2.0 * (k % row) / patch->n - 1,
              2.0 * (k / row) / patch->m - 1, at);
     out->radius_m = fmax(out->radius_m, hypot(at[DEA_LATTICE_X], at[DEA_LATTICE_Y]));
-    out->reach_m[0] = fmax(out->reach_m[0], fabs(at[DEA_LATTICE_X]));
-    out->reach_m[1] = fmax(out->reach_m[1], fabs(at[DEA_LATTICE_Y]));
+    const double x_m[2] = {at[DEA_LATTICE_X], at[DEA_LATTICE_Y]};
+    for (int i = 0; i < 2; i++) {
+      out->reach_m[i] = fmax(out->reach_m[i], fabs(x_m[i]));
+      out->low_m[i] = fmin(out->low_m[i], x_m[i]);
+      out->high_m[i] = fmax(out->high_m[i], x_m[i]);
+    }
     out->z_min_m = fmin(out->z_min_m, at[DEA_LATTICE_UZ]);
     out->z_max_m = fmax(out->z_max_m, at[DEA_LATTICE_UZ]);
   }
@@ -131,7 +135,10 @@ static void fill_patch(const struct dea_field_mesh *mesh, const struct dea_mesh_
 dea_status dea_surface_lattice_create(struct dea_context *ctx, const struct dea_field_mesh *mesh,
                                       size_t pieces, struct dea_surface_lattice *out)
 {
-  *out = (struct dea_surface_lattice){.z_min_m = INFINITY, .z_max_m = -INFINITY};
+  *out = (struct dea_surface_lattice){.low_m = {INFINITY, INFINITY},
+                                      .high_m = {-INFINITY, -INFINITY},
+                                      .z_min_m = INFINITY,
+                                      .z_max_m = -INFINITY};
   DEA_TRY(ctx, check(ctx, mesh));
   size_t copies = dea_copy_count(mesh), cells = mesh->cell_count;
   out->patches = dea_alloc(ctx, cells * copies, sizeof *out->patches);

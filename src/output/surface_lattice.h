@@ -27,6 +27,7 @@ struct dea_surface_lattice {
   double (*at)[DEA_LATTICE_COLUMNS]; // of all patches, owned
   double radius_m;                   // of the outermost point
   double reach_m[2];                 // largest |x| and |y|
+  double low_m[2], high_m[2];        // least and largest x and y
   double z_min_m, z_max_m;           // of the displacement
 };
 

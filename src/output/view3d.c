@@ -25,8 +25,9 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, str
     out->low_m = fmin(out->low_m, drawing->z_min_m);
     out->high_m = fmax(out->high_m, drawing->z_max_m);
   }
-  double span_m = fmax(out->high_m - out->low_m, 1e-9);
-  out->times = fmax(1, dea_nice_below(0.3 * out->radius_m / span_m));
+  double span_m = out->high_m - out->low_m;
+  bool flat = !(span_m > 1e-6 * out->radius_m); // but for rounding
+  out->times = flat ? 1 : fmax(1, dea_nice_below(0.3 * out->radius_m / span_m));
   out->lines = pictures[0].outline_count;
   for (size_t i = 0; i < out->lines; i++) {
     out->frame_lines += pictures[0].outlines[i].kind != DEA_OUTLINE_FIBRE;
@@ -35,11 +36,14 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, str
 
 const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS])
 {
-  const double *reach_m = space->pictures[0].drawing.reach_m;
+  const struct dea_surface_lattice *drawing = &space->pictures[0].drawing;
+  const double *reach_m = drawing->reach_m;
   if (fmin(reach_m[0], reach_m[1]) > 0.99 * space->radius_m) {
     snprintf(out, DEA_VIEW3D_WORDS, "frame \342\214\200 %.4g mm", 2e3 * space->radius_m);
   } else {
-    snprintf(out, DEA_VIEW3D_WORDS, "%.4g mm \303\227 %.4g mm", 2e3 * reach_m[0], 2e3 * reach_m[1]);
+    snprintf(out, DEA_VIEW3D_WORDS, "%.4g mm \303\227 %.4g mm",
+             1e3 * (drawing->high_m[0] - drawing->low_m[0]),
+             1e3 * (drawing->high_m[1] - drawing->low_m[1]));
   }
   return out;
 }
