@@ -224,6 +224,15 @@ dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
   return DEA_OK;
 }
 
+dea_status dea_solid_add_matrix(struct dea_context *ctx, Mat A, double factor, Mat B)
+{
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  // of blocks on several ranks PETSc 3.18 adds only the first entries if told that patterns are one
+  DEA_PETSC(ctx, MatAXPY(A, factor, B, ranks > 1 ? SUBSET_NONZERO_PATTERN : SAME_NONZERO_PATTERN));
+  return DEA_OK;
+}
+
 /* amount times a matrix of numbers between the first `count` of nodes [all], as a block of K
  * without the rows and columns of held components; the others are those of bodies. */
 static void block_of(const struct dea_solid *s, int count, int all, const int *nodes, double amount,

@@ -124,9 +124,9 @@ static void sort(struct eigen *f)
 static dea_status count_below(struct dea_context *ctx, struct eigen *f, double value, int *count)
 {
   struct dea_solid *s = f->solid;
-  DEA_PETSC(ctx, MatAXPY(s->work.K, -value, f->B, SAME_NONZERO_PATTERN));
+  DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, -value, f->B));
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
-  DEA_PETSC(ctx, MatAXPY(s->work.K, value, f->B, SAME_NONZERO_PATTERN));
+  DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, value, f->B));
   return DEA_OK;
 }
 

@@ -48,7 +48,7 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   s->state.internal_variables = NULL;
   dea_internal_variables_destroy(ctx, variables);
   DEA_TRY(ctx, status);
-  DEA_PETSC(ctx, MatAXPY(*out, -1, y->part[0], SAME_NONZERO_PATTERN));
+  DEA_TRY(ctx, dea_solid_add_matrix(ctx, *out, -1, y->part[0]));
   return DEA_OK;
 }
 
