@@ -65,15 +65,26 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   DEA_TRY(ctx, mark_materials(ctx, s, out));
   DEA_TRY(ctx, dea_state_add(ctx, out, "state", path->keep, path->state_count));
   DEA_TRY(ctx, dea_state_add(ctx, out, "controls", path->controls, path->control_count));
+  bool before = s->found.factor_before && (s->found.factor_fits || s->found.stiff_factor_fits);
+  DEA_TRY(ctx, dea_state_add(ctx, out, "state of the factor", before ? path->factored : path->keep,
+                             path->state_count));
   DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
   return DEA_OK;
 }
 
-/* The factor that the equilibrium has left for the start of the next step. */
-static dea_status factorise(struct dea_context *ctx, struct dea_solid *s)
+/* The factor that the equilibrium has left for the start of the next step: it is of `factored`, the
+ * state before the last step to `now`, or that itself. */
+static dea_status factorise(struct dea_context *ctx, struct dea_solid *s, const double *factored,
+                            const double *now)
 {
   struct dea_solid_report report = {0};
-  DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
+  size_t size = s->work.load_steps.state_count * sizeof *now;
+  dea_solid_state_set(s, factored);
+  dea_status status = dea_solid_count_unstable(ctx, s, false, &report);
+  dea_solid_state_set(s, now);
+  DEA_TRY(ctx, status);
+  memcpy(s->work.load_steps.factored, factored, size);
+  s->found.factor_before = memcmp(factored, now, size) != 0;
   return DEA_OK;
 }
 
@@ -83,16 +94,16 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
   struct dea_load_steps *path = &s->work.load_steps;
   DEA_TRY(ctx, dea_load_steps_prepare(ctx, s));
   const double *now = dea_state_find(state, "state", path->state_count);
+  const double *factored = dea_state_find(state, "state of the factor", path->state_count);
   const double *controls = dea_state_find(state, "controls", path->control_count);
   const double *own = dea_state_find(state, "solid", 2);
-  if (now == NULL || controls == NULL || own == NULL) {
+  if (now == NULL || factored == NULL || controls == NULL || own == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh and these loads");
   }
-  dea_solid_state_set(s, now);
   dea_solid_controls_set(s, controls);
   memcpy(s->state.force_goal, s->state.force, s->problem.dofs * sizeof(double));
   s->found.force_largest_N = own[0];
   s->found.energy_largest_J = own[1];
-  DEA_TRY(ctx, factorise(ctx, s));
+  DEA_TRY(ctx, factorise(ctx, s, factored, now));
   return DEA_OK;
 }

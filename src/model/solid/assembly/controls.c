@@ -50,6 +50,7 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
   dea_load_steps_release(path); // a load more: what was before is no guide
   path->memory.ctx = ctx;
   path->keep = dea_arena_alloc(&path->memory, states, sizeof(double));
+  path->factored = dea_arena_alloc(&path->memory, states, sizeof(double));
   path->controls = dea_arena_alloc(&path->memory, controls, sizeof(double));
   path->controls_from = dea_arena_alloc(&path->memory, controls, sizeof(double));
   path->controls_goal = dea_arena_alloc(&path->memory, controls, sizeof(double));

@@ -90,6 +90,7 @@ struct dea_load_steps {
   size_t state_count;
   size_t control_count;
   double *keep;          // [state_count] last equilibrium
+  double *factored;      // [state_count] state of the factor, where found.factor_before
   double *controls;      // [control_count] of it
   double *controls_from; // [control_count] start of a solve
   double *controls_goal; // [control_count] end of it
@@ -128,6 +129,7 @@ struct dea_solid_found {
   bool predicted_fits;     // work.predicted belongs to state.u, by dea_solid_predict
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
   bool stiff_factor_fits;  // it is so of K with the raised kappa; until the next factor
+  bool factor_before;      // either is of the state before the last step to this one
 };
 
 struct dea_solid {

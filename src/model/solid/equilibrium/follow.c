@@ -2,6 +2,7 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/matrix.h"
@@ -389,6 +390,8 @@ static dea_status take_last_step(struct dea_context *ctx, struct follow *w)
 {
   struct dea_solid *s = w->s;
   bool stiff = s->found.stiff_factor_fits;
+  dea_solid_state_get(s, s->work.load_steps.factored);
+  s->found.factor_before = true;
   for (size_t i = 0; i < w->dofs; i++) {
     s->work.trial[i] = -s->work.g[i];
   }

@@ -265,7 +265,7 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
 dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s, bool tangent,
                                     struct dea_solid_report *report)
 {
-  s->found.factor_fits = s->found.predicted_fits = false;
+  s->found.factor_fits = s->found.predicted_fits = s->found.factor_before = false;
   if (!tangent) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
