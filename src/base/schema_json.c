@@ -313,6 +313,16 @@ static json_t *record_json(struct maker *maker, const struct dea_record *record)
   return json;
 }
 
+/* An object with its members by their names; NULL without memory. That in which units are met
+ * depends on the order in which a compiler evaluates arguments. */
+static json_t *sorted(const json_t *object)
+{
+  char *text = json_dumps(object, JSON_SORT_KEYS);
+  json_t *out = text != NULL ? json_loads(text, 0, NULL) : NULL;
+  free(text);
+  return out;
+}
+
 /* Takes the body and what the maker holds. */
 static dea_status print_json(struct maker *maker, json_t *body, const char *title,
                              struct dea_text *out)
@@ -321,7 +331,7 @@ static dea_status print_json(struct maker *maker, json_t *body, const char *titl
                            "title", title);
   char *text = NULL;
   if (json != NULL && json_object_update(json, body) == 0 &&
-      json_object_set(json, "$defs", maker->units) == 0) {
+      json_object_set_new(json, "$defs", sorted(maker->units)) == 0) {
     text = json_dumps(json, JSON_INDENT(1));
   }
   json_decref(maker->units);

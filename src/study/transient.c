@@ -223,10 +223,11 @@ static bool would_be_missed(struct player *p, const struct dea_load_point *point
       off_line(share, a->centre_z_m, b->centre_z_m, point->centre_z_m, &p->largest[3]), // or NAN
   };
   double most = fmax(fmax(off[0], off[1]), fmax(off[2], off[3]));
-  const double *first = p->kept, *from = first + (p->curve->count - 1) * p->width;
+  size_t last = (p->curve->count - 1) * p->width; // of p->kept, which is NULL without a width
   for (size_t i = 0; i < p->width; i++) {
-    most = fmax(most, off_line(share, from[i] - first[i], p->seen_pending[i] - first[i],
-                               p->seen[i] - first[i], &p->seen_largest[i]));
+    double first = p->kept[i];
+    most = fmax(most, off_line(share, p->kept[last + i] - first, p->seen_pending[i] - first,
+                               p->seen[i] - first, &p->seen_largest[i]));
   }
   return p->has_pending && most > visible;
 }
