@@ -1,5 +1,6 @@
 #!/bin/sh
 # The shapes that dea fab writes of each example, read back by layer: the same areas.
+# ctest: workshop
 set -u
 source=$1
 [ -f "$(dirname "$DEA_COMMAND")/dea_geos_module.so" ] || exit 77
