@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 enum { SHOWN_MAX = 3, PIECES = 80000 };
+static const double rounding_um = 1e-6; // a film that stays flat is drawn so
 
 static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
                                const struct dea_surface_lattice *drawing, double angle,
@@ -18,7 +19,8 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   dea_status status = dea_panel_add(ctx, panel, count, &series);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     series->values[i] = 1e3 * found[i];
-    series->values[count + i] = 1e6 * found[count + i];
+    double z_um = 1e6 * found[count + i];
+    series->values[count + i] = fabs(z_um) > rounding_um ? z_um : 0;
   }
   dea_free(ctx, found);
   DEA_TRY(ctx, status);
