@@ -149,6 +149,28 @@ static dea_status try_steps(struct dea_context *ctx, struct search *a, double vo
   return status;
 }
 
+static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
+{
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV", 1e-3 * a->stop->voltage_V);
+}
+
+/* The limit point of a film that has lost its tension may be that of one wave or pit of it, beyond
+ * which it leaps to another shape: all that load steps can. */
+static dea_status leap(struct dea_context *ctx, struct search *a, double voltage_V)
+{
+  dea_status status =
+      dea_load_steps_solve_within(ctx, a->s, voltage_V, a->s->settings.load_step_least, a->report);
+  if (status == DEA_OK) {
+    a->report->snapped = true;
+    *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  }
+  if (!dea_solid_may_shorten(status)) {
+    return status;
+  }
+  dea_context_clear(ctx);
+  return end_at_limit(ctx, a);
+}
+
 /* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
 static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
 {
@@ -161,8 +183,7 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
     dea_solid_controls_goal(a->s, voltage_V, a->goal);
     DEA_TRY(ctx, search_path(ctx, a));
     if (a->stop->kind == DEA_STOP_LIMIT) {
-      return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV",
-                      1e-3 * a->stop->voltage_V);
+      return taut ? end_at_limit(ctx, a) : leap(ctx, a, voltage_V);
     }
     if (!a->went_on) {
       break;
