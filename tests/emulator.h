@@ -151,7 +151,7 @@ static inline dea_status emulator_open(struct dea_context *ctx, struct dea_proto
 
 static inline void emulator_close(struct dea_context *ctx, struct dea_instrument *instrument)
 {
-  instrument->type->stop(ctx, instrument);
+  dea_instrument_stop(ctx, instrument);
   instrument->type->close(ctx, instrument);
 }
 

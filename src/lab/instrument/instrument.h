@@ -81,7 +81,7 @@ struct dea_instrument_type {
   dea_status (*hold)(struct dea_context *ctx, struct dea_instrument *instrument, double *volts);
   /* Ends at once with the output at 0 V, and says what is known of that, within the protocol's
    * safety.zero_time (volts: control voltage); called also after failures, and never twice: by
-   * dea_instrument_stop. */
+   * dea_instrument_stop. NULL for one that has nothing to stop. */
   struct dea_zero (*stop)(struct dea_context *ctx, struct dea_instrument *instrument);
   /* What it plays through, without the kind; NULL with `zero`. */
   void (*address)(const void *raw, char *out, size_t size);

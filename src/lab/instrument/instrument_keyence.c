@@ -8,7 +8,7 @@
 #include "base/schema_value.h"
 #include "lab/instrument/asking.h"
 #include "lab/instrument/instrument_make.h"
-#include "lab/instrument/line_reader.h"
+#include "lab/instrument/line_link.h"
 #include "lab/instrument/serial.h"
 
 #include <math.h>
@@ -36,8 +36,7 @@ struct raw {
 struct keyence {
   struct dea_instrument base;
   struct raw raw;
-  struct dea_socket line;
-  struct dea_line_reader lines;
+  struct dea_line_link link;
   struct dea_asking asking;
   bool waits; // for an answer
   double start_s;
@@ -82,13 +81,10 @@ const struct dea_record dea_instrument_keyence_record = {
     "keyence", "a laser sensor of the series LK-G or LK-H on a serial line", fields,
     DEA_INSTRUMENT_COUNT(fields)};
 
-static const struct dea_choice displacement = {.value = DEA_CHANNEL_DISPLACEMENT};
-static const struct dea_label no_unit;
-
 static void add_readings(struct dea_instrument *instrument, const struct raw *raw, size_t count)
 {
   for (size_t i = instrument->reading_count; i < count; i++) {
-    dea_instrument_add_reading(instrument, &raw->readings[i].name, &displacement, &no_unit);
+    dea_instrument_add_displacement(instrument, &raw->readings[i].name);
   }
 }
 
@@ -110,7 +106,7 @@ static dea_status send_command(struct dea_context *ctx, const struct keyence *k,
 {
   char line[COMMAND_SIZE + 1];
   int length = snprintf(line, sizeof line, "%.*s\r", COMMAND_SIZE - 1, command);
-  return dea_socket_write(ctx, &k->line, k->raw.timeout_s.si, line, (size_t)length);
+  return dea_socket_write(ctx, &k->link.socket, k->raw.timeout_s.si, line, (size_t)length);
 }
 
 /* Asks for a reading. */
@@ -148,26 +144,7 @@ static dea_status refused(struct dea_context *ctx, const struct keyence *k, cons
   return dea_fail(ctx, DEA_E_INSTRUMENT,
                   "%s answered '%.40s' to a question for OUT %d; look at which outputs its "
                   "controller has",
-                  k->line.name, answer, (int)k->raw.readings[k->asking.reading].output.si);
-}
-
-/* Waits for a line; NULL: none came in time. */
-static dea_status wait_for_line(struct dea_context *ctx, struct keyence *k, double timeout_s,
-                                const char **out)
-{
-  double until_s = dea_clock_s() + timeout_s;
-  *out = NULL;
-  for (double left_s = timeout_s; left_s > 0 && *out == NULL; left_s = until_s - dea_clock_s()) {
-    char bytes[256];
-    const char *at = bytes;
-    size_t length;
-    DEA_TRY(ctx, dea_socket_read(ctx, &k->line, left_s, bytes, sizeof bytes, &length));
-    *out = dea_line_next(&k->lines, &at, &length); // nobody speaks unasked
-    if (dea_interrupted(ctx)) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted");
-    }
-  }
-  return DEA_OK;
+                  k->link.socket.name, answer, (int)k->raw.readings[k->asking.reading].output.si);
 }
 
 /* Asks for all readings once; in its mode for settings it measures nothing, and is led out of it.
@@ -180,19 +157,19 @@ static dea_status find_out(struct dea_context *ctx, struct keyence *k)
     double value;
     k->asking.reading = i;
     DEA_TRY(ctx, ask(ctx, k, i));
-    DEA_TRY(ctx, wait_for_line(ctx, k, k->raw.timeout_s.si, &answer));
+    DEA_TRY(ctx, dea_line_wait(ctx, &k->link, k->raw.timeout_s.si, &answer));
     if (answer == NULL) {
       return dea_fail(ctx, DEA_E_INSTRUMENT,
                       "%s does not answer; look at its power, its cable, and whether baud and "
                       "parity are those of its controller",
-                      k->line.name);
+                      k->link.socket.name);
     }
     if (value_of(answer, (int)k->raw.readings[i].output.si, &value)) {
       i++;
     } else if (strncmp(answer, "ER,", 3) == 0 && !led) {
       led = true;
       DEA_TRY(ctx, send_command(ctx, k, "R0"));
-      DEA_TRY(ctx, wait_for_line(ctx, k, mode_change_s, &answer));
+      DEA_TRY(ctx, dea_line_wait(ctx, &k->link, mode_change_s, &answer));
     } else {
       return refused(ctx, k, answer);
     }
@@ -204,7 +181,7 @@ static dea_status find_out(struct dea_context *ctx, struct keyence *k)
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct keyence *k = (struct keyence *)instrument;
-  dea_socket_close(&k->line);
+  dea_socket_close(&k->link.socket);
   dea_free(ctx, k);
 }
 
@@ -224,7 +201,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
                                   .interval_s = k->raw.interval_s.si,
                                   .timeout_s = k->raw.timeout_s.si};
   dea_status status = dea_serial_open(ctx, "the Keyence LK", k->raw.device.text,
-                                      (int)k->raw.baud.si, k->raw.parity.value, &k->line);
+                                      (int)k->raw.baud.si, k->raw.parity.value, &k->link.socket);
   if (status == DEA_OK) {
     status = find_out(ctx, k);
   }
@@ -277,33 +254,26 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   do {
     char bytes[1024];
     const char *at = bytes, *answer;
-    size_t length, dropped = k->lines.dropped;
+    size_t length, dropped = k->link.lines.dropped;
     double now_s = dea_clock_s(), next_s = k->asking.asked_s + k->asking.timeout_s;
     if (k->waits && now_s > next_s) {
-      return dea_fail(ctx, DEA_E_INSTRUMENT, "%s did not answer within %g s", k->line.name,
+      return dea_fail(ctx, DEA_E_INSTRUMENT, "%s did not answer within %g s", k->link.socket.name,
                       k->asking.timeout_s);
     }
     if (!k->waits && dea_asking_next(&k->asking, now_s, &next_s)) {
       DEA_TRY(ctx, ask(ctx, k, k->asking.reading));
     }
-    DEA_TRY(ctx, dea_socket_read(ctx, &k->line, fmin(until_s, next_s) - dea_clock_s(), bytes,
+    DEA_TRY(ctx, dea_socket_read(ctx, &k->link.socket, fmin(until_s, next_s) - dea_clock_s(), bytes,
                                  sizeof bytes, &length));
-    while ((answer = dea_line_next(&k->lines, &at, &length)) != NULL) {
+    while ((answer = dea_line_next(&k->link.lines, &at, &length)) != NULL) {
       came = true;
       DEA_TRY(ctx, take(ctx, k, answer, sink));
     }
-    if (k->lines.dropped > dropped) {
+    if (k->link.lines.dropped > dropped) {
       DEA_TRY(ctx, take(ctx, k, "", sink)); // what came makes no sense
     }
   } while (!came && dea_clock_s() < until_s);
   return DEA_OK;
-}
-
-static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
-{
-  (void)ctx;
-  (void)instrument;
-  return (struct dea_zero){DEA_ZERO_NONE, NAN};
 }
 
 const struct dea_instrument_type dea_instrument_keyence = {
@@ -315,6 +285,5 @@ const struct dea_instrument_type dea_instrument_keyence = {
     .open = open_it,
     .start = start_it,
     .get = get,
-    .stop = stop,
     .close = close_it,
 };

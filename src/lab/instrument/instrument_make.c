@@ -2,6 +2,7 @@
 
 #include "base/schema_value.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,9 +41,20 @@ void dea_instrument_add_reading(struct dea_instrument *instrument, const struct 
   }
 }
 
+void dea_instrument_add_displacement(struct dea_instrument *instrument,
+                                     const struct dea_label *name)
+{
+  static const struct dea_choice displacement = {.value = DEA_CHANNEL_DISPLACEMENT};
+  static const struct dea_label no_unit;
+  dea_instrument_add_reading(instrument, name, &displacement, &no_unit);
+}
+
 struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   char message[1024];
+  if (instrument->type->stop == NULL) {
+    return (struct dea_zero){DEA_ZERO_NONE, NAN};
+  }
   dea_status status = dea_context_status(ctx);
   const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);
   snprintf(message, sizeof message, "%s", dea_context_message(ctx));

@@ -45,5 +45,8 @@ dea_status dea_instrument_check_reading(const struct dea_reader *reader,
 /* Adds a reading; unit: counts for DEA_CHANNEL_OTHER only. */
 void dea_instrument_add_reading(struct dea_instrument *instrument, const struct dea_label *name,
                                 const struct dea_choice *kind, const struct dea_label *unit);
+/* Adds one of a displacement. */
+void dea_instrument_add_displacement(struct dea_instrument *instrument,
+                                     const struct dea_label *name);
 
 #endif

@@ -62,9 +62,6 @@ const struct dea_record dea_instrument_optoncdt_record = {
     "optoncdt", "a laser sensor optoNCDT 1302 or 1402 on a serial line", fields,
     DEA_INSTRUMENT_COUNT(fields)};
 
-static const struct dea_choice displacement = {.value = DEA_CHANNEL_DISPLACEMENT};
-static const struct dea_label no_unit;
-
 static dea_status check(const struct dea_reader *reader, const void *data,
                         const struct dea_protocol *protocol)
 {
@@ -180,7 +177,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   o->base.roles = DEA_GIVES_READINGS;
   o->upper = -1;
   o->last_s = NAN;
-  dea_instrument_add_reading(&o->base, &o->raw.name, &displacement, &no_unit);
+  dea_instrument_add_displacement(&o->base, &o->raw.name);
   dea_status status =
       dea_serial_open(ctx, "the optoNCDT", o->raw.device.text, (int)o->raw.baud.si, 0, &o->line);
   if (status == DEA_OK) {
@@ -213,13 +210,6 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   return listen_for(ctx, (struct optoncdt *)instrument, timeout_s, sink, &came);
 }
 
-static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
-{
-  (void)ctx;
-  (void)instrument;
-  return (struct dea_zero){DEA_ZERO_NONE, NAN};
-}
-
 const struct dea_instrument_type dea_instrument_optoncdt = {
     .name = "optoncdt",
     .record = &dea_instrument_optoncdt_record,
@@ -229,6 +219,5 @@ const struct dea_instrument_type dea_instrument_optoncdt = {
     .open = open_it,
     .start = start_it,
     .get = get,
-    .stop = stop,
     .close = close_it,
 };

@@ -9,9 +9,8 @@
 
 #include "lab/instrument/asking.h"
 #include "lab/instrument/instrument_make.h"
-#include "lab/instrument/line_reader.h"
+#include "lab/instrument/line_link.h"
 #include "lab/instrument/scpi_parse.h"
-#include "lab/instrument/socket.h"
 
 enum { DEA_SCPI_COMMANDS_MAX = 16, DEA_SCPI_COMMAND_SIZE = DEA_TITLE_SIZE + 40 };
 
@@ -37,12 +36,6 @@ struct dea_scpi_raw {
   } watchdog;
 };
 
-/* A connection; zero-initialise, and the socket's descriptor to -1. */
-struct dea_scpi_link {
-  struct dea_socket socket;
-  struct dea_line_reader lines;
-};
-
 enum dea_scpi_question { DEA_SCPI_NOTHING, DEA_SCPI_READING, DEA_SCPI_CONFIRM, DEA_SCPI_MEASURE };
 
 struct dea_scpi_output {
@@ -64,7 +57,7 @@ struct dea_scpi {
   struct dea_instrument base;
   struct dea_scpi_raw raw;
   const struct dea_protocol *protocol; // lent
-  struct dea_scpi_link link;
+  struct dea_line_link link;
   char name[DEA_SOCKET_NAME_SIZE + 8];
   double start_s;           // computer's clock at start; NAN before
   struct dea_asking asking; // of the readings
@@ -78,16 +71,13 @@ struct dea_scpi {
 };
 
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
-                            double timeout_s, struct dea_scpi_link *link);
-dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_scpi_link *link,
+                            double timeout_s, struct dea_line_link *link);
+dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_line_link *link,
                          double timeout_s, const char *command);
 /* Sends what goes without waiting. */
-void dea_scpi_send_if_possible(const struct dea_scpi_link *link, const char *command);
-/* Waits for a line, *out, lent until the next; NULL: none in time. */
-dea_status dea_scpi_wait(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
-                         const char **out);
+void dea_scpi_send_if_possible(const struct dea_line_link *link, const char *command);
 /* Sends a question and waits for its response. */
-dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
+dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                         const char *question, const char **out);
 dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,
                                 const char *question, double timeout_s);

@@ -1,20 +1,18 @@
 /* Lines to and from an instrument that speaks SCPI. */
 #include "lab/instrument/scpi.h"
 
-#include "base/clock.h"
-
 #include <stdio.h>
 #include <string.h>
 
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
-                            double timeout_s, struct dea_scpi_link *link)
+                            double timeout_s, struct dea_line_link *link)
 {
-  *link = (struct dea_scpi_link){.socket.descriptor = -1};
+  *link = (struct dea_line_link){.socket.descriptor = -1};
   return dea_socket_connect(ctx, "the instrument", raw->address.text, (int)raw->port.si, timeout_s,
                             &link->socket);
 }
 
-dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_scpi_link *link,
+dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_line_link *link,
                          double timeout_s, const char *command)
 {
   char line[DEA_SCPI_COMMAND_SIZE];
@@ -22,38 +20,19 @@ dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_scpi_link *li
   return dea_socket_write(ctx, &link->socket, timeout_s, line, (size_t)length);
 }
 
-void dea_scpi_send_if_possible(const struct dea_scpi_link *link, const char *command)
+void dea_scpi_send_if_possible(const struct dea_line_link *link, const char *command)
 {
   char line[DEA_SCPI_COMMAND_SIZE];
   int length = snprintf(line, sizeof line, "%s\n", command);
   dea_socket_write_if_possible(&link->socket, line, (size_t)length);
 }
 
-dea_status dea_scpi_wait(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
-                         const char **out)
-{
-  char bytes[1024];
-  double until_s = dea_clock_s() + timeout_s;
-  *out = NULL;
-  for (double left_s = timeout_s; left_s > 0 && *out == NULL;) {
-    size_t length;
-    const char *at = bytes;
-    DEA_TRY(ctx, dea_socket_read(ctx, &link->socket, left_s, bytes, sizeof bytes, &length));
-    *out = dea_line_next(&link->lines, &at, &length); // nobody speaks unasked
-    left_s = until_s - dea_clock_s();
-    if (dea_interrupted(ctx)) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted");
-    }
-  }
-  return DEA_OK;
-}
-
-dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_scpi_link *link, double timeout_s,
+dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                         const char *question, const char **out)
 {
   *out = NULL;
   DEA_TRY(ctx, dea_scpi_send(ctx, link, timeout_s, question));
-  return dea_scpi_wait(ctx, link, timeout_s, out);
+  return dea_line_wait(ctx, link, timeout_s, out);
 }
 
 dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,

@@ -216,7 +216,7 @@ static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double unti
     dea_clock_wait(wait_s);
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_scpi_wait(ctx, &s->link, wait_s, &response));
+  DEA_TRY(ctx, dea_line_wait(ctx, &s->link, wait_s, &response));
   return response != NULL ? dea_scpi_output_response(ctx, s, response) : DEA_OK;
 }
 

@@ -16,7 +16,7 @@ static const double poll_s = 0.05, again_s = 0.1;
 static const double share = 0.4;
 
 /* Sends what brings the output to 0 V, without waiting. */
-static void command_zero(const struct dea_scpi_link *link, const struct dea_scpi_raw *raw)
+static void command_zero(const struct dea_line_link *link, const struct dea_scpi_raw *raw)
 {
   char command[DEA_SCPI_COMMAND_SIZE];
   if (raw->output_off.origin != DEA_ABSENT) {
@@ -26,7 +26,7 @@ static void command_zero(const struct dea_scpi_link *link, const struct dea_scpi
   dea_scpi_send_if_possible(link, command);
 }
 
-static void command_end(const struct dea_scpi_link *link, const struct dea_scpi_raw *raw, bool zero)
+static void command_end(const struct dea_line_link *link, const struct dea_scpi_raw *raw, bool zero)
 {
   if (zero && raw->watchdog.disarm.origin != DEA_ABSENT) { // else it is to do its work
     dea_scpi_send_if_possible(link, raw->watchdog.disarm.text);
@@ -37,7 +37,7 @@ static void command_end(const struct dea_scpi_link *link, const struct dea_scpi_
 }
 
 /* Whether it says that its output is off, or need not. False: it does not answer. */
-static bool ask_off(struct dea_context *ctx, struct dea_scpi_link *link,
+static bool ask_off(struct dea_context *ctx, struct dea_line_link *link,
                     const struct dea_scpi_raw *raw, double timeout_s, bool *off)
 {
   const char *answer;
@@ -54,7 +54,7 @@ static bool ask_off(struct dea_context *ctx, struct dea_scpi_link *link,
 }
 
 /* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
-static bool read_back(struct dea_context *ctx, struct dea_scpi_link *link,
+static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
                       const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
                       double until_s, struct dea_zero *zero)
 {
@@ -85,7 +85,7 @@ static bool read_back(struct dea_context *ctx, struct dea_scpi_link *link,
 }
 
 /* After command_zero: what is known. False: this connection is good for nothing. */
-static bool find_out(struct dea_context *ctx, struct dea_scpi_link *link,
+static bool find_out(struct dea_context *ctx, struct dea_line_link *link,
                      const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
                      double until_s, struct dea_zero *zero)
 {
@@ -110,7 +110,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, const struct dea_scpi_
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
   bool told = false;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
-    struct dea_scpi_link link;
+    struct dea_line_link link;
     if (dea_scpi_connect(ctx, raw, left_s, &link) == DEA_OK) {
       command_zero(&link, raw);
       told = find_out(ctx, &link, raw, protocol, until_s, &zero);
@@ -141,7 +141,7 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
     bool failed = s->broken;
     if (!failed &&
         s->asked != DEA_SCPI_NOTHING) { // what comes next belongs to the question from before
-      failed = dea_scpi_wait(ctx, &s->link, share * (until_s - now_s), &answer) != DEA_OK ||
+      failed = dea_line_wait(ctx, &s->link, share * (until_s - now_s), &answer) != DEA_OK ||
                answer == NULL;
     }
     told = !failed && find_out(ctx, &s->link, &s->raw, s->protocol, until_s, &zero);
