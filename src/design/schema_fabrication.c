@@ -45,29 +45,17 @@ static const struct dea_field sheet_fields[] = {
 static const struct dea_record sheet_record = {"sheet", "material that parts are cut from",
                                                sheet_fields, COUNT(sheet_fields)};
 
-static const struct dea_field blank_fields[] = {
-    {.key = "margin",
-     .kind = DEA_FIELD_INPLANE,
-     .offset = AT(blank.margin),
-     .unit = "m",
-     .max = 1,
-     .default_text = "10 mm stretched",
-     .doc = "film beyond the outer edge of the ring, for the grips of the stretcher",
-     .example = "10 mm stretched"},
-};
+#define MARGIN_ROW(edge)                                                                           \
+  {                                                                                                \
+    .key = "margin", .kind = DEA_FIELD_INPLANE, .offset = AT(blank.margin), .unit = "m", .max = 1, \
+    .default_text = "10 mm stretched",                                                             \
+    .doc = "film beyond the outer edge of the " edge ", for the grips of the stretcher",           \
+    .example = "10 mm stretched"                                                                   \
+  }
+static const struct dea_field blank_fields[] = {MARGIN_ROW("ring")};
 static const struct dea_record blank_record = {"blank", "film as it is cut", blank_fields,
                                                COUNT(blank_fields)};
-
-static const struct dea_field general_blank_fields[] = {
-    {.key = "margin",
-     .kind = DEA_FIELD_INPLANE,
-     .offset = AT(blank.margin),
-     .unit = "m",
-     .max = 1,
-     .default_text = "10 mm stretched",
-     .doc = "film beyond the outer edge of the frame, for the grips of the stretcher",
-     .example = "10 mm stretched"},
-};
+static const struct dea_field general_blank_fields[] = {MARGIN_ROW("frame")};
 static const struct dea_record general_blank_record = {
     "blank", "film as it is cut", general_blank_fields, COUNT(general_blank_fields)};
 
