@@ -70,50 +70,70 @@ static bool on_device(const struct dea_layout *l, const double x_m[2])
   return false;
 }
 
-/* Whether some of the boundary of a region lies on the device and, unless that is none, within
- * another region. */
-static bool edge_is_there(const struct dea_layout *l, size_t region, size_t within)
+/* Whether some sample of a region's boundary is what `is` looks for; its self: as given. */
+static bool any_sample(const struct dea_region *r, bool (*is)(void *self, const double at[2]),
+                       void *self)
 {
-  const struct dea_region *r = region_of(l, region);
   for (size_t c = 0; c < r->contour_count; c++) {
     const struct dea_contour contour = dea_region_contour(r, c);
-    for (size_t i = 0; i < dea_contour_pieces(&contour); i++) {
-      const struct dea_piece piece = dea_contour_piece(&contour, i);
-      for (int k = 0; k < SAMPLES; k++) {
-        double at[2];
-        dea_piece_point(&piece, (double)k / SAMPLES, at);
-        if ((within == DEA_LAYOUT_NONE || dea_layout_holds(l, within, at)) && on_device(l, at)) {
-          return true;
-        }
+    for (size_t i = 0; i < SAMPLES * dea_contour_pieces(&contour); i++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, i / SAMPLES);
+      double at[2];
+      dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
+      if (is(self, at)) {
+        return true;
       }
     }
   }
   return false;
 }
 
+/* Where an edge is looked for: within a region, unless that is none, and on a part of the device,
+ * NULL: on any ply. */
+struct edge_place {
+  const struct dea_layout *layout;
+  size_t within;
+  const struct dea_region *part;
+  double near_m; // of the part
+};
+
+static bool is_at_place(void *self, const double at[2])
+{
+  const struct edge_place *e = self;
+  if (e->within != DEA_LAYOUT_NONE && !dea_layout_holds(e->layout, e->within, at)) {
+    return false;
+  }
+  return e->part != NULL ? dea_region_inside(e->part, at[0], at[1]) ||
+                               dea_region_distance_m(e->part, at) <= e->near_m
+                         : on_device(e->layout, at);
+}
+
+/* Whether some of the boundary of a region lies on the device and, unless that is none, within
+ * another region. */
+static bool edge_is_there(const struct dea_layout *l, size_t region, size_t within)
+{
+  struct edge_place place = {.layout = l, .within = within};
+  return any_sample(region_of(l, region), is_at_place, &place);
+}
+
+struct held_by {
+  const struct dea_layout *layout;
+  size_t region;
+};
+
+static bool is_held(void *self, const double at[2])
+{
+  const struct held_by *h = self;
+  return dea_layout_holds(h->layout, h->region, at);
+}
+
 /* Whether two regions have an area or a part of a boundary in common. */
 static bool touch(const struct dea_layout *l, size_t a, size_t b)
 {
-  const size_t both[2] = {a, b};
+  struct held_by by_a = {l, a}, by_b = {l, b};
   double area = dea_layout_overlap_m2(l, a, b);
-  if (isnan(area) || area > 0) {
-    return true;
-  }
-  for (int which = 0; which < 2; which++) {
-    const struct dea_region *r = region_of(l, both[which]);
-    for (size_t c = 0; c < r->contour_count; c++) {
-      const struct dea_contour contour = dea_region_contour(r, c);
-      for (size_t i = 0; i < SAMPLES * dea_contour_pieces(&contour); i++) {
-        const struct dea_piece piece = dea_contour_piece(&contour, i / SAMPLES);
-        double at[2];
-        dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
-        if (dea_layout_holds(l, both[1 - which], at)) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
+  return isnan(area) || area > 0 || any_sample(region_of(l, a), is_held, &by_b) ||
+         any_sample(region_of(l, b), is_held, &by_a);
 }
 
 static bool on_some_ply(const struct dea_layout *l, size_t region)
@@ -220,27 +240,34 @@ static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *
   return status;
 }
 
-/* How far a ply reaches beyond the convex hull of those before it, at most: by the directions in
- * which each goes how far [m]. */
-static double overhang_m(const struct dea_layout *l, size_t ply)
+/* How far regions reach in each direction [m]. */
+enum { DIRECTIONS = 72 };
+struct reach {
+  double along[DIRECTIONS][2], to_m[DIRECTIONS];
+};
+
+static bool reach_out(void *self, const double at[2])
 {
-  enum { DIRECTIONS = 72 };
+  struct reach *r = self;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    r->to_m[k] = fmax(r->to_m[k], at[0] * r->along[k][0] + at[1] * r->along[k][1]);
+  }
+  return false;
+}
+
+/* How far a region reaches beyond the convex hull of those before, at most [m]; it is among them
+ * from then on. */
+static double overhang_m(struct reach *before, const struct dea_region *region)
+{
+  struct reach own = *before;
   double most = 0;
   for (int k = 0; k < DIRECTIONS; k++) {
-    double angle = 2 * acos(-1.0) * k / DIRECTIONS, reach[2] = {-INFINITY, -INFINITY};
-    for (size_t p = 0; p <= ply; p++) {
-      const struct dea_region *r = region_of(l, l->plies[p].region);
-      for (size_t i = 0; i < r->contour_count * SAMPLES; i++) {
-        const struct dea_contour contour = dea_region_contour(r, i / SAMPLES);
-        for (size_t c = 0; c < dea_contour_pieces(&contour); c++) {
-          const struct dea_piece piece = dea_contour_piece(&contour, c);
-          double at[2], *to = &reach[p == ply ? 1 : 0];
-          dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
-          *to = fmax(*to, at[0] * cos(angle) + at[1] * sin(angle));
-        }
-      }
-    }
-    most = fmax(most, reach[1] - reach[0]);
+    own.to_m[k] = -INFINITY;
+  }
+  any_sample(region, reach_out, &own);
+  for (int k = 0; k < DIRECTIONS; k++) {
+    most = fmax(most, own.to_m[k] - before->to_m[k]);
+    before->to_m[k] = fmax(before->to_m[k], own.to_m[k]);
   }
   return most;
 }
@@ -248,14 +275,22 @@ static double overhang_m(const struct dea_layout *l, size_t ply)
 /* A film may span what is open below it; what reaches beyond all that is below hangs in the air. */
 static dea_status check_overhang(struct dea_context *ctx, const struct dea_layout *l)
 {
-  for (size_t i = 1; i < l->ply_count; i++) {
+  struct reach below;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    double angle = 2 * acos(-1.0) * k / DIRECTIONS;
+    below.along[k][0] = cos(angle);
+    below.along[k][1] = sin(angle);
+    below.to_m[k] = -INFINITY;
+  }
+  for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
-    double beyond_m = overhang_m(l, i);
-    bool lies_on = false;
-    for (size_t j = 0; j < i; j++) {
-      lies_on |= dea_layout_overlap_m2(l, ply->region, l->plies[j].region) > 0;
+    const struct dea_region *region = region_of(l, ply->region);
+    double beyond_m = overhang_m(&below, region);
+    bool lies_on = false, beyond = i > 0 && beyond_m > overhang_share * dea_region_size_m(region);
+    for (size_t j = 0; j < i && beyond && !lies_on; j++) {
+      lies_on = dea_layout_overlap_m2(l, ply->region, l->plies[j].region) > 0;
     }
-    if (lies_on && beyond_m > overhang_share * dea_region_size_m(region_of(l, ply->region))) {
+    if (lies_on) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, ply->location,
                                    "the ply '%s' overhangs the plies below it by up to %.3g mm",
                                    ply->name, 1e3 * beyond_m));
@@ -317,20 +352,9 @@ static bool edge_meets(const struct dea_layout *l, const struct dea_layout_suppo
                        const struct dea_region *part)
 {
   const struct dea_region *r = region_of(l, support->region);
-  double near = 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r);
-  for (size_t c = 0; c < r->contour_count; c++) {
-    const struct dea_contour contour = dea_region_contour(r, c);
-    for (size_t i = 0; i < SAMPLES * dea_contour_pieces(&contour); i++) {
-      const struct dea_piece piece = dea_contour_piece(&contour, i / SAMPLES);
-      double at[2];
-      dea_piece_point(&piece, (double)(i % SAMPLES) / SAMPLES, at);
-      if ((support->within == DEA_LAYOUT_NONE || dea_layout_holds(l, support->within, at)) &&
-          (dea_region_inside(part, at[0], at[1]) || dea_region_distance_m(part, at) <= near)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  struct edge_place place = {l, support->within, part,
+                             10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r)};
+  return any_sample(r, is_at_place, &place);
 }
 
 /* Whether a region and a part of the device have an area in common, or it cannot be told. */
