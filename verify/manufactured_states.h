@@ -8,7 +8,7 @@
 #include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/load_steps.h"
 
-static struct dea_context *ctx;
+static struct dea_context *states_ctx;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {0.5, -0.02, 0.01};
 
 /* ---- exact states ---- */
@@ -82,7 +82,7 @@ static inline struct dea_constituent layer_of(bool compressible, bool field)
                                      .thickness_m = 1};
   }
   layer.permittivity_F_per_m = field ? 1 : 0;
-  verify_ok(ctx, dea_constituent_relax(&layer));
+  verify_ok(states_ctx, dea_constituent_relax(&layer));
   return layer;
 }
 
@@ -113,14 +113,14 @@ static inline void make_states(struct exact patches[STATES], struct exact states
 
 /* ---- one solve ---- */
 
-static inline int held(const void *self, const double X[3])
+static inline int states_held(const void *self, const double X[3])
 {
   const struct exact *exact = self;
   return exact->held_all || X[0] < 1e-9 || X[2] < 1e-9 ? 1 | 2 | 4 : 0;
 }
 
 /* phi is held at its exact value, with a voltage of 1. */
-static inline bool electrode(const void *self, const double X[3], double *share)
+static inline bool states_electrode(const void *self, const double X[3], double *share)
 {
   double gradient[3];
   *share = exact_potential(self, X, gradient);
@@ -144,7 +144,8 @@ static inline void prepare(const struct exact *exact, const struct dea_grid *gri
     double x[3], F[9];
     exact_place(exact, X, x, F);
     for (size_t i = 0; i < 3; i++) {
-      double off = held(exact, X) != 0 ? 0 : 1e-3 * sin(5 * X[0] + 7 * X[1] + 3 * X[2] + (double)i);
+      double off =
+          states_held(exact, X) != 0 ? 0 : 1e-3 * sin(5 * X[0] + 7 * X[1] + 3 * X[2] + (double)i);
       u[3 * n + i] = x[i] - X[i] + off;
     }
   }
@@ -161,20 +162,20 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
       .field = exact->potential != NULL ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
       .constituent_count = 1,
       .constituents = &exact->layer,
-      .held = held,
-      .electrode = electrode,
+      .held = states_held,
+      .electrode = states_electrode,
       .self = exact};
-  verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
+  verify_ok(states_ctx, dea_solid_create(states_ctx, grid, &options, &solid));
   prepare(exact, grid, solid);
   for (int i = 0; i < (exact->pressure != NULL ? 3 : 1); i++) { // multipliers beyond the tolerance
-    verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1, &report));
+    verify_ok(states_ctx, dea_load_steps_solve(states_ctx, solid, 1, &report));
   }
   verify_absolute("unstable modes", report.unstable_modes, 0, 0);
   double *phi = calloc(grid->node_count, sizeof *phi);
   struct dea_state state = {0};
   struct dea_hex_shape shape;
-  verify_ok(ctx, dea_solid_save(ctx, solid, &state));
-  verify_ok(ctx, dea_hex_shape_create(order, order, &shape));
+  verify_ok(states_ctx, dea_solid_save(states_ctx, solid, &state));
+  verify_ok(states_ctx, dea_hex_shape_create(order, order, &shape));
   if (phi == NULL) {
     exit(1);
   }
@@ -186,8 +187,8 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
                               values + dofs, pressures};
   errors_of(exact, grid, &found, error);
   free(phi);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  dea_solid_destroy(states_ctx, solid);
+  dea_grid_destroy(states_ctx, grid);
 }
 
 static const char *const norm_name[NORMS] = {"u, L2", "Grad u, L2", "phi, L2", "Grad phi, L2",

@@ -24,7 +24,7 @@ static struct dea_plane_mesh *square(int order, double size, bool curved)
   const struct dea_gmsh_plan plan = {
       .shapes = shapes, .shape_count = 2, .order = order, .size_m = size};
   struct dea_plane_mesh *mesh;
-  verify_ok(ctx, dea_gmsh_mesh(ctx, &plan, &mesh));
+  verify_ok(states_ctx, dea_gmsh_mesh(states_ctx, &plan, &mesh));
   return mesh;
 }
 
@@ -71,7 +71,8 @@ static struct dea_plane_mesh *refined(const struct dea_plane_mesh *mesh, size_t 
     parents[e] = (struct parent){mesh, e};
     blocks[e] = (struct dea_block){map_parent, &parents[e], even, even, count, count, 0};
   }
-  verify_ok(ctx, dea_blocks_mesh(ctx, mesh->order, blocks, mesh->quad_count, 1, &out));
+  verify_ok(states_ctx,
+            dea_blocks_mesh(states_ctx, mesh->order, blocks, mesh->quad_count, 1, &out));
   free(blocks);
   free(parents);
   return out;
@@ -85,9 +86,9 @@ static struct dea_grid *cube(int order, double size, bool curved, size_t count, 
   struct dea_grid *grid;
   const struct dea_ply ply = {1, through * count, order};
   const struct dea_stack stack = {.plies = &ply, .count = 1};
-  verify_ok(ctx, dea_grid_extrude(ctx, mesh, &stack, &grid));
-  dea_plane_mesh_destroy(ctx, mesh);
-  dea_plane_mesh_destroy(ctx, free_mesh);
+  verify_ok(states_ctx, dea_grid_extrude(states_ctx, mesh, &stack, &grid));
+  dea_plane_mesh_destroy(states_ctx, mesh);
+  dea_plane_mesh_destroy(states_ctx, free_mesh);
   return grid;
 }
 
@@ -184,7 +185,7 @@ static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
                                  .kappa_Pa = 4e7,
                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
                                  .thickness_m = h};
-  verify_ok(ctx, dea_constituent_relax(&film));
+  verify_ok(states_ctx, dea_constituent_relax(&film));
   const struct dea_solid_options options = {.order_z = 2,
                                             .constituent_count = 1,
                                             .constituents = &film,
@@ -194,18 +195,18 @@ static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
   struct dea_solid *solid;
   struct dea_solid_report report;
   struct answer answer = {.nodes = grid->node_count};
-  verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
+  verify_ok(states_ctx, dea_solid_create(states_ctx, grid, &options, &solid));
   for (int kV = 0; kV <= 5; kV++) {
-    verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1e3 * kV, &report));
+    verify_ok(states_ctx, dea_load_steps_solve(states_ctx, solid, 1e3 * kV, &report));
   }
   verify_absolute("unstable modes", report.unstable_modes, 0, 0);
   size_t node = dea_grid_nearest(grid, (const double[3]){a_m, 0, 0});
   verify_absolute("the electrode's edge", grid->X[3 * node], a_m, 1e-9);
   answer.strain = dea_solid_displacement(solid)[3 * node] / a_m;
   answer.energy_J = report.energy_J;
-  verify_ok(ctx, dea_solid_capacitance(ctx, solid, &answer.capacitance_F));
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  verify_ok(states_ctx, dea_solid_capacitance(states_ctx, solid, &answer.capacitance_F));
+  dea_solid_destroy(states_ctx, solid);
+  dea_grid_destroy(states_ctx, grid);
   return answer;
 }
 
@@ -213,7 +214,7 @@ static struct answer by_blocks(size_t fine, double edge)
 {
   const struct dea_quarter quarter = {2, 2, a_m, frame_m, H0_m / 2.25, .fine = fine, .edge = edge};
   struct dea_grid *grid;
-  verify_ok(ctx, dea_grid_quarter(ctx, &quarter, &grid));
+  verify_ok(states_ctx, dea_grid_quarter(states_ctx, &quarter, &grid));
   return disc_answer(grid, DEA_REGION_ELECTRODE);
 }
 
@@ -240,10 +241,11 @@ static struct answer by_free_mesh(double size, double edge)
   struct dea_plane_mesh *mesh;
   struct dea_grid *grid;
   int region;
-  verify_ok(ctx, dea_gmsh_mesh(ctx, &plan, &mesh));
-  verify_ok(ctx, dea_plane_mesh_region(ctx, mesh, (const unsigned char[2]){1, 1}, &region));
-  verify_ok(ctx, dea_grid_extrude(ctx, mesh, &stack, &grid));
-  dea_plane_mesh_destroy(ctx, mesh);
+  verify_ok(states_ctx, dea_gmsh_mesh(states_ctx, &plan, &mesh));
+  verify_ok(states_ctx,
+            dea_plane_mesh_region(states_ctx, mesh, (const unsigned char[2]){1, 1}, &region));
+  verify_ok(states_ctx, dea_grid_extrude(states_ctx, mesh, &stack, &grid));
+  dea_plane_mesh_destroy(states_ctx, mesh);
   return disc_answer(grid, region);
 }
 
@@ -300,8 +302,8 @@ int main(int argc, char **argv)
     fprintf(stderr, "gmsh is not installed\n");
     return 77;
   }
-  verify_ok(NULL, dea_context_create(NULL, &ctx));
-  verify_ok(ctx, dea_solid_start(ctx));
+  verify_ok(NULL, dea_context_create(NULL, &states_ctx));
+  verify_ok(states_ctx, dea_solid_start(states_ctx));
   make_states(patches, states);
   puts("# Free meshes\n\n"
        "Made by `scripts/verify free_mesh`; not to be edited. Plane meshes of quadrilaterals by "
@@ -329,6 +331,6 @@ int main(int argc, char **argv)
        "both kinds have to agree within the sum of the two.");
   disc(small);
   dea_solid_stop();
-  dea_context_destroy(ctx);
+  dea_context_destroy(states_ctx);
   return verify_end();
 }

@@ -10,7 +10,7 @@ static const struct variant way[WAYS] = {
 
 /* Points of the three ways in the same steps. */
 static void all_ways(const struct variant *variant, double step_V, double top_V,
-                     struct run run[WAYS])
+                     struct swept run[WAYS])
 {
   for (int i = 0; i < WAYS; i++) {
     run[i] = sweep("3d", variant, &way[i], step_V, top_V);
@@ -28,7 +28,7 @@ static double shown(double um)
   return fabs(um) < 0.005 ? 0 : um;
 }
 
-static void actuator(const char *name, const struct run run[WAYS])
+static void actuator(const char *name, const struct swept run[WAYS])
 {
   printf("## %s, as built\n\n"
          "z of the centre in um, positive towards the fibres; moved: since 0 V; up: where the "
@@ -60,7 +60,7 @@ static void actuator(const char *name, const struct run run[WAYS])
 static void disc(void)
 {
   static const struct variant plain = {{{"fibres", "null"}}};
-  struct run run = sweep("3d", &plain, &way[1], 1e3, 0);
+  struct swept run = sweep("3d", &plain, &way[1], 1e3, 0);
   double exact = 970 * 9.81 * 15e-3 * 15e-3 / (4 * 797.745e3);
   printf("A plain film sags %.3f um at rest; rho g R^2 / (4 sigma) = %.3f um with the pre-stress "
          "of 797.7 kPa.\n\n",
@@ -71,8 +71,8 @@ static void disc(void)
 int main(int argc, char **argv)
 {
   bool small = verify_is_small(argc, argv);
-  struct run run[WAYS];
-  if (dea_context_create(NULL, &ctx) != DEA_OK) {
+  struct swept run[WAYS];
+  if (dea_context_create(NULL, &runs_ctx) != DEA_OK) {
     return 1;
   }
   puts("# Weight, and turning the actuator over\n\n"
@@ -97,6 +97,6 @@ int main(int argc, char **argv)
     all_ways(&four, 1e3, 7e3, run);
     actuator("Four fibres, 100 um", run);
   }
-  dea_context_destroy(ctx);
+  dea_context_destroy(runs_ctx);
   return verify_end();
 }

@@ -24,7 +24,7 @@ static struct dea_grid *cube(int order, size_t count)
   }
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
   const struct dea_ply ply = {1, count, order};
-  verify_ok(ctx, dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, 0, 1, &grid));
+  verify_ok(states_ctx, dea_grid_create(states_ctx, order, &block, 1, &ply, 1, NULL, 0, 1, &grid));
   return grid;
 }
 
@@ -52,7 +52,7 @@ static struct dea_grid *patch_of(int order)
     blocks[i] = (struct dea_block){map_straight, corners[i][0], cuts, cuts, 1, 1, 0};
   }
   const struct dea_ply plies[] = {{0.3, 1, order}, {0.7, 1, order}};
-  verify_ok(ctx, dea_grid_create(ctx, order, blocks, 4, plies, 2, NULL, 0, 1, &grid));
+  verify_ok(states_ctx, dea_grid_create(states_ctx, order, blocks, 4, plies, 2, NULL, 0, 1, &grid));
   return grid;
 }
 
@@ -151,8 +151,8 @@ static void introduction(void)
 int main(int argc, char **argv)
 {
   bool small = verify_is_small(argc, argv);
-  verify_ok(NULL, dea_context_create(NULL, &ctx));
-  verify_ok(ctx, dea_solid_start(ctx));
+  verify_ok(NULL, dea_context_create(NULL, &states_ctx));
+  verify_ok(states_ctx, dea_solid_start(states_ctx));
   struct exact patches[STATES], states[STATES];
   make_states(patches, states);
   introduction();
@@ -176,6 +176,6 @@ int main(int argc, char **argv)
        "changes that the projection does not see, and that error falls faster (it shrinks\nwhen "
        "kappa_s is raised, and goes with the pressure).");
   dea_solid_stop();
-  dea_context_destroy(ctx);
+  dea_context_destroy(states_ctx);
   return verify_end();
 }

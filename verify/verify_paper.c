@@ -22,7 +22,7 @@ static const struct variant simulated8 = {{SIMULATED, {"fibres.count", "8"}}};
 
 /* Largest distance of the centre from the straight line through its values from 1.5 to 7 kV, in the
  * sense of least squares, over the change between them. */
-static double bend(const struct run *run)
+static double bend(const struct swept *run)
 {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0, most = 0;
   for (int pass = 0; pass < 2; pass++) {
@@ -44,7 +44,7 @@ static double bend(const struct run *run)
 
 /* Where the steepest part of the centre's way between two voltages begins: largest z^2 slope of a
  * buckled film, z^2 = k (V - V0), by its first points above a tenth of the last. */
-static double onset_V(const struct run *run)
+static double onset_V(const struct swept *run)
 {
   for (size_t i = 0; i + 1 < run->count; i++) {
     double a = run->at[i].centre_z_m, b = run->at[i + 1].centre_z_m;
@@ -63,10 +63,11 @@ static void indent(const struct variant *variant, const struct variant *more, do
   const struct dea_probe tip = {DEA_PROBE_FLAT, 1.5e-3, 0.2e-3, true};
   struct opened open = open_model("3d", variant, more);
   struct dea_load_point point;
-  verify_ok(ctx, open.type->indent(ctx, open.model, &tip, depth_m, &point));
+  verify_ok(runs_ctx, open.type->indent(runs_ctx, open.model, &tip, depth_m, &point));
   force_N[0] = point.force_N;
   for (size_t i = 1; i <= count; i++) {
-    verify_ok(ctx, open.type->solve(ctx, open.model, 6e3 * (double)i / (double)count, &point));
+    verify_ok(runs_ctx,
+              open.type->solve(runs_ctx, open.model, 6e3 * (double)i / (double)count, &point));
     force_N[i] = point.force_N;
   }
   close_model(&open);
@@ -88,8 +89,8 @@ static void head(void)
       "15 to 20.\n");
 }
 
-static void text_numbers(const struct run *s4, const struct run *s8, const struct run *b4,
-                         const struct run *b8, const struct run *l4)
+static void text_numbers(const struct swept *s4, const struct swept *s8, const struct swept *b4,
+                         const struct swept *b8, const struct swept *l4)
 {
   double top = s4->at[s4->count - 1].voltage_V < 7e3 ? s4->at[s4->count - 1].voltage_V : 7e3;
   double last = b4->at[b4->count - 1].voltage_V;
@@ -98,7 +99,7 @@ static void text_numbers(const struct run *s4, const struct run *s8, const struc
   printf("| 4.1 | largest displacement in the simulation, four fibres | about 1.5 mm | %.2f mm "
          "(centre, %.0f kV) | %.3f mm | %.2f mm |\n",
          1e-3 * centre_um(s4, top), 1e-3 * top, 1e-3 * centre_um(b4, top),
-         1e3 * at(l4, top)->fibre_tip_z_m);
+         1e3 * point_of(l4, top)->fibre_tip_z_m);
   printf(
       "| 4.1 | the same, eight fibres | circa 1.25 mm | %.2f mm | %.3f mm | the same as with four "
       "|\n",
@@ -127,7 +128,7 @@ static void text_numbers(const struct run *s4, const struct run *s8, const struc
          "(film in "
          "front of the fibre tips); fibre tip %.2f mm, centre %.2f mm | %.2f mm |\n",
          1e-3 * centre_um(s4, last), 1e-3 * farthest_um(b4, last), 1e-3 * tip_um(b4, last),
-         1e-3 * centre_um(b4, last), 1e3 * at(l4, last)->fibre_tip_z_m);
+         1e-3 * centre_um(b4, last), 1e3 * point_of(l4, last)->fibre_tip_z_m);
   printf("| 5.1 | measured over simulated | 50 to 65 %% | | tip, as built over as simulated: %.0f "
          "%% at "
          "4 kV, %.0f %% at 6 kV; centre: %.1f %%, %.1f %% | |\n",
@@ -141,12 +142,12 @@ static void text_numbers(const struct run *s4, const struct run *s8, const struc
        "|\n");
 }
 
-static void thickness_numbers(const struct run *b4, const struct run *b8)
+static void thickness_numbers(const struct swept *b4, const struct swept *b8)
 {
   static const struct variant thick = {{{"film.thickness", "200 um"}}};
-  struct run t4 = sweep("3d", &built4, &thick, 1e3, 16e3);
-  struct run t8 = sweep("3d", &built8, &thick, 1e3, 16e3);
-  struct run plain[2], d4 = *b4, d8 = *b8;
+  struct swept t4 = sweep("3d", &built4, &thick, 1e3, 16e3);
+  struct swept t8 = sweep("3d", &built8, &thick, 1e3, 16e3);
+  struct swept plain[2], d4 = *b4, d8 = *b8;
   puts("## 200 um at 2 V beside 100 um at V (4.2.1: 8 and 16 kV)\n\n"
        "Field and strain of a plain film depend on V over thickness alone, so its in-plane answer "
        "must "
@@ -161,10 +162,11 @@ static void thickness_numbers(const struct run *b4, const struct run *b8)
     plain[i] = sweep("3d", &none, i == 1 ? &thick : NULL, i == 1 ? 2e3 : 1e3, i == 1 ? 16e3 : 8e3);
   }
   for (double V = 2e3; V < 8.1e3; V += 2e3) {
-    double a = at(&plain[0], V)->electrode_stretch, b = at(&plain[1], 2 * V)->electrode_stretch;
+    double a = point_of(&plain[0], V)->electrode_stretch,
+           b = point_of(&plain[1], 2 * V)->electrode_stretch;
     printf("| %.0f kV | %.3f %% | %.3f %% | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f |\n", 1e-3 * V,
-           100 * (a - 1), 100 * (b - 1), 1e6 * at(&d4, V)->electrode_edge_u_m,
-           1e6 * at(&t4, 2 * V)->electrode_edge_u_m, tip_um(&d4, V), tip_um(&t4, 2 * V),
+           100 * (a - 1), 100 * (b - 1), 1e6 * point_of(&d4, V)->electrode_edge_u_m,
+           1e6 * point_of(&t4, 2 * V)->electrode_edge_u_m, tip_um(&d4, V), tip_um(&t4, 2 * V),
            tip_um(&d8, V), tip_um(&t8, 2 * V));
     verify_relative("200 um beside 100 um", b - 1, a - 1, 6e-3); // thickness over radius
   }
@@ -172,11 +174,11 @@ static void thickness_numbers(const struct run *b4, const struct run *b8)
 }
 
 /* As simulated: the film buckles to either side. */
-static void branches(const struct run *s4)
+static void branches(const struct swept *s4)
 {
   static const struct variant above = {
       {NO_PRE_STRETCH, {"compute.solid.buckling_branch", "fibres"}}};
-  struct run up = sweep("3d", &above, NULL, 250, 8e3);
+  struct swept up = sweep("3d", &above, NULL, 250, 8e3);
   puts("## The two branches without pre-stretch\n\n"
        "Centre in um and energy in uJ. The one away from the fibres grows out of the flat film at "
        "0 V: "
@@ -229,7 +231,7 @@ static void meshes(void)
        "anywhere, 8 "
        "kV | unstable modes |\n|---|---|---|---|---|---|---|---|");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    struct run run = sweep("3d", &built4, &rows[i].variant, rows[i].step_V, 8e3);
+    struct swept run = sweep("3d", &built4, &rows[i].variant, rows[i].step_V, 8e3);
     int modes = 0;
     for (size_t k = 0; k < run.count; k++) {
       modes += run.at[k].unstable_modes;
@@ -239,7 +241,7 @@ static void meshes(void)
       buckled_um[1] = fmax(buckled_um[1], fabs(farthest_um(&run, 8e3)));
     }
     printf("| %s | %.1f | %.2f | %.2f | %.0f | %.0f | %.0f | %d |\n", rows[i].name,
-           1e6 * at(&run, 5e3)->electrode_edge_u_m, tip_um(&run, 6e3), centre_um(&run, 6e3),
+           1e6 * point_of(&run, 5e3)->electrode_edge_u_m, tip_um(&run, 6e3), centre_um(&run, 6e3),
            tip_um(&run, 8e3), centre_um(&run, 8e3), farthest_um(&run, 8e3), modes);
     fflush(stdout);
   }
@@ -295,7 +297,7 @@ static void force_numbers(void)
 }
 
 /* Parameters that the paper does not give, one at a time. */
-static void bands(const struct run *s4, const struct run *b4)
+static void bands(const struct swept *s4, const struct swept *b4)
 {
   static const struct {
     const char *name;
@@ -321,7 +323,7 @@ static void bands(const struct run *s4, const struct run *b4)
        "built, 6 kV: tip | centre | as built, 8 kV: tip | centre | anywhere |\n"
        "|---|---|---|---|---|---|---|---|");
   for (size_t i = 0; i <= sizeof rows / sizeof rows[0]; i++) {
-    struct run s = *s4, b = *b4;
+    struct swept s = *s4, b = *b4;
     if (i > 0) {
       s = sweep("3d", &simulated4, &rows[i - 1].variant, 250, 6e3);
       b = sweep("3d", &built4, &rows[i - 1].variant, 250, 8e3);
@@ -354,7 +356,7 @@ static void kept_pre_stretch(void)
   for (size_t i = 0; i < sizeof kept / sizeof kept[0]; i++) {
     const struct variant variant = {
         {{"pre_stretch", kept[i]}, {"electrodes.diameter", "7.5 mm stretched"}}};
-    struct run run = sweep("3d", &variant, NULL, 250, 8e3);
+    struct swept run = sweep("3d", &variant, NULL, 250, 8e3);
     printf("| %s | %.0f | %.0f | %.0f | %.0f | %.0f | %.0f | %.0f |\n", kept[i], tip_um(&run, 4e3),
            centre_um(&run, 4e3), tip_um(&run, 6e3), centre_um(&run, 6e3), tip_um(&run, 8e3),
            centre_um(&run, 8e3), farthest_um(&run, 8e3));
@@ -364,19 +366,19 @@ static void kept_pre_stretch(void)
        "centre takes is then a matter of\nthe path.\n");
 }
 
-static void other_numbers(const struct run *b4)
+static void other_numbers(const struct swept *b4)
 {
   struct opened open = open_model("lumped", &built4, NULL);
   const struct dea_device *device = open.device;
   double h = device->film_thickness_m, b = device->frame_radius_m, rho = 970; // Table 1
-  double sag = rho * 9.81 * h * b * b / (4 * at(b4, 0)->min_tension_N_per_m);
+  double sag = rho * 9.81 * h * b * b / (4 * point_of(b4, 0)->min_tension_N_per_m);
   puts("## Other numbers of the text\n\n| place | what | paper | ours |\n|---|---|---|---|");
   printf("| 3.1 | electrode radius once stretched (5 mm diameter before) | | %.2f mm |\n",
          1e3 * device->electrode_radius_m);
   printf(
       "| 5.1 | gravity | no influence seen | a plain film sags %.2f um at rest (rho g h b^2 / 4 T, "
       "T = %.1f N/m): whether their laser shows that is not said |\n",
-      1e6 * sag, at(b4, 0)->min_tension_N_per_m);
+      1e6 * sag, point_of(b4, 0)->min_tension_N_per_m);
   double V30 = NAN;
   for (size_t i = 0; i + 1 < b4->count && isnan(V30); i++) {
     double x = fabs(tip_um(b4, b4->at[i].voltage_V)), y = fabs(tip_um(b4, b4->at[i + 1].voltage_V));
@@ -394,7 +396,7 @@ static void other_numbers(const struct run *b4)
   close_model(&open);
 }
 
-static void why(const struct run *s4, const struct run *b4)
+static void why(const struct swept *s4, const struct swept *b4)
 {
   puts("## Why they differ\n");
   printf(
@@ -436,18 +438,18 @@ static void why(const struct run *s4, const struct run *b4)
 int main(int argc, char **argv)
 {
   small = verify_is_small(argc, argv);
-  verify_ok(NULL, dea_context_create(NULL, &ctx));
+  verify_ok(NULL, dea_context_create(NULL, &runs_ctx));
   head();
-  struct run s4 = sweep("3d", &simulated4, NULL, small ? 1e3 : 250, small ? 6e3 : 8e3);
-  struct run b4 = sweep("3d", &built4, NULL, small ? 1e3 : 250, small ? 6e3 : 8e3);
+  struct swept s4 = sweep("3d", &simulated4, NULL, small ? 1e3 : 250, small ? 6e3 : 8e3);
+  struct swept b4 = sweep("3d", &built4, NULL, small ? 1e3 : 250, small ? 6e3 : 8e3);
   verify_relative("centre as simulated", centre_um(&s4, 6e3), -1200, 0.05);
   verify_relative("tip as built", tip_um(&b4, 6e3), -36.1, 0.03);
   verify_relative("centre as built", centre_um(&b4, 6e3), -34.2, 0.03);
-  verify_relative("edge as built", 1e6 * at(&b4, 5e3)->electrode_edge_u_m, 238, 0.01);
+  verify_relative("edge as built", 1e6 * point_of(&b4, 5e3)->electrode_edge_u_m, 238, 0.01);
   if (!small) {
-    struct run s8 = sweep("3d", &simulated8, NULL, 250, 8e3);
-    struct run b8 = sweep("3d", &built8, NULL, 250, 8e3);
-    struct run l4 = sweep("lumped", &built4, NULL, 250, 8e3);
+    struct swept s8 = sweep("3d", &simulated8, NULL, 250, 8e3);
+    struct swept b8 = sweep("3d", &built8, NULL, 250, 8e3);
+    struct swept l4 = sweep("lumped", &built4, NULL, 250, 8e3);
     text_numbers(&s4, &s8, &b4, &b8, &l4);
     branches(&s4);
     meshes();
@@ -458,6 +460,6 @@ int main(int argc, char **argv)
     other_numbers(&b4);
     why(&s4, &b4);
   }
-  dea_context_destroy(ctx);
+  dea_context_destroy(runs_ctx);
   return verify_end();
 }

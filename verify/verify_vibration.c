@@ -47,7 +47,7 @@ static bool everywhere(const void *self, int region, int ply)
 static double stress(const struct film *film)
 {
   struct dea_plane plane;
-  verify_ok(ctx, dea_plane_elastic(&film->material, film->stretch, film->stretch, &plane));
+  verify_ok(runs_ctx, dea_plane_elastic(&film->material, film->stretch, film->stretch, &plane));
   return film->stretch * plane.s1;
 }
 
@@ -89,13 +89,14 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  verify_ok(ctx, dea_constituent_relax(&layer));
-  verify_ok(ctx, dea_grid_create(ctx, 3, &block, 1, &ply, 1, NULL, 0, film->size[0], &grid));
-  verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
-  verify_ok(ctx, dea_load_steps_solve(ctx, solid, voltage_V, &report));
-  verify_ok(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  verify_ok(runs_ctx, dea_constituent_relax(&layer));
+  verify_ok(runs_ctx,
+            dea_grid_create(runs_ctx, 3, &block, 1, &ply, 1, NULL, 0, film->size[0], &grid));
+  verify_ok(runs_ctx, dea_solid_create(runs_ctx, grid, &options, &solid));
+  verify_ok(runs_ctx, dea_load_steps_solve(runs_ctx, solid, voltage_V, &report));
+  verify_ok(runs_ctx, dea_solid_modes_lowest(runs_ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL));
+  dea_solid_destroy(runs_ctx, solid);
+  dea_grid_destroy(runs_ctx, grid);
   return sqrt(square) / (2 * pi);
 }
 
@@ -225,9 +226,9 @@ static void first_Hz(const struct variant *variant, const struct variant *more, 
   for (size_t i = 0; i < count; i++) {
     struct dea_load_point at, mode;
     struct dea_field_mesh *shapes;
-    verify_ok(ctx, open.type->solve(ctx, open.model, step_V * (double)i, &at));
-    verify_ok(ctx, open.type->modes(ctx, open.model, &at, 1, &mode, &shapes));
-    dea_field_mesh_destroy(ctx, shapes);
+    verify_ok(runs_ctx, open.type->solve(runs_ctx, open.model, step_V * (double)i, &at));
+    verify_ok(runs_ctx, open.type->modes(runs_ctx, open.model, &at, 1, &mode, &shapes));
+    dea_field_mesh_destroy(runs_ctx, shapes);
     out[i] = mode.frequency_Hz;
   }
   close_model(&open);
@@ -286,9 +287,10 @@ static void whole_disc(void)
     struct dea_load_point at, mode[2][MODES];
     for (int m = 0; m < 2; m++) {
       struct dea_field_mesh *shapes;
-      verify_ok(ctx, open[m].type->solve(ctx, open[m].model, 6e3 * i, &at));
-      verify_ok(ctx, open[m].type->modes(ctx, open[m].model, &at, MODES, mode[m], &shapes));
-      dea_field_mesh_destroy(ctx, shapes);
+      verify_ok(runs_ctx, open[m].type->solve(runs_ctx, open[m].model, 6e3 * i, &at));
+      verify_ok(runs_ctx,
+                open[m].type->modes(runs_ctx, open[m].model, &at, MODES, mode[m], &shapes));
+      dea_field_mesh_destroy(runs_ctx, shapes);
       close_model(&open[m]);
     }
     printf("| %d |", 6 * i);
@@ -327,10 +329,10 @@ static void excitation(void)
     struct opened open = open_model("3d", &kind[k], &elastic);
     for (double V = small ? 4e3 : 2e3; V < (small ? 5e3 : 7e3); V += 2e3) {
       struct dea_load_point at, side[2], p[5];
-      verify_ok(ctx, open.type->solve(ctx, open.model, V - step_V, &side[0]));
-      verify_ok(ctx, open.type->solve(ctx, open.model, V + step_V, &side[1]));
-      verify_ok(ctx, open.type->solve(ctx, open.model, V, &at));
-      verify_ok(ctx, open.type->respond(ctx, open.model, &at, &one, Hz, 5, p));
+      verify_ok(runs_ctx, open.type->solve(runs_ctx, open.model, V - step_V, &side[0]));
+      verify_ok(runs_ctx, open.type->solve(runs_ctx, open.model, V + step_V, &side[1]));
+      verify_ok(runs_ctx, open.type->solve(runs_ctx, open.model, V, &at));
+      verify_ok(runs_ctx, open.type->respond(runs_ctx, open.model, &at, &one, Hz, 5, p));
       double slope = (side[1].centre_z_m - side[0].centre_z_m) / (2 * step_V);
       double slow = p[0].centre_amplitude_m * cos(p[0].centre_phase_rad);
       printf("| %s | %g | %.3f | %.3f | %+.3f %% |", kind_name[k], 1e-3 * V, 1e9 * slope,
@@ -350,7 +352,7 @@ static void excitation(void)
 int main(int argc, char **argv)
 {
   small = verify_is_small(argc, argv);
-  if (dea_context_create(NULL, &ctx) != DEA_OK || dea_solid_start(ctx) != DEA_OK) {
+  if (dea_context_create(NULL, &runs_ctx) != DEA_OK || dea_solid_start(runs_ctx) != DEA_OK) {
     return 1;
   }
   puts("# Small vibrations, and the response to an AC excitation of the voltage\n\nMade by "
@@ -364,6 +366,6 @@ int main(int argc, char **argv)
     whole_disc();
   }
   excitation();
-  dea_context_destroy(ctx);
+  dea_context_destroy(runs_ctx);
   return verify_end();
 }
