@@ -339,21 +339,11 @@ static dea_status check_count(struct work *w)
 /* A start that the design cannot be built with: its errors are told. */
 static dea_status tell_start(struct work *w)
 {
-  struct dea_override overrides[DEA_DEVICE_PARAMS_MAX];
-  char texts[DEA_DEVICE_PARAMS_MAX][80];
-  struct dea_design *design = NULL;
-  struct dea_device *device = NULL;
-  size_t count = 0;
-  for (size_t j = 0; j < w->fit->param_count; j++) {
-    if (w->fit->params[j].kind == DEA_DEVICE_KEY) {
-      dea_device_param_text(&w->fit->params[j], w->start[j], 17, texts[count]);
-      overrides[count] = (struct dea_override){w->fit->params[j].param.name, texts[count]};
-      count++;
-    }
-  }
-  dea_status status =
-      dea_design_read_memory(w->ctx, w->path, w->bytes, w->length, overrides, count, &design);
-  status = status == DEA_OK ? dea_device_build(w->ctx, design, &device) : status;
+  const struct dea_design_bytes file = {w->path, w->bytes, w->length};
+  struct dea_design *design;
+  struct dea_device *device;
+  dea_status status = dea_device_params_build(w->ctx, &file, w->fit->params, w->fit->param_count,
+                                              w->start, &design, &device);
   dea_device_destroy(w->ctx, device);
   dea_design_destroy(w->ctx, design);
   return status != DEA_OK ? status

@@ -8,47 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
-                           char out[80])
-{
-  const bool unit = strcmp(param->param.unit, "1") != 0;
-  void *before = dea_c_locale_enter();
-  snprintf(out, 80, "%s%.*g%s%s%s%s", param->list ? "[" : "", digits, value, unit ? " " : "",
-           unit ? param->param.unit : "", param->state, param->list ? "]" : "");
-  dea_c_locale_leave(before);
-}
-
 /* ---- one evaluation ---- */
-
-/* Design and device with p in place of the design's values. */
-static dea_status build(const struct dea_device_model *model, const double *p,
-                        struct dea_design **design, struct dea_device **device)
-{
-  struct dea_override overrides[DEA_DEVICE_PARAMS_MAX];
-  char texts[DEA_DEVICE_PARAMS_MAX][80];
-  size_t count = 0;
-  for (size_t j = 0; j < model->param_count; j++) {
-    if (model->params[j].kind == DEA_DEVICE_KEY) {
-      dea_device_param_text(&model->params[j], p[j], 17, texts[count]);
-      overrides[count] = (struct dea_override){model->params[j].param.name, texts[count]};
-      count++;
-    }
-  }
-  DEA_TRY(model->ctx, dea_design_read_memory(model->ctx, model->name, model->bytes, model->length,
-                                             overrides, count, design));
-  DEA_TRY(model->ctx, dea_device_build(model->ctx, *design, device));
-  for (size_t j = 0; j < model->param_count; j++) {
-    const struct dea_device_param *param = &model->params[j];
-    if (param->kind == DEA_DEVICE_LAW) {
-      (*device)->film.param[param->index] = p[j];
-    } else if (param->kind == DEA_DEVICE_PERMITTIVITY && param->index == 0) {
-      (*device)->film.permittivity.at_rest = p[j];
-    } else if (param->kind == DEA_DEVICE_PERMITTIVITY) {
-      (*device)->film.permittivity.slope = p[j];
-    }
-  }
-  return DEA_OK;
-}
 
 /* Statuses after which the work cannot go on. */
 static bool is_fatal(dea_status status)
@@ -147,7 +107,9 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
     points[k] = dea_load_point_empty();
   }
   const size_t errors = dea_finding_trial_begin(ctx);
-  dea_status status = build(model, p, &design, &device);
+  const struct dea_design_bytes file = {model->name, model->bytes, model->length};
+  dea_status status =
+      dea_device_params_build(ctx, &file, model->params, model->param_count, p, &design, &device);
   if (status == DEA_E_DESIGN) {
     snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
     dea_context_clear(ctx);

@@ -4,6 +4,7 @@
 
 #include "calibrate/device_fit.h"
 #include "model/model.h"
+#include "study/device_param.h"
 
 enum { DEA_DEVICE_MEMO = 48, DEA_DEVICE_GROUPS_MAX = 64 };
 
@@ -53,10 +54,6 @@ dea_status dea_device_model_points(struct dea_device_model *model, const double 
  * [stop_count], written to. */
 dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
                                   struct dea_load_point *points);
-/* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
-void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
-                           char out[80]);
-
 /* Parameters of a fit file with what the design says of them: unit, limits, value. Errors are
  * findings; DEA_E_DESIGN then. */
 dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_device_file *file,

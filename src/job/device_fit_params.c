@@ -1,182 +1,17 @@
-/* Parameters of a fit of a device: keys of its design that are numbers, with their unit, limits and
- * the design's value, and those of the film's material. */
+/* Parameters of a fit of a device: numbers of its design with where the search begins, bounds and
+ * priors. */
 #include "job/device_fit_model.h"
 
-#include "base/units.h"
 #include "material/catalogue.h"
-#include "study/design_file.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.";
-static const char *const permittivity_keys[] = {"at_rest", "slope"};
-
 struct work {
   struct dea_context *ctx;
-  const struct dea_design *design;
-  const struct dea_device *device;
-  struct dea_design_schema schema;
+  struct dea_device_param_source source;
 };
-
-static bool is_number(const struct dea_field *field)
-{
-  return field->kind == DEA_FIELD_NUMBER || field->kind == DEA_FIELD_INPLANE ||
-         field->kind == DEA_FIELD_STRETCHED;
-}
-
-/* The field of a dotted key; NULL: none. */
-static const struct dea_field *find_field(const struct dea_record *record, const char *key)
-{
-  const struct dea_field *found = NULL;
-  while (record != NULL) {
-    const size_t length = strcspn(key, ".");
-    found = NULL;
-    for (size_t i = 0; i < record->field_count && found == NULL; i++) {
-      const struct dea_field *field = &record->fields[i];
-      found = strlen(field->key) == length && memcmp(field->key, key, length) == 0 ? field : NULL;
-    }
-    if (found == NULL || key[length] == '\0') {
-      return found;
-    }
-    record = dea_field_has_record(found) && found->list_max == 0 ? found->record : NULL;
-    key += length + 1;
-  }
-  return NULL;
-}
-
-static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
-{
-  const size_t length = strlen(key);
-  for (size_t i = 0; i < design->values.count; i++) {
-    const struct dea_listed *item = &design->values.items[i];
-    const bool same = strncmp(item->path, key, length) == 0;
-    if (same && (item->path[length] == '\0' || strcmp(item->path + length, "[0]") == 0)) {
-      return item;
-    }
-  }
-  return NULL;
-}
-
-/* A name that is no parameter. */
-static dea_status unknown(struct work *w, const struct dea_label *name, const char *why)
-{
-  const char *known[256];
-  size_t count = 0;
-  for (size_t i = 0; i < w->design->values.count && count < 256; i++) {
-    const struct dea_field *field =
-        find_field(&w->schema.disc.record, w->design->values.items[i].path);
-    if (field != NULL && is_number(field)) {
-      known[count++] = w->design->values.items[i].path;
-    }
-  }
-  const char *nearest = why == NULL ? dea_nearest_name(name->text, known, count) : NULL;
-  return dea_finding_add(w->ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
-                         why != NULL ? why : "is no key of the design",
-                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                         nearest != NULL ? "'?" : "");
-}
-
-/* Takes " stretched" or " unstretched" off the end of a text. */
-static const char *take_state(char *text)
-{
-  static const char *const states[] = {" stretched", " unstretched"};
-  for (size_t k = 0; k < 2; k++) {
-    const size_t length = strlen(text), end = strlen(states[k]);
-    if (length > end && strcmp(text + length - end, states[k]) == 0) {
-      text[length - end] = '\0';
-      return states[k];
-    }
-  }
-  return "";
-}
-
-/* The design's value, as it stands there. */
-static dea_status take_value(struct work *w, const struct dea_label *name,
-                             const struct dea_field *field, struct dea_device_param *out)
-{
-  const struct dea_listed *item = find_value(w->design, name->text);
-  if (item == NULL || item->origin == DEA_ABSENT || item->text == NULL) {
-    return DEA_OK;
-  }
-  char text[DEA_TITLE_SIZE], why[DEA_WHY_SIZE] = "";
-  snprintf(text, sizeof text, "%.200s", item->text);
-  out->state = take_state(text);
-  if (!dea_units_read(w->ctx, text, (struct dea_measure){field->unit, field->example},
-                      &out->designed, why)) {
-    out->designed = NAN; // a list of several, which the caller refuses
-    return why[0] == '\0' ? dea_context_status(w->ctx) : DEA_OK;
-  }
-  return DEA_OK;
-}
-
-static dea_status from_key(struct work *w, const struct dea_label *name,
-                           struct dea_device_param *out, bool *good)
-{
-  const struct dea_field *field = find_field(&w->schema.disc.record, name->text);
-  *good = false;
-  if (field == NULL) {
-    return unknown(w, name, NULL);
-  }
-  if (!is_number(field)) {
-    return unknown(w, name,
-                   field->kind == DEA_FIELD_INTEGER ? "is a whole number: only what can change "
-                                                      "little by little can be fitted"
-                                                    : "is no number that could be fitted");
-  }
-  if (strncmp(name->text, "report.", 7) == 0 || strncmp(name->text, "fabrication.", 12) == 0 ||
-      strncmp(name->text, "compute.voltage", 15) == 0) {
-    return unknown(w, name, "does not change what the device does");
-  }
-  out->kind = DEA_DEVICE_KEY;
-  out->list = field->list_max > 0;
-  out->param.unit = field->unit;
-  const bool limited = field->min != 0 || field->max != 0;
-  out->param.low = limited ? field->min : field->above_min ? 0 : -INFINITY;
-  out->param.high = limited && field->max > field->min ? field->max : INFINITY;
-  DEA_TRY(w->ctx, take_value(w, name, field, out));
-  *good = true;
-  return DEA_OK;
-}
-
-static dea_status from_material(struct work *w, const struct dea_label *name,
-                                struct dea_device_param *out, bool *good)
-{
-  const struct dea_material *film = &w->device->film;
-  *good = true;
-  if (strncmp(name->text, law_prefix, strlen(law_prefix)) == 0) {
-    const char *key = name->text + strlen(law_prefix);
-    for (size_t i = 0; i < film->law->param_count; i++) {
-      const struct dea_law_param *param = &film->law->params[i];
-      if (strcmp(param->key, key) == 0) {
-        out->kind = DEA_DEVICE_LAW;
-        out->index = i;
-        out->param.unit = param->unit;
-        out->param.low = param->min;
-        out->param.high = param->max;
-        out->designed = film->param[i];
-        return DEA_OK;
-      }
-    }
-    *good = false;
-    return unknown(w, name, "is no parameter of the law that the film has");
-  }
-  const char *key = name->text + strlen(permittivity_prefix);
-  for (size_t i = 0; i < 2; i++) {
-    if (strcmp(key, permittivity_keys[i]) == 0) {
-      out->kind = DEA_DEVICE_PERMITTIVITY;
-      out->index = i;
-      out->param.unit = "1";
-      out->param.low = i == 0 ? 1 : -INFINITY;
-      out->param.high = INFINITY;
-      out->designed = i == 0 ? film->permittivity.at_rest : film->permittivity.slope;
-      return DEA_OK;
-    }
-  }
-  *good = false;
-  return unknown(w, name, "is none of film.permittivity.at_rest and film.permittivity.slope");
-}
 
 // Priors ------------------------------------------------------------------------------------------
 
@@ -206,7 +41,7 @@ static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_tex
   struct dea_catalogue_entry *entry;
   double value, std;
   DEA_TRY(w->ctx, dea_catalogue_read(w->ctx, text->prior.text, text->prior.location, &entry));
-  look_up(&entry->data, out, w->device->film.law, &value, &std);
+  look_up(&entry->data, out, w->source.device->film.law, &value, &std);
   dea_catalogue_destroy(w->ctx, entry);
   snprintf(out->prior_of, sizeof out->prior_of, "%.63s", text->prior.text);
   const bool unit = strcmp(out->param.unit, "1") != 0;
@@ -271,22 +106,15 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
   struct dea_fit_parameter_text text = *asked;
   const char *name = text.name.text;
   bool good;
-  *out = (struct dea_device_param){.state = "", .designed = NAN};
+  *out = (struct dea_device_param){.state = ""};
   out->param = (struct dea_fit_param){.start = NAN, .prior = NAN, .prior_std = NAN};
-  if (strlen(name) >= DEA_FIT_PARAM_NAME) {
-    return unknown(w, &text.name, NULL);
-  }
-  snprintf(out->param.name, sizeof out->param.name, "%.39s", name);
-  const bool of_material = strncmp(name, law_prefix, strlen(law_prefix)) == 0 ||
-                           strncmp(name, permittivity_prefix, strlen(permittivity_prefix)) == 0;
-  DEA_TRY(w->ctx, of_material ? from_material(w, &text.name, out, &good)
-                              : from_key(w, &text.name, out, &good));
+  DEA_TRY(w->ctx, dea_device_param_find(w->ctx, &w->source, &text.name, out, &good));
   if (!good) {
     return DEA_OK;
   }
   struct dea_label *labels[] = {&text.start, &text.low, &text.high, &text.prior};
   for (size_t k = 0; k < 4; k++) { // all of them in the state of the design's value
-    const char *state = take_state(labels[k]->text);
+    const char *state = dea_device_param_take_state(labels[k]->text);
     out->state = out->state[0] == '\0' ? state : out->state;
     if (state[0] != '\0' && strcmp(state, out->state) != 0) {
       return dea_finding_add(w->ctx, DEA_ERROR, labels[k]->location,
@@ -318,8 +146,7 @@ dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_devi
                                   struct dea_device_param *out)
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  struct work w = {.ctx = ctx, .design = design, .device = device};
-  dea_design_file_schema(&w.schema);
+  struct work w = {.ctx = ctx, .source = {design, device}};
   for (size_t k = 0; k < file->parameter_count; k++) {
     DEA_TRY(ctx, make_one(&w, &file->parameters[k], &out[k]));
   }

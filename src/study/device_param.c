@@ -1,0 +1,244 @@
+#include "study/device_param.h"
+
+#include "base/units.h"
+#include "base/write_file.h"
+#include "study/design_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.";
+static const char *const permittivity_keys[] = {"at_rest", "slope"};
+
+static bool is_number(const struct dea_field *field)
+{
+  return field->kind == DEA_FIELD_NUMBER || field->kind == DEA_FIELD_INPLANE ||
+         field->kind == DEA_FIELD_STRETCHED;
+}
+
+/* The field of a dotted key; NULL: none. */
+static const struct dea_field *find_field(const struct dea_record *record, const char *key)
+{
+  const struct dea_field *found = NULL;
+  while (record != NULL) {
+    const size_t length = strcspn(key, ".");
+    found = NULL;
+    for (size_t i = 0; i < record->field_count && found == NULL; i++) {
+      const struct dea_field *field = &record->fields[i];
+      found = strlen(field->key) == length && memcmp(field->key, key, length) == 0 ? field : NULL;
+    }
+    if (found == NULL || key[length] == '\0') {
+      return found;
+    }
+    record = dea_field_has_record(found) && found->list_max == 0 ? found->record : NULL;
+    key += length + 1;
+  }
+  return NULL;
+}
+
+static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
+{
+  const size_t length = strlen(key);
+  for (size_t i = 0; i < design->values.count; i++) {
+    const struct dea_listed *item = &design->values.items[i];
+    const bool same = strncmp(item->path, key, length) == 0;
+    if (same && (item->path[length] == '\0' || strcmp(item->path + length, "[0]") == 0)) {
+      return item;
+    }
+  }
+  return NULL;
+}
+
+dea_status dea_device_param_unknown(struct dea_context *ctx,
+                                    const struct dea_device_param_source *source,
+                                    const struct dea_label *name, const char *why)
+{
+  const struct dea_listing *values = &source->design->values;
+  const char *known[256];
+  size_t count = 0;
+  struct dea_design_schema schema;
+  dea_design_file_schema(&schema);
+  for (size_t i = 0; i < values->count && count < 256; i++) {
+    const struct dea_field *field = find_field(&schema.disc.record, values->items[i].path);
+    if (field != NULL && is_number(field)) {
+      known[count++] = values->items[i].path;
+    }
+  }
+  const char *nearest = why == NULL ? dea_nearest_name(name->text, known, count) : NULL;
+  return dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
+                         why != NULL ? why : "is no key of the design",
+                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                         nearest != NULL ? "'?" : "");
+}
+
+const char *dea_device_param_take_state(char *text)
+{
+  static const char *const states[] = {" stretched", " unstretched"};
+  for (size_t k = 0; k < 2; k++) {
+    const size_t length = strlen(text), end = strlen(states[k]);
+    if (length > end && strcmp(text + length - end, states[k]) == 0) {
+      text[length - end] = '\0';
+      return states[k];
+    }
+  }
+  return "";
+}
+
+/* The design's value, as it stands there. */
+static dea_status take_value(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_label *name, const struct dea_field *field,
+                             struct dea_device_param *out)
+{
+  const struct dea_listed *item = find_value(design, name->text);
+  if (item == NULL || item->origin == DEA_ABSENT || item->text == NULL) {
+    return DEA_OK;
+  }
+  char text[DEA_TITLE_SIZE], why[DEA_WHY_SIZE] = "";
+  snprintf(text, sizeof text, "%.200s", item->text);
+  out->state = dea_device_param_take_state(text);
+  if (!dea_units_read(ctx, text, (struct dea_measure){field->unit, field->example}, &out->designed,
+                      why)) {
+    out->designed = NAN; // a list of several, which the caller refuses
+    return why[0] == '\0' ? dea_context_status(ctx) : DEA_OK;
+  }
+  return DEA_OK;
+}
+
+static dea_status from_key(struct dea_context *ctx, const struct dea_device_param_source *source,
+                           const struct dea_label *name, struct dea_device_param *out, bool *good)
+{
+  struct dea_design_schema schema;
+  dea_design_file_schema(&schema);
+  const struct dea_field *field = find_field(&schema.disc.record, name->text);
+  *good = false;
+  if (field == NULL) {
+    return dea_device_param_unknown(ctx, source, name, NULL);
+  }
+  if (!is_number(field)) {
+    return dea_device_param_unknown(ctx, source, name,
+                                    field->kind == DEA_FIELD_INTEGER
+                                        ? "is a whole number: only what can change "
+                                          "little by little can be fitted"
+                                        : "is no number that could be fitted");
+  }
+  if (strncmp(name->text, "report.", 7) == 0 || strncmp(name->text, "fabrication.", 12) == 0 ||
+      strncmp(name->text, "compute.voltage", 15) == 0) {
+    return dea_device_param_unknown(ctx, source, name, "does not change what the device does");
+  }
+  out->kind = DEA_DEVICE_KEY;
+  out->list = field->list_max > 0;
+  out->param.unit = field->unit;
+  const bool limited = field->min != 0 || field->max != 0;
+  out->param.low = limited ? field->min : field->above_min ? 0 : -INFINITY;
+  out->param.high = limited && field->max > field->min ? field->max : INFINITY;
+  DEA_TRY(ctx, take_value(ctx, source->design, name, field, out));
+  *good = true;
+  return DEA_OK;
+}
+
+static dea_status from_material(struct dea_context *ctx,
+                                const struct dea_device_param_source *source,
+                                const struct dea_label *name, struct dea_device_param *out,
+                                bool *good)
+{
+  const struct dea_material *film = &source->device->film;
+  *good = true;
+  if (strncmp(name->text, law_prefix, strlen(law_prefix)) == 0) {
+    const char *key = name->text + strlen(law_prefix);
+    for (size_t i = 0; i < film->law->param_count; i++) {
+      const struct dea_law_param *param = &film->law->params[i];
+      if (strcmp(param->key, key) == 0) {
+        out->kind = DEA_DEVICE_LAW;
+        out->index = i;
+        out->param.unit = param->unit;
+        out->param.low = param->min;
+        out->param.high = param->max;
+        out->designed = film->param[i];
+        return DEA_OK;
+      }
+    }
+    *good = false;
+    return dea_device_param_unknown(ctx, source, name,
+                                    "is no parameter of the law that the film has");
+  }
+  const char *key = name->text + strlen(permittivity_prefix);
+  for (size_t i = 0; i < 2; i++) {
+    if (strcmp(key, permittivity_keys[i]) == 0) {
+      out->kind = DEA_DEVICE_PERMITTIVITY;
+      out->index = i;
+      out->param.unit = "1";
+      out->param.low = i == 0 ? 1 : -INFINITY;
+      out->param.high = INFINITY;
+      out->designed = i == 0 ? film->permittivity.at_rest : film->permittivity.slope;
+      return DEA_OK;
+    }
+  }
+  *good = false;
+  return dea_device_param_unknown(
+      ctx, source, name, "is none of film.permittivity.at_rest and film.permittivity.slope");
+}
+
+dea_status dea_device_param_find(struct dea_context *ctx,
+                                 const struct dea_device_param_source *source,
+                                 const struct dea_label *name, struct dea_device_param *out,
+                                 bool *good)
+{
+  const bool of_material =
+      strncmp(name->text, law_prefix, strlen(law_prefix)) == 0 ||
+      strncmp(name->text, permittivity_prefix, strlen(permittivity_prefix)) == 0;
+  out->state = "";
+  out->designed = NAN;
+  *good = false;
+  if (strlen(name->text) >= DEA_FIT_PARAM_NAME) {
+    return dea_device_param_unknown(ctx, source, name, NULL);
+  }
+  snprintf(out->param.name, sizeof out->param.name, "%.39s", name->text);
+  return of_material ? from_material(ctx, source, name, out, good)
+                     : from_key(ctx, source, name, out, good);
+}
+
+// The device with other values --------------------------------------------------------------------
+
+void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
+                           char out[80])
+{
+  const bool unit = strcmp(param->param.unit, "1") != 0;
+  void *before = dea_c_locale_enter();
+  snprintf(out, 80, "%s%.*g%s%s%s%s", param->list ? "[" : "", digits, value, unit ? " " : "",
+           unit ? param->param.unit : "", param->state, param->list ? "]" : "");
+  dea_c_locale_leave(before);
+}
+
+dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_design_bytes *file,
+                                   const struct dea_device_param *params, size_t count,
+                                   const double *p, struct dea_design **design,
+                                   struct dea_device **device)
+{
+  struct dea_override overrides[DEA_DEVICE_PARAMS_MAX];
+  char texts[DEA_DEVICE_PARAMS_MAX][80];
+  size_t keys = 0;
+  *design = NULL;
+  *device = NULL;
+  for (size_t j = 0; j < count && keys < DEA_DEVICE_PARAMS_MAX; j++) {
+    if (params[j].kind == DEA_DEVICE_KEY) {
+      dea_device_param_text(&params[j], p[j], 17, texts[keys]);
+      overrides[keys] = (struct dea_override){params[j].param.name, texts[keys]};
+      keys++;
+    }
+  }
+  DEA_TRY(ctx, dea_design_read_memory(ctx, file->name, file->bytes, file->length, overrides, keys,
+                                      design));
+  DEA_TRY(ctx, dea_device_build(ctx, *design, device));
+  struct dea_material *film = &(*device)->film;
+  for (size_t j = 0; j < count; j++) {
+    if (params[j].kind == DEA_DEVICE_LAW) {
+      film->param[params[j].index] = p[j];
+    } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY && params[j].index == 0) {
+      film->permittivity.at_rest = p[j];
+    } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY) {
+      film->permittivity.slope = p[j];
+    }
+  }
+  return DEA_OK;
+}

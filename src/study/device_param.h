@@ -1,0 +1,48 @@
+/* Numbers of a design that may change: keys of the file, or of the film's material; and the device
+ * that is built with other values in their place. */
+#ifndef DEA_STUDY_DEVICE_PARAM_H
+#define DEA_STUDY_DEVICE_PARAM_H
+
+#include "calibrate/device_fit.h"
+#include "device/device.h"
+
+/* A design and its device, where parameters are looked up. */
+struct dea_device_param_source {
+  const struct dea_design *design; // of the short form
+  const struct dea_device *device; // built from it
+};
+
+/* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,
+ * whose other members are left alone. name: a dotted key that is a number ("film.thickness"),
+ * film.law.NAME of a parameter of the film's law, film.permittivity.at_rest or .slope. *good: false
+ * after a finding (an error at its place) that says why there is no such parameter. */
+dea_status dea_device_param_find(struct dea_context *ctx,
+                                 const struct dea_device_param_source *source,
+                                 const struct dea_label *name, struct dea_device_param *out,
+                                 bool *good);
+/* Adds the finding that a name is no parameter; why: NULL where there is no such key. */
+dea_status dea_device_param_unknown(struct dea_context *ctx,
+                                    const struct dea_device_param_source *source,
+                                    const struct dea_label *name, const char *why);
+/* Takes " stretched" or " unstretched" off the end of a text, and returns it, "" for neither;
+ * static storage. */
+const char *dea_device_param_take_state(char *text);
+/* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
+void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
+                           char out[80]);
+
+/* The text of a design file; lent. */
+struct dea_design_bytes {
+  const char *name; // stands for the file in messages, and says its folder
+  const char *bytes;
+  size_t length;
+};
+/* Design and device with p [count] in place of the design's values. On failure what was made before
+ * it is there too: both are the caller's to destroy, NULL where there is none. DEA_E_DESIGN where
+ * it cannot be built so. */
+dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_design_bytes *file,
+                                   const struct dea_device_param *params, size_t count,
+                                   const double *p, struct dea_design **design,
+                                   struct dea_device **device);
+
+#endif
