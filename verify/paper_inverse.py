@@ -11,10 +11,17 @@ import sys
 import tempfile
 
 command, root = sys.argv[1:3]
-limit_s = 180 # of one run
+limit_s = 300 # of processor time of one run
 work = tempfile.mkdtemp(prefix="dea-inverse-")
 design = os.path.join(root, "examples", "frdea-4.yaml")
 paper = ["film.material=paper-table-1", "film.law=null", "film.permittivity=null"]
+
+
+def processor_s(pid):
+    """Processor time of a process so far, so that what is found does not depend on what else runs."""
+    with open("/proc/%d/stat" % pid) as file:
+        words = file.read().rpartition(")")[2].split()
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def run(model, sets, study="sweep"):
@@ -25,16 +32,19 @@ def run(model, sets, study="sweep"):
     for text in paper + sets:
         words += ["--set", text]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as dea:
-        try:
-            said = dea.communicate(timeout=limit_s)[1]
-        except subprocess.TimeoutExpired: # a slack film whose next state is not found: keeps the rest
-            dea.send_signal(signal.SIGINT)
-            said = dea.communicate()[1]
+        said, limit = None, limit_s
+        while said is None:
+            try:
+                said = dea.communicate(timeout=5)[1]
+            except subprocess.TimeoutExpired: # a slack film whose next state is not found: keeps the rest
+                if processor_s(dea.pid) > limit:
+                    dea.send_signal(signal.SIGINT)
+                    limit = math.inf
     name = os.path.join(folder, "%s_%s.csv" % (model, study))
     if not os.path.exists(name):
         sys.exit(said)
     with open(name) as file:
-        return [{k: float(v) if v else math.nan for k, v in row.items()}
+        return [{k: float(v) if v else math.nan for k, v in row.items() if k != "flags"}
                 for row in csv.DictReader(file)]
 
 
