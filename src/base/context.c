@@ -78,23 +78,41 @@ void dea_context_destroy(struct dea_context *ctx)
   allocator.release(allocator.user, ctx);
 }
 
-void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size)
+static bool fits(struct dea_context *ctx, size_t count, size_t size)
 {
   if (size != 0 && count > SIZE_MAX / size) {
     dea_fail(ctx, DEA_E_MEMORY, "%zu items of %zu bytes are more than this machine can address",
              count, size);
+    return false;
+  }
+  return true;
+}
+
+/* What came back for so many bytes. */
+static void *checked(struct dea_context *ctx, void *pointer, size_t bytes)
+{
+  if (pointer == NULL) {
+    dea_fail(ctx, DEA_E_MEMORY, "out of memory (%zu bytes wanted)", bytes);
+  }
+  return pointer;
+}
+
+void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size)
+{
+  if (!fits(ctx, count, size)) {
     return NULL;
   }
   size_t bytes = count * size;
-  void *moved = ctx->allocator.resize(ctx->allocator.user, pointer, bytes > 0 ? bytes : 1);
-  if (moved == NULL) {
-    dea_fail(ctx, DEA_E_MEMORY, "out of memory (%zu bytes wanted)", bytes);
-  }
-  return moved;
+  return checked(ctx, ctx->allocator.resize(ctx->allocator.user, pointer, bytes > 0 ? bytes : 1),
+                 bytes);
 }
 
 void *dea_alloc(struct dea_context *ctx, size_t count, size_t size)
 {
+  if (ctx->allocator.resize == default_resize && fits(ctx, count, size)) {
+    size_t bytes = count * size; // calloc: a page that nobody writes to costs nothing
+    return checked(ctx, calloc(bytes > 0 ? bytes : 1, 1), bytes);
+  }
   void *pointer = dea_resize(ctx, NULL, count, size);
   if (pointer != NULL) {
     memset(pointer, 0, count * size > 0 ? count * size : 1);
