@@ -1,4 +1,5 @@
 /* dea fab as a user runs it. */
+// ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "command.h"
 

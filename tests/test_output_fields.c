@@ -1,4 +1,5 @@
 /* What a run with fields leaves: surfaces in results.h5, and drawings of them. */
+// ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "fake_result.h"

@@ -1,4 +1,5 @@
 /* Meshes of actuators: no folded element, no hanging node, exact areas, the right nodes held. */
+// ctest: quick, heavy
 #include "failing_allocator.h"
 #include "model/solid/mesh/cuts.h"
 #include "model/solid/mesh/fibre_disc.h"

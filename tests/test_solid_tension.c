@@ -1,4 +1,5 @@
 /* Tension field: what is left of the energy of a film that wrinkles. */
+// ctest: quick, heavy
 #include "membrane_samples.h"
 
 /* Stress of a uniaxial test, W1 of Yeoh. */

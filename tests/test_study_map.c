@@ -1,4 +1,5 @@
 /* Studies "operating-map" and "load-line": what the report draws of model lumped. */
+// ctest: quick, heavy
 #include "design_text.h"
 #include "study/study.h"
 #include "testing.h"
