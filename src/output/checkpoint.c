@@ -50,7 +50,9 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
                            size_t count)
 {
   char name[NAME_SIZE];
-  for (size_t i = 0; i < count; i++) {
+  char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
+  bool fields = folder != NULL && dea_path_exists(folder);
+  for (size_t i = 0; i < count && fields; i++) {
     field_name(model, i, name);
     forget(ctx, directory, name);
   }
@@ -58,8 +60,7 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
   forget(ctx, directory, name);
   state_name(model, name);
   forget(ctx, directory, name);
-  char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
-  if (folder != NULL) {
+  if (fields) {
     rmdir(folder); // when nothing else is in it
   }
   dea_free(ctx, folder);
