@@ -174,6 +174,9 @@ static void test_refusals(void **state)
        "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "waveform: {kind: constant, voltage: -6 kV}\n",
        "refused: the ramp from 6 kV to 0 V takes 120 s by 50 V/s", 2, 16},
+      {PROTOCOL_HEAD CHANNELS
+       "rate: 1 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 50 kHz, cycles: 10}\n",
+       "refused: step 1 needs 58.9 mA to charge the film's 73.7 pF as fast as asked, 589 %", 9, 11},
   };
   check_refusals(refusals, sizeof refusals / sizeof refusals[0]);
 }
@@ -376,11 +379,11 @@ static void test_warnings(void **state)
       {PROTOCOL_HEAD CHANNELS "waveform: {kind: sine, amplitude: 1 kV, frequency: 100 Hz}\n",
        "a cycle of step 1 has 10 samples only", 1, 1},
       {PROTOCOL_HEAD CHANNELS
-       "rate: 1 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 50 kHz, cycles: 10}\n",
-       "to charge the film's", 9, 11},
-      {PROTOCOL_HEAD CHANNELS
-       "rate: 10 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 500 kHz, cycles: 10}\n",
-       "step 1 changes with 8e+03 V/us, the amplifier follows with 700 V/us", 9, 11},
+       "rate: 1 MHz\nwaveform: {kind: triangle, high: 8 kV, frequency: 6 kHz, cycles: 10}\n",
+       "needs 7.07 mA to charge the film's 73.7 pF as fast as asked, 71 % of the 10 mA", 9, 11},
+      {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 10 V/us}\n"
+       "waveform: {kind: triangle, high: 1 kV, frequency: 6 kHz, cycles: 10}\nrate: 1 MHz\n",
+       "step 1 changes with 12 V/us, the amplifier follows with 10 V/us", 3, 11},
       {PROTOCOL_HEAD CHANNELS
        "sequence:\n  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n"
        "  - {label: a, waveform: {kind: constant, voltage: 1 kV}}\n",
@@ -427,6 +430,32 @@ static dea_status check_in_folder(struct dea_context *context)
   return status;
 }
 
+/* 2 pi f C V of a sine, on both sides of 60 % and of 90 % of the amplifier's current. */
+static void test_current_that_charging_takes(void **state)
+{
+  (void)state;
+  static const struct {
+    double share;
+    enum dea_severity severity;
+    bool found;
+  } cases[] = {{0.59, DEA_WARNING, false},
+               {0.61, DEA_WARNING, true},
+               {0.89, DEA_WARNING, true},
+               {0.91, DEA_ERROR, true}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    const double two_pi = 6.283185307179586, capacitance_F = 73.65e-12;
+    char text[1024];
+    snprintf(text, sizeof text,
+             PROTOCOL_HEAD CHANNELS "rate: 1 MHz\nwaveform: {kind: sine, amplitude: 4 kV, mean: "
+                                    "4 kV, frequency: %.6g Hz, cycles: 10}\n",
+             cases[i].share * 10e-3 / (two_pi * capacitance_F * 4000));
+    dea_status status = check(text);
+    assert_int_equal(status, cases[i].severity == DEA_ERROR ? DEA_E_INTERLOCK : DEA_OK);
+    assert_true(cases[i].found ==
+                (find_finding(ctx, cases[i].severity, "to charge the film's") != NULL));
+  }
+}
+
 static void test_memory(void **state)
 {
   (void)state;
@@ -470,6 +499,7 @@ int main(void)
       cmocka_unit_test(test_interlocks_at_their_bounds),
       cmocka_unit_test(test_specimen),
       cmocka_unit_test(test_warnings),
+      cmocka_unit_test(test_current_that_charging_takes),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_export_memory),
   };

@@ -6,6 +6,8 @@
 #include <string.h>
 
 static const double few_samples = 20, too_few_samples = 4; // a cycle
+/* Of the amplifier's current, for charging the film along what is played without jumps. */
+static const double current_much = 0.6, current_too_much = 0.9;
 
 // Places -----------------------------------------------------------------------------------------
 
@@ -173,11 +175,15 @@ static dea_status check_slopes(struct dea_context *ctx, const struct dea_protoco
                                  "only",
                                  step, 1e-6 * slopes->slope_V_per_s, 1e-6 * slew->si));
   }
-  if (limit->origin != DEA_ABSENT && current_A > limit->si) {
-    return dea_finding_add(ctx, DEA_WARNING, location,
-                           "%s needs %.3g mA to charge the film's %.3g pF as fast as asked, the "
-                           "amplifier gives %g mA",
-                           step, 1e3 * current_A, 1e12 * plan->capacitance_F, 1e3 * limit->si);
+  if (limit->origin != DEA_ABSENT && current_A > current_much * limit->si) {
+    bool refused = current_A > current_too_much * limit->si;
+    return dea_finding_add(ctx, refused ? DEA_ERROR : DEA_WARNING, location,
+                           "%s%s needs %.3g mA to charge the film's %.3g pF as fast as asked, "
+                           "%.0f %% of the %g mA that the amplifier gives; at most %.0f %% are "
+                           "played, and up to %.0f %% leave something for leakage and cables",
+                           refused ? "refused: " : "", step, 1e3 * current_A,
+                           1e12 * plan->capacitance_F, 100 * current_A / limit->si, 1e3 * limit->si,
+                           100 * current_too_much, 100 * current_much);
   }
   return DEA_OK;
 }
