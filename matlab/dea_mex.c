@@ -410,7 +410,7 @@ static mxArray *from_abilities(unsigned abilities)
 
 static void get_models(struct call *call)
 {
-  const char *names[] = {"name", "title", "abilities", "available"};
+  const char *names[] = {"name", "title", "abilities", "available", "layout_abilities"};
   const dea_model_info *model;
   size_t count = 0;
   while (dea_model_at(ctx, count) != NULL) {
@@ -422,6 +422,7 @@ static void get_models(struct call *call)
     put_text(call->out[0], i, "title", model->title);
     put(call->out[0], i, "abilities", from_abilities(model->abilities));
     put(call->out[0], i, "available", mxCreateLogicalScalar(model->available != 0));
+    put(call->out[0], i, "layout_abilities", from_abilities(model->layout_abilities));
   }
 }
 

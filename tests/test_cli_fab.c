@@ -2,6 +2,7 @@
 // ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "command.h"
+#include <stdbool.h>
 
 #include <jansson.h>
 
@@ -76,6 +77,28 @@ static void test_without_fibres(void **state)
   assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc --force"), 0);
   snprintf(path, sizeof path, "%s/disc/fibres.dxf", command_folder);
   assert_int_not_equal(access(path, R_OK), 0);
+}
+
+/* Sheets of parts that are gone go; what is not ours, or no sheet, stays. */
+static void test_parts_that_are_gone(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *name;
+    bool stays;
+  } files[] = {{"body-bar.dxf", false}, {"body-bar.svg", false},       {"ply-stripes.dxf", false},
+               {"film.dxf", true},      {"ply-of-a-friend.dxf", true}, {"notes.txt", true}};
+  char path[700], shell[1600];
+  assert_int_equal(command_run("fab @/examples/devices/pure-shear.yaml -o parts"), 0);
+  snprintf(shell, sizeof shell,
+           "cd '%s/parts' && echo mine >ply-of-a-friend.dxf && cp body-bar.dxf notes.txt",
+           command_folder);
+  assert_int_equal(system(shell), 0);
+  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o parts --force"), 0);
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    snprintf(path, sizeof path, "%s/parts/%s", command_folder, files[i].name);
+    assert_int_equal(access(path, R_OK) == 0, files[i].stays);
+  }
 }
 
 /* Files are the same however often they are written, and whatever the locale. */
@@ -177,13 +200,10 @@ static void test_what_goes_wrong(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_files),
-      cmocka_unit_test(test_summary),
-      cmocka_unit_test(test_without_fibres),
-      cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_names_in_drawings),
-      cmocka_unit_test(test_drawing_only),
-      cmocka_unit_test(test_hostile_names),
+      cmocka_unit_test(test_files),           cmocka_unit_test(test_summary),
+      cmocka_unit_test(test_without_fibres),  cmocka_unit_test(test_parts_that_are_gone),
+      cmocka_unit_test(test_same_bytes),      cmocka_unit_test(test_names_in_drawings),
+      cmocka_unit_test(test_drawing_only),    cmocka_unit_test(test_hostile_names),
       cmocka_unit_test(test_what_goes_wrong),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

@@ -255,8 +255,11 @@ static void test_abilities(void **state)
     if (strcmp(name, "3d") == 0) {
       assert_true((abilities & DEA_CAN_INDENT) != 0);
       assert_true((abilities & DEA_CAN_PATH) == 0);
+      assert_true((model->layout_abilities & DEA_CAN_TIME) != 0);
+      assert_true((model->layout_abilities & (DEA_CAN_INDENT | DEA_CAN_PROFILE)) == 0);
       continue;
     }
+    assert_int_equal(model->layout_abilities, 0);
     dea_actuator *actuator;
     const dea_mesh *mesh;
     assert_int_equal(dea_actuator_open(ctx, design, name, &actuator), DEA_OK);

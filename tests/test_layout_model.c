@@ -382,8 +382,10 @@ static void test_leaps_are_located(void **state)
       bool out = i < 3;
       assert_int_equal(passed->kind, out ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
       assert_close(1e-3 * passed->point.voltage_V, steps[i].passed_kV, out ? 5e-5 : 1e-3, 0);
-      assert_true(((point.told >> DEA_FLAG_STATES) & 1) != 0);
     }
+    // one of several from where it leapt on, until it is back where it was released
+    bool told = ((point.told >> DEA_FLAG_STATES) & 1) != 0;
+    assert_true(told == (i >= 2 && steps[i].kV > 0));
   }
   type->destroy(ctx, model);
   dea_device_destroy(ctx, device);

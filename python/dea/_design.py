@@ -161,12 +161,13 @@ class Design:
 @dataclass(frozen=True)
 class Model:
     """A model; abilities: "path", "profile", "indent", "modes", "respond", "fields", "time",
-    "refine"."""
+    "refine"; layout_abilities: those of devices made of plies."""
 
     name: str
     title: str
     abilities: frozenset
     available: bool
+    layout_abilities: frozenset
 
 
 @dataclass(frozen=True)
@@ -187,9 +188,11 @@ def models() -> dict[str, Model]:
         info = lib.dea_model_at(context.handle, len(found))
         if info == ffi.NULL:
             return found
-        can = frozenset(a for a in _ABILITIES
-                        if info.abilities & getattr(lib, "DEA_CAN_" + a.upper()))
-        found[text(info.name)] = Model(text(info.name), text(info.title), can, bool(info.available))
+        can, layouts = (frozenset(a for a in _ABILITIES
+                                  if bits & getattr(lib, "DEA_CAN_" + a.upper()))
+                        for bits in (info.abilities, info.layout_abilities))
+        found[text(info.name)] = Model(text(info.name), text(info.title), can,
+                                       bool(info.available), layouts)
 
 
 def studies() -> dict[str, Study]:

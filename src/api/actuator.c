@@ -26,11 +26,12 @@ const dea_model_info *dea_model_at(dea_context *ctx, size_t index)
     return NULL;
   }
   const struct dea_model_type *type = all[index];
-  ctx->model = (dea_model_info){.name = type->name,
-                                .title = type->long_name,
-                                .abilities = abilities_of(type),
-                                .available = strcmp(type->name, "3d") != 0 ||
-                                             dea_solid_module_find(path, sizeof path)};
+  ctx->model = (dea_model_info){
+      .name = type->name,
+      .title = type->long_name,
+      .abilities = abilities_of(type),
+      .available = strcmp(type->name, "3d") != 0 || dea_solid_module_find(path, sizeof path),
+      .layout_abilities = type->of_layouts != NULL ? abilities_of(type->of_layouts) : 0};
   return &ctx->model;
 }
 

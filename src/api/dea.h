@@ -194,10 +194,11 @@ typedef enum {
 } dea_ability;
 
 typedef struct {
-  const char *name;   // "lumped", "axisymmetric", "3d"
-  const char *title;  // for figures
-  unsigned abilities; // sum of dea_ability
-  int available;      // 0: its module is not installed
+  const char *name;          // "lumped", "axisymmetric", "3d"
+  const char *title;         // for figures
+  unsigned abilities;        // sum of dea_ability, of a disc in a round frame
+  int available;             // 0: its module is not installed
+  unsigned layout_abilities; // the same of devices made of `plies`; 0: does not know them
 } dea_model_info;
 
 const dea_model_info *dea_model_at(dea_context *ctx, size_t index);

@@ -11,6 +11,7 @@
 #include <spawn.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static bool actions_make(posix_spawn_file_actions_t *actions, const char *directory, int pipe_end,
@@ -74,12 +75,24 @@ static bool hear(int pipe_end, char *said, size_t *used)
   return true;
 }
 
+/* Processor time of a process that runs, 0 where that is not known. */
+static double processor_time_s(pid_t process)
+{
+  clockid_t clock;
+  struct timespec used;
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &used) != 0) {
+    return 0;
+  }
+  return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
+}
+
 enum dea_program_end dea_program_wait(const struct dea_context *ctx,
                                       const struct dea_program *program, double limit_s,
                                       char said[DEA_PROGRAM_SAID], int *number)
 {
   enum { LOOK_MS = 100 }; // how often the limit and the context are looked at
   enum dea_program_end end = DEA_PROGRAM_DONE;
+  static const double clock_share = 10; // of the limit: a program that waits for something
   double start_s = dea_clock_s();
   size_t used = 0;
   for (bool open = true; open;) {
@@ -90,7 +103,8 @@ enum dea_program_end dea_program_wait(const struct dea_context *ctx,
     }
     if (end == DEA_PROGRAM_DONE && ctx != NULL && dea_interrupted(ctx)) {
       end = DEA_PROGRAM_INTERRUPTED;
-    } else if (end == DEA_PROGRAM_DONE && dea_clock_s() - start_s > limit_s) {
+    } else if (end == DEA_PROGRAM_DONE && (processor_time_s(program->process) > limit_s ||
+                                           dea_clock_s() - start_s > clock_share * limit_s)) {
       end = DEA_PROGRAM_TOO_LONG;
     }
     if (end != DEA_PROGRAM_DONE) {

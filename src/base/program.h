@@ -27,9 +27,10 @@ enum dea_program_end {
   DEA_PROGRAM_INTERRUPTED // ended by us as the context was interrupted
 };
 
-/* Waits for its end. ctx: an interruption ends the program; NULL: it does not. limit_s: > 0, may be
- * INFINITY. said: the last of what it wrote, without blanks at its end. number: exit code or
- * signal. */
+/* Waits for its end. ctx: an interruption ends the program; NULL: it does not. limit_s: of the
+ * program's processor time, so that a loaded machine does not end it, and a tenth of what it may
+ * take by the clock; > 0, may be INFINITY. said: the last of what it wrote, without blanks at its
+ * end. number: exit code or signal. */
 enum dea_program_end dea_program_wait(const struct dea_context *ctx,
                                       const struct dea_program *program, double limit_s,
                                       char said[DEA_PROGRAM_SAID], int *number);

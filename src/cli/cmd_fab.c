@@ -115,7 +115,7 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "folder for the files; DESIGN's name with .fab if not given"),
-    CLI_FORCE_ROW('f', "replace files that are there; sheets of fibres go when DESIGN has none"),
+    CLI_FORCE_ROW('f', "replace files that are there; sheets of parts that DESIGN has no more go"),
     {"drawing", 0, CLI_FLAG, NULL, "only the drawing of the actuator", CLI_AT(drawing)},
     CLI_SET_ROW(0, CLI_KEY, "fabrication.kerf=0.15mm"),
     CLI_JSON_ROW("areas, lengths and names of files as JSON"),

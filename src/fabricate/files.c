@@ -5,11 +5,11 @@
 #include "fabricate/canvas.h"
 #include "fabricate/dxf.h"
 #include "fabricate/pages.h"
-#include "fabricate/parts.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"
 #include "fabricate/svg.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -90,21 +90,73 @@ static dea_status refuse_existing(void *user, const char *name)
   return dea_path_refuse(location->ctx, location->directory, name);
 }
 
-/* Removes the sheets of a part that an older design had and this one has not: they would be taken
- * for its own. */
-static dea_status forget_part(struct dea_context *ctx, const char *directory, const char *part)
+/* Whether a file's name is that of a sheet of this workshop, or of any: stem its length without the
+ * ending. */
+static bool is_sheet(const struct dea_workshop *workshop, const char *name, size_t stem)
 {
-  for (size_t f = 0; f < FORMATS; f++) {
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, "%s.%s", part, formats[f].ending);
-    char *path = dea_path_join(ctx, directory, name);
-    if (path == NULL) {
-      return DEA_E_MEMORY;
-    }
-    unlink(path); // one that is not there is fine
-    dea_free(ctx, path);
+  bool found = is_general(workshop) && stem == strlen(LAYOUT_DXF) - 4 &&
+               strncmp(name, LAYOUT_DXF, stem) == 0;
+  for (size_t i = 0; i < workshop->count; i++) {
+    const char *own = workshop->part[i].name;
+    found = found || (strlen(own) == stem && strncmp(own, name, stem) == 0);
   }
+  return found;
+}
+
+static bool may_be_sheet(const char *name)
+{
+  static const char *const starts[] = {"film.",    "frame.", "template.", "fibres.", "layout.",
+                                       "stencil-", "blank-", "ply-",      "body-"};
+  bool found = false;
+  for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++) {
+    found = found || strncmp(name, starts[i], strlen(starts[i])) == 0;
+  }
+  return found;
+}
+
+/* Removes a DXF of ours and the SVG beside it. */
+static dea_status forget_sheet(struct dea_context *ctx, const char *directory, const char *dxf)
+{
+  static const char ours[] = "999\nlibdea ";
+  char start[sizeof ours] = "";
+  char *path = dea_path_join(ctx, directory, dxf);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  FILE *file = fopen(path, "rb");
+  if (file != NULL) {
+    size_t got = fread(start, 1, sizeof ours - 1, file);
+    start[got] = '\0';
+    fclose(file);
+  }
+  if (strcmp(start, ours) == 0) {
+    unlink(path);
+    memcpy(path + strlen(path) - 3, "svg", 3);
+    unlink(path); // one that is not there is fine
+  }
+  dea_free(ctx, path);
   return DEA_OK;
+}
+
+/* Removes the sheets of parts that an older design had and this one has not: they would be taken
+ * for its own. */
+static dea_status forget_sheets(struct dea_context *ctx, const struct dea_workshop *workshop,
+                                const char *directory)
+{
+  DIR *all = opendir(directory);
+  dea_status status = DEA_OK;
+  const struct dirent *entry = all != NULL ? readdir(all) : NULL;
+  for (; entry != NULL && status == DEA_OK; entry = readdir(all)) {
+    size_t length = strlen(entry->d_name), stem = length > 4 ? length - 4 : 0;
+    if (strcmp(entry->d_name + stem, ".dxf") == 0 && may_be_sheet(entry->d_name) &&
+        !is_sheet(workshop, entry->d_name, stem)) {
+      status = forget_sheet(ctx, directory, entry->d_name);
+    }
+  }
+  if (all != NULL) {
+    closedir(all);
+  }
+  return status;
 }
 
 dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_workshop *workshop,
@@ -114,9 +166,8 @@ dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_worksh
   if (!options->force) {
     DEA_TRY(ctx, dea_workshop_files(workshop, options, refuse_existing, &location));
   }
-  if (options->force && !options->drawing_only && !is_general(workshop) &&
-      workshop->plan.device->fibre_count == 0) {
-    DEA_TRY(ctx, forget_part(ctx, directory, dea_part_fibres.name));
+  if (options->force && !options->drawing_only) {
+    DEA_TRY(ctx, forget_sheets(ctx, workshop, directory));
   }
   return dea_folder_make(ctx, directory);
 }

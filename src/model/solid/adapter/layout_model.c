@@ -51,6 +51,8 @@ struct dea_model {
   double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
   double flat_m;          // the same as they are in the flat state
   double pressure_factor; // on all pressures
+  double *rest;           // [3 node_count] displacement where it was released
+  bool rest_is_one_of;    // several states there
   struct dea_standing at;
   struct dea_control moved; // of the last move
   double *answers;          // of the last response, as in model/model.h
@@ -591,6 +593,11 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   find_thinnest(model);
   DEA_TRY(ctx, release(ctx, model));
   model->at.rest_energy_J = model->at.report.energy_J;
+  model->rest_is_one_of = model->at.left_a_state;
+  size_t values = 3 * model->mesh.grid->node_count;
+  model->rest = dea_arena_alloc(&model->memory, values, sizeof *model->rest);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  memcpy(model->rest, dea_solid_displacement(model->solid), values * sizeof *model->rest);
   return DEA_OK;
 }
 
@@ -661,13 +668,30 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   return DEA_OK;
 }
 
+/* Whether it is back where it was released, to a thousandth of the film's thickness. */
+static bool is_at_rest(const struct dea_model *model)
+{
+  const double *u = dea_solid_displacement(model->solid);
+  double most = 0;
+  for (size_t i = 0; i < 3 * model->mesh.grid->node_count; i++) {
+    most = fmax(most, fabs(u[i] - model->rest[i]));
+  }
+  return model->at.voltage_V == 0 && most <= 1e-3 * model->layout->plies[model->film].thickness_m;
+}
+
+/* Another state was left on the way; what is back at rest has nothing of that. */
+static void note_states(struct dea_model *model, bool left)
+{
+  model->at.left_a_state =
+      is_at_rest(model) ? model->rest_is_one_of : model->at.left_a_state || left;
+}
+
 static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
 {
   struct dea_model *model = self;
   (void)ctx;
   model->at.voltage_V = voltage_V;
-  model->at.left_a_state =
-      model->at.left_a_state || model->at.report.snapped || model->at.ending.leapt;
+  note_states(model, model->at.report.snapped || model->at.ending.leapt);
   return DEA_OK;
 }
 
@@ -763,11 +787,11 @@ static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
   }
   model->moved = *control;
   DEA_TRY(ctx, dea_ending_watch(ctx, ending, value - from_value, from, &share));
+  note_states(model, !isnan(share));
   if (isnan(share)) {
     return DEA_OK;
   }
   double limit = from_value + share * (value - from_value);
-  model->at.left_a_state = true;
   ending->passed.point.force_N = force && !turns ? limit : NAN;
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: at %.4g kV it leaps past a limit point at %.6g %s to another "
@@ -811,7 +835,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
                     model->at.report.way, why);
   }
   if (model->at.report.snapped) {
-    model->at.left_a_state = true;
+    note_states(model, true);
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: a state at %.4g kV is unstable (buckling or snapping) "
                                  "under this load; it goes on from the stable one below it",

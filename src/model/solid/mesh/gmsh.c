@@ -222,7 +222,9 @@ static dea_status explain(struct dea_context *ctx, enum dea_program_end end, int
   case DEA_PROGRAM_CRASHED:
     return dea_fail(ctx, DEA_E_TOOL, "gmsh crashed (signal %d); it said last:\n%s", number, last);
   case DEA_PROGRAM_TOO_LONG:
-    return dea_fail(ctx, DEA_E_TOOL, "gmsh took more than %g s and was ended; it said last:\n%s",
+    return dea_fail(ctx, DEA_E_TOOL,
+                    "gmsh took more than %g s of processor time (or ten times that by the clock) "
+                    "and was ended; it said last:\n%s",
                     limit_s, last);
   default:
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while gmsh made a mesh");

@@ -22,7 +22,7 @@ struct dea_gmsh_plan {
   int order;           // of the elements, 1 or 2
   double size_m;       // of elements, up to which they grow away from fine edges
   double growth;       // by that share of the distance from them; 0: 0.4
-  double time_limit_s; // 0: 120
+  double time_limit_s; // of processor time; 0: 120
   const char *program; // NULL: gmsh, from the PATH
 };
 
