@@ -8,7 +8,7 @@ cd "$1/src"
 # shellcheck disable=SC2016 # awk's own
 find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
-    n = split("base plot material waveform geometry design device result lab calibrate model study output job fabricate api cli", order, " ")
+    n = split("base plot material waveform geometry design device result lab calibrate model study output job explore fabricate api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
     n = split("point element mesh load recovery actuator assembly equilibrium motion adapter", order, " ")
     for (i = 1; i <= n; i++) { room[order[i]] = i } # of model/solid

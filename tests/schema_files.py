@@ -70,6 +70,8 @@ def kind_of(path, data):
         return "material"
     if "dea-protocol" in data:
         return "protocol"
+    if "dea_explore" in data:
+        return "explore"
     if "dea_fit" in data:
         return "fit-device" if "design" in data else "fit"
     return "design"

@@ -18,6 +18,7 @@ struct dea_device_param {
   enum dea_device_param_kind kind;
   const char *state; // " stretched", " unstretched" or ""; static storage
   bool list;         // the key is a list of one number
+  bool whole;        // the key is a whole number
   size_t index;      // of a law's parameter; of the permittivity 0: at_rest, 1: slope
   double designed;   // the design's value; NAN: it has none
   char prior_of[64]; // material of the catalogue that the prior is from; "": none

@@ -51,8 +51,8 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   return found == 0 ? DEA_OK
-                    : dea_fail(ctx, DEA_E_DESIGN, "the fit file '%s' has %zu error%s", head->file,
-                               found, found > 1 ? "s" : "");
+                    : dea_fail(ctx, DEA_E_DESIGN, "the %s '%s' has %zu error%s", record->name,
+                               head->file, found, found > 1 ? "s" : "");
 }
 
 dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,

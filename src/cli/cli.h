@@ -47,6 +47,7 @@ struct dea_command {
 #define DEA_COMMAND_LIST(X)                                                                        \
   X(cmd_run)                                                                                       \
   X(cmd_check)                                                                                     \
+  X(cmd_sweep)                                                                                     \
   X(cmd_fab)                                                                                       \
   X(cmd_mesh)                                                                                      \
   X(cmd_drive)                                                                                     \

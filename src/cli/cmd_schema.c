@@ -1,12 +1,13 @@
 #include "cli/cli.h"
 
 #include "calibrate/device_file.h"
+#include "explore/explore_file.h"
 #include "lab/import/import.h"
 #include "lab/instrument/instrument.h"
 #include "study/design_file.h"
 
 struct request {
-  bool json, markdown, general, material, protocol, mapping, fit, fit_device;
+  bool json, markdown, general, material, protocol, mapping, fit, fit_device, explore;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -21,6 +22,7 @@ static int run(struct dea_cli *cli, void *user)
                                     : request->mapping    ? &dea_mapping_record
                                     : request->fit        ? &dea_fit_record
                                     : request->fit_device ? &dea_device_file_record
+                                    : request->explore    ? &dea_explore_record
                                     : request->general    ? &design.general.record
                                                           : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};
@@ -52,6 +54,8 @@ static const struct cli_option options[] = {
      .or_before = true},
     {"fit-device", 0, CLI_FLAG, NULL, "the keys of a fit file of a device instead",
      CLI_AT(fit_device), .or_before = true},
+    {"explore", 0, CLI_FLAG, NULL, "the keys of a file for `dea sweep` instead", CLI_AT(explore),
+     .or_before = true},
     {0}};
 
 const struct dea_command cmd_schema = {

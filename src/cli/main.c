@@ -38,7 +38,7 @@ static const char *meant_by(const char *word)
     const char *word, *command;
   } others[] = {{"optimise", "fit"},    {"optimize", "fit"},    {"calibrate", "fit"},
                 {"identify", "fit"},    {"simulate", "run"},    {"solve", "run"},
-                {"compute", "run"},     {"sweep", "run"},       {"validate", "check"},
+                {"compute", "run"},     {"samples", "sweep"},   {"validate", "check"},
                 {"lint", "check"},      {"draw", "plot"},       {"figures", "plot"},
                 {"view", "report"},     {"play", "drive"},      {"measure", "drive"},
                 {"new", "examples"},    {"init", "examples"},   {"material", "materials"},

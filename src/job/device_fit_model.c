@@ -114,6 +114,8 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
     snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
     dea_context_clear(ctx);
     status = DEA_E_DOMAIN;
+  } else if (status == DEA_OK && model->built != NULL) {
+    status = model->built(model->user, design, device);
   }
   for (size_t g = 0; g < model->group_count && status == DEA_OK; g++) {
     status = follow(model, design, device, &model->groups[g], points);

@@ -2,6 +2,7 @@
  * priors. */
 #include "job/device_fit_model.h"
 
+#include "base/units.h"
 #include "material/catalogue.h"
 
 #include <math.h>
@@ -91,7 +92,7 @@ static dea_status settle(struct work *w, const struct dea_fit_parameter_text *te
   if (bounded && param->scale < 0.25 * (param->high - param->low)) {
     param->scale = 0.25 * (param->high - param->low);
   }
-  if (param->scale == 0) {
+  if (param->scale == 0 && !w->source.whole) {
     return dea_finding_add(w->ctx, DEA_ERROR, text->name.location,
                            "%s starts at 0, which does not say what a large change is: give low "
                            "and high",
@@ -141,12 +142,38 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
                                                         : DEA_OK;
 }
 
+dea_status dea_device_param_make(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                                 const struct dea_device_param_source *source,
+                                 struct dea_device_param *out)
+{
+  struct work w = {.ctx = ctx, .source = *source};
+  return make_one(&w, text, out);
+}
+
+dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_device_param *param,
+                                   const struct dea_label *label, double *out)
+{
+  char text[DEA_TITLE_SIZE], why[DEA_WHY_SIZE] = "";
+  snprintf(text, sizeof text, "%s", label->text);
+  const char *state = dea_device_param_take_state(text);
+  *out = NAN;
+  if (state[0] != '\0' && strcmp(state, param->state) != 0) {
+    snprintf(why, sizeof why, "it is a length%s in the design: write it so here too", param->state);
+  } else if (dea_units_read(ctx, text, (struct dea_measure){param->param.unit, "1.5"}, out, why)) {
+    return DEA_OK;
+  } else if (why[0] == '\0') {
+    return dea_context_status(ctx);
+  }
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "%s: '%.60s': %s", param->param.name,
+                         label->text, why);
+}
+
 dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_device_file *file,
                                   const struct dea_design *design, const struct dea_device *device,
                                   struct dea_device_param *out)
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  struct work w = {.ctx = ctx, .source = {design, device}};
+  struct work w = {.ctx = ctx, .source = {.design = design, .device = device}};
   for (size_t k = 0; k < file->parameter_count; k++) {
     DEA_TRY(ctx, make_one(&w, &file->parameters[k], &out[k]));
   }

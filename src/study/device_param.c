@@ -115,12 +115,13 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   if (field == NULL) {
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
-  if (!is_number(field)) {
+  out->whole = field->kind == DEA_FIELD_INTEGER;
+  if (!is_number(field) && !(source->whole && out->whole)) {
     return dea_device_param_unknown(ctx, source, name,
-                                    field->kind == DEA_FIELD_INTEGER
-                                        ? "is a whole number: only what can change "
-                                          "little by little can be fitted"
-                                        : "is no number that could be fitted");
+                                    source->whole ? "is no number"
+                                    : out->whole  ? "is a whole number: only what can change "
+                                                    "little by little can be fitted"
+                                                  : "is no number that could be fitted");
   }
   if (strncmp(name->text, "report.", 7) == 0 || strncmp(name->text, "fabrication.", 12) == 0 ||
       strncmp(name->text, "compute.voltage", 15) == 0) {

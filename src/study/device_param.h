@@ -10,6 +10,7 @@
 struct dea_device_param_source {
   const struct dea_design *design; // of the short form
   const struct dea_device *device; // built from it
+  bool whole;                      // whole numbers are parameters too
 };
 
 /* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,

@@ -1,0 +1,123 @@
+/* dea sweep: many designs that differ in some values. */
+#define _DEFAULT_SOURCE // sysconf
+#include "cli/cli.h"
+
+#include "explore/sweep.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct request {
+  const char *file;
+  double processes; // 0: not given
+  struct dea_sweep_options options;
+};
+
+static int take_processes(struct dea_cli *cli, const struct dea_command *command,
+                          const struct cli_option *option, const char *text, void *target)
+{
+  char *end;
+  const double count = strtod(text, &end);
+  if (*end != '\0' || !(count >= 1 && count <= 256) || count != floor(count)) {
+    return cli_usage_error(cli, command, "--%s: '%.20s' is no number from 1 to 256", option->name,
+                           text);
+  }
+  *(double *)target = count;
+  return 0;
+}
+
+static int take_shard(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
+{
+  struct dea_shard *shard = target;
+  int used = 0;
+  if (sscanf(text, "%6zu/%6zu%n", &shard->part, &shard->parts, &used) != 2 || text[used] != '\0' ||
+      shard->part < 1 || shard->part > shard->parts) {
+    return cli_usage_error(cli, command, "--%s: '%.20s' is no part of parts such as 2/8",
+                           option->name, text);
+  }
+  return 0;
+}
+
+static void print_report(const struct dea_sweep_report *report, const struct request *request)
+{
+  printf("designs: %zu of %zu are there", report->there, report->planned);
+  if (!request->options.merge) {
+    printf(", %zu of them computed now", report->now);
+  }
+  printf("\n");
+  if (report->torn > 0) {
+    printf("lines that were cut off and are computed again: %zu\n", report->torn);
+  }
+  if (report->failed > 0) {
+    printf("without all values: %zu (for example: %s)\n", report->failed, report->why);
+  }
+  printf("written to %s%s\n", request->options.folder,
+         request->options.shard.parts > 1 && !request->options.merge
+             ? ": one part; --merge writes the tables"
+             : " (cases.csv, cases.h5)");
+  fflush(stdout);
+}
+
+static dea_status sweep(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_explore_file *file;
+  struct dea_question *question;
+  struct dea_sweep_report report = {0};
+  DEA_TRY(cli->ctx, dea_explore_file_read(cli->ctx, request->file, &file));
+  dea_status status = dea_question_make(cli->ctx, file, &question);
+  if (status == DEA_OK) {
+    status = dea_sweep_run(question, &request->options, &report);
+    if (report.planned > 0) {
+      print_report(&report, request);
+    }
+    dea_question_destroy(question);
+  }
+  dea_explore_file_destroy(cli->ctx, file);
+  return status;
+}
+
+static int run(struct dea_cli *cli, void *user)
+{
+  struct request *request = user;
+  struct dea_text folder = {.ctx = cli->ctx};
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  request->options.processes = request->processes > 0 ? (size_t)request->processes
+                               : cores > 0            ? (size_t)cores
+                                                      : 1;
+  if (request->options.folder == NULL) {
+    cli_folder_name(request->file, "sweep", &folder);
+    request->options.folder = dea_text_get(&folder);
+  }
+  int code = cli_report(cli, folder.failed ? DEA_E_MEMORY : sweep(cli, request));
+  dea_text_free(&folder);
+  return code;
+}
+
+static const struct request defaults = {.options = {.shard = {1, 1}}};
+
+static const struct cli_option options[] = {
+    CLI_ONE(CLI_DESIGN, "FILE", "file of a sweep", file, "a file is needed", "one file at a time"),
+    {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .sweep)",
+     CLI_AT(options.folder)},
+    {"jobs", 'j', CLI_TEXT, "N", "processes (default: one a core)", CLI_AT(processes),
+     take_processes},
+    {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
+     CLI_AT(options.shard), take_shard},
+    {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",
+     CLI_AT(options.merge)},
+    {"force", 'f', CLI_FLAG, NULL, "throw away the cases that are there", CLI_AT(options.force)},
+    {0}};
+
+const struct dea_command cmd_sweep = {
+    .name = "sweep",
+    .summary = "Compute many designs that differ in some values: grids, samples, uncertainty",
+    .about = "Goes on where it was stopped. What the file holds says 'dea schema --explore'.",
+    .options = options,
+    .request_size = sizeof(struct request),
+    .defaults = &defaults,
+    .run = run,
+};

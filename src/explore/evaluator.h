@@ -1,0 +1,41 @@
+/* What is explored: some numbers in, named quantities out. A device is one (question.h); tests have
+ * functions in closed form. */
+#ifndef DEA_EXPLORE_EVALUATOR_H
+#define DEA_EXPLORE_EVALUATOR_H
+
+#include "base/context.h"
+
+enum {
+  DEA_CASE_PARAMS_MAX = 12,
+  DEA_CASE_VALUES_MAX = 256,
+  DEA_CASE_ID_SIZE = 17,
+  DEA_CASE_WHY_SIZE = 160,
+};
+
+/* One evaluation. */
+struct dea_case {
+  size_t number;             // in the plan
+  char id[DEA_CASE_ID_SIZE]; // hash of the resolved design; "" where it cannot be built
+  double wall_s;
+  char why[DEA_CASE_WHY_SIZE]; // why a value is missing; "": all are there
+  double p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_VALUES_MAX];
+};
+
+struct dea_evaluator {
+  void *user;
+  size_t param_count, value_count;
+  /* With gradients, d q[i] / d p[j] is value value_count + i * param_count + j: more values, for
+   * pool and store. Without, who needs them takes finite differences. */
+  bool gradients;
+  /* Fills q, NAN for what there is not, with id and why, from p. Another status than DEA_OK ends
+   * the whole work. Called in a process of its own, which it may leave in any state. */
+  dea_status (*evaluate)(void *user, struct dea_context *ctx, struct dea_case *io);
+};
+
+/* Values of a case, gradients included. */
+static inline size_t dea_evaluator_values(const struct dea_evaluator *evaluator)
+{
+  return evaluator->value_count * (evaluator->gradients ? 1 + evaluator->param_count : 1);
+}
+
+#endif

@@ -1,0 +1,157 @@
+#include "explore/explore_file.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define AT(member) offsetof(struct dea_explore_file, member)
+#define VARIABLE_AT(member) offsetof(struct dea_explore_variable, member)
+#define LIMIT_AT(member) offsetof(struct dea_explore_limit, member)
+
+static const char *const distributions[] = {"uniform", "normal", "lognormal", NULL};
+static const char *const plans[] = {"grid", "latin-hypercube", "sobol", "random", "indices", NULL};
+
+static const struct dea_field variable_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = VARIABLE_AT(text.name),
+     .required = true,
+     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
+            "film.law.NAME of a parameter of the law",
+     .example = "film.thickness"},
+    {.key = "values",
+     .kind = DEA_FIELD_LABEL,
+     .offset = VARIABLE_AT(values),
+     .list_min = 1,
+     .list_max = DEA_EXPLORE_VALUES_MAX,
+     .element_size = sizeof(struct dea_label),
+     .count_offset = VARIABLE_AT(value_count),
+     .absent_text = "from low to high",
+     .doc = "the values that it takes",
+     .example = "[80 um, 100 um]"},
+    DEA_LABEL_ROW("low", VARIABLE_AT(text.low), "80 um", "smallest value", .absent_text = "none"),
+    DEA_LABEL_ROW("high", VARIABLE_AT(text.high), "120 um", "largest value", .absent_text = "none"),
+    DEA_INTEGER_ROW("steps", VARIABLE_AT(steps), "5", "of a grid: values from low to high",
+                    .min = 2, .max = 1000, .absent_text = "values"),
+    DEA_CHOICE_ROW("distribution", VARIABLE_AT(distribution), distributions, "normal",
+                   "of the samples; uniform: from low to high", .default_text = "uniform"),
+    DEA_LABEL_ROW("mean", VARIABLE_AT(text.prior), "100 um",
+                  "of a normal distribution the mean, of a lognormal one the median; or the "
+                  "material of the catalogue that has it",
+                  .absent_text = "none"),
+    DEA_LABEL_ROW("std", VARIABLE_AT(text.prior_std), "5 um",
+                  "standard deviation; of a lognormal distribution times the median that of the "
+                  "logarithm",
+                  .absent_text = "the material's"),
+    DEA_LABEL_ROW("start", VARIABLE_AT(text.start), "100 um", "where an optimisation begins",
+                  .absent_text = "the design's"),
+};
+static const struct dea_record variable_record = {"variable", "a number of the design that changes",
+                                                  variable_fields, COUNT(variable_fields)};
+
+static const struct dea_field limit_fields[] = {
+    DEA_LABEL_ROW("quantity", LIMIT_AT(quantity), "breakdown_margin", "key of the quantity",
+                  .required = true),
+    DEA_LABEL_ROW("above", LIMIT_AT(above), "0.1", "it has to stay above this",
+                  .absent_text = "none"),
+    DEA_LABEL_ROW("below", LIMIT_AT(below), "80 V/um", "it has to stay below this",
+                  .absent_text = "none"),
+};
+static const struct dea_record limit_record = {"limit",
+                                               "what a quantity may not cross at the last voltage",
+                                               limit_fields, COUNT(limit_fields)};
+
+static const struct dea_field file_fields[] = {
+    {.key = "dea_explore",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = DEA_FIT_HEAD_AT(version),
+     .unit = "1",
+     .min = DEA_EXPLORE_VERSION,
+     .max = DEA_EXPLORE_VERSION,
+     .required = true,
+     .doc = "version of the format",
+     .example = "1"},
+    DEA_LABEL_ROW("name", DEA_FIT_HEAD_AT(name), "thickness", "name of what is asked",
+                  .required = true),
+    DEA_LABEL_ROW("title", DEA_FIT_HEAD_AT(title), "how thick a film", "the same in words",
+                  .absent_text = "the name"),
+    DEA_LABEL_ROW("design", AT(design), "frdea-4.yaml",
+                  "design file, counted from the folder of this file", .required = true),
+    DEA_LABEL_ROW("model", AT(model), "axisymmetric",
+                  "model that computes the designs; of 3d the design's compute.solid says which "
+                  "film",
+                  .required = true),
+    DEA_NUMBER_ROW("voltages", AT(voltages_V), "V", "[6 kV]",
+                   "voltages at which quantities are taken, rising", .max = 1e6, .list_min = 1,
+                   .list_max = DEA_EXPLORE_VOLTAGES_MAX,
+                   .element_size = sizeof(struct dea_quantity), .count_offset = AT(voltage_count),
+                   .lone = true, .absent_text = "the highest of the design"),
+    {.key = "quantities",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(quantities),
+     .list_min = 1,
+     .list_max = DEA_EXPLORE_QUANTITIES_MAX,
+     .element_size = sizeof(struct dea_label),
+     .count_offset = AT(quantity_count),
+     .required = true,
+     .doc = "keys of the quantities that are kept, as dea compare --quantity has them; force_N: "
+            "with the tip of compute.force held at its first depth",
+     .example = "[centre_z_m, breakdown_margin]"},
+    {.key = "variables",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(variables),
+     .record = &variable_record,
+     .required = true,
+     .list_min = 1,
+     .list_max = DEA_DEVICE_PARAMS_MAX,
+     .element_size = sizeof(struct dea_explore_variable),
+     .count_offset = AT(variable_count),
+     .doc = "numbers of the design that change",
+     .example = "[{name: film.thickness, values: [80 um, 100 um]}]"},
+    DEA_CHOICE_ROW("plan", AT(plan), plans, "sobol",
+                   "grid: every combination; samples of the distributions; indices: samples for "
+                   "Sobol indices, (variables + 2) times their number",
+                   .default_text = "grid"),
+    DEA_INTEGER_ROW("samples", AT(samples), "1000", "number of samples", .min = 1,
+                    .max = DEA_EXPLORE_CASES_MAX, .default_text = "100"),
+    DEA_INTEGER_ROW("seed", AT(seed), "7", "of the samples: another one gives others",
+                    .max = 1000000000, .default_text = "1"),
+    {.key = "limits",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(limits),
+     .record = &limit_record,
+     .list_min = 1,
+     .list_max = DEA_EXPLORE_LIMITS_MAX,
+     .element_size = sizeof(struct dea_explore_limit),
+     .count_offset = AT(limit_count),
+     .doc = "what may not be crossed: a probability of samples, a constraint of an optimisation",
+     .absent_text = "none",
+     .example = "[{quantity: breakdown_margin, above: 0.1}]"},
+};
+const struct dea_record dea_explore_record = {
+    "file", "designs that differ in some values, and what is asked of them", file_fields,
+    COUNT(file_fields)};
+
+static dea_status check(struct dea_context *ctx, const void *user)
+{
+  const struct dea_explore_file *file = user;
+  for (size_t i = 1; i < file->voltage_count; i++) {
+    if (!(file->voltages_V[i].si > file->voltages_V[i - 1].si)) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->voltages_V[i].location,
+                                   "voltages have to rise"));
+    }
+  }
+  return dea_fit_names_check(ctx, file->variables, file->variable_count, sizeof file->variables[0],
+                             "variable");
+}
+
+dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
+                                 struct dea_explore_file **out)
+{
+  void *read;
+  dea_status status = dea_fit_head_read(ctx, file, &dea_explore_record, sizeof **out, check, &read);
+  *out = read;
+  return status;
+}
+
+void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file)
+{
+  dea_fit_head_destroy(ctx, file);
+}

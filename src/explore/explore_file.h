@@ -1,0 +1,69 @@
+/* A file of `dea sweep` and `dea optimise`: a design, the values of it that change, and what is
+ * asked of each of the designs (docs/explore.md). */
+#ifndef DEA_EXPLORE_EXPLORE_FILE_H
+#define DEA_EXPLORE_EXPLORE_FILE_H
+
+#include "calibrate/device_file.h"
+
+enum {
+  DEA_EXPLORE_VERSION = 1,
+  DEA_EXPLORE_VALUES_MAX = 64, // of a variable
+  DEA_EXPLORE_VOLTAGES_MAX = 32,
+  DEA_EXPLORE_QUANTITIES_MAX = 8,
+  DEA_EXPLORE_LIMITS_MAX = 8,
+  DEA_EXPLORE_OBJECTIVES_MAX = 2,
+  DEA_EXPLORE_CASES_MAX = 10000000,
+};
+
+enum dea_distribution { DEA_UNIFORM, DEA_NORMAL, DEA_LOGNORMAL };
+enum dea_plan_kind {
+  DEA_PLAN_GRID,
+  DEA_PLAN_LATIN,
+  DEA_PLAN_SOBOL,
+  DEA_PLAN_RANDOM,
+  DEA_PLAN_INDICES,
+};
+
+/* A variable as written. The prior of `text` is the mean of its distribution. */
+struct dea_explore_variable {
+  struct dea_fit_parameter_text text; // first: its name
+  struct dea_label values[DEA_EXPLORE_VALUES_MAX];
+  size_t value_count;
+  struct dea_quantity steps;
+  struct dea_choice distribution; // enum dea_distribution
+};
+
+/* What a quantity may not cross. */
+struct dea_explore_limit {
+  struct dea_label quantity, above, below;
+};
+
+struct dea_explore_objective {
+  struct dea_label quantity;
+  struct dea_choice goal; // 0: most, 1: least
+};
+
+struct dea_explore_file {
+  struct dea_fit_head head;
+  struct dea_label design, model;
+  struct dea_quantity voltages_V[DEA_EXPLORE_VOLTAGES_MAX];
+  size_t voltage_count;
+  struct dea_label quantities[DEA_EXPLORE_QUANTITIES_MAX];
+  size_t quantity_count;
+  struct dea_explore_variable variables[DEA_DEVICE_PARAMS_MAX];
+  size_t variable_count;
+  struct dea_choice plan; // enum dea_plan_kind
+  struct dea_quantity samples, seed;
+  struct dea_explore_limit limits[DEA_EXPLORE_LIMITS_MAX];
+  size_t limit_count;
+};
+
+extern const struct dea_record dea_explore_record;
+
+/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
+ * failure. */
+dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
+                                 struct dea_explore_file **out);
+void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file);
+
+#endif

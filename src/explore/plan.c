@@ -1,0 +1,256 @@
+#include "explore/plan.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+// Points of the unit cube -------------------------------------------------------------------------
+
+enum { BITS = 32, DEGREE_MAX = 7 };
+
+/* Primitive polynomials and first direction numbers of the dimensions from the second on: S. Joe
+ * and F. Y. Kuo, SIAM J. Sci. Comput. 30, 2635 (2008), their table "new-joe-kuo-6". */
+static const struct {
+  unsigned char degree, polynomial;
+  unsigned char first[DEGREE_MAX];
+} directions[DEA_SOBOL_DIMENSIONS - 1] = {
+    {1, 0, {1}},
+    {2, 1, {1, 3}},
+    {3, 1, {1, 3, 1}},
+    {3, 2, {1, 1, 1}},
+    {4, 1, {1, 1, 3, 3}},
+    {4, 4, {1, 3, 5, 13}},
+    {5, 2, {1, 1, 5, 5, 17}},
+    {5, 4, {1, 1, 5, 5, 5}},
+    {5, 7, {1, 1, 7, 11, 19}},
+    {5, 11, {1, 1, 5, 1, 1}},
+    {5, 13, {1, 1, 1, 3, 11}},
+    {5, 14, {1, 3, 5, 5, 31}},
+    {6, 1, {1, 3, 3, 9, 7, 49}},
+    {6, 13, {1, 1, 1, 15, 21, 21}},
+    {6, 16, {1, 3, 1, 13, 27, 49}},
+    {6, 19, {1, 1, 1, 15, 7, 5}},
+    {6, 22, {1, 3, 1, 15, 13, 25}},
+    {6, 25, {1, 1, 5, 5, 19, 61}},
+    {7, 1, {1, 3, 7, 11, 23, 15, 103}},
+    {7, 4, {1, 3, 7, 13, 13, 15, 69}},
+};
+
+/* Direction numbers of a dimension by their recurrence, the first bit highest. */
+static void find_directions(size_t dimension, uint32_t v[BITS])
+{
+  for (unsigned k = 0; k < BITS; k++) {
+    v[k] = UINT32_C(1) << (BITS - 1 - k);
+  }
+  if (dimension == 0) {
+    return;
+  }
+  const unsigned s = directions[dimension - 1].degree, a = directions[dimension - 1].polynomial;
+  for (unsigned k = 0; k < s; k++) {
+    v[k] *= directions[dimension - 1].first[k];
+  }
+  for (unsigned k = s; k < BITS; k++) {
+    v[k] = v[k - s] ^ (v[k - s] >> s);
+    for (unsigned i = 1; i < s; i++) {
+      v[k] ^= ((a >> (s - 1 - i)) & 1U) != 0 ? v[k - i] : 0;
+    }
+  }
+}
+
+/* SplitMix64: a number from a counter. */
+static uint64_t mix(uint64_t *state)
+{
+  uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+  z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+  z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+  return z ^ (z >> 31);
+}
+
+/* Middle of one of 2^32 intervals. */
+static double unit_of(uint32_t x)
+{
+  return ((double)x + 0.5) * 0x1p-32;
+}
+
+void dea_sample_sobol(size_t dimensions, size_t count, unsigned long long seed, double *out)
+{
+  uint64_t state = seed;
+  for (size_t d = 0; d < dimensions; d++) {
+    uint32_t v[BITS], x = (uint32_t)(mix(&state) >> 32); // the shift
+    find_directions(d, v);
+    for (size_t i = 0; i < count; i++) {
+      out[i * dimensions + d] = unit_of(x);
+      unsigned bit = 0; // the lowest 0 of i (Antonov and Saleev)
+      while (bit < BITS - 1 && ((i >> bit) & 1U) != 0) {
+        bit++;
+      }
+      x ^= v[bit];
+    }
+  }
+}
+
+void dea_sample_random(size_t dimensions, size_t count, unsigned long long seed, double *out)
+{
+  uint64_t state = seed;
+  for (size_t i = 0; i < dimensions * count; i++) {
+    out[i] = unit_of((uint32_t)(mix(&state) >> 32));
+  }
+}
+
+dea_status dea_sample_latin(struct dea_context *ctx, size_t dimensions, size_t count,
+                            unsigned long long seed, double *out)
+{
+  uint64_t state = seed;
+  size_t *order = dea_alloc(ctx, count, sizeof *order);
+  if (order == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t d = 0; d < dimensions; d++) {
+    for (size_t i = 0; i < count; i++) { // a random order, built up
+      const size_t k = (size_t)(mix(&state) % (i + 1));
+      order[i] = order[k];
+      order[k] = i;
+    }
+    for (size_t i = 0; i < count; i++) {
+      const double within = unit_of((uint32_t)(mix(&state) >> 32));
+      out[i * dimensions + d] = ((double)order[i] + within) / (double)count;
+    }
+  }
+  dea_free(ctx, order);
+  return DEA_OK;
+}
+
+double dea_normal_quantile(double u)
+{
+  const bool upper = u > 0.5; // the lower half has the digits
+  const double share = upper ? 1 - u : u;
+  const double t = sqrt(-2 * log(share));
+  double x = -(t - (2.30753 + 0.27061 * t) / (1 + t * (0.99229 + t * 0.04481))); // Hastings
+  for (int k = 0; k < 4; k++) { // Halley on P(X <= x) = erfc(-x / sqrt(2)) / 2
+    const double off = (0.5 * erfc(-x * 0.70710678118654752440) - share) /
+                       (0.39894228040143267794 * exp(-0.5 * x * x));
+    x -= off / (1 + 0.5 * x * off);
+  }
+  return upper ? -x : x;
+}
+
+// Cases -------------------------------------------------------------------------------------------
+
+/* Value of a variable at a share of its distribution. */
+static double value_at(const struct dea_variable *variable, double u)
+{
+  const double mean = variable->param.param.prior, std = variable->param.param.prior_std;
+  double value;
+  if (variable->value_count > 0) {
+    const size_t i = (size_t)(u * (double)variable->value_count);
+    return variable->values[i < variable->value_count ? i : variable->value_count - 1];
+  }
+  switch (variable->text->distribution.value) {
+  case DEA_NORMAL:
+    value = mean + std * dea_normal_quantile(u);
+    break;
+  case DEA_LOGNORMAL:
+    value = mean * exp(std / mean * dea_normal_quantile(u));
+    break;
+  default:
+    value = variable->low + (variable->high - variable->low) * u;
+  }
+  value = fmin(fmax(value, isnan(variable->low) ? -INFINITY : variable->low),
+               isnan(variable->high) ? INFINITY : variable->high);
+  return variable->param.whole ? round(value) : value;
+}
+
+static dea_status too_many(const struct dea_question *question, double count)
+{
+  DEA_TRY(question->ctx,
+          dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
+                          "%.3g cases are too many: at most %d", count, DEA_EXPLORE_CASES_MAX));
+  return dea_fail(question->ctx, DEA_E_DESIGN, "the plan cannot be made");
+}
+
+static dea_status make_grid(const struct dea_question *question, struct dea_plan *out)
+{
+  const size_t n = question->variable_count;
+  double count = 1;
+  for (size_t j = 0; j < n; j++) {
+    count *= (double)question->variables[j].value_count;
+  }
+  if (count > DEA_EXPLORE_CASES_MAX) {
+    return too_many(question, count);
+  }
+  out->samples = out->count = (size_t)count;
+  out->p = dea_alloc(question->ctx, out->count * n, sizeof *out->p);
+  if (out->p == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t c = 0; c < out->count; c++) {
+    size_t rest = c;
+    for (size_t j = n; j-- > 0;) { // the last variable changes first
+      const struct dea_variable *variable = &question->variables[j];
+      out->p[c * n + j] = variable->values[rest % variable->value_count];
+      rest /= variable->value_count;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status draw(const struct dea_question *question, size_t dimensions, size_t count,
+                       double *u)
+{
+  const unsigned long long seed = (unsigned long long)question->file->seed.si;
+  switch (question->file->plan.value) {
+  case DEA_PLAN_LATIN:
+    return dea_sample_latin(question->ctx, dimensions, count, seed, u);
+  case DEA_PLAN_RANDOM:
+    dea_sample_random(dimensions, count, seed, u);
+    return DEA_OK;
+  default:
+    dea_sample_sobol(dimensions, count, seed, u);
+    return DEA_OK;
+  }
+}
+
+static dea_status make_samples(const struct dea_question *question, struct dea_plan *out)
+{
+  const size_t n = question->variable_count, samples = (size_t)question->file->samples.si;
+  const bool indices = question->file->plan.value == DEA_PLAN_INDICES;
+  const size_t dimensions = indices ? 2 * n : n, blocks = indices ? n + 2 : 1;
+  if (dimensions > DEA_SOBOL_DIMENSIONS) {
+    DEA_TRY(question->ctx,
+            dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
+                            "indices of at most %d variables", DEA_SOBOL_DIMENSIONS / 2));
+    return dea_fail(question->ctx, DEA_E_DESIGN, "the plan cannot be made");
+  }
+  if (samples * blocks > DEA_EXPLORE_CASES_MAX) {
+    return too_many(question, (double)(samples * blocks));
+  }
+  out->samples = samples;
+  out->count = samples * blocks;
+  out->p = dea_alloc(question->ctx, out->count * n, sizeof *out->p);
+  double *u = dea_alloc(question->ctx, samples * dimensions, sizeof *u);
+  dea_status status =
+      out->p != NULL && u != NULL ? draw(question, dimensions, samples, u) : DEA_E_MEMORY;
+  for (size_t b = 0; b < blocks && status == DEA_OK; b++) {
+    for (size_t i = 0; i < samples; i++) {
+      for (size_t j = 0; j < n; j++) { // block 0: A, 1: B, 2 + j: A with column j of B
+        const bool second = b == 1 || b == j + 2;
+        out->p[(b * samples + i) * n + j] =
+            value_at(&question->variables[j], u[i * dimensions + j + (second ? n : 0)]);
+      }
+    }
+  }
+  dea_free(question->ctx, u);
+  return status;
+}
+
+dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out)
+{
+  *out = (struct dea_plan){0};
+  dea_status status = question->file->plan.value == DEA_PLAN_GRID ? make_grid(question, out)
+                                                                  : make_samples(question, out);
+  if (status != DEA_OK) {
+    dea_free(question->ctx, out->p);
+    *out = (struct dea_plan){0};
+  }
+  return status;
+}

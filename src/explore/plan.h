@@ -1,0 +1,31 @@
+/* Which designs: the numbers of every case of a grid or of samples. */
+#ifndef DEA_EXPLORE_PLAN_H
+#define DEA_EXPLORE_PLAN_H
+
+#include "explore/question.h"
+
+enum { DEA_SOBOL_DIMENSIONS = 21 };
+
+/* Points [count][dimensions] of the unit cube, each coordinate above 0 and below 1: the first ones
+ * of Sobol's sequence with the direction numbers of Joe and Kuo, shifted by the seed. dimensions:
+ * at most DEA_SOBOL_DIMENSIONS. */
+void dea_sample_sobol(size_t dimensions, size_t count, unsigned long long seed, double *out);
+/* The same of a Latin hypercube (each coordinate once in every of `count` equal intervals), and
+ * without any order. DEA_E_MEMORY. */
+dea_status dea_sample_latin(struct dea_context *ctx, size_t dimensions, size_t count,
+                            unsigned long long seed, double *out);
+void dea_sample_random(size_t dimensions, size_t count, unsigned long long seed, double *out);
+
+/* x with P(X <= x) = u of a standard normal distribution; 0 < u < 1. */
+double dea_normal_quantile(double u);
+
+/* Cases [count][params], owned (dea_free). Of indices: A, B, then for each variable A with the
+ * variable of B, of `samples` each. */
+struct dea_plan {
+  double *p;
+  size_t count, samples;
+};
+/* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
+dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out);
+
+#endif

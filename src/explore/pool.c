@@ -1,0 +1,244 @@
+#define _GNU_SOURCE // prctl's names, MSG_NOSIGNAL
+#include "explore/pool.h"
+
+#include "base/clock.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PROCESSES_MAX = 256, ASK_MS = 100 };
+
+struct worker {
+  pid_t process; // 0: none
+  int socket;
+  bool busy;
+  struct dea_case now; // what it is at
+};
+
+struct dea_pool {
+  struct dea_context *ctx;
+  const struct dea_evaluator *evaluator;
+  size_t count;
+  struct worker *workers; // [count]
+};
+
+struct reply {
+  struct dea_case done;
+  int status;
+  char message[256];
+};
+
+static bool send_all(int socket, const void *bytes, size_t length)
+{
+  for (const char *from = bytes; length > 0;) {
+    const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
+    if (n <= 0 && errno != EINTR) {
+      return false;
+    }
+    from += n > 0 ? n : 0;
+    length -= n > 0 ? (size_t)n : 0;
+  }
+  return true;
+}
+
+static bool take_all(int socket, void *bytes, size_t length)
+{
+  for (char *to = bytes; length > 0;) {
+    const ssize_t n = recv(socket, to, length, 0);
+    if (n == 0 || (n < 0 && errno != EINTR)) {
+      return false;
+    }
+    to += n > 0 ? n : 0;
+    length -= n > 0 ? (size_t)n : 0;
+  }
+  return true;
+}
+
+// The process -------------------------------------------------------------------------------------
+
+/* Evaluates what it is sent until nobody sends any more. */
+static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator, int socket)
+{
+  struct reply reply;
+  memset(&reply, 0, sizeof reply); // all bytes of it are sent
+  while (take_all(socket, &reply.done, sizeof reply.done)) {
+    const double began_s = dea_clock_s();
+    for (size_t i = 0; i < DEA_CASE_VALUES_MAX; i++) {
+      reply.done.q[i] = NAN;
+    }
+    reply.status = evaluator->evaluate(evaluator->user, ctx, &reply.done);
+    snprintf(reply.message, sizeof reply.message, "%.255s", dea_context_message(ctx));
+    reply.done.wall_s = dea_clock_s() - began_s;
+    if (!send_all(socket, &reply, sizeof reply)) {
+      return;
+    }
+  }
+}
+
+/* A process that ends with this one, however that ends, and leaves Ctrl-C to it. */
+static dea_status start(struct dea_pool *pool, struct worker *worker)
+{
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    return dea_fail(pool->ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
+  }
+  const pid_t parent = getpid(), process = fork();
+  if (process == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTERM, SIG_DFL);
+    dea_context_set_progress(pool->ctx, NULL, NULL);
+    dea_context_set_interrupt(pool->ctx, NULL);
+    for (size_t k = 0; k < pool->count; k++) { // the end of one is seen by this socket alone
+      if (pool->workers[k].process > 0) {
+        close(pool->workers[k].socket);
+      }
+    }
+    close(ends[0]);
+    if (getppid() == parent) {
+      work(pool->ctx, pool->evaluator, ends[1]);
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  if (process < 0) {
+    close(ends[0]);
+    return dea_fail(pool->ctx, DEA_E_IO, "no other process: %s", strerror(errno));
+  }
+  *worker = (struct worker){.process = process, .socket = ends[0]};
+  return DEA_OK;
+}
+
+/* Ends a process; returns how it ended. */
+static int end(struct worker *worker)
+{
+  int how = 0;
+  if (worker->process > 0) {
+    kill(worker->process, SIGKILL);
+    while (waitpid(worker->process, &how, 0) < 0 && errno == EINTR) {
+    }
+    close(worker->socket);
+  }
+  worker->process = 0;
+  worker->busy = false;
+  return how;
+}
+
+// The pool ----------------------------------------------------------------------------------------
+
+dea_status dea_pool_create(struct dea_context *ctx, const struct dea_evaluator *evaluator,
+                           size_t processes, struct dea_pool **out)
+{
+  *out = NULL;
+  if (processes < 1 || processes > PROCESSES_MAX || evaluator->param_count > DEA_CASE_PARAMS_MAX ||
+      dea_evaluator_values(evaluator) > DEA_CASE_VALUES_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "from 1 to %d processes", PROCESSES_MAX);
+  }
+  struct dea_pool *pool = dea_alloc(ctx, 1, sizeof *pool);
+  struct worker *workers = dea_alloc(ctx, processes, sizeof *workers);
+  if (pool == NULL || workers == NULL) {
+    dea_free(ctx, pool);
+    dea_free(ctx, workers);
+    return DEA_E_MEMORY;
+  }
+  *pool = (struct dea_pool){ctx, evaluator, processes, workers};
+  *out = pool;
+  return DEA_OK;
+}
+
+void dea_pool_destroy(struct dea_pool *pool)
+{
+  if (pool != NULL) {
+    for (size_t k = 0; k < pool->count; k++) {
+      end(&pool->workers[k]);
+    }
+    dea_free(pool->ctx, pool->workers);
+    dea_free(pool->ctx, pool);
+  }
+}
+
+/* Sends a case to a process that has none, and starts one where there is none. */
+static dea_status give(struct dea_pool *pool, struct worker *worker)
+{
+  const struct dea_case now = worker->now;
+  if (worker->process == 0) {
+    DEA_TRY(pool->ctx, start(pool, worker));
+  }
+  worker->now = now;
+  worker->busy = true;
+  send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
+  return DEA_OK;
+}
+
+/* What a process that died leaves of its case. */
+static void bury(struct dea_pool *pool, struct worker *worker, struct reply *reply)
+{
+  const struct dea_case now = worker->now;
+  const int how = end(worker);
+  *reply = (struct reply){.done = now};
+  for (size_t i = 0; i < dea_evaluator_values(pool->evaluator); i++) {
+    reply->done.q[i] = NAN;
+  }
+  snprintf(reply->done.why, sizeof reply->done.why, "the process of this case ended by %s %d",
+           WIFSIGNALED(how) ? "signal" : "exit code",
+           WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+}
+
+static dea_status hear(struct dea_pool *pool, struct worker *worker, dea_case_sink sink, void *user)
+{
+  struct reply reply;
+  if (take_all(worker->socket, &reply, sizeof reply)) {
+    worker->busy = false;
+  } else {
+    bury(pool, worker, &reply);
+  }
+  if (reply.status != DEA_OK) {
+    return dea_fail(pool->ctx, (dea_status)reply.status, "%s", reply.message);
+  }
+  return sink(user, &reply.done);
+}
+
+dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_sink sink,
+                        void *user)
+{
+  struct pollfd polled[PROCESSES_MAX];
+  dea_status status = DEA_OK;
+  size_t busy = 0;
+  bool more = true;
+  while (status == DEA_OK && (more || busy > 0)) {
+    busy = 0;
+    for (size_t k = 0; k < pool->count && status == DEA_OK; k++) {
+      struct worker *worker = &pool->workers[k];
+      if (!worker->busy && more) {
+        memset(&worker->now, 0, sizeof worker->now);
+        more = source(user, &worker->now);
+        status = more ? give(pool, worker) : DEA_OK;
+      }
+      busy += worker->busy ? 1U : 0U;
+      polled[k] = (struct pollfd){.fd = worker->busy ? worker->socket : -1, .events = POLLIN};
+    }
+    if (dea_interrupted(pool->ctx)) {
+      status = dea_fail(pool->ctx, DEA_E_INTERRUPTED, "interrupted; what was done is kept");
+    }
+    if (status == DEA_OK && busy > 0 && poll(polled, pool->count, ASK_MS) > 0) {
+      for (size_t k = 0; k < pool->count && status == DEA_OK; k++) {
+        if (polled[k].revents != 0) {
+          status = hear(pool, &pool->workers[k], sink, user);
+        }
+      }
+    }
+  }
+  for (size_t k = 0; k < pool->count && status != DEA_OK;
+       k++) { // no answer to what was asked before
+    end(&pool->workers[k]);
+  }
+  return status;
+}

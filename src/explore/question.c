@@ -1,0 +1,471 @@
+#include "explore/question.h"
+
+#include "base/file.h"
+#include "base/text.h"
+#include "base/write_file.h"
+#include "result/columns.h"
+#include "result/provenance.h"
+#include "study/design_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Identity ----------------------------------------------------------------------------------------
+
+/* What of a design does not change what the device does. */
+static bool is_aside(const char *path)
+{
+  static const char *const asides[] = {"dea",          "title",     "report.",
+                                       "fabrication.", "materials", "drive"};
+  for (size_t k = 0; k < sizeof asides / sizeof asides[0]; k++) {
+    if (strncmp(path, asides[k], strlen(asides[k])) == 0) {
+      return true;
+    }
+  }
+  return strncmp(path, "compute.", 8) == 0 && strncmp(path, "compute.solid", 13) != 0 &&
+         strncmp(path, "compute.cover", 13) != 0 && strncmp(path, "compute.force", 13) != 0;
+}
+
+static void add_material(struct dea_text *out, const struct dea_material *film)
+{
+  for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
+    dea_text_add(out, "%s.%s=%.12g\n", film->law->name, film->law->params[i].key, film->param[i]);
+  }
+  dea_text_add(
+      out, "permittivity=%.12g,%.12g\nbreakdown=%.12g,%.12g\n", film->permittivity.at_rest,
+      film->permittivity.slope, film->breakdown.known ? film->breakdown.at_rest_V_per_m : 0,
+      film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
+}
+
+/* All that a design says of the device, in SI, and with which model at which voltages. */
+static void resolve(const struct dea_question *question, const struct dea_design *design,
+                    const struct dea_device *device, struct dea_text *out)
+{
+  for (size_t i = 0; i < design->values.count; i++) {
+    const struct dea_listed *item = &design->values.items[i];
+    if (is_aside(item->path) || item->text == NULL) {
+      continue;
+    }
+    if (isnan(item->si)) {
+      dea_text_add(out, "%s=%s\n", item->path, item->text);
+    } else {
+      dea_text_add(out, "%s=%.12g\n", item->path, item->si);
+    }
+  }
+  add_material(out, &device->film);
+  add_material(out, &device->fibre);
+  dea_text_add(out, "model=%s\n", question->model.type->name);
+  for (size_t k = 0; k < question->voltage_count; k++) {
+    dea_text_add(out, "%.12g V\n", question->voltages_V[k]);
+  }
+}
+
+static dea_status take_id(void *user, const struct dea_design *design,
+                          const struct dea_device *device)
+{
+  struct dea_question *question = user;
+  struct dea_text text = {.ctx = question->model.ctx};
+  char hash[65];
+  resolve(question, design, device, &text);
+  dea_sha256_hex(dea_text_get(&text), text.length, hash);
+  snprintf(question->id, sizeof question->id, "%.16s", hash);
+  const bool failed = text.failed;
+  dea_text_free(&text);
+  return failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* Hash of the design as it is, of the variables and of what is kept of a case. */
+static dea_status take_hash(struct dea_question *question)
+{
+  struct dea_text text = {.ctx = question->ctx};
+  resolve(question, question->design, question->device, &text);
+  for (size_t j = 0; j < question->variable_count; j++) {
+    dea_text_add(&text, "variable %s%s\n", question->params[j].param.name,
+                 question->params[j].state);
+  }
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    dea_text_add(&text, "quantity %s\n", dea_point_columns[question->quantities[i]].key);
+  }
+  dea_sha256_hex(dea_text_get(&text), text.length, question->hash);
+  const bool failed = text.failed;
+  dea_text_free(&text);
+  return failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+// Evaluation --------------------------------------------------------------------------------------
+
+/* What is wrong with a design that cannot be built. */
+static void tell_design(struct dea_question *question, struct dea_context *ctx, struct dea_case *io)
+{
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  size_t count;
+  const struct dea_design_bytes file = {question->path, question->bytes, question->length};
+  dea_finding_clear(ctx);
+  dea_device_params_build(ctx, &file, question->params, question->variable_count, io->p, &design,
+                          &device);
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  for (size_t i = count; i-- > 0;) { // the first error
+    if (findings[i].severity == DEA_ERROR) {
+      snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, findings[i].text);
+    }
+  }
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  dea_finding_clear(ctx);
+  dea_context_clear(ctx);
+}
+
+static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case *io)
+{
+  struct dea_question *question = user;
+  const size_t count = question->quantity_count;
+  question->id[0] = question->model.why[0] = '\0';
+  question->model.ctx = ctx;
+  dea_status status = dea_device_model_sweep(&question->model, io->p, question->points);
+  snprintf(io->id, sizeof io->id, "%s", question->id);
+  snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, question->model.why);
+  if (status == DEA_E_DOMAIN) {
+    tell_design(question, ctx, io);
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, status);
+  for (size_t k = 0; k < question->voltage_count; k++) {
+    for (size_t i = 0; i < count; i++) {
+      const bool held = dea_point_columns[question->quantities[i]].key[0] == 'f' &&
+                        strcmp(dea_point_columns[question->quantities[i]].key, "force_N") == 0;
+      const struct dea_load_point *point =
+          &question->points[held && question->model.group_count > 1
+                                ? question->model.groups[1].first + k
+                                : question->model.groups[0].first + k];
+      double *q = &io->q[k * count + i];
+      *q = dea_point_get(point, question->quantities[i]);
+      if (isnan(*q) && io->why[0] == '\0') {
+        snprintf(io->why, sizeof io->why, "the model knows no %s of this design",
+                 dea_point_columns[question->quantities[i]].key);
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+/* Groups of voltages: the film that moves freely, and where a force is asked for with a tip. */
+static dea_status prepare_model(struct dea_question *question)
+{
+  struct dea_device_model *model = &question->model;
+  const int force = dea_question_quantity(question, "force_N");
+  const bool held = force >= 0 && model->type->indent != NULL;
+  const size_t n = question->voltage_count, count = held ? 2 * n : n;
+  model->ctx = question->ctx;
+  model->name = question->path;
+  model->bytes = question->bytes;
+  model->length = question->length;
+  model->params = question->params;
+  model->param_count = question->variable_count;
+  model->built = take_id;
+  model->user = question;
+  question->memory.ctx = question->ctx;
+  model->voltage_V = dea_arena_alloc(&question->memory, count, sizeof *model->voltage_V);
+  question->points = dea_arena_alloc(&question->memory, count, sizeof *question->points);
+  DEA_TRY(question->ctx, dea_arena_status(&question->memory));
+  for (size_t k = 0; k < count; k++) {
+    model->voltage_V[k] = question->voltages_V[k % n];
+  }
+  model->stop_count = count;
+  model->groups[0] = (struct dea_device_group){.first = 0, .count = n};
+  model->groups[1] = (struct dea_device_group){.held = true, .first = n, .count = n};
+  model->group_count = held ? 2 : 1;
+  question->evaluator = (struct dea_evaluator){.user = question,
+                                               .param_count = question->variable_count,
+                                               .value_count = n * question->quantity_count,
+                                               .evaluate = evaluate};
+  return DEA_OK;
+}
+
+// What is asked -----------------------------------------------------------------------------------
+
+static dea_status add_unknown(struct dea_context *ctx, const struct dea_label *label,
+                              const char *what, const char *const names[], size_t count)
+{
+  const char *nearest = dea_nearest_name(label->text, names, count);
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no %s%s%s%s", label->text,
+                         what, nearest != NULL ? "; did you mean '" : "",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+static dea_status find_model(struct dea_question *question)
+{
+  const struct dea_label *label = &question->file->model;
+  const char *names[16];
+  size_t count, n = 0;
+  const struct dea_model_type *const *all = dea_model_all(&count);
+  question->model.type = dea_model_find(label->text);
+  for (; n < count && n < 16; n++) {
+    names[n] = all[n]->name;
+  }
+  return question->model.type != NULL ? DEA_OK
+                                      : add_unknown(question->ctx, label, "model", names, n);
+}
+
+static dea_status read_design(struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  struct dea_context *ctx = question->ctx;
+  question->path = dea_path_beside(ctx, file->head.file, file->design.text);
+  if (question->path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status =
+      dea_file_read(ctx, question->path, DEA_YAML_SIZE_MAX, &question->bytes, &question->length);
+  if (status == DEA_E_IO) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->design.location, "design: %s",
+                                 dea_context_message(ctx)));
+  }
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_design_read_memory(ctx, question->path, question->bytes, question->length, NULL,
+                                      0, &question->design));
+  DEA_TRY(ctx, dea_device_build(ctx, question->design, &question->device));
+  return DEA_OK;
+}
+
+static dea_status take_quantities(struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  const char *keys[DEA_LOAD_POINT_COLUMNS];
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    keys[c] = dea_point_columns[c].key;
+  }
+  for (size_t i = 0; i < file->quantity_count; i++) {
+    const int column = dea_point_column_find(file->quantities[i].text);
+    if (column < 0) {
+      DEA_TRY(question->ctx, add_unknown(question->ctx, &file->quantities[i], "quantity", keys,
+                                         DEA_LOAD_POINT_COLUMNS));
+    } else if (dea_question_quantity(question, keys[column]) >= 0) {
+      DEA_TRY(question->ctx, dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,
+                                             "%s is there twice", keys[column]));
+    } else {
+      question->quantities[question->quantity_count++] = column;
+    }
+  }
+  return DEA_OK;
+}
+
+static void take_voltages(struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  question->voltage_count = file->voltage_count > 0 ? file->voltage_count : 1;
+  question->voltages_V[0] = dea_design_highest_V(question->design);
+  for (size_t k = 0; k < file->voltage_count; k++) {
+    question->voltages_V[k] = file->voltages_V[k].si;
+  }
+}
+
+/* What goes together of a variable. */
+static dea_status check_variable(struct dea_question *question, const struct dea_variable *variable)
+{
+  const struct dea_explore_variable *text = variable->text;
+  const struct dea_label *name = &text->text.name;
+  const char *wrong = NULL;
+  const bool range = !isnan(variable->low) && !isnan(variable->high);
+  const bool spread = text->distribution.value != DEA_UNIFORM;
+  if (variable->value_count > 0 && (range || spread || text->steps.origin != DEA_ABSENT)) {
+    wrong = "give values, or low and high, or a distribution";
+  } else if (spread &&
+             (isnan(variable->param.param.prior) || isnan(variable->param.param.prior_std))) {
+    wrong = "this distribution needs mean and std";
+  } else if (text->distribution.value == DEA_LOGNORMAL && variable->param.param.prior <= 0) {
+    wrong = "the median of a lognormal distribution is above 0";
+  } else if (!spread && !isnan(variable->param.param.prior)) {
+    wrong = "mean and std are of a normal or lognormal distribution";
+  } else if (variable->value_count == 0 && !spread && !range) {
+    wrong = "give low and high, or values";
+  } else if (question->file->plan.value == DEA_PLAN_GRID && variable->value_count == 0 &&
+             text->steps.origin == DEA_ABSENT && !variable->param.whole) {
+    wrong = "a grid needs values, or steps from low to high";
+  }
+  return wrong == NULL ? DEA_OK
+                       : dea_finding_add(question->ctx, DEA_ERROR, name->location, "%s: %s",
+                                         name->text, wrong);
+}
+
+static dea_status take_variable(struct dea_question *question,
+                                const struct dea_explore_variable *text,
+                                struct dea_variable *variable)
+{
+  struct dea_context *ctx = question->ctx;
+  struct dea_fit_parameter_text param = text->text;
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  *variable = (struct dea_variable){.text = text, .low = NAN, .high = NAN};
+  if (param.start.text[0] == '\0') { // where a sweep begins does not matter
+    param.start = text->value_count > 0 ? text->values[0] : text->text.low;
+  }
+  if (param.prior_std.text[0] == '\0' || param.prior.text[0] == '\0') {
+    const char c = param.prior.text[0]; // of a material, or missing, which is said later
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'))) {
+      param.prior.text[0] = param.prior_std.text[0] = '\0';
+    }
+  }
+  const struct dea_device_param_source source = {question->design, question->device, .whole = true};
+  DEA_TRY(ctx, dea_device_param_make(ctx, &param, &source, &variable->param));
+  if (dea_finding_count(ctx, DEA_ERROR) > errors) {
+    return DEA_OK;
+  }
+  variable->low = text->text.low.text[0] != '\0' ? variable->param.param.low : NAN;
+  variable->high = text->text.high.text[0] != '\0' ? variable->param.param.high : NAN;
+  for (size_t i = 0; i < text->value_count; i++) {
+    DEA_TRY(ctx,
+            dea_device_param_number(ctx, &variable->param, &text->values[i], &variable->values[i]));
+  }
+  variable->value_count = text->value_count;
+  const size_t steps = text->steps.origin != DEA_ABSENT ? (size_t)text->steps.si : 0;
+  const double span = variable->high - variable->low;
+  if (steps > DEA_EXPLORE_VALUES_MAX || (variable->param.whole && span >= DEA_EXPLORE_VALUES_MAX)) {
+    return dea_finding_add(ctx, DEA_ERROR, text->text.name.location, "%s: at most %d values",
+                           text->text.name.text, DEA_EXPLORE_VALUES_MAX);
+  }
+  DEA_TRY(ctx, check_variable(question, variable));
+  const size_t own = variable->param.whole && steps == 0 && span >= 0 ? (size_t)span + 1 : steps;
+  for (size_t i = 0; variable->value_count == 0 && i < own; i++) {
+    variable->values[i] =
+        own == 1 ? variable->low : variable->low + span * (double)i / (double)(own - 1);
+  }
+  variable->value_count = variable->value_count > 0 ? variable->value_count : own;
+  return DEA_OK;
+}
+
+static dea_status take_variables(struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  for (size_t j = 0; j < file->variable_count; j++) {
+    DEA_TRY(question->ctx, take_variable(question, &file->variables[j], &question->variables[j]));
+    question->params[j] = question->variables[j].param;
+  }
+  question->variable_count = file->variable_count;
+  return DEA_OK;
+}
+
+static dea_status take_limit(struct dea_question *question, const struct dea_explore_limit *text)
+{
+  struct dea_limit *limit = &question->limits[question->limit_count++];
+  struct dea_context *ctx = question->ctx;
+  *limit = (struct dea_limit){dea_question_quantity(question, text->quantity.text), NAN, NAN};
+  if (limit->column < 0) {
+    return dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
+                           "'%.60s' is none of the quantities of this file", text->quantity.text);
+  }
+  const struct dea_column *column = &dea_point_columns[question->quantities[limit->column]];
+  struct dea_device_param number = {.state = "", .param = {.unit = column->si_unit}};
+  snprintf(number.param.name, sizeof number.param.name, "%.39s", column->key);
+  if (text->above.text[0] != '\0') {
+    DEA_TRY(ctx, dea_device_param_number(ctx, &number, &text->above, &limit->above));
+  }
+  if (text->below.text[0] != '\0') {
+    DEA_TRY(ctx, dea_device_param_number(ctx, &number, &text->below, &limit->below));
+  }
+  return text->above.text[0] != '\0' || text->below.text[0] != '\0'
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
+                               "a limit needs above or below");
+}
+
+static dea_status resolve_file(struct dea_question *question)
+{
+  struct dea_context *ctx = question->ctx;
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  DEA_TRY(ctx, find_model(question));
+  DEA_TRY(ctx, read_design(question));
+  DEA_TRY(ctx, take_quantities(question));
+  DEA_TRY(ctx, take_variables(question));
+  for (size_t i = 0; i < question->file->limit_count; i++) {
+    DEA_TRY(ctx, take_limit(question, &question->file->limits[i]));
+  }
+  take_voltages(question);
+  const size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the file '%s' has %zu error%s", question->file->head.file,
+                    found, found > 1 ? "s" : "");
+  }
+  DEA_TRY(ctx, dea_model_check(ctx, question->model.type, question->design, question->device));
+  DEA_TRY(ctx, take_hash(question));
+  return prepare_model(question);
+}
+
+dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_file *file,
+                             struct dea_question **out)
+{
+  *out = NULL;
+  struct dea_question *question = dea_alloc(ctx, 1, sizeof *question);
+  if (question == NULL) {
+    return DEA_E_MEMORY;
+  }
+  question->ctx = ctx;
+  question->file = file;
+  void *before = dea_c_locale_enter();
+  dea_status status = resolve_file(question);
+  dea_c_locale_leave(before);
+  if (status != DEA_OK) {
+    dea_question_destroy(question);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = question;
+  return DEA_OK;
+}
+
+void dea_question_destroy(struct dea_question *question)
+{
+  if (question != NULL) {
+    dea_arena_free(&question->memory);
+    dea_device_destroy(question->ctx, question->device);
+    dea_design_destroy(question->ctx, question->design);
+    dea_free(question->ctx, question->bytes);
+    dea_free(question->ctx, question->path);
+    dea_free(question->ctx, question);
+  }
+}
+
+bool dea_variable_range(const struct dea_variable *variable, double *low, double *high)
+{
+  *low = variable->low;
+  *high = variable->high;
+  for (size_t i = 0; i < variable->value_count; i++) {
+    *low = i == 0 ? variable->values[i] : fmin(*low, variable->values[i]);
+    *high = i == 0 ? variable->values[i] : fmax(*high, variable->values[i]);
+  }
+  return !isnan(*low) && !isnan(*high);
+}
+
+int dea_question_quantity(const struct dea_question *question, const char *key)
+{
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    if (strcmp(dea_point_columns[question->quantities[i]].key, key) == 0) {
+      return (int)i;
+    }
+  }
+  return -1;
+}
+
+void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size)
+{
+  const size_t count = question->quantity_count;
+  const char *key = dea_point_columns[question->quantities[i % count]].key;
+  if (question->voltage_count == 1) {
+    snprintf(out, size, "%s", key);
+  } else {
+    snprintf(out, size, "%s@%.6g", key, question->voltages_V[i / count]);
+  }
+}
+
+double dea_limit_margin(const struct dea_question *question, const struct dea_limit *limit,
+                        const double *q)
+{
+  const double value =
+      q[(question->voltage_count - 1) * question->quantity_count + (size_t)limit->column];
+  const double above = isnan(limit->above)
+                           ? INFINITY
+                           : (value - limit->above) / (limit->above != 0 ? fabs(limit->above) : 1);
+  const double below = isnan(limit->below)
+                           ? INFINITY
+                           : (limit->below - value) / (limit->below != 0 ? fabs(limit->below) : 1);
+  return isnan(value) ? NAN : fmin(above, below);
+}

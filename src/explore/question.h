@@ -1,0 +1,66 @@
+/* What a file of dea sweep asks, resolved: the device as an evaluator, its variables and columns.
+ */
+#ifndef DEA_EXPLORE_QUESTION_H
+#define DEA_EXPLORE_QUESTION_H
+
+#include "base/arena.h"
+#include "explore/evaluator.h"
+#include "explore/explore_file.h"
+#include "job/device_fit_model.h"
+
+/* A variable: values, or a range, or a distribution. */
+struct dea_variable {
+  const struct dea_explore_variable *text; // lent
+  struct dea_device_param param;           // SI; low and high are those of the file and of the key
+  double values[DEA_EXPLORE_VALUES_MAX];   // SI
+  size_t value_count;
+  double low, high; // of the file; NAN: not given
+};
+
+struct dea_limit {
+  int column;          // of the quantity, 0 to quantity_count - 1
+  double above, below; // SI; NAN: none
+};
+
+struct dea_question {
+  struct dea_context *ctx;
+  const struct dea_explore_file *file; // lent
+  struct dea_design *design;
+  struct dea_device *device;
+  char *path, *bytes; // of the design file
+  size_t length;
+  struct dea_variable variables[DEA_CASE_PARAMS_MAX];
+  size_t variable_count;
+  double voltages_V[DEA_EXPLORE_VOLTAGES_MAX];
+  size_t voltage_count;
+  int quantities[DEA_EXPLORE_QUANTITIES_MAX]; // columns of load points
+  size_t quantity_count;
+  struct dea_limit limits[DEA_EXPLORE_LIMITS_MAX];
+  size_t limit_count;
+  struct dea_evaluator evaluator; // value of quantity i at voltage k: k * quantity_count + i
+  char hash[65];                  // of all that a case's numbers mean
+  /* of the evaluator */
+  struct dea_device_param params[DEA_CASE_PARAMS_MAX];
+  struct dea_device_model model;
+  struct dea_load_point *points;
+  struct dea_arena memory;
+  char id[DEA_CASE_ID_SIZE];
+};
+
+/* Resolves a file. All that is wrong becomes findings, at its place, before anything is computed;
+ * DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
+dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_file *file,
+                             struct dea_question **out);
+void dea_question_destroy(struct dea_question *question);
+/* Values that a variable can take lie from *low to *high; false: it has no bounds. */
+bool dea_variable_range(const struct dea_variable *variable, double *low, double *high);
+/* Number of a quantity of the question by its key, or -1. */
+int dea_question_quantity(const struct dea_question *question, const char *key);
+/* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
+void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size);
+/* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
+ */
+double dea_limit_margin(const struct dea_question *question, const struct dea_limit *limit,
+                        const double *q);
+
+#endif

@@ -1,0 +1,34 @@
+/* Many designs: all cases of a plan, evaluated, kept, and written as tables. */
+#ifndef DEA_EXPLORE_SWEEP_H
+#define DEA_EXPLORE_SWEEP_H
+
+#include "explore/plan.h"
+#include "explore/store.h"
+
+struct dea_sweep_options {
+  const char *folder;
+  size_t processes;
+  struct dea_shard shard; // which cases; {1, 1}: all
+  bool force;             // throw away what is there
+  bool merge;             // only write the tables of what is there
+};
+
+/* What a sweep comes to. */
+struct dea_sweep_report {
+  size_t planned, of_shard, before, now; // cases; done before and now
+  size_t there, failed;                  // of the plan: done, and of these with a reason
+  size_t torn;                           // lines that were not whole
+  char why[DEA_CASE_WHY_SIZE];           // the most frequent reason, "" without any
+  size_t why_count;
+};
+
+/* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
+ * cases.csv, cases.h5, and of samples statistics.csv and indices.csv. After an interruption too. */
+dea_status dea_sweep_run(const struct dea_question *question,
+                         const struct dea_sweep_options *options, struct dea_sweep_report *report);
+
+/* The tables of a plan's cases as far as they are done, into a folder. */
+dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
+                           const struct dea_store *store, const char *folder);
+
+#endif

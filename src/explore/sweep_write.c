@@ -1,0 +1,286 @@
+/* The tables of a sweep: one row a case, and what samples say. */
+#include "base/h5.h"
+#include "base/write_file.h"
+#include "explore/statistics.h"
+#include "explore/sweep.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct work {
+  const struct dea_question *question;
+  const struct dea_plan *plan;
+  const struct dea_store *store;
+  const char *folder;
+  struct dea_context *ctx;
+  size_t params, values;
+};
+
+static const struct dea_case *case_of(const struct work *w, size_t i)
+{
+  return dea_store_find(w->store, w->plan->p + i * w->params);
+}
+
+static const char *unit_of(const struct work *w, size_t value)
+{
+  const size_t i = value % w->question->quantity_count;
+  return dea_point_columns[w->question->quantities[i]].si_unit;
+}
+
+static void add_field(struct dea_text *out, double value)
+{
+  dea_text_add(out, isnan(value) ? "," : ",%.12g", value);
+}
+
+// The cases ---------------------------------------------------------------------------------------
+
+static dea_status write_cases(const struct work *w)
+{
+  struct dea_text out = {.ctx = w->ctx};
+  char name[64];
+  dea_text_add(&out, "case,id");
+  for (size_t j = 0; j < w->params; j++) {
+    const struct dea_device_param *param = &w->question->params[j];
+    dea_text_add(&out, ",%s (%s)", param->param.name, param->param.unit);
+  }
+  for (size_t i = 0; i < w->values; i++) {
+    dea_question_value_name(w->question, i, name, sizeof name);
+    dea_text_add(&out, ",%s (%s)", name, unit_of(w, i));
+  }
+  dea_text_add(&out, ",time (s),reason\n");
+  for (size_t c = 0; c < w->plan->count; c++) {
+    const struct dea_case *done = case_of(w, c);
+    if (done == NULL) {
+      continue;
+    }
+    dea_text_add(&out, "%zu,%s", c, done->id);
+    for (size_t j = 0; j < w->params; j++) {
+      add_field(&out, done->p[j]);
+    }
+    for (size_t i = 0; i < w->values; i++) {
+      add_field(&out, done->q[i]);
+    }
+    dea_text_add(&out, ",%.4g,%s\n", done->wall_s, done->why);
+  }
+  dea_status status = dea_text_write(w->ctx, &out, w->folder, "cases.csv");
+  dea_text_free(&out);
+  return status;
+}
+
+/* One column: a variable, or with value >= 0 a value. */
+static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t rows, double *column,
+                       size_t param, int value)
+{
+  char name[64];
+  size_t row = 0;
+  for (size_t c = 0; c < w->plan->count; c++) {
+    const struct dea_case *done = case_of(w, c);
+    if (done != NULL) {
+      column[row++] = value >= 0 ? done->q[value] : done->p[param];
+    }
+  }
+  if (value >= 0) {
+    const int of = w->question->quantities[(size_t)value % w->question->quantity_count];
+    dea_question_value_name(w->question, (size_t)value, name, sizeof name);
+    dea_h5_put_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
+                     dea_point_columns[of].si_unit, dea_point_columns[of].meaning);
+  } else {
+    const struct dea_device_param *of = &w->question->params[param];
+    dea_h5_put_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
+                     of->param.unit, "value in the design");
+  }
+}
+
+static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, bool id)
+{
+  const size_t size = id ? DEA_CASE_ID_SIZE : DEA_CASE_WHY_SIZE;
+  char *texts = dea_alloc(w->ctx, rows, size);
+  size_t row = 0;
+  if (texts == NULL) {
+    h->status = DEA_E_MEMORY;
+    return;
+  }
+  for (size_t c = 0; c < w->plan->count; c++) {
+    const struct dea_case *done = case_of(w, c);
+    if (done != NULL) {
+      snprintf(texts + size * row++, size, "%s", id ? done->id : done->why);
+    }
+  }
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, size);
+  dea_h5_put_array(h, group, id ? "id" : "reason", type, type, rows, texts, "1",
+                   id ? "hash of the resolved design" : "why a value is missing");
+  dea_h5_close(type);
+  dea_free(w->ctx, texts);
+}
+
+static dea_status write_h5(const struct work *w)
+{
+  struct h5 h;
+  size_t rows = 0;
+  char *path = dea_path_join(w->ctx, w->folder, "cases.h5");
+  for (size_t c = 0; c < w->plan->count; c++) {
+    rows += case_of(w, c) != NULL ? 1U : 0U;
+  }
+  double *column = dea_alloc(w->ctx, rows, sizeof *column);
+  if (path == NULL || column == NULL) {
+    dea_free(w->ctx, column);
+    dea_free(w->ctx, path);
+    return DEA_E_MEMORY;
+  }
+  dea_h5_begin(&h, w->ctx, path);
+  hid_t file = dea_h5_file_make(&h);
+  dea_h5_put_text(&h, file, "question", w->question->hash);
+  dea_h5_put_text(&h, file, "model", w->question->model.type->name);
+  hid_t group = dea_h5_group_make(&h, file, "cases");
+  if (rows > 0) {
+    put_texts(&h, w, group, rows, true);
+    for (size_t j = 0; j < w->params; j++) {
+      put_column(&h, w, group, rows, column, j, -1);
+    }
+    for (size_t i = 0; i < w->values; i++) {
+      put_column(&h, w, group, rows, column, 0, (int)i);
+    }
+    put_texts(&h, w, group, rows, false);
+  }
+  dea_h5_close(group);
+  dea_h5_file_write(&h, file);
+  dea_h5_end(&h);
+  dea_free(w->ctx, column);
+  dea_free(w->ctx, path);
+  return h.status;
+}
+
+// What samples say --------------------------------------------------------------------------------
+
+/* Values i of the cases from first on, [count]; NAN where a case is not done. */
+static void take_values(const struct work *w, size_t i, size_t first, size_t count, double *out)
+{
+  for (size_t c = 0; c < count; c++) {
+    const struct dea_case *done = case_of(w, first + c);
+    out[c] = done != NULL ? done->q[i] : NAN;
+  }
+}
+
+/* Number of samples that are independent: of indices A and B. */
+static size_t independent(const struct work *w)
+{
+  return w->question->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
+}
+
+static dea_status write_statistics(const struct work *w, double *values)
+{
+  struct dea_text out = {.ctx = w->ctx};
+  struct dea_spread spread;
+  dea_status status = DEA_OK;
+  char name[64];
+  dea_text_add(&out, "quantity,unit,V (kV),samples,mean,std");
+  for (size_t k = 0; k < DEA_SHARES; k++) {
+    dea_text_add(&out, ",%g %%", 100 * dea_shares[k]);
+  }
+  dea_text_add(&out, "\n");
+  for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
+    take_values(w, i, 0, independent(w), values);
+    status = dea_spread_find(w->ctx, values, independent(w), &spread);
+    dea_question_value_name(w->question, i, name, sizeof name);
+    name[strcspn(name, "@")] = '\0';
+    dea_text_add(&out, "%s,%s,%.6g,%zu", name, unit_of(w, i),
+                 1e-3 * w->question->voltages_V[i / w->question->quantity_count], spread.count);
+    add_field(&out, spread.mean);
+    add_field(&out, spread.std);
+    for (size_t k = 0; k < DEA_SHARES; k++) {
+      add_field(&out, spread.quantile[k]);
+    }
+    dea_text_add(&out, "\n");
+  }
+  status = status == DEA_OK ? dea_text_write(w->ctx, &out, w->folder, "statistics.csv") : status;
+  dea_text_free(&out);
+  return status;
+}
+
+/* How many samples cross each limit at the last voltage, a failed one among them, with the standard
+ * error of that share. */
+static dea_status write_limits(const struct work *w)
+{
+  struct dea_text out = {.ctx = w->ctx};
+  dea_text_add(&out, "quantity,above,below,samples,crossed,probability,standard error\n");
+  for (size_t l = 0; l < w->question->limit_count; l++) {
+    const struct dea_limit *limit = &w->question->limits[l];
+    size_t n = 0, crossed = 0;
+    for (size_t c = 0; c < independent(w); c++) {
+      const struct dea_case *done = case_of(w, c);
+      n += done != NULL ? 1U : 0U;
+      crossed += done != NULL && !(dea_limit_margin(w->question, limit, done->q) >= 0) ? 1U : 0U;
+    }
+    const double share = (double)crossed / (double)n;
+    dea_text_add(&out, "%s", dea_point_columns[w->question->quantities[limit->column]].key);
+    add_field(&out, limit->above);
+    add_field(&out, limit->below);
+    dea_text_add(&out, ",%zu,%zu", n, crossed);
+    add_field(&out, share);
+    add_field(&out, sqrt(share * (1 - share) / (double)n));
+    dea_text_add(&out, "\n");
+  }
+  dea_status status =
+      w->question->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
+  dea_text_free(&out);
+  return status;
+}
+
+static dea_status write_indices(const struct work *w, double *values)
+{
+  struct dea_text out = {.ctx = w->ctx};
+  const size_t n = w->plan->samples;
+  char name[64];
+  dea_text_add(&out, "quantity,variable,first,total\n");
+  for (size_t i = 0; i < w->values; i++) {
+    take_values(w, i, 0, w->plan->count, values);
+    dea_question_value_name(w->question, i, name, sizeof name);
+    for (size_t j = 0; j < w->params; j++) {
+      double first, total;
+      dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
+      dea_text_add(&out, "%s,%s", name, w->question->params[j].param.name);
+      add_field(&out, first);
+      add_field(&out, total);
+      dea_text_add(&out, "\n");
+    }
+  }
+  dea_status status = dea_text_write(w->ctx, &out, w->folder, "indices.csv");
+  dea_text_free(&out);
+  return status;
+}
+
+static dea_status write_all(const struct work *w)
+{
+  DEA_TRY(w->ctx, write_cases(w));
+  DEA_TRY(w->ctx, write_h5(w));
+  if (w->question->file->plan.value == DEA_PLAN_GRID) {
+    return DEA_OK;
+  }
+  double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);
+  dea_status status = values != NULL ? write_statistics(w, values) : DEA_E_MEMORY;
+  status = status == DEA_OK ? write_limits(w) : status;
+  if (status == DEA_OK && w->question->file->plan.value == DEA_PLAN_INDICES) {
+    status = write_indices(w, values);
+  }
+  dea_free(w->ctx, values);
+  return status;
+}
+
+dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
+                           const struct dea_store *store, const char *folder)
+{
+  const struct work w = {question,
+                         plan,
+                         store,
+                         folder,
+                         question->ctx,
+                         question->variable_count,
+                         question->evaluator.value_count};
+  void *before = dea_c_locale_enter();
+  dea_status status = write_all(&w);
+  dea_c_locale_leave(before);
+  return status;
+}

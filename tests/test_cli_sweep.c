@@ -1,0 +1,150 @@
+#define _GNU_SOURCE
+/* dea sweep as a user runs it: tables, parts, going on after being killed, what may be wrong. */
+#include "command.h"
+
+/* A file with these variables and more keys. */
+static void write_file(const char *variables, const char *more)
+{
+  static char text[4096];
+  snprintf(text, sizeof text,
+           "dea_explore: 1\nname: mine\ndesign: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\n"
+           "model: lumped\nquantities: [electrode_edge_u_m, breakdown_margin]\n"
+           "voltages: [2 kV, 5 kV]\nvariables: [%s]\n%s\n",
+           variables, more);
+  command_write("mine.yaml", text);
+}
+
+static void expect(const char *variables, const char *more, const char *message)
+{
+  write_file(variables, more);
+  const int found = command_run("sweep mine.yaml --force");
+  if (found != 3 || strstr(command_err, message) == NULL) {
+    fail_msg("exit code %d, wanted 3 with '%s':\n%s", found, message, command_err);
+  }
+}
+
+static void test_errors(void **state)
+{
+  (void)state;
+  static const char good[] = "{name: pre_stretch, values: [1.5]}";
+  expect("{name: film.thicknes, values: [80 um]}", "",
+         "mine.yaml:7:20: error: 'film.thicknes' is no key of the design; did you mean "
+         "'film.thickness'?");
+  expect("{name: fibres.outer_end, values: [1]}", "", "'fibres.outer_end' is no number");
+  expect("{name: film.thickness, values: [80]}", "", "mine.yaml:7:45: error: ");
+  expect("{name: film.thickness}", "", "give low and high, or values");
+  expect("{name: film.thickness, low: 80 um, high: 120 um}", "", "a grid needs values, or steps");
+  expect("{name: film.thickness, low: 120 um, high: 80 um}", "plan: sobol",
+         "no value lies between");
+  expect("{name: film.thickness, distribution: normal, mean: 1 um}", "plan: sobol",
+         "this distribution needs mean and std");
+  expect("{name: film.thickness, mean: 1 um, std: 1 um, low: 1 um, high: 2 um}", "plan: sobol",
+         "are of a normal or lognormal");
+  expect(good, "limits: [{quantity: force_N, above: 1 N}]", "is none of the quantities");
+  expect(good, "limits: [{quantity: breakdown_margin, above: 1 m}]", "breakdown_margin: '1 m':");
+  expect(good, "limits: [{quantity: breakdown_margin}]", "a limit needs above or below");
+  expect("{name: pre_stretch, values: [1.5]}, {name: pre_stretch, values: [1.5]}", "",
+         "the name 'pre_stretch' is taken by the variable in line 7");
+  expect(good, "plan: sobo", "sobo");
+  write_file(good, "");
+  assert_int_equal(command_run("sweep mine.yaml --shard 3/2"), 2);
+  assert_int_equal(command_run("sweep mine.yaml -j 0"), 2);
+}
+
+/* Number of lines of a file that hold a text. */
+static int lines_with(const char *name, const char *text)
+{
+  static char bytes[COMMAND_TEXT_MAX];
+  int count = 0;
+  command_read(name, bytes);
+  for (const char *at = strstr(bytes, text); at != NULL; at = strstr(at + 1, text)) {
+    count++;
+  }
+  return count;
+}
+
+static void test_grid(void **state)
+{
+  (void)state;
+  static char first[COMMAND_TEXT_MAX], again[COMMAND_TEXT_MAX];
+  write_file("{name: film.thickness, low: 80 um, high: 120 um, steps: 3}, "
+             "{name: fibres.count, low: 3, high: 4}, "
+             "{name: electrodes.diameter, values: [5 mm unstretched, 40 mm unstretched]}",
+             "");
+  assert_int_equal(command_run("sweep mine.yaml -j 2"), 0);
+  assert_contains(command_out, "designs: 12 of 12 are there, 12 of them computed now");
+  assert_contains(command_out, "without all values: 6 (for example: the electrode");
+  assert_int_equal(lines_with("mine.sweep/cases.csv", "\n"), 13);
+  // the value of a run of its own
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml -m lumped --set film.thickness=100um "
+                               "--set 'compute.voltage={values: [5 kV]}' --json --study sweep"),
+                   0);
+  const char *at = strstr(command_out, "\"electrode_edge_u_m\": ");
+  assert_non_null(at);
+  char wanted[32];
+  snprintf(wanted, sizeof wanted, ",%.8g", strtod(at + 22, NULL));
+  assert_int_equal(lines_with("mine.sweep/cases.csv", wanted), 2); // three and four fibres
+  // a part after the other, and the tables of both, twice, are those of the whole
+  assert_int_equal(command_run("sweep mine.yaml --shard 1/2 -o parts"), 0);
+  assert_contains(command_out, "designs: 6 of 12 are there");
+  assert_int_equal(command_run("sweep mine.yaml --shard 2/2 -o parts"), 0);
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(command_run("sweep mine.yaml --merge -o parts"), 0);
+    assert_contains(command_out, "designs: 12 of 12 are there\n");
+  }
+  assert_int_equal(command_run("sweep mine.yaml -o parts"), 0);
+  assert_contains(command_out, "0 of them computed now");
+  command_read("mine.sweep/cases.csv", first);
+  command_read("parts/cases.csv", again);
+  const char *a = first, *b = again; // but for the times
+  for (int row = 0; row < 13; row++) {
+    assert_int_equal(strncmp(a, b, 20), 0);
+    a = strchr(a, '\n') + 1;
+    b = strchr(b, '\n') + 1;
+  }
+  write_file("{name: film.thickness, values: [80 um]}", "");
+  assert_int_equal(command_run("sweep mine.yaml"), 5);
+  assert_contains(command_err, "another question");
+}
+
+/* Killed again and again: in the end every case is there, and once. */
+static void test_killed(void **state)
+{
+  (void)state;
+  char text[700];
+  write_file("{name: film.thickness, distribution: normal, mean: 100 um, std: 4 um}, "
+             "{name: film.law.c1, distribution: lognormal, mean: 178 kPa, std: 9 kPa}",
+             "plan: sobol\nsamples: 400\nlimits: [{quantity: breakdown_margin, above: -0.8}]");
+  snprintf(text, sizeof text, "cd '%s' && timeout -s KILL 0.15 '%s' sweep mine.yaml -j 2 -q -o cut",
+           command_folder, DEA_COMMAND);
+  for (int k = 0; k < 8; k++) {
+    assert_int_not_equal(system(text), -1);
+  }
+  assert_int_equal(command_run("sweep mine.yaml -j 2 -o cut"), 0);
+  assert_contains(command_out, "designs: 400 of 400 are there");
+  assert_int_equal(lines_with("cut/part-1-of-1.csv", "\n"),
+                   401 + lines_with("cut/part-1-of-1.csv", "\n\n"));
+  assert_int_equal(lines_with("cut/cases.csv", "\n"), 401);
+  assert_int_equal(lines_with("cut/statistics.csv", "electrode_edge_u_m,m,5,400,"), 1);
+  assert_int_equal(lines_with("cut/limits.csv", "breakdown_margin,-0.8,,400,"), 1);
+}
+
+/* The keys of docs/explore.md. */
+static void test_page(void **state)
+{
+  (void)state;
+  static char page[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/explore.md", "rb");
+  assert_non_null(file);
+  page[fread(page, 1, sizeof page - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("schema --explore --markdown"), 0);
+  assert_contains(page, command_out);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors), cmocka_unit_test(test_grid),
+                                     cmocka_unit_test(test_killed), cmocka_unit_test(test_page)};
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}

@@ -1,0 +1,282 @@
+#define _GNU_SOURCE
+/* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
+ * store that is cut off anywhere. */
+#include "explore/plan.h"
+#include "explore/pool.h"
+#include "explore/statistics.h"
+#include "explore/store.h"
+
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+
+#include "testing.h"
+
+#include "own_folder.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Each dimension of the first 2^k points has one point in each of 2^k intervals, and the first two
+ * in each box of area 2^-k: what makes the sequence one of Sobol's. */
+static void test_sobol(void **state)
+{
+  (void)state;
+  enum { K = 10, N = 1 << K };
+  double *u = calloc((size_t)N * DEA_SOBOL_DIMENSIONS, sizeof *u);
+  dea_sample_sobol(DEA_SOBOL_DIMENSIONS, N, 3, u);
+  for (size_t d = 0; d < DEA_SOBOL_DIMENSIONS; d++) {
+    int hits[N] = {0};
+    for (size_t i = 0; i < N; i++) {
+      hits[(size_t)(u[i * DEA_SOBOL_DIMENSIONS + d] * N)]++;
+    }
+    for (size_t i = 0; i < N; i++) {
+      assert_int_equal(hits[i], 1);
+    }
+  }
+  for (size_t a = 0; a <= K; a++) {
+    int hits[N] = {0};
+    const size_t across = (size_t)1 << a, up = (size_t)N >> a;
+    for (size_t i = 0; i < N; i++) {
+      const double *at = u + i * DEA_SOBOL_DIMENSIONS;
+      hits[(size_t)(at[0] * (double)across) * up + (size_t)(at[1] * (double)up)]++;
+    }
+    for (size_t i = 0; i < N; i++) {
+      assert_int_equal(hits[i], 1);
+    }
+  }
+  free(u);
+}
+
+/* The integral of a product over 21 dimensions, which is 1: the error of 4096 points is far below
+ * that of random ones (0.3 / 64), which wrong direction numbers would not reach. */
+static void test_sobol_integral(void **state)
+{
+  (void)state;
+  enum { N = 4096 };
+  double *u = calloc((size_t)N * DEA_SOBOL_DIMENSIONS, sizeof *u), sum = 0;
+  dea_sample_sobol(DEA_SOBOL_DIMENSIONS, N, 1, u);
+  for (size_t i = 0; i < N; i++) {
+    double product = 1;
+    for (size_t d = 0; d < DEA_SOBOL_DIMENSIONS; d++) {
+      product *= 1 + 0.2 * (u[i * DEA_SOBOL_DIMENSIONS + d] - 0.5);
+    }
+    sum += product;
+  }
+  assert_true(fabs(sum / N - 1) < 3e-4);
+  free(u);
+}
+
+static void test_latin(void **state)
+{
+  (void)state;
+  enum { N = 100, D = 3 };
+  double u[N * D];
+  assert_int_equal(dea_sample_latin(ctx, D, N, 5, u), DEA_OK);
+  for (size_t d = 0; d < D; d++) {
+    int hits[N] = {0};
+    for (size_t i = 0; i < N; i++) {
+      hits[(size_t)(u[i * D + d] * N)]++;
+    }
+    for (size_t i = 0; i < N; i++) {
+      assert_int_equal(hits[i], 1);
+    }
+  }
+}
+
+static void test_quantile(void **state)
+{
+  (void)state;
+  for (double x = -8; x <= 8; x += 0.25) {
+    const double u = 0.5 * erfc(-x / sqrt(2));
+    if (u < 1) {
+      // from 1 - u = 1e-16 on, u itself has no more digits
+      assert_true(fabs(dea_normal_quantile(u) - x) <
+                  (x < 3 ? 1e-12 : 1e-16 * exp(0.5 * x * x) * 3));
+    }
+  }
+}
+
+/* Ishigami and Homma's function, whose indices are known in closed form, to 1 %. */
+static void test_ishigami(void **state)
+{
+  (void)state;
+  enum { N = 1 << 14, D = 3 };
+  const double A = 7, B = 0.1;
+  double *u = calloc((size_t)N * 2 * D, sizeof *u), *f = calloc((size_t)N * (D + 2), sizeof *f);
+  dea_sample_sobol(2 * D, N, 1, u);
+  for (size_t b = 0; b < D + 2; b++) {
+    for (size_t i = 0; i < N; i++) {
+      double x[D];
+      for (size_t j = 0; j < D; j++) {
+        x[j] = pi * (2 * u[i * 2 * D + j + (b == 1 || b == j + 2 ? D : 0)] - 1);
+      }
+      f[b * N + i] = sin(x[0]) + A * pow(sin(x[1]), 2) + B * pow(x[2], 4) * sin(x[0]);
+    }
+  }
+  const double V1 = 0.5 * pow(1 + B * pow(pi, 4) / 5, 2), V2 = A * A / 8,
+               V13 = 8 * B * B * pow(pi, 8) / 225, V = V1 + V2 + V13;
+  const double first[D] = {V1 / V, V2 / V, 0}, total[D] = {(V1 + V13) / V, V2 / V, V13 / V};
+  f[7] = NAN; // a failed case takes its sample with it
+  for (size_t j = 0; j < D; j++) {
+    double s, t;
+    dea_sobol_index(f, f + N, f + (2 + j) * N, N, &s, &t);
+    assert_true(fabs(s - first[j]) < 0.01 * fmax(first[j], 0.3));
+    assert_true(fabs(t - total[j]) < 0.01 * total[j]);
+  }
+  free(u);
+  free(f);
+}
+
+static void test_spread(void **state)
+{
+  (void)state;
+  double values[1001];
+  struct dea_spread spread;
+  for (int i = 0; i <= 1000; i++) {
+    values[i] = (i * 5) % 1001; // all of 0 to 1000
+  }
+  assert_int_equal(dea_spread_find(ctx, values, 1001, &spread), DEA_OK);
+  assert_true(fabs(spread.mean - 500) < 1e-9 && fabs(spread.std - sqrt(1001 * 1002 / 12.0)) < 1e-9);
+  assert_true(fabs(spread.quantile[0] - 25) < 1e-9 && fabs(spread.quantile[3] - 840) < 1e-9);
+}
+
+// Processes ---------------------------------------------------------------------------------------
+
+/* q = p0^2 + p1; case 3 has no second value, case 5 ends its process, case 6 that with a signal. */
+static dea_status square(void *user, struct dea_context *own, struct dea_case *io)
+{
+  (void)user;
+  (void)own;
+  if (io->number == 5 || io->number == 6) {
+    io->number == 5 ? _exit(3) : (void)kill(getpid(), SIGKILL);
+  }
+  io->q[0] = io->p[0] * io->p[0] + io->p[1];
+  snprintf(io->id, sizeof io->id, "id%zu", io->number);
+  if (io->number == 3) {
+    snprintf(io->why, sizeof io->why, "none, \nno \"value\"");
+  } else {
+    io->q[1] = -io->p[1];
+  }
+  return DEA_OK;
+}
+
+static const struct dea_evaluator evaluator = {
+    .param_count = 2, .value_count = 2, .evaluate = square};
+
+struct taken {
+  size_t next, count, done;
+  struct dea_store *store;
+  struct dea_case cases[64];
+};
+
+static bool give(void *user, struct dea_case *out)
+{
+  struct taken *taken = user;
+  if (taken->next == taken->count) {
+    return false;
+  }
+  out->number = taken->next++;
+  out->p[0] = 0.1 * (double)out->number;
+  out->p[1] = 1 / 3.0;
+  return true;
+}
+
+static dea_status take(void *user, const struct dea_case *done)
+{
+  struct taken *taken = user;
+  taken->cases[done->number] = *done;
+  taken->done++;
+  return taken->store != NULL ? dea_store_add(taken->store, done) : DEA_OK;
+}
+
+static void test_pool(void **state)
+{
+  (void)state;
+  struct dea_pool *pool;
+  static struct taken taken;
+  taken = (struct taken){.count = 40};
+  assert_int_equal(dea_pool_create(ctx, &evaluator, 3, &pool), DEA_OK);
+  assert_int_equal(dea_pool_run(pool, give, take, &taken), DEA_OK);
+  assert_int_equal(taken.done, 40);
+  for (size_t i = 0; i < 40; i++) {
+    const struct dea_case *now = &taken.cases[i];
+    const double p = 0.1 * (double)i;
+    if (i == 5 || i == 6) {
+      assert_string_equal(now->why, i == 5 ? "the process of this case ended by exit code 3"
+                                           : "the process of this case ended by signal 9");
+      assert_true(isnan(now->q[0]));
+    } else {
+      assert_true(now->q[0] == p * p + 1 / 3.0 && isnan(now->q[1]) == (i == 3));
+    }
+  }
+  taken = (struct taken){.count = 10}; // the same processes again
+  assert_int_equal(dea_pool_run(pool, give, take, &taken), DEA_OK);
+  assert_int_equal(taken.done, 10);
+  dea_pool_destroy(pool);
+}
+
+// The store ---------------------------------------------------------------------------------------
+
+static const struct dea_shard whole = {1, 1};
+
+static void test_store(void **state)
+{
+  (void)state;
+  struct dea_store *store, *other;
+  struct dea_pool *pool;
+  static struct taken taken;
+  char name[600];
+  snprintf(name, sizeof name, "%s/store", folder);
+  assert_int_equal(dea_store_open(ctx, name, "q1", &evaluator, &whole, &store), DEA_OK);
+  taken = (struct taken){.count = 12, .store = store};
+  assert_int_equal(dea_pool_create(ctx, &evaluator, 2, &pool), DEA_OK);
+  assert_int_equal(dea_pool_run(pool, give, take, &taken), DEA_OK);
+  dea_pool_destroy(pool);
+  assert_int_equal(dea_store_open(ctx, name, "q1", &evaluator, &whole, &other), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "another process writes"));
+  dea_store_close(store);
+  assert_int_equal(dea_store_open(ctx, name, "q2", &evaluator, NULL, &other), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "another question"));
+  snprintf(name, sizeof name, "%s/store/part-1-of-1.csv", folder);
+  FILE *file = fopen(name, "rb");
+  static char bytes[8192];
+  const size_t length = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  const char *head = strchr(bytes, '\n');
+  for (size_t cut = 0; cut <= length; cut += cut < 100 ? 9 : 37) { // ended anywhere
+    size_t whole_lines = 0;
+    for (size_t i = (size_t)(head - bytes) + 1; i < cut; i++) {
+      whole_lines += bytes[i] == '\n' ? 1U : 0U;
+    }
+    file = fopen(name, "wb");
+    fwrite(bytes, 1, cut, file);
+    fclose(file);
+    char in[600];
+    snprintf(in, sizeof in, "%s/store", folder);
+    assert_int_equal(dea_store_open(ctx, in, "q1", &evaluator, &whole, &store), DEA_OK);
+    assert_int_equal(dea_store_count(store), whole_lines);
+    for (size_t i = 0; i < 12; i++) { // what is lacking, and once more what is there
+      const struct dea_case *there = dea_store_find(store, taken.cases[i].p);
+      if (there == NULL) {
+        assert_int_equal(dea_store_add(store, &taken.cases[i]), DEA_OK);
+      } else {
+        assert_memory_equal(there->q, taken.cases[i].q, sizeof(double));
+        assert_string_equal(there->id, taken.cases[i].id);
+      }
+    }
+    dea_store_close(store);
+    assert_int_equal(dea_store_open(ctx, in, "q1", &evaluator, NULL, &store), DEA_OK);
+    assert_int_equal(dea_store_count(store), 12);
+    dea_store_close(store);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_sobol),    cmocka_unit_test(test_sobol_integral),
+      cmocka_unit_test(test_latin),    cmocka_unit_test(test_quantile),
+      cmocka_unit_test(test_ishigami), cmocka_unit_test(test_spread),
+      cmocka_unit_test(test_pool),     cmocka_unit_test(test_store)};
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
