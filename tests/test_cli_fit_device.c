@@ -95,6 +95,44 @@ static void test_curves(void **state)
 }
 
 /* The example of docs/fit.md, its files, a folder of dea reduce, and the keys of that page. */
+/* Number in that column of a CSV line, from 0. */
+static double field_of(const char *line, int column)
+{
+  for (int k = 0; k < column; k++) {
+    line = strchr(line, ',');
+    assert_non_null(line);
+    line++;
+  }
+  return strtod(line, NULL);
+}
+
+/* The design that was written has bands of its own: at 7 kV the capacitance's is the fit's. */
+static void check_band(void)
+{
+  static char text[COMMAND_TEXT_MAX];
+  assert_int_equal(command_run("run device/sample-3.yaml --model axisymmetric --no-figures -o run "
+                               "--force --set 'compute.voltage={values: [0 kV, 4 kV, 7 kV]}'"),
+                   0);
+  assert_contains(command_out, "what one standard uncertainty changes");
+  command_read("device/fit.csv", text);
+  const char *row = strstr(text, "sweep,capacitance_F,fit,15,yes,7,");
+  assert_non_null(row);
+  const double fitted = field_of(row, 10);
+  command_read("run/axisymmetric_sweep.csv", text);
+  const char *end = strchr(text, '\n');
+  assert_non_null(end);
+  assert_memory_equal(end - strlen(",capacitance std (pF)"), ",capacitance std (pF)", 21);
+  row = strstr(text, "\n7,");
+  assert_non_null(row);
+  int last = 0;
+  for (const char *c = row + 1; *c != '\n'; c++) {
+    last += *c == ',';
+  }
+  assert_close(field_of(row + 1, last), fitted, 0.02, 0);
+  command_read("device/sample-3.yaml", text);
+  assert_contains(text, "uncertainty:");
+}
+
 static void test_example(void **state)
 {
   (void)state;
@@ -118,6 +156,7 @@ static void test_example(void **state)
   command_read("device/fit_capacitance_F.svg", page);
   assert_contains(page, "<svg");
   assert_int_equal(command_run("run device/sample-3.yaml --model lumped --no-figures -o run"), 0);
+  check_band();
   command_run("fit @/examples/fit/device.yaml -o device --force --json --profile");
   assert_contains(command_out, "\"interval_low\"");
   assert_contains(command_out, "\"not_told_apart\"");

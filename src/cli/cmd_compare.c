@@ -367,6 +367,20 @@ static bool print_pair(const struct dea_compare_set *set, size_t curve, double t
   return std;
 }
 
+/* Whether some model has a band of its own. */
+static bool has_model_std(const struct dea_compare_set *set)
+{
+  for (size_t i = 0; i < set->curve_count; i++) {
+    const struct dea_comparison *c = set->curves[i].comparison;
+    for (size_t k = 0; c != NULL && k < c->misfit_count; k++) {
+      if (!isnan(dea_misfit_a_std_rms(&c->misfits[k]))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 static void print_tables(const struct dea_compare_set *set, double tolerance)
 {
   bool std = false;
@@ -388,6 +402,11 @@ static void print_tables(const struct dea_compare_set *set, double tolerance)
         "the scatter.\nOf a normal scatter 68 %% lie within 1 std and 95 %% within 2. The std is "
         "what the measurement\nsays of its scatter; errors of its calibration and of the model "
         "are not in it.\n");
+    printf("%s", has_model_std(set)
+                     ? "Where the model has a band, by the uncertainties of its design and "
+                       "material, the std is that of both\n(the root of the sum of squares). The "
+                       "band moves all points of a curve together.\n"
+                     : "");
   }
 }
 

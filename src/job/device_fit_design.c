@@ -130,6 +130,47 @@ static void add_with_material(struct dea_text *out, const char *design, const ch
   }
 }
 
+static bool is_known(const struct dea_fit_value *value)
+{
+  return !value->fixed && !value->at_bound && isfinite(value->std) && value->std > 0;
+}
+
+/* What study "uncertainty" makes bands of: standard uncertainties and correlations. */
+static dea_status put_uncertainty(struct dea_context *ctx, const struct dea_device_fit *fit,
+                                  struct dea_yaml *document)
+{
+  struct dea_text text = {.ctx = ctx};
+  const size_t n = fit->param_count;
+  size_t known = 0;
+  void *before = dea_c_locale_enter();
+  for (size_t j = 0; j < n; j++) {
+    const struct dea_fit_param *param = &fit->params[j].param;
+    if (is_known(&fit->values[j])) {
+      const bool bare = strcmp(param->unit, "1") == 0;
+      dea_text_add(&text, "%s{name: %s, std: %.6g%s%s}", known++ > 0 ? ", " : "{parameters: [",
+                   param->name, fit->values[j].std, bare ? "" : " ", bare ? "" : param->unit);
+    }
+  }
+  dea_text_add(&text, known > 1 ? "], correlations: [" : "]");
+  const char *separator = "";
+  for (size_t j = 0; j < n; j++) {
+    for (size_t k = 0; k < j && is_known(&fit->values[j]); k++) {
+      if (is_known(&fit->values[k])) {
+        dea_text_add(&text, "%s%.9f", separator, fit->statistics.correlation[j * n + k]);
+        separator = ", ";
+      }
+    }
+  }
+  dea_text_add(&text, known > 1 ? "]}" : "}");
+  dea_c_locale_leave(before);
+  dea_status status = text.failed ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK && known > 0) {
+    status = dea_yaml_override(ctx, document, "compute.uncertainty", dea_text_get(&text));
+  }
+  dea_text_free(&text);
+  return status;
+}
+
 /* Puts the fitted values of keys into the document, and takes the film's material from `materials`
  * where it was fitted. */
 static dea_status put_values(struct dea_context *ctx, const struct dea_device_fit *fit,
@@ -175,6 +216,9 @@ dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit
   bool of_material = false;
   DEA_TRY(ctx, dea_yaml_parse(ctx, model->name, model->bytes, model->length, &document));
   dea_status status = put_values(ctx, fit, document, &film, &of_material);
+  if (status == DEA_OK) {
+    status = put_uncertainty(ctx, fit, document);
+  }
   if (status == DEA_OK && fit->file->head.title.text[0] != '\0') {
     dea_text_add(&material, "\"");
     for (const char *c = fit->file->head.title.text; *c != '\0'; c++) {

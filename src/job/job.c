@@ -2,7 +2,7 @@
 #include "job/job.h"
 
 #include "output/run_folder.h"
-#include "study/study.h"
+#include "study/rerun.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -41,6 +41,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, dea_study_check(ctx, job->studies, job->study_count, result->design));
   DEA_TRY(ctx, open_folder(ctx, job, result));
   *began = true;
+  result->rerun = &dea_rerun_designs;
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (size_t i = 0;
        i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);

@@ -241,6 +241,21 @@ static int find_set(struct dea_context *ctx, const char *what, const struct dea_
   return -1;
 }
 
+/* Standard uncertainties, and correlations of those that have one, in the order of the file. */
+static void take_uncertainties(const struct dea_law_set *set, struct dea_material *out)
+{
+  size_t next = 0;
+  for (size_t i = 0; i < set->law->param_count; i++) {
+    out->param_std[i] = isnan(set->param_std[i].si) ? 0 : set->param_std[i].si;
+    out->correlation[i][i] = 1;
+    for (size_t k = 0; k < i; k++) {
+      if (out->param_std[i] > 0 && out->param_std[k] > 0 && next < set->correlation_count) {
+        out->correlation[i][k] = out->correlation[k][i] = set->correlations[next++].si;
+      }
+    }
+  }
+}
+
 static void take_law(const struct dea_law_set *set, struct dea_material *out)
 {
   snprintf(out->law_id, sizeof out->law_id, "%.63s", set->id.text);
@@ -248,6 +263,7 @@ static void take_law(const struct dea_law_set *set, struct dea_material *out)
   for (size_t i = 0; i < set->law->param_count; i++) {
     out->param[i] = isnan(set->param[i].si) ? 0 : set->param[i].si; // optional, not given
   }
+  take_uncertainties(set, out);
   out->fibre_angle_rad = set->fibre_angle_rad.si;
   if (set->range.count == 2) {
     out->stretch_min = set->range.limits[0].si;

@@ -55,7 +55,10 @@ struct dea_material {
   char law_id[DEA_NAME_SIZE];      // which parameter set ("yeoh-178"); "" for a single one
   const struct dea_law *law;       // NULL for a material without a hyperelastic law (PET)
   double param[DEA_LAW_PARAM_MAX]; // of the law, SI
-  double fibre_angle_rad;          // of an anisotropic law: angle of a0 to the radial direction
+  /* Standard uncertainties of the law's parameters, 0: not given; and their correlations, filled
+   * where both of a pair have one. */
+  double param_std[DEA_LAW_PARAM_MAX], correlation[DEA_LAW_PARAM_MAX][DEA_LAW_PARAM_MAX];
+  double fibre_angle_rad; // of an anisotropic law: angle of a0 to the radial direction
   struct dea_permittivity permittivity; // at_rest = 0 when unknown
   struct dea_breakdown breakdown;
   double density_kg_per_m3;         // 0 when unknown

@@ -469,6 +469,7 @@ static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, doub
   dea_json_put(object, "range", m->range);
   dea_json_put(object, "relative_rms", m->relative_rms);
   dea_json_put(object, "relative_largest", m->relative_largest);
+  dea_json_put(object, "a_std_rms", dea_misfit_a_std_rms(m));
   if (m->std_count > 0) {
     dea_json_put_count(object, "std_points", m->std_count);
     dea_json_put(object, "chi_square_per_point", m->chi_square);

@@ -88,8 +88,9 @@ extern const char *const dea_half_names[DEA_HALVES];
 /* Object {schema, tolerance, reference, comparisons: [{a, b, quantities: [misfit]}], profiles: [{a,
  * half, voltage_V, misfit}], histories: [{a, shift_s, edges, misfit}]} with misfit {quantity, unit,
  * points, rms, largest, largest_at_V (_m, _s), bias, range, relative_rms, relative_largest,
- * std_points, chi_square_per_point, within_1_std, within_2_std, within}; what is of std only where
- * uncertainties are known, `within` only with a tolerance (NAN: none). NULL when memory is short.
+ * a_std_rms (of the uncertainties of a), std_points, chi_square_per_point, within_1_std,
+ * within_2_std, within}; what is of std only where uncertainties are known, `within` only with a
+ * tolerance (NAN: none). NULL when memory is short.
  */
 json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance);
 /* Writes into directory (made if need be) compare_KEY for each quantity: all curves and the

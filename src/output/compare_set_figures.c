@@ -332,14 +332,35 @@ static dea_status add_values(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
-static bool has_bars(const struct dea_misfit *m)
+static bool has_std_of(const struct dea_misfit *m, const double *std)
 {
   for (size_t i = 0; i < m->count; i++) {
-    if (!isnan(m->b_std[i])) {
+    if (!isnan(std[i])) {
       return true;
     }
   }
   return false;
+}
+
+/* Band of the first of a pair, below its line. */
+static dea_status add_pair_band(struct dea_context *ctx, struct dea_panel *panel,
+                                const struct dea_misfit *m)
+{
+  struct dea_series *band;
+  if (!has_std_of(m, m->a_std)) {
+    return DEA_OK;
+  }
+  const double factor = dea_point_columns[m->column].factor;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, m->count, &band));
+  band->style = DEA_BAND;
+  band->colour = DEA_BLUE;
+  snprintf(band->title, sizeof band->title, "%s of the model", band_title);
+  for (size_t i = 0; i < m->count; i++) {
+    band->values[i] = 1e-3 * m->at[i];
+    band->values[m->count + i] = factor * (m->a[i] - m->a_std[i]);
+    band->values[2 * m->count + i] = factor * (m->a[i] + m->a_std[i]);
+  }
+  return DEA_OK;
 }
 
 static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m, const char *a,
@@ -347,9 +368,10 @@ static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m,
 {
   struct dea_panel *top = &plot->panels[0], *low = &plot->panels[1];
   struct dea_series *series;
-  bool bars = has_bars(m);
+  bool bars = has_std_of(m, m->b_std);
   plot->panel_count = 2;
   plot->second_height = 0.45;
+  DEA_TRY(ctx, add_pair_band(ctx, top, m));
   DEA_TRY(ctx, add_values(ctx, top, m, m->a, NULL, NULL, &series));
   series->style = DEA_LINE;
   series->colour = DEA_BLUE;

@@ -31,6 +31,30 @@ static void mark_used(const struct dea_curve *curve, bool *used)
   }
 }
 
+/* Columns of standard uncertainties, behind all others. */
+static void add_std_header(struct dea_text *text, const struct dea_curve *curve)
+{
+  for (int c = 0; curve->std != NULL && c < DEA_LOAD_POINT_COLUMNS; c++) {
+    if (dea_points_have(curve->std, curve->count, c)) {
+      const struct dea_column *column = &dea_point_columns[c];
+      bool bare = strcmp(column->display_unit, "1") == 0;
+      dea_text_add(text, ",%s std%s%s%s", column->header, bare ? "" : " (",
+                   bare ? "" : column->display_unit, bare ? "" : ")");
+    }
+  }
+}
+
+static void add_std(struct dea_text *text, const struct dea_curve *curve, size_t i)
+{
+  for (int c = 0; curve->std != NULL && c < DEA_LOAD_POINT_COLUMNS; c++) {
+    if (dea_points_have(curve->std, curve->count, c)) {
+      dea_text_add(text, ",");
+      add_number(text, dea_point_get(&curve->std[i], c) * fabs(dea_point_columns[c].factor));
+    }
+  }
+}
+
+/* Without the end of the line. */
 static void add_header(struct dea_text *text, const bool *used)
 {
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
@@ -40,9 +64,10 @@ static void add_header(struct dea_text *text, const bool *used)
       dea_text_add(text, "%s,", title);
     }
   }
-  dea_text_add(text, "stable,unstable_modes,trusted,flags\n");
+  dea_text_add(text, "stable,unstable_modes,trusted,flags");
 }
 
+/* Without the end of the line. */
 static void add_point(struct dea_text *text, const bool *used, const struct dea_load_point *point)
 {
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
@@ -52,7 +77,7 @@ static void add_point(struct dea_text *text, const bool *used, const struct dea_
     }
   }
   char words[DEA_FLAGS_SIZE];
-  dea_text_add(text, "%d,%d,%d,%s\n", point->stable, point->unstable_modes,
+  dea_text_add(text, "%d,%d,%d,%s", point->stable, point->unstable_modes,
                dea_load_point_trusted(point), dea_flags_text(dea_load_point_flags(point), words));
 }
 
@@ -64,8 +89,12 @@ dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   add_header(&text, used);
+  add_std_header(&text, curve);
+  dea_text_add(&text, "\n");
   for (size_t i = 0; i < curve->count; i++) {
     add_point(&text, used, &curve->points[i]);
+    add_std(&text, curve, i);
+    dea_text_add(&text, "\n");
   }
   dea_c_locale_leave(before);
   char name[2 * DEA_NAME_SIZE + 8];
@@ -91,9 +120,11 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "event,");
   add_header(&text, used);
+  dea_text_add(&text, "\n");
   for (size_t i = 0; i < curve->event_count; i++) {
     dea_text_add(&text, "%s,", dea_event_name(curve->events[i].kind));
     add_point(&text, used, &curve->events[i].point);
+    dea_text_add(&text, "\n");
   }
   dea_c_locale_leave(before);
   char name[2 * DEA_NAME_SIZE + 16];
@@ -170,6 +201,7 @@ static void add_variant(struct dea_text *text, const bool *used, bool meshes,
     add_number(text, variant->wall_s);
     dea_text_add(text, ",");
     add_point(text, used, &variant->curve.points[i]);
+    dea_text_add(text, "\n");
   }
 }
 
@@ -191,6 +223,7 @@ dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_resu
   void *before = dea_c_locale_enter();
   dea_text_add(&text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
   add_header(&text, used);
+  dea_text_add(&text, "\n");
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study)) {
       add_variant(&text, used, meshes, &result->variants[i]);

@@ -9,7 +9,7 @@
 void dea_column_title(const struct dea_column *column, char *out, size_t size);
 
 /* Writes directory/MODEL_KIND.csv. Columns without any number are left out, a missing number is an
- * empty field. Digits: 12 significant. */
+ * empty field. Digits: 12 significant. Columns "... std" come last, where they are known. */
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
                                const char *directory);
 /* Writes directory/MODEL_KIND_events.csv for a curve with events; nothing without any. */

@@ -161,6 +161,21 @@ static hid_t open_entry(struct h5 *h, hid_t parent, const struct entry *entry)
   return group;
 }
 
+/* Standard uncertainties of the points; files of older versions have none. */
+static void get_std(struct h5 *h, hid_t parent, struct dea_curve *curve)
+{
+  if (h->status == DEA_OK && dea_h5_has(h, parent, "std")) {
+    size_t count;
+    hid_t group = dea_h5_group_get(h, parent, "std");
+    get_points(h, group, &curve->std, &count);
+    if (h->status == DEA_OK && count != curve->count) {
+      h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: %zu points with %zu uncertainties",
+                           h->path, curve->count, count);
+    }
+    dea_h5_close(group);
+  }
+}
+
 /* What stands in a curve's group beside its names. */
 static void get_content(struct h5 *h, hid_t group, struct dea_curve *curve)
 {
@@ -171,6 +186,7 @@ static void get_content(struct h5 *h, hid_t group, struct dea_curve *curve)
   dea_h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
   get_points(h, group, &curve->points, &curve->count);
   curve->room = curve->count;
+  get_std(h, group, curve);
   get_events(h, group, curve);
 }
 

@@ -89,6 +89,16 @@ static void put_events(struct h5 *h, hid_t parent, const struct dea_curve *curve
   dea_h5_close(group);
 }
 
+/* Standard uncertainties of the points, in a group of their own. */
+static void put_std(struct h5 *h, hid_t parent, const struct dea_curve *curve)
+{
+  if (curve->std != NULL) {
+    hid_t group = dea_h5_group_make(h, parent, "std");
+    put_points(h, group, (const char *)curve->std, sizeof *curve->std, curve->count);
+    dea_h5_close(group);
+  }
+}
+
 static void put_curve(struct h5 *h, hid_t group, size_t index, const struct dea_curve *curve)
 {
   dea_h5_put_int(h, group, "index", (long long)index);
@@ -96,6 +106,7 @@ static void put_curve(struct h5 *h, hid_t group, size_t index, const struct dea_
   dea_h5_put_text(h, group, "status", dea_status_name(curve->status));
   dea_h5_put_text(h, group, "stopped", curve->stopped);
   put_points(h, group, (const char *)curve->points, sizeof *curve->points, curve->count);
+  put_std(h, group, curve);
   put_events(h, group, curve);
 }
 

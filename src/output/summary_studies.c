@@ -14,7 +14,8 @@ static json_t *flags_json(unsigned flags)
   return list;
 }
 
-static json_t *point_json(const struct dea_load_point *point)
+/* std: standard uncertainties of its numbers; NULL: none are known. */
+static json_t *point_json(const struct dea_load_point *point, const struct dea_load_point *std)
 {
   json_t *object = json_object();
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
@@ -24,6 +25,13 @@ static json_t *point_json(const struct dea_load_point *point)
   json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
   json_object_set_new(object, "trusted", json_boolean(dea_load_point_trusted(point)));
   json_object_set_new(object, "flags", flags_json(dea_load_point_flags(point)));
+  if (std != NULL) {
+    json_t *uncertainties = json_object();
+    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+      dea_json_put(uncertainties, dea_point_columns[c].key, dea_point_get(std, c));
+    }
+    json_object_set_new(object, "std", uncertainties);
+  }
   return object;
 }
 
@@ -31,7 +39,8 @@ json_t *dea_points_json(const struct dea_curve *curve)
 {
   json_t *list = json_array();
   for (size_t i = 0; curve != NULL && i < curve->count; i++) {
-    json_array_append_new(list, point_json(&curve->points[i]));
+    json_array_append_new(
+        list, point_json(&curve->points[i], curve->std != NULL ? &curve->std[i] : NULL));
   }
   return list;
 }

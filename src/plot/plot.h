@@ -32,7 +32,8 @@ enum dea_series_style {
   DEA_DOTTED,      // limits
   DEA_MARKERS,     // points only
   DEA_ERROR_BARS,  // points with +-error where that is a number
-  DEA_BAND,        // filled from y up to `error`, pale: grey for DEA_GREY, else red
+  DEA_BAND, // filled from y up to `error`: pale grey for DEA_GREY, else its colour, that is seen
+            // through
 };
 
 /* title: key entry, "" for none. marker: 0, 1, 2, ... one shape each. */

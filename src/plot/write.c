@@ -92,8 +92,12 @@ static void add_style(struct dea_text *gp, const struct dea_series *series)
     dea_text_add(gp, "with yerrorbars lw 1 pt %d ps 0.6 lc rgb \"%s\"", marker, colour);
     break;
   case DEA_BAND:
-    dea_text_add(gp, "with filledcurves fillstyle solid noborder lc rgb \"%s\"",
-                 series->colour == DEA_GREY ? "#D9D9D9" : "#F3DCD0");
+    if (series->colour == DEA_GREY) {
+      dea_text_add(gp, "with filledcurves fillstyle solid noborder lc rgb \"#D9D9D9\"");
+    } else { // so that two of them, and what lies below, show
+      dea_text_add(gp, "with filledcurves fillstyle transparent solid 0.2 noborder lc rgb \"%s\"",
+                   colour);
+    }
     break;
   }
 }

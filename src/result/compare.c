@@ -138,6 +138,7 @@ dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, str
   out->at = dea_arena_alloc(&out->memory, room, sizeof *out->at);
   out->a = dea_arena_alloc(&out->memory, room, sizeof *out->a);
   out->b = dea_arena_alloc(&out->memory, room, sizeof *out->b);
+  out->a_std = dea_arena_alloc(&out->memory, room, sizeof *out->a_std);
   out->b_std = dea_arena_alloc(&out->memory, room, sizeof *out->b_std);
   return dea_arena_status(&out->memory);
 }
@@ -149,6 +150,7 @@ void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, do
     misfit->at[n] = at;
     misfit->a[n] = a;
     misfit->b[n] = b;
+    misfit->a_std[n] = NAN;
     misfit->b_std[n] = std;
   }
 }
@@ -160,7 +162,8 @@ static void summarise_std(struct dea_misfit *m)
   double squares = 0.0;
   for (size_t i = 0; i < m->count; i++) {
     if (m->b_std[i] > 0.0) {
-      double ratio = fabs(m->a[i] - m->b[i]) / m->b_std[i];
+      double of_a = isnan(m->a_std[i]) ? 0 : m->a_std[i];
+      double ratio = fabs(m->a[i] - m->b[i]) / hypot(of_a, m->b_std[i]);
       m->std_count++;
       squares += ratio * ratio;
       one += ratio <= 1.0;
@@ -196,10 +199,23 @@ void dea_misfit_summarise(struct dea_misfit *m)
   summarise_std(m);
 }
 
+double dea_misfit_a_std_rms(const struct dea_misfit *misfit)
+{
+  double squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < misfit->count; i++) {
+    if (!isnan(misfit->a_std[i])) {
+      squares += misfit->a_std[i] * misfit->a_std[i];
+      count++;
+    }
+  }
+  return count > 0 ? sqrt(squares / (double)count) : NAN;
+}
+
 void dea_misfit_free(struct dea_misfit *misfit)
 {
   dea_arena_free(&misfit->memory);
-  misfit->at = misfit->a = misfit->b = misfit->b_std = NULL;
+  misfit->at = misfit->a = misfit->b = misfit->a_std = misfit->b_std = NULL;
 }
 
 /* How two curves are brought to common voltages. */
@@ -230,6 +246,28 @@ static double within(double v, const double *x, size_t n)
   return v < low && v >= low - margin ? low : v > high && v <= high + margin ? high : v;
 }
 
+/* Standard uncertainty of a at the i-th of the points, at voltage v: between two points of a's
+ * table the straight piece. */
+static double std_of_a(const struct pairing *p, int column, double v, size_t i)
+{
+  const struct dea_curve *a = p->a;
+  if (a->std == NULL) {
+    return NAN;
+  }
+  if (p->point_by_point || !p->at_b) {
+    return dea_point_get(&a->std[i], column);
+  }
+  for (size_t k = 1; k < p->leg; k++) {
+    double from = a->points[k - 1].voltage_V, to = a->points[k].voltage_V;
+    if (fmin(from, to) <= v && v <= fmax(from, to) && from != to) {
+      double t = (v - from) / (to - from);
+      return (1 - t) * dea_point_get(&a->std[k - 1], column) +
+             t * dea_point_get(&a->std[k], column);
+    }
+  }
+  return NAN;
+}
+
 static void fill(const struct pairing *p, double *x, double *y, struct dea_misfit *m)
 {
   const struct dea_curve *table = p->at_b ? p->a : p->b, *points = p->at_b ? p->b : p->a;
@@ -240,7 +278,11 @@ static void fill(const struct pairing *p, double *x, double *y, struct dea_misfi
                        ? dea_point_get(&table->points[i], m->column)
                        : dea_interpolate(x, y, n, p->b_std != NULL ? within(v, x, n) : v);
     double std = p->b_std != NULL && p->at_b ? dea_point_get(&p->b_std[i], m->column) : NAN;
+    size_t before = m->count;
     dea_misfit_add(m, v, p->at_b ? other : own, p->at_b ? own : other, std);
+    if (m->count > before) {
+      m->a_std[before] = std_of_a(p, m->column, v, i);
+    }
   }
 }
 

@@ -12,13 +12,14 @@ struct dea_misfit {
   size_t count;
   double *at; // voltage [V]; time [s] of a history, place [m] of a profile
   double *a, *b;
-  double *b_std; // standard uncertainty of b, NAN where unknown
+  double *a_std, *b_std; // standard uncertainties, NAN where unknown
   struct dea_arena memory;
   double rms, largest, largest_at, bias, range;
   double relative_rms, relative_largest;
-  // Of the points whose b_std is known and not 0, against it; NAN without any.
+  // Of the points whose b_std is known and not 0, against sqrt(a_std^2 + b_std^2), or b_std where
+  // a_std is unknown; NAN without any.
   size_t std_count;
-  double chi_square; // mean of (difference/b_std)^2: 1 when all differences are noise
+  double chi_square; // mean of (difference over that)^2: 1 when all differences are noise
   double within_1_std, within_2_std; // shares of them that differ by no more than that
 };
 
@@ -47,11 +48,14 @@ size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns
  * caller, also after a failure. */
 dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room,
                            struct dea_misfit *out);
-/* Adds a point, at most room; not one where a or b is NAN. std: NAN for unknown. */
+/* Adds a point, at most room; not one where a or b is NAN. std: of b, NAN for unknown; of a there
+ * is none until it is set. */
 void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std);
 /* Fills what follows from the points, of which there is at least one. */
 void dea_misfit_summarise(struct dea_misfit *misfit);
 void dea_misfit_free(struct dea_misfit *misfit);
+/* Root mean square of a_std where it is known; NAN where it is known nowhere. */
+double dea_misfit_a_std_rms(const struct dea_misfit *misfit);
 
 /* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
  * [x[0], x[count-1]]. */

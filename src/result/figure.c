@@ -116,6 +116,43 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* Band of a standard uncertainty of a column to each side, where it is known, in the colour
+ * of the curve and below it. */
+static dea_status add_std(struct dea_context *ctx, struct dea_panel *panel,
+                          const struct dea_curve *curve, int column, double factor, double shift,
+                          const struct dea_series *look)
+{
+  static const double noise = 1e-12;
+  size_t n = curve->count;
+  struct dea_series *band;
+  if (curve->std == NULL || !dea_points_have(curve->std, n, column)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &band));
+  band->style = DEA_BAND;
+  band->colour = look->colour;
+  band->right = look->right;
+  snprintf(band->title, sizeof band->title, "\302\261 1 std of the model");
+  for (size_t s = 0; s + 1 < panel->series_count; s++) { // once for all
+    if (strcmp(panel->series[s].title, band->title) == 0) {
+      band->title[0] = '\0';
+    }
+  }
+  double most = 0;
+  for (size_t i = 0; i < n; i++) {
+    most = fmax(most, fabs(factor * dea_point_get(&curve->points[i], column)));
+  }
+  for (size_t i = 0; i < n; i++) {
+    double value = factor * (dea_point_get(&curve->points[i], column) + shift);
+    double half = fabs(factor) * dea_point_get(&curve->std[i], column);
+    half = half < noise * most ? 0 : half; // so that rounding moves no axis
+    band->values[i] = 1e-3 * curve->points[i].voltage_V;
+    band->values[n + i] = value - half;
+    band->values[2 * n + i] = value + half;
+  }
+  return DEA_OK;
+}
+
 /* What a key says of the dashed parts of a panel that had `before`. */
 static const char *dashed_words(const struct dea_curve *curve, const char *before)
 {
@@ -145,6 +182,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
     shown.style = DEA_DOTTED;
     shown.aside = true;
   }
+  DEA_TRY(ctx, add_std(ctx, panel, curve, column, factor, shift, &shown));
   DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
   for (size_t i = 0; i < curve->count; i++) {

@@ -30,8 +30,8 @@ const struct dea_curve *dea_figure_curve(const struct dea_result *result, const 
                                          bool prefer_path);
 /* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
  * right); what is not to be trusted is dashed, what is a bound dotted and said to be one; a
- * grey band is the estimated error where that is known. Adds
- * nothing when the curve has no such number. */
+ * grey band is the estimated error where that is known, one in the curve's colour its standard
+ * uncertainty. Adds nothing when the curve has no such number. */
 dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
                           const struct dea_curve *curve, int column, double factor, double shift,
                           const struct dea_series *look);

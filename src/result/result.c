@@ -20,14 +20,20 @@ dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *d
   return DEA_OK;
 }
 
+static void clear_curve(struct dea_context *ctx, struct dea_curve *curve)
+{
+  dea_free(ctx, curve->points);
+  dea_free(ctx, curve->std);
+  dea_free(ctx, curve->events);
+}
+
 void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
 {
   if (result == NULL) {
     return;
   }
   for (size_t i = 0; i < result->curve_count; i++) {
-    dea_free(ctx, result->curves[i].points);
-    dea_free(ctx, result->curves[i].events);
+    clear_curve(ctx, &result->curves[i]);
   }
   dea_free(ctx, result->curves);
   for (size_t i = 0; i < result->profile_count; i++) {
@@ -39,8 +45,7 @@ void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
   }
   dea_free(ctx, result->surfaces);
   for (size_t i = 0; i < result->variant_count; i++) {
-    dea_free(ctx, result->variants[i].curve.points);
-    dea_free(ctx, result->variants[i].curve.events);
+    clear_curve(ctx, &result->variants[i].curve);
     dea_free(ctx, result->variants[i].profile.columns);
   }
   dea_free(ctx, result->variants);

@@ -16,7 +16,9 @@ struct dea_curve {
   char kind[DEA_NAME_SIZE];  // "sweep", "path"
   struct dea_load_point *points;
   size_t count, room;
-  struct dea_event *events; // of a path
+  struct dea_load_point *std; // [count] standard uncertainties by those of the design and its
+                              // material, NAN: not known; owned, NULL: none are known
+  struct dea_event *events;   // of a path
   size_t event_count, event_room;
   bool listed;       // the summary lists its points under its kind
   bool complete;     // false: stopped early; `stopped` says why
@@ -65,6 +67,7 @@ struct dea_provenance {
 };
 
 struct dea_checkpoint_sink; // result/checkpoint.h
+struct dea_rerun;           // study/rerun.h
 
 struct dea_result {
   const struct dea_design *design; // lent
@@ -82,6 +85,7 @@ struct dea_result {
   size_t table_count;
   double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
   const struct dea_checkpoint_sink *checkpoint; // lent, NULL for none
+  const struct dea_rerun *rerun;                // lent, NULL for none: no bands
   struct dea_provenance provenance;
 };
 

@@ -199,6 +199,31 @@ dea_status dea_device_param_find(struct dea_context *ctx,
                      : from_key(ctx, source, name, out, good);
 }
 
+dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
+                                const struct dea_label *text, double *std, bool *good)
+{
+  char own[DEA_TITLE_SIZE], example[32], why[DEA_WHY_SIZE] = "";
+  const struct dea_measure due = {param->param.unit, example};
+  *good = false;
+  snprintf(own, sizeof own, "%s", text->text);
+  snprintf(example, sizeof example, "2 %.16s", param->param.unit);
+  const char *state = dea_device_param_take_state(own);
+  if (state[0] != '\0' && strcmp(state, param->state) != 0) {
+    return dea_finding_add(ctx, DEA_ERROR, text->location,
+                           "%.60s is a length%s in the design: its std has to be one too",
+                           param->param.name, param->state);
+  }
+  if (!dea_units_read(ctx, own, due, std, why)) {
+    DEA_TRY(ctx, why[0] == '\0' ? dea_context_status(ctx) : DEA_OK);
+    return dea_finding_add(ctx, DEA_ERROR, text->location, "std: %s", why);
+  }
+  if (!(*std > 0)) {
+    return dea_finding_add(ctx, DEA_ERROR, text->location, "a standard uncertainty is more than 0");
+  }
+  *good = true;
+  return DEA_OK;
+}
+
 // The device with other values --------------------------------------------------------------------
 
 void dea_device_param_text(const struct dea_device_param *param, double value, int digits,

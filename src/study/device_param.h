@@ -28,6 +28,9 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
 /* Takes " stretched" or " unstretched" off the end of a text, and returns it, "" for neither;
  * static storage. */
 const char *dea_device_param_take_state(char *text);
+/* Its standard uncertainty from a text, "2 um". *good: false after a finding at its place. */
+dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
+                                const struct dea_label *text, double *std, bool *good);
 /* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
 void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
                            char out[80]);

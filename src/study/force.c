@@ -297,6 +297,7 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
   for (size_t i = 0; i < stops.count; i++) {
     struct dea_curve part = *stops.curve; // lent points: a curve of one stop
     part.points = stops.curve->points + stops.first[i];
+    part.std = stops.curve->std != NULL ? stops.curve->std + stops.first[i] : NULL;
     part.count = stops.first[i + 1] - stops.first[i];
     struct dea_series look = stop_style(i);
     snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);

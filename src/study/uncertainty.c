@@ -1,0 +1,494 @@
+/* Study "uncertainty": what the standard uncertainties of the design and of its film's material do
+ * to the curves of other studies, to first order (docs/theory/fit.md, "What follows"):
+ *
+ *   std(q)^2 = g' C g,   g_j = dq/dp_j,   C_jk = s_j s_k rho_jk
+ *
+ * q    any quantity of a load point              its unit
+ * p_j  a number of the design or of the law      its unit
+ * s_j  its standard uncertainty                  its unit
+ * rho  correlations                              1
+ *
+ * g by central differences over +-s_j (not less than a step that the solution can resolve), or to
+ * one side where the other has no answer. */
+#include "base/schema.h"
+#include "base/yaml_write.h"
+#include "study/rerun.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char study_name[] = "uncertainty";
+
+/* Studies whose curves get a band; their points stand at the same places whatever the device. */
+static const char *const kinds[] = {"sweep", "force", "loading"};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+// Keys -------------------------------------------------------------------------------------------
+
+enum {
+  GIVEN_MAX = DEA_DEVICE_PARAMS_MAX,
+  PARAMS_MAX = GIVEN_MAX + DEA_LAW_PARAM_MAX,
+  PAIRS_MAX = GIVEN_MAX * (GIVEN_MAX - 1) / 2,
+};
+
+struct given {
+  struct dea_label name, std;
+};
+
+/* Settings of compute.uncertainty. */
+struct settings {
+  struct given parameters[GIVEN_MAX];
+  size_t parameter_count;
+  struct dea_quantity correlations[PAIRS_MAX]; // (2,1), (3,1), (3,2), ...
+  size_t correlation_count;                    // 0: none correlate
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+static const struct dea_field given_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct given, name),
+     .required = true,
+     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
+            "film.law.NAME of a parameter of the law",
+     .example = "film.thickness"},
+    {.key = "std",
+     .kind = DEA_FIELD_LABEL,
+     .offset = offsetof(struct given, std),
+     .required = true,
+     .doc = "its standard uncertainty",
+     .example = "2 um"},
+};
+static const struct dea_record given_record = {"parameter", "a number that is uncertain",
+                                               given_fields,
+                                               sizeof given_fields / sizeof given_fields[0]};
+
+static const struct dea_field fields[] = {
+    {.key = "parameters",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(parameters),
+     .record = &given_record,
+     .list_min = 1,
+     .list_max = GIVEN_MAX,
+     .element_size = sizeof(struct given),
+     .count_offset = AT(parameter_count),
+     .absent_text = "those of the film's law",
+     .doc = "what is uncertain, beside the parameters of the film's law whose uncertainty its "
+            "material gives",
+     .example = "[{name: film.thickness, std: 2 um}]"},
+    {.key = "correlations",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(correlations),
+     .unit = "1",
+     .min = -1,
+     .max = 1,
+     .list_min = 1,
+     .list_max = PAIRS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(correlation_count),
+     .absent_text = "none",
+     .doc = "correlations of these parameters: 2 with 1, 3 with 1, 3 with 2, ...",
+     .example = "[-0.3]"},
+};
+
+static const struct dea_record record = {
+    study_name,
+    "study of what uncertain numbers do to the curves, made of plane models where some are known, "
+    "of 3d when this section is there ({})",
+    fields, sizeof fields / sizeof fields[0]};
+
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_settings *given)
+{
+  (void)design;
+  const struct settings *settings = given->values;
+  const size_t n = settings->parameter_count, wanted = n > 0 ? n * (n - 1) / 2 : 0;
+  if (settings->correlation_count == 0 || settings->correlation_count == wanted) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, settings->correlations[0].location,
+                         "%zu correlations where %zu parameters have %zu",
+                         settings->correlation_count, n, wanted);
+}
+
+static const struct dea_design_section section = {
+    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+
+// What is uncertain -------------------------------------------------------------------------------
+
+struct work {
+  struct dea_context *ctx;
+  const struct dea_model_type *type;
+  struct dea_result *result;
+  struct dea_design_bytes file; // the design as it was read, with what --set changed
+  struct dea_text text;         // behind it
+  struct dea_device_param params[PARAMS_MAX];
+  double value[PARAMS_MAX], std[PARAMS_MAX];
+  char std_text[PARAMS_MAX][40]; // as written, or in SI
+  double correlation[PARAMS_MAX][PARAMS_MAX];
+  size_t count;
+  struct dea_result *plus[PARAMS_MAX], *minus[PARAMS_MAX]; // NULL: no answer there
+  double step[PARAMS_MAX];
+};
+
+static dea_status add_given(struct work *w, const struct given *given, bool *good)
+{
+  const struct dea_device_param_source source = {.design = w->result->design,
+                                                 .device = w->result->device};
+  struct dea_device_param *param = &w->params[w->count];
+  double std;
+  DEA_TRY(w->ctx, w->result->rerun->find(w->ctx, &source, &given->name, param, good));
+  if (!*good) {
+    return DEA_OK;
+  }
+  if (isnan(param->designed)) {
+    *good = false;
+    return dea_finding_add(w->ctx, DEA_ERROR, given->name.location,
+                           "the design has no single value of %.60s", given->name.text);
+  }
+  DEA_TRY(w->ctx, w->result->rerun->read_std(w->ctx, param, &given->std, &std, good));
+  if (!*good) {
+    return DEA_OK;
+  }
+  snprintf(w->std_text[w->count], sizeof w->std_text[0], "%.39s", given->std.text);
+  w->value[w->count] = param->designed;
+  w->std[w->count++] = std;
+  return DEA_OK;
+}
+
+/* The parameters of the film's law that the section does not name. */
+static void add_law(struct work *w)
+{
+  const struct dea_material *film = &w->result->device->film;
+  size_t of[DEA_LAW_PARAM_MAX], first = w->count;
+  for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
+    bool named = false;
+    for (size_t j = 0; j < first; j++) {
+      named = named || (w->params[j].kind == DEA_DEVICE_LAW && w->params[j].index == i);
+    }
+    if (named || !(film->param_std[i] > 0)) {
+      continue;
+    }
+    struct dea_device_param *param = &w->params[w->count];
+    *param = (struct dea_device_param){
+        .kind = DEA_DEVICE_LAW, .state = "", .index = i, .designed = film->param[i]};
+    param->param.unit = film->law->params[i].unit;
+    snprintf(param->param.name, sizeof param->param.name, "film.law.%.30s",
+             film->law->params[i].key);
+    const bool bare = strcmp(param->param.unit, "1") == 0;
+    snprintf(w->std_text[w->count], sizeof w->std_text[0], "%.3g%s%.20s", film->param_std[i],
+             bare ? "" : " ", bare ? "" : param->param.unit);
+    of[w->count - first] = i;
+    w->value[w->count] = film->param[i];
+    w->std[w->count++] = film->param_std[i];
+  }
+  for (size_t a = first; a < w->count; a++) {
+    for (size_t b = first; b < w->count; b++) {
+      w->correlation[a][b] = film->correlation[of[a - first]][of[b - first]];
+    }
+  }
+}
+
+static dea_status find_params(struct work *w, const struct settings *settings)
+{
+  const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
+  size_t next = 0;
+  for (size_t j = 0; j < settings->parameter_count; j++) {
+    bool good;
+    DEA_TRY(w->ctx, add_given(w, &settings->parameters[j], &good));
+  }
+  if (dea_finding_count(w->ctx, DEA_ERROR) > errors) {
+    return dea_fail(w->ctx, DEA_E_DESIGN, "compute.uncertainty names what cannot be uncertain");
+  }
+  for (size_t a = 0; a < w->count; a++) {
+    for (size_t b = 0; b < a && settings->correlation_count > 0; b++) {
+      w->correlation[a][b] = w->correlation[b][a] = settings->correlations[next++].si;
+    }
+  }
+  add_law(w);
+  for (size_t a = 0; a < w->count; a++) {
+    w->correlation[a][a] = 1;
+  }
+  return DEA_OK;
+}
+
+// Other values ------------------------------------------------------------------------------------
+
+/* The studies that have a band, of the device with p; *out: NULL where it cannot be built. */
+static dea_status take(struct work *w, const double *p, struct dea_result **out)
+{
+  const char *names[KINDS];
+  size_t count = 0;
+  for (size_t k = 0; k < KINDS; k++) {
+    const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kinds[k]);
+    if (curve != NULL && curve->count > 0) {
+      names[count++] = kinds[k];
+    }
+  }
+  return w->result->rerun->run(w->ctx, w->type, &w->file, w->params, w->count, p, names, count,
+                               out);
+}
+
+static dea_status vary(struct work *w)
+{
+  const double least = w->type->load != NULL ? 5e-3 : 1e-3; // of the value
+  char what[DEA_NAME_SIZE + 16];
+  snprintf(what, sizeof what, "%s uncertainty", w->type->name);
+  const size_t errors = dea_finding_trial_begin(w->ctx);
+  dea_status status = DEA_OK;
+  for (size_t j = 0; j < w->count && status == DEA_OK; j++) {
+    double p[PARAMS_MAX];
+    memcpy(p, w->value, w->count * sizeof *p);
+    w->step[j] = fmax(w->std[j], least * fabs(w->value[j]));
+    p[j] = w->value[j] + w->step[j];
+    status = take(w, p, &w->plus[j]);
+    p[j] = w->value[j] - w->step[j];
+    status = status == DEA_OK ? take(w, p, &w->minus[j]) : status;
+    dea_progress(w->ctx, what, j + 1, w->count);
+  }
+  dea_finding_trial_end(w->ctx, errors);
+  return status;
+}
+
+// The bands ---------------------------------------------------------------------------------------
+
+/* Places of a point, which do not change with the device, and what is no answer of it. */
+static bool is_answer(int column)
+{
+  static const char *const keys[] = {"voltage_V",
+                                     "time_s",
+                                     "source_voltage_V",
+                                     "tip_depth_m",
+                                     "nominal_field_V_per_m",
+                                     "breakdown_probability",
+                                     "centre_z_error_m",
+                                     "fibre_tip_z_error_m",
+                                     "electrode_edge_u_error_m",
+                                     "compression_ratio",
+                                     "pull_in_distance_V"};
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+    if (strcmp(dea_point_columns[column].key, keys[k]) == 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Value of a column of the varied device at that point of a curve; NAN: it has no such point. */
+static double varied(const struct work *w, const struct dea_result *result,
+                     const struct dea_curve *curve, size_t i, int column)
+{
+  const struct dea_curve *other =
+      result != NULL ? dea_result_find(result, w->type->name, curve->kind) : NULL;
+  if (other == NULL || i >= other->count) {
+    return NAN;
+  }
+  return dea_point_get(&other->points[i], column);
+}
+
+/* dq/dp_j, NAN where there is none. */
+static double slope(const struct work *w, const struct dea_curve *curve, size_t i, int column,
+                    size_t j)
+{
+  const double own = dea_point_get(&curve->points[i], column);
+  const double up = varied(w, w->plus[j], curve, i, column);
+  const double down = varied(w, w->minus[j], curve, i, column);
+  if (!isnan(up) && !isnan(down)) {
+    return (up - down) / (2 * w->step[j]);
+  }
+  return isnan(up) ? (own - down) / w->step[j] : (up - own) / w->step[j];
+}
+
+static double std_of(const struct work *w, const struct dea_curve *curve, size_t i, int column)
+{
+  double change[PARAMS_MAX], variance = 0;
+  for (size_t j = 0; j < w->count; j++) {
+    change[j] = slope(w, curve, i, column, j) * w->std[j];
+  }
+  for (size_t a = 0; a < w->count; a++) {
+    for (size_t b = 0; b < w->count; b++) {
+      variance += change[a] * w->correlation[a][b] * change[b];
+    }
+  }
+  return isnan(variance) ? NAN : sqrt(fmax(0, variance));
+}
+
+/* Whether a point is one of several states, of which another device may have found another. */
+static bool is_one_of_several(const struct dea_load_point *point)
+{
+  const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
+  return (dea_load_point_flags(point) & several) != 0;
+}
+
+static dea_status fill_curve(struct work *w, struct dea_curve *curve)
+{
+  struct dea_load_point *std = dea_alloc(w->ctx, curve->count, sizeof *std);
+  if (std == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < curve->count; i++) {
+    std[i] = dea_load_point_empty();
+    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+      if (is_answer(c) && !is_one_of_several(&curve->points[i])) {
+        dea_point_set(&std[i], c, std_of(w, curve, i, c));
+      }
+    }
+  }
+  dea_free(w->ctx, curve->std);
+  curve->std = std;
+  return DEA_OK;
+}
+
+static dea_status fill_bands(struct work *w)
+{
+  for (size_t k = 0; k < KINDS; k++) {
+    for (size_t i = 0; i < w->result->curve_count; i++) {
+      struct dea_curve *curve = &w->result->curves[i];
+      if (strcmp(curve->model, w->type->name) == 0 && strcmp(curve->kind, kinds[k]) == 0 &&
+          curve->count > 0) {
+        DEA_TRY(w->ctx, fill_curve(w, curve));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+// Table -------------------------------------------------------------------------------------------
+
+/* What one standard uncertainty of each does, at the last point that has a band. */
+static const struct dea_result_column effect_columns[] = {
+    {.key = "parameter",
+     .kind = DEA_CELL_TEXT,
+     .title = "uncertain",
+     .meaning = "number of the design or of the film's law; all: of all together"},
+    {.key = "std", .kind = DEA_CELL_TEXT, .title = "std", .meaning = "its standard uncertainty"},
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the other columns"),
+    DEA_NUMBER_COLUMN("electrode_stretch", "1", "%", 100, "strain",
+                      "change of the electrode's stretch by one std"),
+    DEA_NUMBER_COLUMN("fibre_tip_z_m", "m", "um", 1e6, "z tip", "the same of the fibre tip's z"),
+    DEA_NUMBER_COLUMN("centre_z_m", "m", "um", 1e6, "z centre", "the same of the centre's z"),
+    DEA_NUMBER_COLUMN("true_field_V_per_m", "V/m", "V/um", 1e-6, "field",
+                      "the same of the true field"),
+    DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force",
+                      "the same of the force, at the end of that study"),
+};
+static const struct dea_result_table_type effect_table = {
+    .study = study_name,
+    .name = "effects",
+    .title = "what one standard uncertainty changes",
+    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+    .columns = effect_columns,
+    .column_count = sizeof effect_columns / sizeof effect_columns[0]};
+
+/* Last point of a curve that has a band in that column; SIZE_MAX: none, or no such curve. */
+static size_t last_with_band(const struct dea_curve *curve, int column)
+{
+  size_t last = SIZE_MAX;
+  for (size_t i = 0; curve != NULL && curve->std != NULL && i < curve->count; i++) {
+    last = isnan(dea_point_get(&curve->std[i], column)) ? last : i;
+  }
+  return last;
+}
+
+/* Change of a column by one std of parameter j, or with j = count the std of all. */
+static double effect(const struct work *w, const char *kind, const char *key, size_t j)
+{
+  const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kind);
+  const int column = dea_point_column_find(key);
+  const size_t i = last_with_band(curve, column);
+  if (i == SIZE_MAX) {
+    return NAN;
+  }
+  return j < w->count ? slope(w, curve, i, column, j) * w->std[j]
+                      : dea_point_get(&curve->std[i], column);
+}
+
+static dea_status add_table(struct work *w)
+{
+  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
+  const size_t last = last_with_band(sweep, dea_point_column_find("electrode_stretch"));
+  const char *force =
+      dea_result_find(w->result, w->type->name, "force") != NULL ? "force" : "loading";
+  struct dea_result_table *table;
+  DEA_TRY(w->ctx, dea_result_add_table(w->ctx, w->result, &effect_table, w->type->name, 0, &table));
+  for (size_t j = 0; j <= w->count; j++) {
+    const bool all = j == w->count;
+    const struct dea_result_table_value row[] = {
+        {.text = all ? "all" : w->params[j].param.name},
+        {.text = all ? "" : w->std_text[j]},
+        {.number = last < SIZE_MAX ? sweep->points[last].voltage_V : NAN},
+        {.number = effect(w, "sweep", "electrode_stretch", j)},
+        {.number = effect(w, "sweep", "fibre_tip_z_m", j)},
+        {.number = effect(w, "sweep", "centre_z_m", j)},
+        {.number = effect(w, "sweep", "true_field_V_per_m", j)},
+        {.number = effect(w, force, "force_N", j)},
+    };
+    DEA_TRY(w->ctx, dea_result_table_add_row(w->ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+// The study ---------------------------------------------------------------------------------------
+
+static dea_status find_all(struct work *w, const struct dea_settings *given)
+{
+  struct dea_context *ctx = w->ctx;
+  if (w->result->rerun == NULL) { // of who runs single studies by hand
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, find_params(w, given->values));
+  if (w->count == 0) {
+    return given->written ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                            "nothing is known to be uncertain: no bands")
+                          : DEA_OK;
+  }
+  if (w->type->load != NULL && !given->written) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "the film's law has uncertainties: compute.uncertainty ({}) makes bands "
+                           "of model %s too, by two runs more for each of %zu",
+                           w->type->name, w->count);
+  }
+  dea_yaml_write(dea_yaml_root(w->result->design->document), &w->text);
+  if (w->text.failed) {
+    return DEA_E_MEMORY;
+  }
+  w->file =
+      (struct dea_design_bytes){w->result->design->file, dea_text_get(&w->text), w->text.length};
+  DEA_TRY(ctx, vary(w));
+  DEA_TRY(ctx, fill_bands(w));
+  return add_table(w);
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  (void)model; // none: each device has its own
+  struct work *w = dea_alloc(ctx, 1, sizeof *w);
+  if (w == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *w = (struct work){.ctx = ctx, .type = type, .result = result, .text = {.ctx = ctx}};
+  dea_status status = find_all(w, dea_design_settings(result->design, &section));
+  for (size_t j = 0; j < w->count; j++) {
+    dea_result_destroy(ctx, w->plus[j]);
+    dea_result_destroy(ctx, w->minus[j]);
+  }
+  dea_text_free(&w->text);
+  dea_free(ctx, w);
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
+/* Also without the section: a film's law may have uncertainties. */
+static bool asked(const struct dea_design *design)
+{
+  (void)design;
+  return true;
+}
+
+const struct dea_study dea_study_uncertainty = {
+    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run = run};

@@ -1,0 +1,248 @@
+/* Study "uncertainty": bands against closed forms, against the same film at another voltage, and in
+ * the files of a run. */
+#define _GNU_SOURCE // mkdtemp
+#include "design_text.h"
+#include "failing_allocator.h"
+#include "output/csv.h"
+#include "output/results_h5.h"
+#include "output/run_folder.h"
+#include "output/summary.h"
+#include "result/compare.h"
+#include "study/rerun.h"
+
+#include "own_folder.h"
+
+#include <math.h>
+
+#define VOLTAGES "compute:\n  voltage: {values: [0 kV, 3 kV, 5 kV]}\n"
+#define GIVEN                                                                                      \
+  VOLTAGES "  uncertainty:\n"                                                                      \
+           "    parameters: [{name: film.thickness, std: 2 um}, {name: pre_stretch, std: 0.01}]\n" \
+           "    correlations: [0.5]\n"
+
+static const char *const both[] = {"sweep", "uncertainty"};
+static struct dea_design *design;
+static struct dea_device *device;
+static struct dea_result *result;
+
+static void set_up_result(const char *text)
+{
+  dea_status status = read_and_build(ctx, text, NULL, 0, &design, &device);
+  if (status != DEA_OK) {
+    print_findings(ctx);
+  }
+  assert_int_equal(status, DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  result->rerun = &dea_rerun_designs;
+}
+
+static void tear_down_result(void)
+{
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+static const struct dea_curve *run_sweep(const char *model)
+{
+  assert_int_equal(dea_study_run(ctx, dea_model_find(model), both, 2, result), DEA_OK);
+  const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
+  assert_non_null(sweep);
+  return sweep;
+}
+
+/* At rest C goes with l^4 / H, the electrode being given unstretched: 2 % and 4 x 0.01/1.5, of
+ * opposite sign. */
+static void test_capacitance_at_rest(void **state)
+{
+  (void)state;
+  set_up_result(GOOD_DESIGN GIVEN);
+  const struct dea_curve *sweep = run_sweep("lumped");
+  assert_non_null(sweep->std);
+  const double of_h = -0.02, of_l = 4 * 0.01 / 1.5;
+  const double std = sqrt(of_h * of_h + of_l * of_l + 2 * 0.5 * of_h * of_l);
+  assert_close(sweep->std[0].capacitance_F / sweep->points[0].capacitance_F, std, 1e-3, 0);
+  assert_true(isnan(sweep->std[1].voltage_V)); // a place, no answer
+  assert_close(sweep->std[0].electrode_stretch, 0, 0, 1e-12);
+  assert_true(sweep->std[2].electrode_stretch > sweep->std[1].electrode_stretch);
+  tear_down_result();
+}
+
+/* A film whose law is uncertain by the same share in all parameters, which go together. */
+static char *law_design(const char *correlations)
+{
+  static char text[4000];
+  const char *from = "stretch_range: [1, 2], source: test}\n";
+  const char *at = strstr(GOOD_DESIGN, from);
+  assert_non_null(at);
+  snprintf(text, sizeof text,
+           "%.*sstandard_uncertainties: {c1: 3.568 kPa, c2: 0.12 kPa, c3: 0.084 kPa}, "
+           "correlations: %s,\n         %s" VOLTAGES,
+           (int)(at - GOOD_DESIGN), GOOD_DESIGN, correlations, at);
+  return text;
+}
+
+/* All moduli larger by a share r are a voltage that is smaller by r/2. */
+static void test_law_goes_as_voltage(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  for (int m = 0; m < 2; m++) {
+    set_up_result(law_design("[-1, 1, -1]")); // c2 is negative
+    const double r = 0.02;
+    const struct dea_curve *sweep = run_sweep(models[m]);
+    assert_non_null(sweep->std);
+    struct dea_model *model;
+    assert_int_equal(dea_model_create(ctx, dea_model_find(models[m]), design, device, &model),
+                     DEA_OK);
+    for (size_t i = 1; i < 3; i++) {
+      const double V = sweep->points[i].voltage_V, h = 1e-3;
+      struct dea_load_point up, down;
+      const struct dea_model_type *type = dea_model_find(models[m]);
+      assert_int_equal(type->solve(ctx, model, V * (1 - h), &down), DEA_OK);
+      assert_int_equal(type->solve(ctx, model, V * (1 + h), &up), DEA_OK);
+      const double slope = (up.electrode_stretch - down.electrode_stretch) / (2 * h * V);
+      assert_close(sweep->std[i].electrode_stretch, r / 2 * V * slope, 3e-3, 0);
+    }
+    dea_model_find(models[m])->destroy(ctx, model);
+    tear_down_result();
+  }
+}
+
+/* Independent parameters: less than those that go together, and c1 the largest of them. */
+static void test_correlations_count(void **state)
+{
+  (void)state;
+  set_up_result(law_design("[-1, 1, -1]"));
+  const double together = run_sweep("lumped")->std[2].electrode_stretch;
+  const struct dea_result_table *table =
+      dea_result_find_table(result, "lumped", "uncertainty", "effects");
+  assert_non_null(table);
+  assert_int_equal(table->row_count, 4);
+  double sum = 0;
+  for (size_t j = 0; j < 3; j++) {
+    sum += dea_result_table_number(table, j, "electrode_stretch", 0) * (j == 1 ? -1 : 1);
+  }
+  assert_close(fabs(sum), together, 1e-9, 0);
+  assert_close(dea_result_table_number(table, 3, "electrode_stretch", 0), together, 1e-12, 0);
+  double squares = 0;
+  for (size_t j = 0; j < 3; j++) {
+    squares += pow(dea_result_table_number(table, j, "electrode_stretch", 0), 2);
+  }
+  tear_down_result();
+  set_up_result(law_design("[0, 0, 0]"));
+  assert_close(run_sweep("lumped")->std[2].electrode_stretch, sqrt(squares), 1e-9, 0);
+  tear_down_result();
+}
+
+/* Nothing uncertain, no band; and none from what the section does not know. */
+static void test_nothing_and_errors(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *section, *part;
+  } bad[] = {
+      {"{parameters: [{name: film.thicknes, std: 2 um}]}", "did you mean 'film.thickness'"},
+      {"{parameters: [{name: fibres.count, std: 1}]}", "is a whole number"},
+      {"{parameters: [{name: film.thickness, std: 2 kV}]}", "std:"},
+      {"{parameters: [{name: film.thickness, std: 0 um}]}", "more than 0"},
+      {"{parameters: [{name: film.law.mu, std: 1 kPa}]}", "no parameter of the law"},
+  };
+  set_up_result(GOOD_DESIGN VOLTAGES);
+  assert_null(run_sweep("lumped")->std);
+  tear_down_result();
+  for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+    char text[4000];
+    snprintf(text, sizeof text, "%s  uncertainty: %s\n", GOOD_DESIGN VOLTAGES, bad[k].section);
+    set_up_result(text);
+    assert_int_equal(dea_study_run(ctx, dea_model_find("lumped"), both, 2, result), DEA_E_DESIGN);
+    assert_non_null(find_error(ctx, bad[k].part));
+    dea_context_clear(ctx);
+    dea_finding_clear(ctx);
+    tear_down_result();
+  }
+  design = NULL;
+  assert_int_equal(read_and_build(ctx,
+                                  GOOD_DESIGN VOLTAGES
+                                  "  uncertainty: {parameters: [{name: pre_stretch, std: 0.1}],"
+                                  " correlations: [0.1]}\n",
+                                  NULL, 0, &design, &device),
+                   DEA_E_DESIGN);
+  assert_non_null(find_error(ctx, "1 correlations where 1 parameters have 0"));
+  dea_context_clear(ctx);
+  dea_finding_clear(ctx);
+}
+
+/* The band is in results.h5, in the CSV, which reads as a measurement, and in the summary. */
+static void test_is_kept(void **state)
+{
+  (void)state;
+  struct dea_run *run;
+  struct dea_measurement *measured;
+  char *text;
+  set_up_result(GOOD_DESIGN GIVEN);
+  const struct dea_curve *sweep = run_sweep("lumped");
+  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("r.h5")), DEA_OK);
+  assert_int_equal(dea_run_read(ctx, in_folder("r.h5"), &run), DEA_OK);
+  const struct dea_curve *again = dea_result_find(run->result, "lumped", "sweep");
+  assert_non_null(again);
+  assert_non_null(again->std);
+  assert_close(again->std[2].true_field_V_per_m, sweep->std[2].true_field_V_per_m, 0, 0);
+  assert_int_equal(dea_csv_write_curve(ctx, sweep, folder), DEA_OK);
+  assert_int_equal(dea_measurement_read(ctx, in_folder("lumped_sweep.csv"), &measured), DEA_OK);
+  assert_close(measured->std[2].capacitance_F, sweep->std[2].capacitance_F, 1e-11, 0);
+  assert_int_equal(dea_summary_text(ctx, result, &text), DEA_OK);
+  assert_non_null(strstr(text, "\"std\""));
+  dea_free(ctx, text);
+  struct dea_comparison *beside; // with itself: the misfit knows both
+  assert_int_equal(dea_compare_curves(ctx, again, &measured->curve, measured->std,
+                                      dea_point_column_find("capacitance_F"), &beside),
+                   DEA_OK);
+  assert_close(beside->misfits[0].a_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
+  assert_close(beside->misfits[0].b_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
+  dea_comparison_destroy(ctx, beside);
+  dea_measurement_destroy(ctx, measured);
+  dea_run_destroy(ctx, run);
+  tear_down_result();
+}
+
+static void run_once(struct dea_context *failing)
+{
+  struct dea_design *mine = NULL;
+  struct dea_device *its = NULL;
+  struct dea_result *found = NULL;
+  dea_status status = read_and_build(failing, GOOD_DESIGN GIVEN, NULL, 0, &mine, &its);
+  if (status == DEA_OK) {
+    status = dea_result_create(failing, mine, its, &found);
+  }
+  if (status == DEA_OK) {
+    found->rerun = &dea_rerun_designs;
+    status = dea_study_run(failing, dea_model_find("lumped"), both, 2, found);
+  }
+  if (status == DEA_OK) {
+    assert_non_null(dea_result_find(found, "lumped", "sweep")->std);
+  }
+  failing_check(failing, status);
+  dea_result_destroy(failing, found);
+  dea_device_destroy(failing, its);
+  dea_design_destroy(failing, mine);
+}
+
+static void test_failing_memory(void **state)
+{
+  (void)state;
+  assert_true(failing_each(run_once) > 50);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_capacitance_at_rest),
+      cmocka_unit_test(test_law_goes_as_voltage),
+      cmocka_unit_test(test_correlations_count),
+      cmocka_unit_test(test_nothing_and_errors),
+      cmocka_unit_test(test_is_kept),
+      cmocka_unit_test(test_failing_memory),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
