@@ -24,16 +24,7 @@ static dea_status keep_state(struct dea_device_model *model, struct dea_model *m
   struct dea_state now = {0}, *kept = &model->states[stop];
   DEA_TRY(ctx, dea_model_save(ctx, model->type, m, &now));
   dea_state_free_values(ctx, kept);
-  *kept = (struct dea_state){0};
-  for (size_t a = 0; a < now.array_count; a++) {
-    double *values = dea_alloc(ctx, now.arrays[a].count, sizeof *values);
-    if (values == NULL) {
-      return DEA_E_MEMORY;
-    }
-    memcpy(values, now.arrays[a].values, now.arrays[a].count * sizeof *values);
-    kept->arrays[kept->array_count++] =
-        (struct dea_state_array){now.arrays[a].name, now.arrays[a].count, values};
-  }
+  DEA_TRY(ctx, dea_state_copy_values(ctx, &now, kept));
   return DEA_OK;
 }
 

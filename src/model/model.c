@@ -99,6 +99,21 @@ dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *
                             : lacks(ctx, type, "bodies or pressures that are moved");
 }
 
+dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, size_t count, double *stiffness_N_per_m4)
+{
+  return type->soften != NULL ? type->soften(ctx, model, count, stiffness_N_per_m4)
+                              : lacks(ctx, type, "states beside one");
+}
+
+dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_push *push,
+                          struct dea_load_point *out, bool *found)
+{
+  return type->push != NULL ? type->push(ctx, model, push, out, found)
+                            : lacks(ctx, type, "states beside one");
+}
+
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
                           const struct dea_model *model, double voltage_V, double height_m,
                           double *force_N)

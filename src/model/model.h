@@ -61,6 +61,20 @@ struct dea_control {
   int component; // 0 to 2: along x, y, z; 3 to 5: about them
 };
 
+/* Where a search for another state goes off: along a soft mode, or by folding what stands out of
+ * the plane to one side, in all of the device or in some of `parts` equal sectors about its z axis,
+ * the first of them with its middle on +x; what is kept fades out towards the neighbours. */
+enum { DEA_SOFT_MODES_MAX = 40, DEA_PUSH_PARTS_MAX = 32 };
+enum dea_push_kind { DEA_PUSH_MODE, DEA_PUSH_FOLD };
+struct dea_push {
+  enum dea_push_kind kind;
+  int side;           // 1 along the mode, whose largest component is positive, or to +z; or -1
+  size_t mode;        // one of those that `soften` found last, from 0
+  double amplitude_m; // largest displacement along the mode
+  int parts;          // 2 to DEA_PUSH_PARTS_MAX; 0 or 1: everywhere
+  unsigned in;        // sectors that are pushed, bits from 1 on
+};
+
 /* A small excitation of the voltage upon a bias, and the viscous damping of what it moves: a share
  * of the critical damping of each mode, and shares of mass and stiffness. */
 struct dea_ac_excitation {
@@ -123,6 +137,16 @@ struct dea_model_type {
    * the last one, with the control that belongs to it. NULL when the model knows no bodies. */
   dea_status (*move)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_control *control, double value, struct dea_load_point *out);
+  /* The softest motions at the last point solved, ascending: their stiffness by volume [N/m^4],
+   * below 0 for unstable ones. The model keeps their shapes for `push`, until the next call. */
+  dea_status (*soften)(struct dea_context *ctx, struct dea_model *model, size_t count,
+                       double *stiffness_N_per_m4);
+  /* Another stable equilibrium at the voltage of the last point: the film is pushed and goes down
+   * from there; it may come back to where it was. *found: false where it comes to no stable
+   * equilibrium, or the model knows no such push, and is then as it was. soften and push are both
+   * NULL when the model knows one state only. */
+  dea_status (*push)(struct dea_context *ctx, struct dea_model *model, const struct dea_push *push,
+                     struct dea_load_point *out, bool *found);
   /* Force [N] out of the plane that holds the fibre tips at a height [m] at a voltage, whatever was
    * solved last; NULL when the model has no load line. */
   dea_status (*hold)(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
@@ -216,6 +240,11 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
 dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
                           struct dea_model *model, const struct dea_control *control, double value,
                           struct dea_load_point *out);
+dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, size_t count, double *stiffness_N_per_m4);
+dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,
+                          struct dea_model *model, const struct dea_push *push,
+                          struct dea_load_point *out, bool *found);
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
                           const struct dea_model *model, double voltage_V, double height_m,
                           double *force_N);

@@ -133,6 +133,20 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
+                         double *stiffness_N_per_m4)
+{
+  DEA_TRY(ctx, dea_model_soften(ctx, model->type, model->inner, count, stiffness_N_per_m4));
+  return DEA_OK;
+}
+
+static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
+                       struct dea_load_point *out, bool *found)
+{
+  DEA_TRY(ctx, dea_model_push(ctx, model->type, model->inner, way, out, found));
+  return DEA_OK;
+}
+
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
@@ -225,6 +239,8 @@ static const struct dea_model_type of_layouts = {
     .solve = solve,
     .observe = observe,
     .move = move,
+    .soften = soften,
+    .push = push,
     .modes = modes,
     .respond = respond,
     .answers = answers,
@@ -248,6 +264,8 @@ const struct dea_model_type dea_model_3d = {
     .passed = passed,
     .solve = solve,
     .indent = indent,
+    .soften = soften,
+    .push = push,
     .modes = modes,
     .respond = respond,
     .profile = profile,

@@ -49,6 +49,22 @@ const double *dea_state_find(const struct dea_state *state, const char *name, si
   return NULL;
 }
 
+dea_status dea_state_copy_values(struct dea_context *ctx, const struct dea_state *state,
+                                 struct dea_state *out)
+{
+  out->array_count = 0;
+  for (size_t i = 0; i < state->array_count; i++) {
+    const struct dea_state_array *from = &state->arrays[i];
+    double *values = dea_alloc(ctx, from->count, sizeof *values);
+    if (values == NULL) {
+      return DEA_E_MEMORY;
+    }
+    memcpy(values, from->values, from->count * sizeof *values);
+    out->arrays[out->array_count++] = (struct dea_state_array){from->name, from->count, values};
+  }
+  return DEA_OK;
+}
+
 void dea_state_free_values(struct dea_context *ctx, struct dea_state *state)
 {
   for (size_t i = 0; i < state->array_count; i++) {

@@ -39,6 +39,10 @@ dea_status dea_state_add_mark(struct dea_context *ctx, struct dea_state *state, 
 /* The array of that name and length, NULL when there is none; lent. */
 const double *dea_state_find(const struct dea_state *state, const char *name, size_t count);
 
+/* Copies the arrays of a state, not its marks; values of out, which start as none: owned by the
+ * caller, also after a failure. */
+dea_status dea_state_copy_values(struct dea_context *ctx, const struct dea_state *state,
+                                 struct dea_state *out);
 /* Frees the values of a state that owns them. */
 void dea_state_free_values(struct dea_context *ctx, struct dea_state *state);
 

@@ -11,6 +11,7 @@
   X(dea_study_transient)                                                                           \
   X(dea_study_modal)                                                                               \
   X(dea_study_frequency)                                                                           \
+  X(dea_study_states)                                                                              \
   X(dea_study_convergence)                                                                         \
   X(dea_study_compare_design)                                                                      \
   X(dea_study_operating_map)                                                                       \

@@ -1,4 +1,5 @@
 #include "model/solid/adapter/buckling_branch.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
@@ -85,4 +86,22 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
   dea_status status = dea_solid_push(ctx, solid, push, on_side, &wanted, report, moved);
   dea_free(ctx, push);
   return status;
+}
+
+void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_grid *grid,
+                              const struct dea_fibre_disc *plate, int sign, double *out)
+{
+  const struct wanted wanted = {.grid = grid, .plate = plate, .sign = sign};
+  const double *u = solid->state.u;
+  double h = plate->film_thickness;
+  for (size_t n = 0, end; n < grid->node_count; n = end) {
+    double middle[3];
+    find_middle(&wanted, u, n, &end, middle);
+    double far = hypot(middle[2], h), slope = sign * middle[2] / far;
+    for (size_t k = 3 * n; k < 3 * end; k += 3) {
+      out[k] = (slope - 1) * (u[k] - middle[0]);
+      out[k + 1] = (slope - 1) * (u[k + 1] - middle[1]);
+      out[k + 2] = sign * (far - h) - middle[2];
+    }
+  }
 }

@@ -14,4 +14,10 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
                                     enum dea_buckling_branch side, struct dea_solid_report *report,
                                     bool *moved);
 
+/* What folds the film to one side of the middle plane (sign: 1 the fibres', -1 the other): its
+ * middle goes from z to sign (sqrt(z^2 + h^2) - h), with the film's thickness h, so that there is
+ * no crease, and each column leans as that slopes. out: [node_count][3]. */
+void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_grid *grid,
+                              const struct dea_fibre_disc *plate, int sign, double *out);
+
 #endif

@@ -924,6 +924,20 @@ static void mark_layout(const struct dea_layout *l, struct marks *marks)
   }
 }
 
+static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
+                         double *stiffness_N_per_m4)
+{
+  DEA_TRY(ctx, dea_standing_soften(ctx, &model->at, count, stiffness_N_per_m4));
+  return DEA_OK;
+}
+
+static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
+                       struct dea_load_point *out, bool *found)
+{
+  DEA_TRY(ctx, dea_standing_push(ctx, &model->at, way, NULL, out, found));
+  return DEA_OK;
+}
+
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
   DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
@@ -1101,6 +1115,8 @@ const struct dea_model_type dea_solid_layout_module = {
     .passed = passed,
     .observe = observe,
     .move = move,
+    .soften = soften,
+    .push = push,
     .modes = modes,
     .respond = respond,
     .answers = answers,

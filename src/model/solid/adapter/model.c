@@ -452,6 +452,27 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
+static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
+                         double *stiffness_N_per_m4)
+{
+  DEA_TRY(ctx, dea_standing_soften(ctx, &model->at, count, stiffness_N_per_m4));
+  return DEA_OK;
+}
+
+static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
+                       struct dea_load_point *out, bool *found)
+{
+  double *fold = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fold);
+  if (dea_solid_any(fold == NULL)) {
+    dea_free(ctx, fold);
+    return DEA_E_MEMORY;
+  }
+  dea_buckling_branch_fold(model->solid, model->grid, &model->actuator.plate, way->side, fold);
+  dea_status status = dea_standing_push(ctx, &model->at, way, fold, out, found);
+  dea_free(ctx, fold);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
   DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
@@ -503,6 +524,8 @@ const struct dea_model_type dea_solid_module = {
     .limit = limit,
     .passed = passed,
     .indent = indent,
+    .soften = soften,
+    .push = push,
     .modes = modes,
     .respond = respond,
     .profile = profile,

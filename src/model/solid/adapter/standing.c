@@ -1,14 +1,28 @@
 #include "model/solid/adapter/standing.h"
 
 #include "model/solid/adapter/state.h"
+#include "model/solid/assembly/problem.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
+
+#include <math.h>
 
 enum { VOLTAGE, LEFT_A_STATE, NUMBERS };
 static const char own_name[] = "model";
+static const double pi = 3.14159265358979323846;
 
-void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing)
+static void end_history(struct dea_context *ctx, struct dea_standing *standing)
 {
   dea_circuit_step_destroy(ctx, standing->driven);
   standing->driven = NULL;
+}
+
+void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing)
+{
+  end_history(ctx, standing);
+  dea_free(ctx, standing->soft);
+  standing->soft = NULL;
+  standing->soft_count = 0;
 }
 
 // Equilibria -------------------------------------------------------------------------------------
@@ -34,12 +48,99 @@ const struct dea_event *dea_standing_passed(const struct dea_standing *standing)
   return dea_ending_passed(&standing->ending);
 }
 
+// Other states -----------------------------------------------------------------------------------
+
+dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *standing, size_t count,
+                               double *stiffness_N_per_m4)
+{
+  struct dea_solid *solid = standing->ending.owner.solid;
+  size_t moves = 3 * solid->problem.grid->node_count;
+  dea_standing_end_history(ctx, standing);
+  dea_standing_free(ctx, standing);
+  if (count == 0 || count > DEA_SOFT_MODES_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d soft modes can be asked for", DEA_SOFT_MODES_MAX);
+  }
+  standing->soft = dea_alloc(ctx, count * moves, sizeof *standing->soft);
+  if (dea_solid_any(standing->soft == NULL)) {
+    dea_standing_free(ctx, standing);
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, count, stiffness_N_per_m4,
+                                      standing->soft));
+  standing->soft_count = count;
+  return DEA_OK;
+}
+
+/* Share of a mode that a push keeps at a place: 1 in the middle of a sector, 1/2 on its border
+ * where the next one is left out. */
+static double kept_share(const struct dea_push *push, const double X[3])
+{
+  double share = 0;
+  if (push->parts < 2) {
+    return 1;
+  }
+  double at = atan2(X[1], X[0]) / (2 * pi) * push->parts;
+  for (int k = 0; k < push->parts; k++) {
+    double away = at - k - push->parts * round((at - k) / push->parts);
+    if ((push->in >> k & 1) != 0 && fabs(away) < 1) {
+      share += pow(cos(0.5 * pi * away), 2);
+    }
+  }
+  return share;
+}
+
+/* The push as displacements [node_count][3]: of a mode, which is NULL for what is a fold. */
+static void set_push(const struct dea_grid *grid, const struct dea_push *push, const double *mode,
+                     const double *fold, double *out)
+{
+  double most = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    double share = kept_share(push, grid->X + 3 * n);
+    for (size_t i = 3 * n; i < 3 * n + 3; i++) {
+      out[i] = share * (mode != NULL ? mode[i] : fold[i]);
+      most = fmax(most, fabs(out[i]));
+    }
+  }
+  double scale = mode != NULL && most > 0 ? push->side * push->amplitude_m / most : 1;
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    out[i] *= scale;
+  }
+}
+
+dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_push *push, const double *fold,
+                             struct dea_load_point *out, bool *found)
+{
+  const struct dea_ending_owner *owner = &standing->ending.owner;
+  const struct dea_grid *grid = owner->solid->problem.grid;
+  bool folds = push->kind == DEA_PUSH_FOLD;
+  size_t moves = 3 * grid->node_count;
+  *found = false;
+  if (folds && fold == NULL) {
+    return DEA_OK;
+  }
+  if ((!folds && push->mode >= standing->soft_count) || push->parts > DEA_PUSH_PARTS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a push along mode %zu of %zu soft ones, in %d parts",
+                    push->mode + 1, standing->soft_count, push->parts);
+  }
+  double *way = dea_alloc(ctx, moves, sizeof *way);
+  if (dea_solid_any(way == NULL)) {
+    dea_free(ctx, way);
+    return DEA_E_MEMORY;
+  }
+  set_push(grid, push, folds ? NULL : standing->soft + push->mode * moves, fold, way);
+  dea_status status = dea_solid_push(ctx, owner->solid, way, NULL, NULL, &standing->report, found);
+  dea_free(ctx, way);
+  DEA_TRY(ctx, status);
+  return *found ? owner->point(ctx, owner->model, standing->voltage_V, out) : DEA_OK;
+}
+
 // In time ----------------------------------------------------------------------------------------
 
 void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing)
 {
   if (standing->driven != NULL) {
-    dea_standing_free(ctx, standing);
+    end_history(ctx, standing);
     standing->voltage_V = dea_solid_voltage(standing->ending.owner.solid);
   }
 }

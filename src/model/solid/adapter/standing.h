@@ -15,9 +15,11 @@ struct dea_standing {
   bool left_a_state;               // a state was left on the way to here: there are several
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
+  double *soft;                    // [soft_count][3 node_count] softest modes; owned
+  size_t soft_count;
 };
 
-/* Ends a history in time. */
+/* Ends a history in time and forgets soft modes. */
 void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing);
 
 /* `solve`, `limit` and `passed` of struct dea_model_type. */
@@ -25,6 +27,14 @@ dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *stan
                               double voltage_V, struct dea_load_point *out);
 const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
 const struct dea_event *dea_standing_passed(const struct dea_standing *standing);
+
+/* `soften` and `push` of it. fold: [node_count][3] what a push of that kind does; NULL: none is
+ * known. */
+dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *standing, size_t count,
+                               double *stiffness_N_per_m4);
+dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_push *push, const double *fold,
+                             struct dea_load_point *out, bool *found);
 
 /* `begin`, `advance` and `accept`. driven: lent until the history ends; its solid is the owner's.
  */

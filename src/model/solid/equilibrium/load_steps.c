@@ -220,6 +220,19 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
   return DEA_OK;
 }
 
+/* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
+ * unstable modes. */
+static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid *s,
+                                      struct dea_solid_report *report)
+{
+  dea_status status = descend_from(ctx, s, 0, report);
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  return status;
+}
+
 /* ---- from a stable equilibrium to another ---- */
 
 /* dea_solid_push from state, which is that of the solid. */
@@ -250,7 +263,11 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   DEA_TRY(ctx, dea_solid_agree(ctx, state != NULL ? DEA_OK : DEA_E_MEMORY));
   dea_solid_state_get(s, state);
   dea_status status = solve_pushed(ctx, s, push_m, report);
-  *found = status == DEA_OK && report->unstable_modes == 0 && accept(self, s->state.u);
+  if (status == DEA_OK && report->unstable_modes > 0 && accept == NULL) {
+    status = descend_if_possible(ctx, s, report);
+  }
+  *found = status == DEA_OK && report->unstable_modes == 0 &&
+           (accept == NULL || accept(self, s->state.u));
   if (!*found) {
     dea_solid_state_set(s, state);
     *report = before;
@@ -269,19 +286,6 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
 {
   solid->settings.accept_unstable = stay;
-}
-
-/* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
- * unstable modes. */
-static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid *s,
-                                      struct dea_solid_report *report)
-{
-  dea_status status = descend_from(ctx, s, 0, report);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    return DEA_OK;
-  }
-  return status;
 }
 
 /* path->at: the controls a share of the way to the goal, to the solid. */

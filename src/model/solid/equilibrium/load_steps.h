@@ -25,8 +25,9 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_report *report);
 
 /* Looks for another equilibrium at the same voltage and loads: down from displacements + push_m
- * [node_count][3] (what is held stays), to a stable one that is accepted. Where that finds none the
- * solid stays where it was, *found is false and *report as it was. */
+ * [node_count][3] (what is held stays), to a stable one that is accepted. accept: NULL takes any,
+ * also one that an unstable equilibrium found there leads down to. Where that finds none the solid
+ * stays where it was, *found is false and *report as it was. */
 dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
                           bool (*accept)(const void *self, const double *displacement_m),
                           const void *self, struct dea_solid_report *report, bool *found);

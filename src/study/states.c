@@ -1,0 +1,855 @@
+/* Study "states": the stable equilibria of a film that has lost its tension, at a few voltages, how
+ * each is reached, where each ends, and the band of what a sensor reads over them
+ * (docs/theory/states.md). */
+#include "base/schema.h"
+#include "study/study.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char study_name[] = "states";
+
+// Keys -------------------------------------------------------------------------------------------
+
+enum { PUSHES_MAX = 6 };
+
+/* Settings of compute.states. */
+struct settings {
+  struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: quarters of the highest
+  struct dea_quantity pushes_m[PUSHES_MAX];             // rising
+  size_t voltage_count, push_count;
+  struct dea_quantity modes, most, apart_m;
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+static const struct dea_field fields[] = {
+    DEA_STUDY_STOPS_FIELD("quarters of the highest",
+                          "voltages at which states are looked for; they are followed up and down "
+                          "between neighbours",
+                          "[7 kV, 7.5 kV, 8 kV]"),
+    {.key = "modes",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(modes),
+     .unit = "1",
+     .min = 0,
+     .max = DEA_SOFT_MODES_MAX,
+     .default_text = "6",
+     .doc = "softest motions of each state that it is pushed along, to either side",
+     .example = "6"},
+    {.key = "push",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(pushes_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 0.1,
+     .default_text = "[200 um, 400 um]",
+     .list_min = 1,
+     .list_max = PUSHES_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(push_count),
+     .doc = "largest displacements of the pushes",
+     .example = "[50 um, 100 um, 200 um]"},
+    {.key = "apart",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(apart_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 0.01,
+     .default_text = "1 um",
+     .doc = "states are one where the root mean square of what their films differ by is less",
+     .example = "1 um"},
+    {.key = "most",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(most),
+     .unit = "1",
+     .min = 1,
+     .max = 100,
+     .default_text = "8",
+     .doc = "states at a voltage from which on no more are looked for there",
+     .example = "8"},
+};
+
+static const struct dea_record record = {
+    study_name,
+    "study of states, made when this section is there ({}) or with --study: the stable equilibria "
+    "of a slack film at voltages (3d)",
+    fields, COUNT(fields)};
+
+static const struct dea_design_section section = {
+    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+
+// States -----------------------------------------------------------------------------------------
+
+static const double taut_below = 0.1;   // compression ratio of a film that has one state only
+static const double energy_same = 1e-8; // relative: of copies of one state by symmetry
+enum { NONE = -1, UP = 0, DOWN = 1, NOTE_SIZE = 64, NAME_SIZE = 24 };
+
+struct state {
+  struct dea_load_point point;
+  struct dea_state saved; // values owned
+  double *u;              // [3 point_count] of the film's middle surface; owned
+  size_t point_count;
+  size_t level;
+  double stiffness_N_per_m4; // of the softest motion; NAN: not searched
+  char reached[NOTE_SIZE];
+  int leads[2];   // up and down: the state at the next level, NONE where it comes to none
+  bool led[2];    // that is known
+  bool searched;  // or given up
+  size_t copies;  // of it by symmetry that were found
+  size_t variant; // of the result that it belongs to, from 0 in this study
+};
+
+struct search {
+  struct dea_context *ctx;
+  const struct dea_model_type *type;
+  struct dea_model *model; // owned
+  const struct settings *settings;
+  struct dea_result *result;
+  double voltages_V[DEA_DESIGN_STOPS_MAX];
+  size_t level_count; // reached
+  struct state *states;
+  size_t count, room;
+  bool whole; // no plane of symmetry: each fibre goes its own way
+  int parts;  // equal sectors that are pushed one by one; 0: none
+};
+
+static void free_search(struct search *s)
+{
+  for (size_t i = 0; i < s->count; i++) {
+    dea_state_free_values(s->ctx, &s->states[i].saved);
+    dea_free(s->ctx, s->states[i].u);
+  }
+  dea_free(s->ctx, s->states);
+  if (s->model != NULL) {
+    s->type->destroy(s->ctx, s->model);
+  }
+}
+
+/* Displacements of the film where the model is, owned by the caller. */
+static dea_status take_film(struct search *s, double **u, size_t *count)
+{
+  struct dea_context *ctx = s->ctx;
+  struct dea_field_mesh *mesh;
+  *u = NULL;
+  DEA_TRY(ctx, dea_model_fields(ctx, s->type, s->model, DEA_FIELDS_SURFACE, &mesh));
+  *count = mesh->point_count;
+  s->whole = mesh->fold == 0;
+  s->parts = s->whole && mesh->fibres > 1 ? mesh->fibres : 0;
+  *u = dea_alloc(ctx, 3 * mesh->point_count, sizeof **u);
+  if (*u != NULL) {
+    memcpy(*u, dea_field_mesh_find(mesh, "displacement_m")->values,
+           3 * mesh->point_count * sizeof **u);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+  return *u != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+/* Root mean square of what two films differ by. */
+static double distance_m(const double *u, const double *v, size_t count)
+{
+  double sum = 0;
+  for (size_t i = 0; i < 3 * count; i++) {
+    sum += (u[i] - v[i]) * (u[i] - v[i]);
+  }
+  return sqrt(sum / (double)count);
+}
+
+/* Whether a state is a copy of another one by the symmetry of the device: the same energy to the
+ * solver's accuracy, and the same heights. */
+static bool is_copy(const struct search *s, const struct dea_load_point *a,
+                    const struct dea_load_point *b)
+{
+  double apart_m = s->settings->apart_m.si;
+  return s->whole && fabs(a->energy_J - b->energy_J) <= energy_same * fabs(b->energy_J) &&
+         !(fabs(a->highest_z_m - b->highest_z_m) > apart_m) &&
+         !(fabs(a->lowest_z_m - b->lowest_z_m) > apart_m);
+}
+
+/* The state at a level that the model is at, NONE for a new one. */
+static int find_state(struct search *s, size_t level, const struct dea_load_point *point,
+                      const double *u)
+{
+  for (size_t i = 0; i < s->count; i++) {
+    struct state *state = &s->states[i];
+    if (state->level != level) {
+      continue;
+    }
+    if (distance_m(state->u, u, state->point_count) < s->settings->apart_m.si) {
+      return (int)i;
+    }
+    if (is_copy(s, point, &state->point)) {
+      state->copies++;
+      return (int)i;
+    }
+  }
+  return NONE;
+}
+
+static dea_status keep_model(struct search *s, struct dea_state *kept)
+{
+  struct dea_state now = {0};
+  DEA_TRY(s->ctx, dea_model_save(s->ctx, s->type, s->model, &now));
+  DEA_TRY(s->ctx, dea_state_copy_values(s->ctx, &now, kept));
+  return DEA_OK;
+}
+
+static dea_status make_room(struct search *s)
+{
+  if (s->count < s->room) {
+    return DEA_OK;
+  }
+  struct state *more = dea_alloc(s->ctx, 2 * s->room + 8, sizeof *more);
+  if (more == NULL) {
+    return DEA_E_MEMORY;
+  }
+  if (s->count > 0) {
+    memcpy(more, s->states, s->count * sizeof *more);
+  }
+  dea_free(s->ctx, s->states);
+  s->states = more;
+  s->room = 2 * s->room + 8;
+  return DEA_OK;
+}
+
+/* Adds the state that the model is at where that is new; *index: which one it is. */
+static dea_status add_state(struct search *s, size_t level, const struct dea_load_point *point,
+                            const char *reached, int *index)
+{
+  double *u;
+  size_t count = 0;
+  DEA_TRY(s->ctx, take_film(s, &u, &count));
+  *index = find_state(s, level, point, u);
+  dea_status status = *index == NONE ? make_room(s) : DEA_OK;
+  if (status != DEA_OK || *index != NONE) {
+    dea_free(s->ctx, u);
+    return status;
+  }
+  struct state *state = &s->states[s->count];
+  *state = (struct state){.point = *point,
+                          .u = u,
+                          .point_count = count,
+                          .level = level,
+                          .stiffness_N_per_m4 = NAN,
+                          .leads = {NONE, NONE}};
+  snprintf(state->reached, sizeof state->reached, "%s", reached);
+  *index = (int)s->count++;
+  return keep_model(s, &state->saved);
+}
+
+static size_t states_at(const struct search *s, size_t level)
+{
+  size_t count = 0;
+  for (size_t i = 0; i < s->count; i++) {
+    count += s->states[i].level == level;
+  }
+  return count;
+}
+
+/* Failures that only say that there is nothing that way. */
+static dea_status forgive(struct dea_context *ctx, dea_status status)
+{
+  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED || status == DEA_E_UNSUPPORTED) {
+    return status;
+  }
+  if (status != DEA_OK) {
+    dea_context_clear(ctx);
+  }
+  return DEA_OK;
+}
+
+// Search -----------------------------------------------------------------------------------------
+
+/* Up to each voltage from the one before. */
+static dea_status sweep_up(struct search *s, size_t voltage_count)
+{
+  for (size_t i = 0; i < voltage_count; i++) {
+    struct dea_load_point point;
+    int at;
+    if (dea_interrupted(s->ctx)) {
+      return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted before the search for states");
+    }
+    DEA_TRY(s->ctx, s->type->solve(s->ctx, s->model, s->voltages_V[i], &point));
+    DEA_TRY(s->ctx, add_state(s, i, &point, "up from 0 V", &at));
+    s->level_count = i + 1;
+    if (i > 0) {
+      s->states[i - 1].leads[UP] = at;
+      s->states[i - 1].led[UP] = true;
+    }
+  }
+  return DEA_OK;
+}
+
+/* From a state to the level above or below. */
+static dea_status lead(struct search *s, size_t from, int way)
+{
+  size_t level = s->states[from].level + (way == UP ? 1 : (size_t)-1);
+  struct dea_load_point point;
+  char note[NOTE_SIZE];
+  int to = NONE;
+  s->states[from].led[way] = true;
+  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
+  dea_status status = s->type->solve(s->ctx, s->model, s->voltages_V[level], &point);
+  snprintf(note, sizeof note, "%s from %.4g kV", way == UP ? "up" : "down",
+           1e-3 * s->states[from].point.voltage_V);
+  if (status == DEA_OK && point.stable) {
+    DEA_TRY(s->ctx, add_state(s, level, &point, note, &to));
+  }
+  s->states[from].leads[way] = to;
+  DEA_TRY(s->ctx, forgive(s->ctx, status));
+  return DEA_OK;
+}
+
+/* From a state by one push. */
+static dea_status push(struct search *s, size_t from, const struct dea_push *way, const char *note)
+{
+  struct dea_load_point point;
+  bool found;
+  int to;
+  if (dea_interrupted(s->ctx)) {
+    return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted in the search for states");
+  }
+  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
+  dea_status status = dea_model_push(s->ctx, s->type, s->model, way, &point, &found);
+  if (status == DEA_OK && found) {
+    DEA_TRY(s->ctx, add_state(s, s->states[from].level, &point, note, &to));
+  }
+  DEA_TRY(s->ctx, forgive(s->ctx, status));
+  return DEA_OK;
+}
+
+/* From a state along a mode to either side, with growing pushes; in all of it or in one part. */
+static dea_status push_mode(struct search *s, size_t from, size_t mode, int part)
+{
+  for (int side = 1; side >= -1; side -= 2) {
+    for (size_t a = 0; a < s->settings->push_count; a++) {
+      char note[NOTE_SIZE], where[24] = "";
+      const struct dea_push way = {.side = side,
+                                   .mode = mode,
+                                   .amplitude_m = s->settings->pushes_m[a].si,
+                                   .parts = part < 0 ? 0 : s->parts,
+                                   .in = part < 0 ? 0 : 1u << part};
+      if (states_at(s, s->states[from].level) >= (size_t)s->settings->most.si) {
+        return DEA_OK;
+      }
+      if (part >= 0) {
+        snprintf(where, sizeof where, " at fibre %d", part + 1);
+      }
+      snprintf(note, sizeof note, "mode %zu%c %.0f um%s", mode + 1, side > 0 ? '+' : '-',
+               1e6 * way.amplitude_m, where);
+      DEA_TRY(s->ctx, push(s, from, &way, note));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Pushes a state along its softest motions. */
+static dea_status search_from(struct search *s, size_t from)
+{
+  double stiffness[DEA_SOFT_MODES_MAX];
+  size_t modes = (size_t)s->settings->modes.si;
+  s->states[from].searched = true;
+  if (modes == 0 || s->states[from].point.compression_ratio < taut_below) {
+    return DEA_OK;
+  }
+  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
+  DEA_TRY(s->ctx, dea_model_soften(s->ctx, s->type, s->model, modes, stiffness));
+  s->states[from].stiffness_N_per_m4 = stiffness[0];
+  for (int side = 1; side >= -1; side -= 2) {
+    const struct dea_push fold = {.kind = DEA_PUSH_FOLD, .side = side};
+    DEA_TRY(s->ctx, push(s, from, &fold, side > 0 ? "folded to the fibres" : "folded away"));
+  }
+  for (size_t k = 0; k < modes; k++) {
+    for (int part = -1; part < s->parts; part++) {
+      DEA_TRY(s->ctx, push_mode(s, from, k, part));
+    }
+  }
+  return DEA_OK;
+}
+
+/* What is still to be done with a state; *worked: there was something. */
+static dea_status work_on(struct search *s, size_t i, bool *worked)
+{
+  const struct state *state = &s->states[i];
+  *worked = true;
+  if (!state->led[UP] && state->level + 1 < s->level_count) {
+    return lead(s, i, UP);
+  }
+  if (!state->led[DOWN] && state->level > 0) {
+    return lead(s, i, DOWN);
+  }
+  if (!state->searched) {
+    return search_from(s, i);
+  }
+  *worked = false;
+  return DEA_OK;
+}
+
+/* Until every state was followed and searched. The lists grow on the way. */
+static dea_status search_all(struct search *s)
+{
+  char what[DEA_NAME_SIZE + 16];
+  snprintf(what, sizeof what, "%s states", s->type->name);
+  for (size_t i = 0; i < s->count; i++) {
+    bool worked = true;
+    while (worked) {
+      DEA_TRY(s->ctx, work_on(s, i, &worked));
+    }
+    dea_progress(s->ctx, what, i + 1, s->count);
+  }
+  return DEA_OK;
+}
+
+// Result -----------------------------------------------------------------------------------------
+
+/* Whether two states at neighbouring levels are of one branch: each leads to the other. */
+static bool is_continued(const struct search *s, size_t below, size_t above)
+{
+  return s->states[below].leads[UP] == (int)above && s->states[above].leads[DOWN] == (int)below;
+}
+
+/* Lowest energy first, level by level: the order in which states are shown. */
+static size_t next_state(const struct search *s, size_t level, double above_J)
+{
+  size_t next = s->count;
+  for (size_t i = 0; i < s->count; i++) {
+    const struct state *state = &s->states[i];
+    if (state->level == level && state->point.energy_J > above_J &&
+        (next == s->count || state->point.energy_J < s->states[next].point.energy_J)) {
+      next = i;
+    }
+  }
+  return next;
+}
+
+/* "A" to "Z", "A1", ... */
+static void name_branch(size_t number, char out[NAME_SIZE])
+{
+  int letter = 'A' + (int)(number % 26);
+  if (number < 26) {
+    snprintf(out, NAME_SIZE, "%c", letter);
+  } else {
+    snprintf(out, NAME_SIZE, "%c%zu", letter, number / 26);
+  }
+}
+
+/* A variant of the result for each branch, with the profile at its highest voltage. */
+static dea_status put_state(struct search *s, size_t i, size_t *branches)
+{
+  struct dea_context *ctx = s->ctx;
+  struct state *state = &s->states[i];
+  struct dea_variant *variant = NULL;
+  struct dea_profile profile;
+  char name[NAME_SIZE];
+  state->variant = *branches;
+  for (size_t k = 0; k < s->count; k++) {
+    if (s->states[k].level + 1 == state->level && is_continued(s, k, i)) {
+      state->variant = s->states[k].variant;
+    }
+  }
+  name_branch(state->variant, name);
+  if (state->variant == *branches) {
+    ++*branches;
+    DEA_TRY(ctx, dea_result_add_variant(ctx, s->result, s->type->name, study_name, name, &variant));
+    if (s->type->size != NULL) {
+      s->type->size(s->model, &variant->size);
+      variant->refinement = dea_model_settings_of(s->result->design).refinement;
+    }
+    DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, DEA_OK));
+  }
+  for (size_t k = 0; k < s->result->variant_count; k++) {
+    struct dea_variant *one = &s->result->variants[k];
+    variant = dea_variant_is(one, s->type->name, study_name) && strcmp(one->name, name) == 0
+                  ? one
+                  : variant;
+  }
+  DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &state->point));
+  if (s->type->profile != NULL) {
+    DEA_TRY(ctx, dea_model_load(ctx, s->type, s->model, &state->saved));
+    DEA_TRY(ctx, dea_model_profile(ctx, s->type, s->model, &profile));
+    DEA_TRY(ctx, dea_variant_set_profile(ctx, variant, state->point.voltage_V, &profile));
+  }
+  return DEA_OK;
+}
+
+enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
+
+#define UM(name, head, what) DEA_NUMBER_COLUMN(name, "m", "um", 1e6, head, what)
+#define KV(name, head, what) DEA_NUMBER_COLUMN(name, "V", "kV", 1e-3, head, what)
+#define UJ(name, head, what) DEA_NUMBER_COLUMN(name, "J", "uJ", 1e6, head, what)
+
+static const struct dea_result_column state_columns[] = {
+    KV("voltage_V", "V", "voltage"),
+    {.key = "state",
+     .kind = DEA_CELL_TEXT,
+     .title = "state",
+     .meaning = "its branch: of the same letter where each leads to the other"},
+    UJ("energy_J", "energy", "potential energy, 0 at rest"),
+    UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
+    UM("centre_z_m", "centre", "displacement of the centre"),
+    UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),
+    UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),
+    UM("highest_z_m", "highest", "largest displacement out of the plane"),
+    UM("lowest_z_m", "lowest", "smallest displacement out of the plane"),
+    {.key = "unstable_modes",
+     .kind = DEA_CELL_COUNT,
+     .title = "unstable modes",
+     .meaning = "negative modes of the tangent"},
+    DEA_NUMBER_COLUMN("stiffness_N_per_m4", "N/m^4", "N/m^4", 1, "softest",
+                      "stiffness of the softest motion by volume; none: not searched"),
+    {.key = "flags",
+     .kind = DEA_CELL_TEXT,
+     .title = "flags",
+     .meaning = "how far the numbers are to be trusted"},
+    {.key = "copies",
+     .kind = DEA_CELL_COUNT,
+     .title = "copies",
+     .meaning = "times that it was found again as a copy by symmetry"},
+    {.key = "reached", .kind = DEA_CELL_TEXT, .title = "reached", .meaning = "how, at first"},
+    {.key = "leads_up",
+     .kind = DEA_CELL_TEXT,
+     .title = "leads up to",
+     .meaning = "state at the next voltage; -: none was found"},
+    {.key = "leads_down",
+     .kind = DEA_CELL_TEXT,
+     .title = "down to",
+     .meaning = "state at the voltage before; -: none was found"},
+};
+static const struct dea_result_column band_columns[] = {
+    KV("voltage_V", "V", "voltage"),
+    {.key = "states",
+     .kind = DEA_CELL_COUNT,
+     .title = "states",
+     .meaning = "stable states found, copies by symmetry not counted"},
+    {.key = "lowest",
+     .kind = DEA_CELL_TEXT,
+     .title = "lowest",
+     .meaning = "state of the lowest energy of those found"},
+    {.key = "up",
+     .kind = DEA_CELL_TEXT,
+     .title = "from below",
+     .meaning = "state that the sweep from 0 V comes to"},
+    {.key = "searched",
+     .kind = DEA_CELL_FLAG,
+     .title = "searched",
+     .meaning = "pushed along soft motions; not where the film is taut"},
+    UM("centre_z_min_m", "centre, least", "of all states found"),
+    UM("centre_z_max_m", "centre, most", "of all states found"),
+    UM("fibre_tip_z_min_m", "tip, least", "of all states found"),
+    UM("fibre_tip_z_max_m", "tip, most", "of all states found"),
+    UM("electrode_edge_u_min_m", "edge, least", "of all states found"),
+    UM("electrode_edge_u_max_m", "edge, most", "of all states found"),
+    UM("lowest_z_m", "lowest z", "smallest displacement out of the plane of all states found"),
+    UM("highest_z_m", "highest z", "largest displacement out of the plane of all states found"),
+};
+
+static const struct dea_result_table_type state_table = {.study = study_name,
+                                                         .name = "found",
+                                                         .title = "stable states",
+                                                         .where = ALL,
+                                                         .columns = state_columns,
+                                                         .column_count = COUNT(state_columns)};
+static const struct dea_result_table_type band_table = {.study = study_name,
+                                                        .name = "bands",
+                                                        .title =
+                                                            "what a sensor reads over the states",
+                                                        .where = ALL,
+                                                        .columns = band_columns,
+                                                        .column_count = COUNT(band_columns)};
+
+/* Name of the state that one leads to; "" at the end of the voltages. */
+static void name_lead(const struct search *s, const struct state *state, int way,
+                      char out[NAME_SIZE])
+{
+  if (state->leads[way] == NONE) {
+    snprintf(out, NAME_SIZE, "%s", state->led[way] ? "-" : "");
+  } else {
+    name_branch(s->states[state->leads[way]].variant, out);
+  }
+}
+
+static dea_status put_state_row(const struct search *s, const struct state *state, double lowest_J,
+                                struct dea_result_table *table)
+{
+  const struct dea_load_point *p = &state->point;
+  char name[NAME_SIZE], up[NAME_SIZE], down[NAME_SIZE], flags[DEA_FLAGS_SIZE];
+  name_branch(state->variant, name);
+  name_lead(s, state, UP, up);
+  name_lead(s, state, DOWN, down);
+  const struct dea_result_table_value row[] = {
+      {.number = p->voltage_V},
+      {.text = name},
+      {.number = p->energy_J},
+      {.number = p->energy_J - lowest_J},
+      {.number = p->centre_z_m},
+      {.number = p->fibre_tip_z_m},
+      {.number = p->electrode_edge_u_m},
+      {.number = p->highest_z_m},
+      {.number = p->lowest_z_m},
+      {.number = p->unstable_modes},
+      {.number = state->stiffness_N_per_m4},
+      {.text = dea_flags_text(dea_load_point_flags(p), flags)},
+      {.number = (double)state->copies},
+      {.text = state->reached},
+      {.text = up},
+      {.text = down}};
+  return dea_result_table_add_row(s->ctx, table, row);
+}
+
+/* Least (side -1) or most (1) of a quantity over the states at a level; NAN where it is none. */
+static double extreme(const struct search *s, size_t level, const char *key, int side)
+{
+  int column = dea_point_column_find(key);
+  double out = NAN;
+  for (size_t i = 0; i < s->count; i++) {
+    double value = dea_point_get(&s->states[i].point, column);
+    if (s->states[i].level == level && !(side * value <= side * out)) {
+      out = value;
+    }
+  }
+  return out;
+}
+
+/* States are in the order of levels as the sweep has found them: the first of each. */
+static dea_status put_band_row(const struct search *s, size_t level, const struct state *lowest,
+                               struct dea_result_table *table)
+{
+  char name[NAME_SIZE], up[NAME_SIZE];
+  name_branch(lowest->variant, name);
+  name_branch(s->states[level].variant, up);
+  const struct dea_result_table_value row[] = {
+      {.number = s->voltages_V[level]},
+      {.number = (double)states_at(s, level)},
+      {.text = name},
+      {.text = up},
+      {.number = !isnan(s->states[level].stiffness_N_per_m4)},
+      {.number = extreme(s, level, "centre_z_m", -1)},
+      {.number = extreme(s, level, "centre_z_m", 1)},
+      {.number = extreme(s, level, "fibre_tip_z_m", -1)},
+      {.number = extreme(s, level, "fibre_tip_z_m", 1)},
+      {.number = extreme(s, level, "electrode_edge_u_m", -1)},
+      {.number = extreme(s, level, "electrode_edge_u_m", 1)},
+      {.number = extreme(s, level, "lowest_z_m", -1)},
+      {.number = extreme(s, level, "highest_z_m", 1)},
+  };
+  return dea_result_table_add_row(s->ctx, table, row);
+}
+
+/* Branches are lettered as they come, level by level, and then all rows can be written. */
+static dea_status put_result(struct search *s)
+{
+  struct dea_context *ctx = s->ctx;
+  struct dea_result_table *table;
+  size_t branches = 0;
+  for (size_t level = 0; level < s->level_count; level++) {
+    bool several = states_at(s, level) > 1;
+    for (size_t i = next_state(s, level, -INFINITY); i < s->count;
+         i = next_state(s, level, s->states[i].point.energy_J)) {
+      s->states[i].point.told |= (unsigned)several << DEA_FLAG_STATES;
+      DEA_TRY(ctx, put_state(s, i, &branches));
+    }
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &state_table, s->type->name, 0, &table));
+  for (size_t level = 0; level < s->level_count; level++) {
+    size_t lowest = next_state(s, level, -INFINITY);
+    for (size_t i = lowest; i < s->count; i = next_state(s, level, s->states[i].point.energy_J)) {
+      DEA_TRY(ctx, put_state_row(s, &s->states[i], s->states[lowest].point.energy_J, table));
+    }
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &band_table, s->type->name, 0, &table));
+  for (size_t level = 0; level < s->level_count; level++) {
+    DEA_TRY(ctx, put_band_row(s, level, &s->states[next_state(s, level, -INFINITY)], table));
+  }
+  return DEA_OK;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  (void)model; // none
+  const struct dea_design *design = result->design;
+  const struct settings *settings = dea_design_settings(design, &section)->values;
+  struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
+  if (type->push == NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model %s knows one state at a voltage: no study of states",
+                                 type->name));
+    return DEA_OK;
+  }
+  size_t count =
+      dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
+  qsort(s.voltages_V, count, sizeof *s.voltages_V, compare_numbers);
+  dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
+  dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
+  status = forgive(ctx, swept); // states at the voltages that there are
+  if (status == DEA_OK && s.level_count > 0) {
+    status = search_all(&s);
+  }
+  if (s.level_count > 0 && status != DEA_E_MEMORY) {
+    dea_status put = put_result(&s);
+    status = status == DEA_OK ? put : status;
+  }
+  free_search(&s);
+  return status == DEA_OK && swept != DEA_OK
+             ? dea_fail(ctx, swept, "no states above %.4g kV",
+                        s.level_count > 0 ? 1e-3 * s.voltages_V[s.level_count - 1] : 0)
+             : status;
+}
+
+// Figures ----------------------------------------------------------------------------------------
+
+/* The branch's letter, and of its profile the voltage. */
+static void name_look(struct dea_series *look, const struct dea_variant *variant, bool profile)
+{
+  const struct dea_curve *curve = &variant->curve;
+  bool trusted = curve->count > 0 && dea_load_point_trusted(&curve->points[curve->count - 1]);
+  char at[32] = "";
+  if (profile) {
+    snprintf(at, sizeof at, ", %.4g kV", 1e-3 * variant->profile.voltage_V);
+  }
+  snprintf(look->title, sizeof look->title, "%s%s%s", variant->name, at, trusted ? "" : " (?)");
+}
+
+/* Lowest energy of all states at a voltage. */
+static double lowest_at(const struct dea_result *result, double voltage_V)
+{
+  double lowest_J = INFINITY;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_curve *curve = &result->variants[i].curve;
+    for (size_t k = 0; k < curve->count && strcmp(curve->kind, study_name) == 0; k++) {
+      if (curve->points[k].voltage_V == voltage_V) {
+        lowest_J = fmin(lowest_J, curve->points[k].energy_J);
+      }
+    }
+  }
+  return lowest_J;
+}
+
+/* A number against the voltage, a line with a marker at each point for each branch. */
+static dea_status add_branches(struct dea_context *ctx, struct dea_panel *panel,
+                               const struct dea_result *result, bool energy)
+{
+  size_t number = 0;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_curve *curve = &result->variants[i].curve;
+    struct dea_series look, *series;
+    if (strcmp(curve->kind, study_name) != 0) {
+      continue;
+    }
+    look = dea_figure_style("", number++);
+    look.style = DEA_LINE_MARKED;
+    if (!energy) {
+      name_look(&look, &result->variants[i], false);
+    }
+    DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &look, &series));
+    for (size_t k = 0; k < curve->count; k++) {
+      const struct dea_load_point *p = &curve->points[k];
+      series->values[k] = 1e-3 * p->voltage_V;
+      series->values[curve->count + k] =
+          1e6 * (energy ? p->energy_J - lowest_at(result, p->voltage_V) : p->centre_z_m);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Lowest voltage of all states; INFINITY without any. */
+static double first_V(const struct dea_result *result)
+{
+  double first = INFINITY;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_curve *curve = &result->variants[i].curve;
+    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
+      first = fmin(first, curve->points[0].voltage_V);
+    }
+  }
+  return first;
+}
+
+static dea_status build_states(struct dea_context *ctx, const struct dea_result *result,
+                               struct dea_plot *plot)
+{
+  struct dea_panel *panels = plot->panels;
+  plot->panel_count = 2;
+  DEA_TRY(ctx, add_branches(ctx, &panels[0], result, false));
+  DEA_TRY(ctx, add_branches(ctx, &panels[1], result, true));
+  snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
+  snprintf(panels[1].y_label, DEA_LABEL_SIZE, "Energy above the lowest (\302\265J)");
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    dea_panel_voltage_axis(&panels[p]);
+    if (1e-3 * first_V(result) < panels[p].x_max) {
+      panels[p].x_min = 1e-3 * first_V(result);
+    }
+    dea_panel_even_tics(&panels[p], 7);
+  }
+  panels[0].key = "above horizontal samplen 1.5";
+  return DEA_OK;
+}
+
+static dea_status build_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                 struct dea_plot *plot)
+{
+  struct dea_panel *panel = &plot->panels[0];
+  size_t number = 0;
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    const struct dea_profile_record *shape = &variant->profile;
+    struct dea_series look, *series;
+    if (strcmp(variant->curve.kind, study_name) != 0 || shape->count == 0) {
+      continue;
+    }
+    look = dea_figure_style("", number++);
+    name_look(&look, variant, true);
+    const struct dea_profile profile = dea_profile_of_record(shape);
+    DEA_TRY(ctx, dea_panel_add_as(ctx, panel, shape->count, &look, &series));
+    for (size_t k = 0; k < shape->count; k++) {
+      series->values[k] = 1e3 * shape->columns[k];
+      series->values[shape->count + k] = 1e6 * profile.z_m[k];
+    }
+    dea_figure_sides(panel, shape);
+  }
+  snprintf(panel->y_label, DEA_LABEL_SIZE, "Displacement {/:Italic z} (\302\265m)");
+  snprintf(panel->x_label, DEA_LABEL_SIZE, "Radius in the stretched flat film {/:Italic R} (mm)");
+  dea_panel_even_tics(panel, 7);
+  panel->key = "above horizontal samplen 1.5";
+  return DEA_OK;
+}
+
+static const struct dea_figure figures[] = {
+    {
+        .name = "states",
+        .study = study_name,
+        .caption = "centre and energy of the stable states that were found; one line where each "
+                   "leads to the other (?: not to be trusted at its highest voltage)",
+        .build = build_states,
+    },
+    {
+        .name = "state_profiles",
+        .study = study_name,
+        .caption = "shape of each state at its highest voltage (of model 3d: to the right along a "
+                   "fibre, to the left between fibres; ?: not to be trusted)",
+        .build = build_profiles,
+    },
+};
+
+// The study --------------------------------------------------------------------------------------
+
+const struct dea_study dea_study_states = {
+    .name = study_name,
+    .keys = &section,
+    .own_models = true,
+    .any_layout = true,
+    .run = run,
+    .figures = figures,
+    .figure_count = COUNT(figures),
+};
