@@ -37,7 +37,7 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
       {"materials nothing", 3, "there is no material 'nothing'"},
       {"schema --json --markdown", 2, "exclude each other"},
-      {"optimise x", 2, "'optimise' is not a command; did you mean 'fit'?"},
+      {"optimize x", 2, "'optimize' is not a command; did you mean 'optimise'?"},
       {"run @/examples/fit/silicone.yaml", 3, "this is a fit, not a design: it is for 'dea fit'"},
       {"run @/examples/explore/grid.yaml", 3, "this is a file of many designs, not a design"},
       {"check @/data/materials/pet.yaml", 3, "this is a material, not a design"},

@@ -129,6 +129,44 @@ static void test_killed(void **state)
   assert_int_equal(lines_with("cut/limits.csv", "breakdown_margin,-0.8,,400,"), 1);
 }
 
+/* A search as a user runs it; docs/explore.md shows it. */
+static void test_optimise(void **state)
+{
+  (void)state;
+  static const char best[] = "  pre_stretch                  1.26633";
+  write_file("{name: pre_stretch, low: 1.6, high: 1.8}",
+             "objectives: [{quantity: breakdown_margin}]");
+  assert_int_equal(command_run("optimise mine.yaml"), 3);
+  assert_contains(command_err, "mine.yaml:7:20: error: pre_stretch starts at 1.5, outside of");
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}", "objectives: [{quantity: force_N}]");
+  assert_int_equal(command_run("optimise mine.yaml"), 3);
+  assert_contains(command_err, "'force_N' is none of the quantities");
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}",
+             "limits: [{quantity: breakdown_margin, above: 0.3, below: 0.2}]");
+  assert_int_equal(command_run("optimise mine.yaml"), 3);
+  assert_contains(command_err, "breakdown_margin cannot be above 0.3 and below 0.2");
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}", "");
+  assert_int_equal(command_run("optimise mine.yaml"), 3);
+  assert_contains(command_err, "a grid needs values");
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}",
+             "objectives: [{quantity: breakdown_margin}]\n"
+             "limits: [{quantity: breakdown_margin, above: 0.99}]\nevaluations: 20\nstarts: 1");
+  assert_int_equal(command_run("optimise mine.yaml"), 4);
+  assert_contains(command_err, "is within all limits");
+  assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
+  assert_contains(command_out, best);
+  assert_int_equal(command_run("check best/best.yaml"), 0);
+  assert_contains(command_out, "pre_stretch");
+  assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
+  assert_contains(command_out, best);
+  const char *at = strstr(command_out, "designs: ");
+  assert_non_null(at);
+  int all = 0, before = -1;
+  assert_int_equal(sscanf(at, "designs: %d, %d of them", &all, &before), 2);
+  assert_int_equal(all, before);
+  assert_int_equal(lines_with("best/progress.svg", "<svg"), 1);
+}
+
 /* The keys of docs/explore.md. */
 static void test_page(void **state)
 {
@@ -145,6 +183,7 @@ static void test_page(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors), cmocka_unit_test(test_grid),
-                                     cmocka_unit_test(test_killed), cmocka_unit_test(test_page)};
+                                     cmocka_unit_test(test_killed), cmocka_unit_test(test_optimise),
+                                     cmocka_unit_test(test_page)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -47,6 +47,7 @@ struct dea_command {
 #define DEA_COMMAND_LIST(X)                                                                        \
   X(cmd_run)                                                                                       \
   X(cmd_check)                                                                                     \
+  X(cmd_optimise)                                                                                  \
   X(cmd_sweep)                                                                                     \
   X(cmd_fab)                                                                                       \
   X(cmd_mesh)                                                                                      \
@@ -151,6 +152,10 @@ int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
                      const struct cli_option *option, const char *text, void *target);
 int cli_take_width(struct dea_cli *cli, const struct dea_command *command,
                    const struct cli_option *option, const char *text, void *target);
+/* "4" into a double, and how many processes that are: without it, 0, one a core. */
+int cli_take_processes(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target);
+size_t cli_processes(double given);
 /* "0.2" or "20%"; false otherwise. */
 bool cli_read_share(const char *text, double *share);
 

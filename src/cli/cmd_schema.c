@@ -54,8 +54,8 @@ static const struct cli_option options[] = {
      .or_before = true},
     {"fit-device", 0, CLI_FLAG, NULL, "the keys of a fit file of a device instead",
      CLI_AT(fit_device), .or_before = true},
-    {"explore", 0, CLI_FLAG, NULL, "the keys of a file for `dea sweep` instead", CLI_AT(explore),
-     .or_before = true},
+    {"explore", 0, CLI_FLAG, NULL, "the keys of a file for `dea sweep` and `dea optimise` instead",
+     CLI_AT(explore), .or_before = true},
     {0}};
 
 const struct dea_command cmd_schema = {

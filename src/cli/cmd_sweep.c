@@ -1,33 +1,16 @@
 /* dea sweep: many designs that differ in some values. */
-#define _DEFAULT_SOURCE // sysconf
 #include "cli/cli.h"
 
 #include "explore/sweep.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct request {
   const char *file;
   double processes; // 0: not given
   struct dea_sweep_options options;
 };
-
-static int take_processes(struct dea_cli *cli, const struct dea_command *command,
-                          const struct cli_option *option, const char *text, void *target)
-{
-  char *end;
-  const double count = strtod(text, &end);
-  if (*end != '\0' || !(count >= 1 && count <= 256) || count != floor(count)) {
-    return cli_usage_error(cli, command, "--%s: '%.20s' is no number from 1 to 256", option->name,
-                           text);
-  }
-  *(double *)target = count;
-  return 0;
-}
 
 static int take_shard(struct dea_cli *cli, const struct dea_command *command,
                       const struct cli_option *option, const char *text, void *target)
@@ -84,10 +67,7 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
-  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-  request->options.processes = request->processes > 0 ? (size_t)request->processes
-                               : cores > 0            ? (size_t)cores
-                                                      : 1;
+  request->options.processes = cli_processes(request->processes);
   if (request->options.folder == NULL) {
     cli_folder_name(request->file, "sweep", &folder);
     request->options.folder = dea_text_get(&folder);
@@ -104,7 +84,7 @@ static const struct cli_option options[] = {
     {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .sweep)",
      CLI_AT(options.folder)},
     {"jobs", 'j', CLI_TEXT, "N", "processes (default: one a core)", CLI_AT(processes),
-     take_processes},
+     cli_take_processes},
     {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
      CLI_AT(options.shard), take_shard},
     {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",

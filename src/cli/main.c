@@ -36,14 +36,14 @@ static const char *meant_by(const char *word)
 {
   static const struct {
     const char *word, *command;
-  } others[] = {{"optimise", "fit"},    {"optimize", "fit"},    {"calibrate", "fit"},
-                {"identify", "fit"},    {"simulate", "run"},    {"solve", "run"},
-                {"compute", "run"},     {"samples", "sweep"},   {"validate", "check"},
-                {"lint", "check"},      {"draw", "plot"},       {"figures", "plot"},
-                {"view", "report"},     {"play", "drive"},      {"measure", "drive"},
-                {"new", "examples"},    {"init", "examples"},   {"material", "materials"},
-                {"make", "fab"},        {"fabricate", "fab"},   {"analyse", "reduce"},
-                {"analyze", "reduce"},  {"evaluate", "reduce"}, {"convert", "import"},
+  } others[] = {{"maximise", "optimise"}, {"optimize", "optimise"}, {"calibrate", "fit"},
+                {"identify", "fit"},      {"simulate", "run"},      {"solve", "run"},
+                {"compute", "run"},       {"samples", "sweep"},     {"validate", "check"},
+                {"lint", "check"},        {"draw", "plot"},         {"figures", "plot"},
+                {"view", "report"},       {"play", "drive"},        {"measure", "drive"},
+                {"new", "examples"},      {"init", "examples"},     {"material", "materials"},
+                {"make", "fab"},          {"fabricate", "fab"},     {"analyse", "reduce"},
+                {"analyze", "reduce"},    {"evaluate", "reduce"},   {"convert", "import"},
                 {"export", "recording"}};
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
     if (strcmp(others[i].word, word) == 0) {

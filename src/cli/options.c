@@ -1,5 +1,5 @@
 /* A command line read by the table of its command. */
-#define _GNU_SOURCE // getopt_long
+#define _GNU_SOURCE // getopt_long, sysconf
 #include "cli/cli.h"
 
 #include "base/file.h"
@@ -8,7 +8,9 @@
 
 #include <getopt.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const struct cli_option cli_common_options[] = {
 #define AT(member) .target = offsetof(struct dea_cli, member)
@@ -254,4 +256,23 @@ dea_status cli_build_device(struct dea_cli *cli, const char *file,
   *device = NULL;
   DEA_TRY(cli->ctx, dea_design_read(cli->ctx, file, overrides->at, overrides->count, design));
   return dea_device_build(cli->ctx, *design, device);
+}
+
+int cli_take_processes(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
+{
+  char *end;
+  const double count = strtod(text, &end);
+  if (*end != '\0' || !(count >= 1 && count <= 256) || count != floor(count)) {
+    return cli_usage_error(cli, command, "--%s: '%.20s' is no number from 1 to 256", option->name,
+                           text);
+  }
+  *(double *)target = count;
+  return 0;
+}
+
+size_t cli_processes(double given)
+{
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  return given > 0 ? (size_t)given : cores > 0 ? (size_t)cores : 1;
 }

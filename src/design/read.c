@@ -250,7 +250,7 @@ static dea_status refuse_others(struct dea_context *ctx, const struct dea_design
                                  "key 'design' names the design"},
                 {"dea_fit", "this is a fit, not a design: it is for 'dea fit'"},
                 {"dea_explore", "this is a file of many designs, not a design: it is for 'dea "
-                                "sweep', and its key 'design' names the design"},
+                                "sweep' or 'dea optimise', and its key 'design' names the design"},
                 {"dea_material",
                  "this is a material, not a design: a design names it as its film's "
                  "material, and 'dea materials' shows it"}};

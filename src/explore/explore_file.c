@@ -58,6 +58,19 @@ static const struct dea_record limit_record = {"limit",
                                                "what a quantity may not cross at the last voltage",
                                                limit_fields, COUNT(limit_fields)};
 
+static const char *const goals[] = {"most", "least", NULL};
+static const char *const methods[] = {"slsqp", "mma", "cobyla", "random", NULL};
+static const struct dea_field objective_fields[] = {
+    DEA_LABEL_ROW("quantity", offsetof(struct dea_explore_objective, quantity),
+                  "electrode_edge_u_m", "key of the quantity, at the last voltage",
+                  .required = true),
+    DEA_CHOICE_ROW("goal", offsetof(struct dea_explore_objective, goal), goals, "least",
+                   "whether as much of it is wanted as can be, or as little",
+                   .default_text = "most"),
+};
+static const struct dea_record objective_record = {"objective", "what is wanted", objective_fields,
+                                                   COUNT(objective_fields)};
+
 static const struct dea_field file_fields[] = {
     {.key = "dea_explore",
      .kind = DEA_FIELD_INTEGER,
@@ -124,6 +137,31 @@ static const struct dea_field file_fields[] = {
      .doc = "what may not be crossed: a probability of samples, a constraint of an optimisation",
      .absent_text = "none",
      .example = "[{quantity: breakdown_margin, above: 0.1}]"},
+    {.key = "objectives",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(objectives),
+     .record = &objective_record,
+     .list_min = 1,
+     .list_max = DEA_EXPLORE_OBJECTIVES_MAX,
+     .element_size = sizeof(struct dea_explore_objective),
+     .count_offset = AT(objective_count),
+     .doc = "of dea optimise: what is wanted; of two the front between them",
+     .absent_text = "none",
+     .example = "[{quantity: centre_z_m, goal: most}]"},
+    DEA_CHOICE_ROW("method", AT(method), methods, "mma",
+                   "slsqp and mma go by gradients; cobyla does without; random: the best of random "
+                   "designs",
+                   .default_text = "slsqp"),
+    DEA_INTEGER_ROW("starts", AT(starts), "5",
+                    "places from which the search begins: the start of the variables, then others",
+                    .min = 1, .max = 1000, .default_text = "3"),
+    DEA_INTEGER_ROW("evaluations", AT(evaluations), "500", "most designs of one search", .min = 1,
+                    .max = 1000000, .default_text = "1000"),
+    DEA_NUMBER_ROW("tolerance", AT(tolerance), "1", "1e-4",
+                   "the search ends where the variables change by less, as a share of their range",
+                   .min = 1e-12, .max = 0.1, .default_text = "1e-5"),
+    DEA_INTEGER_ROW("front", AT(front), "11", "points of the front of two objectives", .min = 2,
+                    .max = 100, .default_text = "7"),
 };
 const struct dea_record dea_explore_record = {
     "file", "designs that differ in some values, and what is asked of them", file_fields,

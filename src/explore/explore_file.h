@@ -24,6 +24,9 @@ enum dea_plan_kind {
   DEA_PLAN_INDICES,
 };
 
+enum dea_goal { DEA_MOST, DEA_LEAST };
+enum dea_method { DEA_SLSQP, DEA_MMA, DEA_COBYLA, DEA_RANDOM };
+
 /* A variable as written. The prior of `text` is the mean of its distribution. */
 struct dea_explore_variable {
   struct dea_fit_parameter_text text; // first: its name
@@ -40,7 +43,7 @@ struct dea_explore_limit {
 
 struct dea_explore_objective {
   struct dea_label quantity;
-  struct dea_choice goal; // 0: most, 1: least
+  struct dea_choice goal; // enum dea_goal
 };
 
 struct dea_explore_file {
@@ -56,6 +59,10 @@ struct dea_explore_file {
   struct dea_quantity samples, seed;
   struct dea_explore_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;
+  struct dea_explore_objective objectives[DEA_EXPLORE_OBJECTIVES_MAX];
+  size_t objective_count;
+  struct dea_choice method; // enum dea_method
+  struct dea_quantity starts, evaluations, tolerance, front;
 };
 
 extern const struct dea_record dea_explore_record;

@@ -280,8 +280,9 @@ static dea_status check_variable(struct dea_question *question, const struct dea
     wrong = "mean and std are of a normal or lognormal distribution";
   } else if (variable->value_count == 0 && !spread && !range) {
     wrong = "give low and high, or values";
-  } else if (question->file->plan.value == DEA_PLAN_GRID && variable->value_count == 0 &&
-             text->steps.origin == DEA_ABSENT && !variable->param.whole) {
+  } else if (question->file->plan.value == DEA_PLAN_GRID && question->file->objective_count == 0 &&
+             variable->value_count == 0 && text->steps.origin == DEA_ABSENT &&
+             !variable->param.whole) {
     wrong = "a grid needs values, or steps from low to high";
   }
   return wrong == NULL ? DEA_OK
@@ -297,7 +298,7 @@ static dea_status take_variable(struct dea_question *question,
   struct dea_fit_parameter_text param = text->text;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   *variable = (struct dea_variable){.text = text, .low = NAN, .high = NAN};
-  if (param.start.text[0] == '\0') { // where a sweep begins does not matter
+  if (param.start.text[0] == '\0' && question->file->objective_count == 0) { // a sweep has none
     param.start = text->value_count > 0 ? text->values[0] : text->text.low;
   }
   if (param.prior_std.text[0] == '\0' || param.prior.text[0] == '\0') {
@@ -363,10 +364,30 @@ static dea_status take_limit(struct dea_question *question, const struct dea_exp
   if (text->below.text[0] != '\0') {
     DEA_TRY(ctx, dea_device_param_number(ctx, &number, &text->below, &limit->below));
   }
+  if (limit->above >= limit->below) {
+    return dea_finding_add(ctx, DEA_ERROR, text->below.location,
+                           "%s cannot be above %s and below %s", column->key, text->above.text,
+                           text->below.text);
+  }
   return text->above.text[0] != '\0' || text->below.text[0] != '\0'
              ? DEA_OK
              : dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
                                "a limit needs above or below");
+}
+
+static dea_status take_objectives(struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  for (size_t k = 0; k < file->objective_count; k++) {
+    const struct dea_label *label = &file->objectives[k].quantity;
+    question->objectives[k] = dea_question_quantity(question, label->text);
+    if (question->objectives[k] < 0) {
+      DEA_TRY(question->ctx,
+              dea_finding_add(question->ctx, DEA_ERROR, label->location,
+                              "'%.60s' is none of the quantities of this file", label->text));
+    }
+  }
+  return DEA_OK;
 }
 
 static dea_status resolve_file(struct dea_question *question)
@@ -380,6 +401,7 @@ static dea_status resolve_file(struct dea_question *question)
   for (size_t i = 0; i < question->file->limit_count; i++) {
     DEA_TRY(ctx, take_limit(question, &question->file->limits[i]));
   }
+  DEA_TRY(ctx, take_objectives(question));
   take_voltages(question);
   const size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {

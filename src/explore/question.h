@@ -37,6 +37,7 @@ struct dea_question {
   size_t quantity_count;
   struct dea_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;
+  int objectives[DEA_EXPLORE_OBJECTIVES_MAX]; // columns, as of a limit
   struct dea_evaluator evaluator; // value of quantity i at voltage k: k * quantity_count + i
   char hash[65];                  // of all that a case's numbers mean
   /* of the evaluator */

@@ -256,7 +256,7 @@ static dea_status write_all(const struct work *w)
 {
   DEA_TRY(w->ctx, write_cases(w));
   DEA_TRY(w->ctx, write_h5(w));
-  if (w->question->file->plan.value == DEA_PLAN_GRID) {
+  if (w->question->file->plan.value == DEA_PLAN_GRID || w->question->file->objective_count > 0) {
     return DEA_OK;
   }
   double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);

@@ -57,7 +57,7 @@ static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
 /* Ends a section with its source, in lines of their own. */
 static void add_source(struct dea_text *out, const char *indent, const struct dea_material *film)
 {
-  dea_text_add(out, "%ssource: \"this fit; what it did not free is that of %s\"\n", indent,
+  dea_text_add(out, "%ssource: \"this file; what it did not change is that of %s\"\n", indent,
                film->name);
 }
 
@@ -91,11 +91,11 @@ static void add_rest(struct dea_text *out, const struct dea_material *film)
 }
 
 /* The film's material with what was fitted, as an item of `materials`. */
-static void add_material(struct dea_text *out, const struct dea_device_fit *fit,
+static void add_material(struct dea_text *out, const struct dea_device_values *with,
                          const struct dea_material *film)
 {
   const struct dea_law *law = film->law;
-  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", fit->file->head.name.text);
+  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", with->name);
   dea_text_add(out, "    laws:\n      - id: fit\n        law: %s\n        parameters: {",
                law->name);
   for (size_t i = 0; i < law->param_count; i++) {
@@ -136,53 +136,47 @@ static bool is_known(const struct dea_fit_value *value)
 }
 
 /* What study "uncertainty" makes bands of: standard uncertainties and correlations. */
-static dea_status put_uncertainty(struct dea_context *ctx, const struct dea_device_fit *fit,
-                                  struct dea_yaml *document)
+static void add_uncertainty(struct dea_text *out, const struct dea_device_fit *fit)
 {
-  struct dea_text text = {.ctx = ctx};
   const size_t n = fit->param_count;
   size_t known = 0;
-  void *before = dea_c_locale_enter();
   for (size_t j = 0; j < n; j++) {
     const struct dea_fit_param *param = &fit->params[j].param;
     if (is_known(&fit->values[j])) {
       const bool bare = strcmp(param->unit, "1") == 0;
-      dea_text_add(&text, "%s{name: %s, std: %.6g%s%s}", known++ > 0 ? ", " : "{parameters: [",
+      dea_text_add(out, "%s{name: %s, std: %.6g%s%s}", known++ > 0 ? ", " : "{parameters: [",
                    param->name, fit->values[j].std, bare ? "" : " ", bare ? "" : param->unit);
     }
   }
-  dea_text_add(&text, known > 1 ? "], correlations: [" : "]");
+  if (known > 0) {
+    dea_text_add(out, known > 1 ? "], correlations: [" : "]");
+  }
   const char *separator = "";
   for (size_t j = 0; j < n; j++) {
     for (size_t k = 0; k < j && is_known(&fit->values[j]); k++) {
       if (is_known(&fit->values[k])) {
-        dea_text_add(&text, "%s%.9f", separator, fit->statistics.correlation[j * n + k]);
+        dea_text_add(out, "%s%.9f", separator, fit->statistics.correlation[j * n + k]);
         separator = ", ";
       }
     }
   }
-  dea_text_add(&text, known > 1 ? "]}" : "}");
-  dea_c_locale_leave(before);
-  dea_status status = text.failed ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK && known > 0) {
-    status = dea_yaml_override(ctx, document, "compute.uncertainty", dea_text_get(&text));
+  if (known > 0) {
+    dea_text_add(out, known > 1 ? "]}" : "}");
   }
-  dea_text_free(&text);
-  return status;
 }
 
 /* Puts the fitted values of keys into the document, and takes the film's material from `materials`
  * where it was fitted. */
-static dea_status put_values(struct dea_context *ctx, const struct dea_device_fit *fit,
+static dea_status put_values(struct dea_context *ctx, const struct dea_device_values *with,
                              struct dea_yaml *document, struct dea_material *film,
                              bool *of_material)
 {
   char text[DEA_TITLE_SIZE + 8];
-  for (size_t j = 0; j < fit->param_count; j++) {
-    const struct dea_device_param *param = &fit->params[j];
-    const double value = fit->values[j].value;
+  for (size_t j = 0; j < with->count; j++) {
+    const struct dea_device_param *param = &with->params[j];
+    const double value = with->values[j];
     if (param->kind == DEA_DEVICE_KEY) {
-      dea_device_param_text(param, value, 10, text);
+      dea_device_param_text(param, value, with->digits, text);
       DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
     } else if (param->kind == DEA_DEVICE_LAW) {
       film->param[param->index] = value;
@@ -195,7 +189,7 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_fi
   }
   if (*of_material) {
     static const char *const gone[] = {"film.law", "film.permittivity", "film.breakdown"};
-    snprintf(text, sizeof text, "%.63s-film", fit->file->head.name.text);
+    snprintf(text, sizeof text, "%.63s-film", with->name);
     DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.material", text));
     for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
       DEA_TRY(ctx, dea_yaml_override(ctx, document, gone[k], "null"));
@@ -206,44 +200,78 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_fi
   return DEA_OK;
 }
 
-dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                  const struct dea_device_model *model,
-                                  const struct dea_device *device)
+static dea_status put_title(struct dea_context *ctx, struct dea_yaml *document, const char *title)
+{
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "\"");
+  for (const char *c = title; *c != '\0'; c++) {
+    dea_text_add(&text, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+  }
+  dea_text_add(&text, "\"");
+  dea_status status =
+      text.failed ? DEA_E_MEMORY : dea_yaml_override(ctx, document, "title", dea_text_get(&text));
+  dea_text_free(&text);
+  return status;
+}
+
+dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_design_bytes *file,
+                                  const struct dea_device *device,
+                                  const struct dea_device_values *with, struct dea_text *out)
 {
   struct dea_material film = device->film;
   struct dea_text design = {.ctx = ctx}, material = {.ctx = ctx};
   struct dea_yaml *document;
   bool of_material = false;
-  DEA_TRY(ctx, dea_yaml_parse(ctx, model->name, model->bytes, model->length, &document));
-  dea_status status = put_values(ctx, fit, document, &film, &of_material);
-  if (status == DEA_OK) {
-    status = put_uncertainty(ctx, fit, document);
+  DEA_TRY(ctx, dea_yaml_parse(ctx, file->name, file->bytes, file->length, &document));
+  dea_status status = put_values(ctx, with, document, &film, &of_material);
+  if (status == DEA_OK && with->uncertainty[0] != '\0') {
+    status = dea_yaml_override(ctx, document, "compute.uncertainty", with->uncertainty);
   }
-  if (status == DEA_OK && fit->file->head.title.text[0] != '\0') {
-    dea_text_add(&material, "\"");
-    for (const char *c = fit->file->head.title.text; *c != '\0'; c++) {
-      dea_text_add(&material, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
-    }
-    dea_text_add(&material, "\"");
-    status = dea_yaml_override(ctx, document, "title", dea_text_get(&material));
-    dea_text_free(&material);
-    material = (struct dea_text){.ctx = ctx};
+  if (status == DEA_OK && with->title[0] != '\0') {
+    status = put_title(ctx, document, with->title);
   }
   void *before = dea_c_locale_enter();
   if (status == DEA_OK) {
     dea_yaml_write(dea_yaml_root(document), &design);
-    add_head(&fit->design, fit);
     if (of_material) {
-      add_material(&material, fit, &film);
-      add_with_material(&fit->design, dea_text_get(&design), dea_text_get(&material));
+      add_material(&material, with, &film);
+      add_with_material(out, dea_text_get(&design), dea_text_get(&material));
     } else {
-      dea_text_add(&fit->design, "%s", dea_text_get(&design));
+      dea_text_add(out, "%s", dea_text_get(&design));
     }
-    status = design.failed || material.failed || fit->design.failed ? DEA_E_MEMORY : DEA_OK;
+    status = design.failed || material.failed || out->failed ? DEA_E_MEMORY : DEA_OK;
   }
   dea_c_locale_leave(before);
   dea_text_free(&material);
   dea_text_free(&design);
   dea_yaml_destroy(ctx, document);
+  return status;
+}
+
+dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
+                                  const struct dea_device_model *model,
+                                  const struct dea_device *device)
+{
+  double values[DEA_DEVICE_PARAMS_MAX];
+  for (size_t j = 0; j < fit->param_count; j++) {
+    values[j] = fit->values[j].value;
+  }
+  struct dea_text uncertainty = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  add_uncertainty(&uncertainty, fit);
+  add_head(&fit->design, fit);
+  dea_c_locale_leave(before);
+  const struct dea_device_values with = {.params = fit->params,
+                                         .values = values,
+                                         .count = fit->param_count,
+                                         .digits = 10,
+                                         .name = fit->file->head.name.text,
+                                         .title = fit->file->head.title.text,
+                                         .uncertainty = dea_text_get(&uncertainty)};
+  const struct dea_design_bytes file = {model->name, model->bytes, model->length};
+  dea_status status = uncertainty.failed
+                          ? DEA_E_MEMORY
+                          : dea_device_design_text(ctx, &file, device, &with, &fit->design);
+  dea_text_free(&uncertainty);
   return status;
 }

@@ -72,4 +72,19 @@ dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_devi
                                   const struct dea_design *design, const struct dea_device *device,
                                   struct dea_device_param *out);
 
+/* Values that take the place of a design's own. */
+struct dea_device_values {
+  const struct dea_device_param *params; // [count]
+  const double *values;                  // [count], SI
+  size_t count;
+  int digits;              // of the values as they are written
+  const char *name;        // of the film's material, where that changes: NAME-film
+  const char *title;       // of the design; "": as it was
+  const char *uncertainty; // compute.uncertainty, the same
+};
+/* Adds a design with other values, as a design file. device: built from it. */
+dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_design_bytes *file,
+                                  const struct dea_device *device,
+                                  const struct dea_device_values *with, struct dea_text *out);
+
 #endif

@@ -1,0 +1,106 @@
+/* dea optimise: the best of many designs. */
+#include "cli/cli.h"
+
+#include "explore/best.h"
+#include "result/columns.h"
+
+#include <stdio.h>
+
+struct request {
+  const char *file;
+  double processes; // 0: not given
+  struct dea_optimise_options options;
+};
+
+static void print_optimum(const struct dea_question *question, const struct dea_optimum *best)
+{
+  for (size_t j = 0; j < question->variable_count; j++) {
+    char text[80];
+    dea_device_param_text(&question->params[j], best->p[j], 6, text);
+    printf("  %-28s %s\n", question->params[j].param.name, text);
+  }
+  for (size_t k = 0; k < question->file->objective_count; k++) {
+    const struct dea_column *column =
+        &dea_point_columns[question->quantities[question->objectives[k]]];
+    const bool most = question->file->objectives[k].goal.value == DEA_MOST; // f is the least
+    printf("  %-28s %.6g %s\n", column->key, column->factor * (most ? -1 : 1) * best->f[k],
+           column->display_unit);
+  }
+}
+
+static void print_report(const struct dea_question *question,
+                         const struct dea_optimise_report *report, const char *folder)
+{
+  for (size_t i = 0; i < report->count; i++) {
+    if (report->count > 1) {
+      printf("best-%zu\n", i + 1);
+    }
+    print_optimum(question, &report->optima[i]);
+  }
+  printf("designs: %zu, %zu of them computed before", report->evaluations, report->before);
+  if (report->failed > 0) {
+    printf(", %zu without all values", report->failed);
+  }
+  printf("\nwritten to %s\n", folder);
+  fflush(stdout);
+}
+
+static dea_status optimise(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_explore_file *file;
+  struct dea_question *question;
+  DEA_TRY(cli->ctx, dea_explore_file_read(cli->ctx, request->file, &file));
+  dea_status status = dea_question_make(cli->ctx, file, &question);
+  if (status == DEA_OK) {
+    struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
+    status = report != NULL ? dea_optimise_run(question, &request->options, report) : DEA_E_MEMORY;
+    if (report != NULL && report->evaluations > 0) {
+      print_report(question, report, request->options.folder);
+    }
+    dea_free(cli->ctx, report);
+    dea_question_destroy(question);
+  }
+  dea_explore_file_destroy(cli->ctx, file);
+  return status;
+}
+
+static int run(struct dea_cli *cli, void *user)
+{
+  struct request *request = user;
+  struct dea_text folder = {.ctx = cli->ctx};
+  request->options.processes = cli_processes(request->processes);
+  if (request->options.folder == NULL) {
+    cli_folder_name(request->file, "optimise", &folder);
+    request->options.folder = dea_text_get(&folder);
+  }
+  int code = cli_report(cli, folder.failed ? DEA_E_MEMORY : optimise(cli, request));
+  dea_text_free(&folder);
+  return code;
+}
+
+static const struct request defaults = {.options = {.format = {.svg = true, .width_m = 85e-3}}};
+
+static const struct cli_option options[] = {
+    CLI_ONE(CLI_DESIGN, "FILE", "file of a search", file, "a file is needed", "one file at a time"),
+    {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .optimise)",
+     CLI_AT(options.folder)},
+    {"jobs", 'j', CLI_TEXT, "N", "processes (default: one a core)", CLI_AT(processes),
+     cli_take_processes},
+    {"force", 'f', CLI_FLAG, NULL, "throw away the designs that are there", CLI_AT(options.force)},
+    {"format", 0, CLI_FORMAT, "LIST",
+     "formats of the figures with commas between, svg if not given", CLI_AT(options.format),
+     cli_take_formats},
+    {"width", 0, CLI_TEXT, "MM", "width of the figures (default 85)", CLI_AT(options.format),
+     cli_take_width},
+    {0}};
+
+const struct dea_command cmd_optimise = {
+    .name = "optimise",
+    .summary = "Find the best design within bounds and limits, or the front of two objectives",
+    .about = "Writes the best design as best.yaml, which every command takes. Goes on where it was "
+             "stopped. What the file holds says 'dea schema --explore'.",
+    .options = options,
+    .request_size = sizeof(struct request),
+    .defaults = &defaults,
+    .run = run,
+};

@@ -1,0 +1,362 @@
+#include "explore/best.h"
+
+#include "base/file.h"
+#include "base/version.h"
+#include "base/write_file.h"
+#include "explore/sweep.h"
+#include "plot/gnuplot.h"
+#include "result/columns.h"
+#include "result/figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct work {
+  struct dea_context *ctx;
+  const struct dea_question *question;
+  const struct dea_optimise_options *options;
+  struct dea_optimise_report *report;
+  struct dea_store *store;
+};
+
+// What is sought ----------------------------------------------------------------------------------
+
+/* Value of a column at the last voltage. */
+static double last_value(const struct dea_question *question, int column, const double *q)
+{
+  return q[(question->voltage_count - 1) * question->quantity_count + (size_t)column];
+}
+
+static double sign_of(const struct dea_question *question, size_t k)
+{
+  return question->file->objectives[k].goal.value == DEA_MOST ? -1 : 1;
+}
+
+static double objective(const void *user, size_t k, const double *q)
+{
+  const struct dea_question *question = user;
+  return sign_of(question, k) * last_value(question, question->objectives[k], q);
+}
+
+/* Sides of limits, counted: the limit of that number with one side only. */
+static bool side_of(const struct dea_question *question, size_t side, struct dea_limit *out)
+{
+  for (size_t l = 0; l < question->limit_count; l++) {
+    const struct dea_limit *limit = &question->limits[l];
+    if (!isnan(limit->above) && side-- == 0) {
+      *out = (struct dea_limit){limit->column, limit->above, NAN};
+      return true;
+    }
+    if (!isnan(limit->below) && side-- == 0) {
+      *out = (struct dea_limit){limit->column, NAN, limit->below};
+      return true;
+    }
+  }
+  return false;
+}
+
+static double margin(const void *user, size_t side, const double *q)
+{
+  struct dea_limit limit;
+  return side_of(user, side, &limit) ? dea_limit_margin(user, &limit, q) : NAN;
+}
+
+static void fill_search(struct work *w, struct dea_search *search)
+{
+  const struct dea_question *question = w->question;
+  const struct dea_explore_file *file = question->file;
+  struct dea_limit limit;
+  *search = (struct dea_search){.ctx = w->ctx,
+                                .evaluator = &question->evaluator,
+                                .store = w->store,
+                                .processes = w->options->processes,
+                                .objective = objective,
+                                .margin = margin,
+                                .user = question,
+                                .objective_count = file->objective_count,
+                                .method = (enum dea_method)file->method.value,
+                                .starts = (size_t)file->starts.si,
+                                .evaluations = (size_t)file->evaluations.si,
+                                .front = (size_t)file->front.si,
+                                .tolerance = file->tolerance.si};
+  while (side_of(question, search->limit_count, &limit)) {
+    search->limit_count++;
+  }
+  for (size_t j = 0; j < question->variable_count; j++) {
+    const struct dea_variable *variable = &question->variables[j];
+    search->start[j] = variable->param.param.start;
+    search->low[j] = variable->low;
+    search->high[j] = variable->high;
+    search->values[j] = variable->values;
+    search->value_count[j] = variable->value_count;
+  }
+}
+
+static dea_status check(const struct work *w)
+{
+  const struct dea_question *question = w->question;
+  const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
+  const struct dea_location file = {question->file->head.file, 1, 1};
+  double combinations = 1;
+  if (question->file->objective_count == 0) {
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file, "objectives: say what is wanted"));
+  }
+  for (size_t j = 0; j < question->variable_count; j++) {
+    const struct dea_variable *variable = &question->variables[j];
+    const struct dea_label *name = &variable->text->text.name;
+    combinations *= variable->value_count > 0 ? (double)variable->value_count : 1;
+    if (variable->text->distribution.value != DEA_UNIFORM) {
+      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, name->location,
+                                      "%s: a search needs low and high, or values", name->text));
+    } else if (variable->value_count == 0 && !(variable->high > variable->low)) {
+      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, name->location,
+                                      "%s: its bounds leave nothing to search", name->text));
+    }
+  }
+  if (combinations > 10000) {
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file,
+                                    "%.3g combinations of values and whole numbers are too many",
+                                    combinations));
+  }
+  return dea_finding_count(w->ctx, DEA_ERROR) == errors
+             ? DEA_OK
+             : dea_fail(w->ctx, DEA_E_DESIGN, "'%s' cannot be optimised",
+                        question->file->head.file);
+}
+
+// Files -------------------------------------------------------------------------------------------
+
+/* All evaluations in their order, as a plan. */
+static dea_status write_cases(const struct work *w)
+{
+  const size_t n = w->question->variable_count, count = dea_store_count(w->store);
+  struct dea_plan plan = {dea_alloc(w->ctx, n * count, sizeof(double)), count, count};
+  if (plan.p == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < count; i++) {
+    memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
+  }
+  dea_status status = dea_sweep_write(w->question, &plan, w->store, w->options->folder);
+  dea_free(w->ctx, plan.p);
+  return status;
+}
+
+/* The design of an optimum. number: in the front, 0 where there is one only. */
+static dea_status write_design(const struct work *w, const struct dea_optimum *best, size_t number)
+{
+  const struct dea_question *question = w->question;
+  struct dea_text text = {.ctx = w->ctx};
+  char name[32] = "best.yaml", label[DEA_NAME_SIZE];
+  if (number > 0) {
+    snprintf(name, sizeof name, "best-%zu.yaml", number);
+  }
+  snprintf(label, sizeof label, "%.50s", question->file->head.name.text);
+  const struct dea_device_values with = {question->params,
+                                         best->p,
+                                         question->variable_count,
+                                         10,
+                                         label,
+                                         question->file->head.title.text,
+                                         ""};
+  const struct dea_design_bytes file = {question->path, question->bytes, question->length};
+  dea_text_add(&text, "# Written by dea %s optimise: the best of %s for %s.\n", DEA_VERSION,
+               dea_path_name(question->path), dea_path_name(question->file->head.file));
+  for (size_t k = 0; k < question->file->objective_count; k++) {
+    const struct dea_column *column =
+        &dea_point_columns[question->quantities[question->objectives[k]]];
+    dea_text_add(&text, "#   %s = %.8g %s at %.6g V, model %s\n", column->key,
+                 sign_of(question, k) * best->f[k], column->si_unit,
+                 question->voltages_V[question->voltage_count - 1], question->model.type->name);
+  }
+  dea_status status = dea_device_design_text(w->ctx, &file, question->device, &with, &text);
+  status = status == DEA_OK ? dea_text_write(w->ctx, &text, w->options->folder, name) : status;
+  dea_text_free(&text);
+  return status;
+}
+
+static dea_status write_front(const struct work *w)
+{
+  const struct dea_question *question = w->question;
+  struct dea_text out = {.ctx = w->ctx};
+  dea_text_add(&out, "design");
+  for (size_t j = 0; j < question->variable_count; j++) {
+    dea_text_add(&out, ",%s (%s)", question->params[j].param.name, question->params[j].param.unit);
+  }
+  for (size_t k = 0; k < 2; k++) {
+    const struct dea_column *column =
+        &dea_point_columns[question->quantities[question->objectives[k]]];
+    dea_text_add(&out, ",%s (%s)", column->key, column->si_unit);
+  }
+  dea_text_add(&out, "\n");
+  for (size_t i = 0; i < w->report->count; i++) {
+    const struct dea_optimum *best = &w->report->optima[i];
+    dea_text_add(&out, "best-%zu.yaml", i + 1);
+    for (size_t j = 0; j < question->variable_count; j++) {
+      dea_text_add(&out, ",%.12g", best->p[j]);
+    }
+    for (size_t k = 0; k < 2; k++) {
+      dea_text_add(&out, ",%.12g", sign_of(question, k) * best->f[k]);
+    }
+    dea_text_add(&out, "\n");
+  }
+  dea_status status = dea_text_write(w->ctx, &out, w->options->folder, "front.csv");
+  dea_text_free(&out);
+  return status;
+}
+
+// Figures -----------------------------------------------------------------------------------------
+
+static bool is_within(const struct dea_question *question, const double *q)
+{
+  for (size_t l = 0; l < question->limit_count; l++) {
+    if (!(dea_limit_margin(question, &question->limits[l], q) >= -1e-6)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static dea_status add_series(struct work *w, struct dea_panel *panel, size_t count,
+                             const char *title, enum dea_series_style style, enum dea_colour colour,
+                             struct dea_series **out)
+{
+  DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, count, out));
+  snprintf((*out)->title, sizeof(*out)->title, "%s", title);
+  (*out)->style = style;
+  (*out)->colour = colour;
+  return DEA_OK;
+}
+
+/* Where designs lie: x and y of each case, in series of those within and beyond the limits. of_x:
+ * an objective, or -1: the number of the evaluation, and the best so far as a line. */
+static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, int of_y)
+{
+  const struct dea_question *question = w->question;
+  const size_t count = dea_store_count(w->store);
+  const struct dea_column *y = &dea_point_columns[question->quantities[question->objectives[of_y]]];
+  struct dea_series *beyond, *within, *line;
+  const size_t points = of_x < 0 ? count : w->report->count;
+  double best = INFINITY;
+  DEA_TRY(w->ctx, add_series(w, panel, count, "beyond a limit", DEA_MARKERS, DEA_GREY, &beyond));
+  DEA_TRY(w->ctx, add_series(w, panel, count, "within the limits", DEA_MARKERS, DEA_SKY, &within));
+  DEA_TRY(w->ctx, add_series(w, panel, points, of_x < 0 ? "best so far" : "front",
+                             of_x < 0 ? DEA_LINE : DEA_LINE_MARKED, DEA_VERMILLION, &line));
+  dea_figure_label(y, panel->y_label, sizeof panel->y_label);
+  snprintf(panel->x_label, sizeof panel->x_label, "Evaluations");
+  const struct dea_column *x =
+      of_x < 0 ? NULL : &dea_point_columns[question->quantities[question->objectives[of_x]]];
+  if (x != NULL) {
+    dea_figure_label(x, panel->x_label, sizeof panel->x_label);
+  }
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_case *done = dea_store_get(w->store, i);
+    const bool good = is_within(question, done->q);
+    struct dea_series *to = good ? within : beyond;
+    const double value = last_value(question, question->objectives[of_y], done->q);
+    to->values[i] = x == NULL
+                        ? (double)(i + 1)
+                        : x->factor * last_value(question, question->objectives[of_x], done->q);
+    to->values[count + i] = y->factor * value;
+    const double f = sign_of(question, (size_t)of_y) * value;
+    best = good && f < best ? f : best;
+    if (x == NULL && isfinite(best)) {
+      line->values[i] = (double)(i + 1);
+      line->values[count + i] = y->factor * sign_of(question, (size_t)of_y) * best;
+    }
+  }
+  for (size_t i = 0; i < points && x != NULL; i++) {
+    const struct dea_optimum *at = &w->report->optima[i];
+    line->values[i] = x->factor * sign_of(question, (size_t)of_x) * at->f[of_x];
+    line->values[points + i] = y->factor * sign_of(question, (size_t)of_y) * at->f[of_y];
+  }
+  dea_panel_limit(panel);
+  dea_panel_place_key(panel);
+  return DEA_OK;
+}
+
+static dea_status draw(struct work *w, const char *name, const char *caption, int of_x, int of_y)
+{
+  struct dea_plot *plot;
+  DEA_TRY(w->ctx, dea_plot_create(w->ctx, name, caption, &plot));
+  dea_status status = fill_plot(w, &plot->panels[0], of_x, of_y);
+  if (status == DEA_OK) {
+    status = dea_plot_write(w->ctx, plot, &w->options->format, w->options->folder);
+  }
+  dea_plot_destroy(w->ctx, plot);
+  return status;
+}
+
+static dea_status draw_all(struct work *w)
+{
+  static const char *const names[] = {"progress", "front"};
+  const bool front = w->question->file->objective_count > 1;
+  if (dea_store_count(w->store) == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(w->ctx, draw(w, names[0], "designs in the order of their evaluation", -1, 0));
+  if (front) {
+    DEA_TRY(w->ctx, draw(w, names[1], "all designs, and the front of the two objectives", 0, 1));
+  }
+  return dea_gnuplot_draw(w->ctx, w->options->folder, names, front ? 2 : 1);
+}
+
+// All of it ---------------------------------------------------------------------------------------
+
+static dea_status write_all(struct work *w)
+{
+  const bool front = w->question->file->objective_count > 1;
+  for (size_t i = 0; i < dea_store_count(w->store); i++) {
+    w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
+  }
+  DEA_TRY(w->ctx, write_cases(w));
+  for (size_t i = 0; i < w->report->count; i++) {
+    DEA_TRY(w->ctx, write_design(w, &w->report->optima[i], front ? i + 1 : 0));
+  }
+  if (front) {
+    DEA_TRY(w->ctx, write_front(w));
+  }
+  return draw_all(w);
+}
+
+static dea_status run(struct work *w)
+{
+  struct dea_search search;
+  const struct dea_shard whole = {1, 1};
+  DEA_TRY(w->ctx, check(w));
+  if (w->options->force) {
+    DEA_TRY(w->ctx, dea_store_remove(w->ctx, w->options->folder));
+  }
+  DEA_TRY(w->ctx, dea_store_open(w->ctx, w->options->folder, w->question->hash,
+                                 &w->question->evaluator, &whole, &w->store));
+  w->report->before = dea_store_count(w->store);
+  fill_search(w, &search);
+  dea_status status = dea_search_run(&search, w->report->optima, &w->report->count);
+  char message[512];
+  snprintf(message, sizeof message, "%.511s", dea_context_message(w->ctx));
+  w->report->evaluations = dea_store_count(w->store);
+  if (status == DEA_OK || status == DEA_E_INTERRUPTED) {
+    void *before = dea_c_locale_enter();
+    dea_status written = write_all(w);
+    dea_c_locale_leave(before);
+    DEA_TRY(w->ctx, written);
+  }
+  if (status == DEA_OK && w->report->count == 0) {
+    return dea_fail(w->ctx, DEA_E_NO_EQUILIBRIUM,
+                    "none of the %zu designs that were tried is within all limits",
+                    w->report->evaluations);
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail(w->ctx, status, "%s", message);
+}
+
+dea_status dea_optimise_run(const struct dea_question *question,
+                            const struct dea_optimise_options *options,
+                            struct dea_optimise_report *report)
+{
+  struct work w = {question->ctx, question, options, report, NULL};
+  *report = (struct dea_optimise_report){0};
+  dea_status status = run(&w);
+  dea_store_close(w.store);
+  return status;
+}

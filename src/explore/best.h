@@ -1,0 +1,29 @@
+/* dea optimise: a question's best design, or front, with its files. */
+#ifndef DEA_EXPLORE_BEST_H
+#define DEA_EXPLORE_BEST_H
+
+#include "explore/optimise.h"
+#include "explore/question.h"
+#include "plot/plot.h"
+
+struct dea_optimise_options {
+  const char *folder;
+  size_t processes;
+  bool force; // throw away what is there
+  struct dea_plot_format format;
+};
+
+struct dea_optimise_report {
+  struct dea_optimum optima[DEA_FRONT_MAX]; // one, or the front
+  size_t count;
+  size_t before, evaluations, failed; // kept before, and now in all; without all values
+};
+
+/* Searches and writes cases.csv and cases.h5 of all evaluations, the figure progress, best.yaml (of
+ * a front best-1.yaml, ...), and of a front front.csv and its figure. Tables and figures are there
+ * after an interruption too. Findings and DEA_E_DESIGN where the file asks for nothing. */
+dea_status dea_optimise_run(const struct dea_question *question,
+                            const struct dea_optimise_options *options,
+                            struct dea_optimise_report *report);
+
+#endif

@@ -1,0 +1,44 @@
+/* The best design: within bounds and limits, for one objective or the front of two. */
+#ifndef DEA_EXPLORE_OPTIMISE_H
+#define DEA_EXPLORE_OPTIMISE_H
+
+#include "explore/explore_file.h"
+#include "explore/store.h"
+
+/* What an evaluator's values mean to a search. All lent. */
+struct dea_search {
+  struct dea_context *ctx;
+  const struct dea_evaluator *evaluator;
+  struct dea_store *store; // every evaluation is kept there, and taken from there
+  size_t processes;
+  double start[DEA_CASE_PARAMS_MAX], low[DEA_CASE_PARAMS_MAX], high[DEA_CASE_PARAMS_MAX];
+  /* Values that a variable can take alone: [value_count], 0 for all of its range. */
+  const double *values[DEA_CASE_PARAMS_MAX];
+  size_t value_count[DEA_CASE_PARAMS_MAX];
+  /* Objective k to be minimised, k = 0 or 1, and margins of limits, [limit_count], below 0 where
+   * they are crossed, each linear in values of a case, so that gradients go through them too. */
+  double (*objective)(const void *user, size_t k, const double *q);
+  double (*margin)(const void *user, size_t limit, const double *q);
+  const void *user;
+  size_t objective_count, limit_count;
+  enum dea_method method;
+  size_t starts, evaluations, front;
+  double tolerance;
+};
+
+/* A point that a search came to. */
+struct dea_optimum {
+  double p[DEA_CASE_PARAMS_MAX], f[DEA_EXPLORE_OBJECTIVES_MAX];
+  bool found;         // a design within all limits
+  size_t evaluations; // after which it was found, those of before among them
+};
+
+enum { DEA_FRONT_MAX = 100 };
+
+/* Searches. out: of one objective one optimum; of two the front from the best of the first to the
+ * best of the second, [*count] of at most DEA_FRONT_MAX. An interruption ends it with
+ * DEA_E_INTERRUPTED, all evaluations kept. DEA_E_UNSUPPORTED where the program was built without
+ * NLopt. */
+dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count);
+
+#endif
