@@ -10,7 +10,7 @@ files() {
     find . \( -name .git -o -path './build*' -o -path ./runs -o -name '*.run' \) -prune -o -type f -print
   fi
 }
-texts=$(files | grep -vE '\.(png|pdf|h5|mat|tdms|gdp)$|(^|/)corpus/' | xargs ls -d 2>/dev/null)
+texts=$(files | grep -vE '\.(png|gif|pdf|h5|mat|tdms|gdp)$|(^|/)corpus/' | xargs ls -d 2>/dev/null)
 [ -n "$texts" ] || { echo "no file found: the check is broken"; exit 1; }
 bad=0
 # A temporary file by mkstemp or mkdtemp (XXXXXX) is meant to lie in the machine's folder for them,

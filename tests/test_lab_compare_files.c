@@ -40,6 +40,25 @@ static void test_all_curves_are_in_one_figure(void **state)
   assert_null(strstr(text, "filledcurves"));
 }
 
+/* Of a pair the model is drawn whole, also where nothing was measured. */
+static void test_pair_shows_the_whole_model(void **state)
+{
+  (void)state;
+  static char text[COMMAND_TEXT_MAX];
+  double last_kV = 0;
+  command_write("few.csv", "V (kV),z centre (um),z centre std (um)\n2,190,3\n4,420,5\n");
+  assert_int_equal(command_run("compare run few.csv --model 3d -o pair"), 0);
+  command_read("pair/compare_centre_z_m.dat", text);
+  assert_contains(text, "\n2 187 193\n4 415 425\n"); // the band
+  const char *curve = strstr(text, ": run, 3d\n");
+  assert_non_null(curve);
+  for (curve = strchr(strchr(curve, '\n') + 1, '\n') + 1; *curve != '\n';
+       curve = strchr(curve, '\n') + 1) {
+    last_kV = strtod(curve, NULL);
+  }
+  assert_true(last_kV > 4);
+}
+
 /* Writes folder bad with a file of that text, compares, and looks for the message. */
 static void is_bad(const char *name, const char *text, const char *message)
 {
@@ -139,6 +158,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_all_curves_are_in_one_figure),
+      cmocka_unit_test(test_pair_shows_the_whole_model),
       cmocka_unit_test(test_bad_files_with_their_places),
       cmocka_unit_test(test_many_errors_are_cut),
       cmocka_unit_test(test_with_failing_allocations),

@@ -157,7 +157,7 @@ chi-square has grown by 1, emcee's are the quantiles 16 and 84 %% of samples (fl
 steps, of which 500 are left out). Tolerances: of lmfit, values and ends of intervals 2 %% of a standard
 uncertainty, uncertainties 1 %%; of samples, whose own error is about 2 %%, 10 %% of a standard uncertainty.
 """ % (lmfit.__version__, emcee.__version__))
-CASES = [("yeoh", "the three tests of [examples/fit/silicone.yaml](../../examples/fit/silicone.yaml)", silicone()),
+CASES = [("yeoh", "the three tests of `examples/fit/silicone.yaml`", silicone()),
          ("gent", "the same tests, which this law does not fit", silicone()),
          ("third-order", "%d points of three synthetic tests" % (3 * LARGE), large())]
 times = []

@@ -363,23 +363,53 @@ static dea_status add_pair_band(struct dea_context *ctx, struct dea_panel *panel
   return DEA_OK;
 }
 
-static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m, const char *a,
-                            const char *b, struct dea_plot *plot)
+/* One of a pair, whole: where it was computed, or all that was measured, with what is known of its
+ * error. */
+static dea_status add_side(struct dea_context *ctx, struct dea_panel *panel,
+                           const struct dea_misfit *m, const struct dea_curve *curve,
+                           const char *name, bool first)
+{
+  struct dea_series look = {.style = first               ? DEA_LINE
+                                     : curve->count > 25 ? DEA_LINE_MARKED
+                                                         : DEA_MARKERS,
+                            .colour = first ? DEA_BLUE : DEA_VERMILLION};
+  dea_label_escape(name, look.title, sizeof look.title);
+  return dea_figure_add(ctx, panel, curve, m->column, dea_point_columns[m->column].factor, 0.0,
+                        &look);
+}
+
+/* What was measured, with a band of its scatter, or with bars where the model has a band. */
+static dea_status add_pair_measured(struct dea_context *ctx, struct dea_panel *panel,
+                                    const struct dea_measurement *measured,
+                                    const struct dea_misfit *m)
+{
+  struct dea_series *series;
+  if (!has_std_of(m, m->a_std) || !has_std_of(m, m->b_std)) {
+    return add_measured(ctx, panel, measured, m->column, false);
+  }
+  DEA_TRY(ctx, add_values(ctx, panel, m, m->b, NULL, m->b_std, &series));
+  series->style = DEA_ERROR_BARS;
+  series->colour = DEA_BLACK;
+  snprintf(series->title, sizeof series->title, "measured, %s", band_title);
+  return DEA_OK;
+}
+
+static dea_status fill_pair(struct dea_context *ctx, const struct dea_set_curve *c,
+                            const struct dea_measurement *measured, const struct dea_misfit *m,
+                            const char *beside, struct dea_plot *plot)
 {
   struct dea_panel *top = &plot->panels[0], *low = &plot->panels[1];
   struct dea_series *series;
   bool bars = has_std_of(m, m->b_std);
   plot->panel_count = 2;
   plot->second_height = 0.45;
+  if (measured != NULL && carries_band(measured, m->column) && !has_std_of(m, m->a_std)) {
+    DEA_TRY(ctx, add_measured(ctx, top, measured, m->column, true));
+  }
   DEA_TRY(ctx, add_pair_band(ctx, top, m));
-  DEA_TRY(ctx, add_values(ctx, top, m, m->a, NULL, NULL, &series));
-  series->style = DEA_LINE;
-  series->colour = DEA_BLUE;
-  dea_label_escape(a, series->title, sizeof series->title);
-  DEA_TRY(ctx, add_values(ctx, top, m, m->b, NULL, m->b_std, &series));
-  series->style = bars ? DEA_ERROR_BARS : m->count > 25 ? DEA_LINE_MARKED : DEA_MARKERS;
-  series->colour = DEA_VERMILLION;
-  dea_label_escape(b, series->title, sizeof series->title);
+  DEA_TRY(ctx, add_side(ctx, top, m, c->curve, c->name, true));
+  DEA_TRY(ctx, measured != NULL ? add_pair_measured(ctx, top, measured, m)
+                                : add_side(ctx, top, m, c->reference, beside, false));
   DEA_TRY(ctx, add_values(ctx, low, m, m->a, m->b, m->b_std, &series));
   series->style = bars ? DEA_ERROR_BARS : DEA_LINE_MARKED;
   series->colour = DEA_BLACK;
@@ -388,14 +418,20 @@ static dea_status fill_pair(struct dea_context *ctx, const struct dea_misfit *m,
   snprintf(low->y_label, sizeof low->y_label, "Difference");
   dea_panel_voltage_axis(top);
   dea_panel_voltage_axis(low);
+  low->x_min = top->x_min;
+  low->x_max = top->x_max;
   dea_panel_even_tics(top, 7);
   dea_panel_even_tics(low, 3);
+  set_range(top);
+  dea_panel_place_key(top);
   return DEA_OK;
 }
 
 static dea_status draw_pair(struct dea_set_figures *f, size_t curve)
 {
   const struct dea_set_curve *c = &f->set->curves[curve];
+  const struct dea_measurement *measured =
+      f->set->measured != NULL ? f->set->measured->points : NULL;
   bool alone = f->set->curve_count == 1;
   char name[DEA_SET_FIGURE_SIZE], beside[DEA_LABEL_SIZE], caption[3 * DEA_LABEL_SIZE];
   dea_compare_set_beside(f->set, curve, beside);
@@ -407,7 +443,7 @@ static dea_status draw_pair(struct dea_set_figures *f, size_t curve)
     snprintf(caption, sizeof caption, "%s of %s and %s, and the first minus the second",
              dea_point_columns[m->column].header, c->name, beside);
     DEA_TRY(f->ctx, dea_plot_create(f->ctx, name, caption, &plot));
-    DEA_TRY(f->ctx, finish_figure(f, plot, fill_pair(f->ctx, m, c->name, beside, plot)));
+    DEA_TRY(f->ctx, finish_figure(f, plot, fill_pair(f->ctx, c, measured, m, beside, plot)));
   }
   return DEA_OK;
 }
