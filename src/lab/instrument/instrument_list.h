@@ -9,4 +9,5 @@
   X(gocator)                                                                                       \
   X(keyence)                                                                                       \
   X(optoncdt)                                                                                      \
-  X(scpi)
+  X(scpi)                                                                                          \
+  X(shvps)

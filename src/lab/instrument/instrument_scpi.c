@@ -239,7 +239,7 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   dea_socket_close(&s->link.socket);
-  dea_free(ctx, s->output.queue);
+  dea_timed_end(ctx, &s->output);
   dea_free(ctx, s);
 }
 

@@ -1,9 +1,7 @@
 /* Inside of the instrument "scpi": its keys, its connection, and its output.
  *
- * At most one question is open at a time, so that a response can belong to nothing else. A voltage
- * of the output counts as set once the question `confirm`, which is sent behind it, was answered;
- * until then no other is sent. So a supply can never have more to do than one voltage, and one that
- * takes longer than `behind` for it has failed. */
+ * A voltage of the output counts as set once the question `confirm`, which is sent behind it, was
+ * answered. */
 #ifndef DEA_LAB_INSTRUMENT_SCPI_H
 #define DEA_LAB_INSTRUMENT_SCPI_H
 
@@ -11,6 +9,7 @@
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/line_link.h"
 #include "lab/instrument/scpi_parse.h"
+#include "lab/instrument/timed_output.h"
 
 enum { DEA_SCPI_COMMANDS_MAX = 16, DEA_SCPI_COMMAND_SIZE = DEA_TITLE_SIZE + 40 };
 
@@ -38,21 +37,6 @@ struct dea_scpi_raw {
 
 enum dea_scpi_question { DEA_SCPI_NOTHING, DEA_SCPI_READING, DEA_SCPI_CONFIRM, DEA_SCPI_MEASURE };
 
-struct dea_scpi_output {
-  double *queue; // [room], a ring; owned. NULL: it plays nothing
-  size_t room, first, count;
-  size_t played;           // samples taken out of the queue since clock_s
-  double rate_Hz, clock_s; // sample 0 is at clock_s, by the computer's clock; NAN: not started
-  double wanted_V, sent_V; // what the output should be, and the last that was sent; control volts
-  double sent_s,
-      waiting_s; // when that was; since when `wanted_V` waits to be sent, NAN: it does not
-  double fed_s, measured_s; // when the watchdog was fed, and the voltage measured, last
-  /* Lowest and highest voltage sent in this window and the one before, each `behind` long. */
-  double lowest_V[2], highest_V[2], window_s;
-  size_t deviations; // measured voltages in a row that were none of these
-  double turned_s;   // when it was played last
-};
-
 struct dea_scpi {
   struct dea_instrument base;
   struct dea_scpi_raw raw;
@@ -67,7 +51,8 @@ struct dea_scpi {
   enum dea_scpi_question asked; // what is waited for
   double asked_s;
   bool broken; // a response made no sense: which question the next one belongs to is not known
-  struct dea_scpi_output output;
+  struct dea_timed_output output;
+  double fed_s; // when the watchdog was fed last
 };
 
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,

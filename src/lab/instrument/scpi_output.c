@@ -7,9 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Measured voltages in a row that may differ from what was set: one may be taken while it moves. */
-enum { DEVIATIONS_MAX = 2 };
-
 void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
                              char out[DEA_SCPI_COMMAND_SIZE])
 {
@@ -33,22 +30,6 @@ bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response)
 
 // What is set ------------------------------------------------------------------------------------
 
-static void note_sent(struct dea_scpi *s, double volts, double now_s)
-{
-  struct dea_scpi_output *o = &s->output;
-  if (!(now_s - o->window_s < s->raw.behind_s.si)) {
-    o->lowest_V[1] = o->lowest_V[0];
-    o->highest_V[1] = o->highest_V[0];
-    o->lowest_V[0] = o->highest_V[0] = o->sent_V;
-    o->window_s = now_s;
-  }
-  o->lowest_V[0] = fmin(o->lowest_V[0], volts);
-  o->highest_V[0] = fmax(o->highest_V[0], volts);
-  o->sent_V = volts;
-  o->sent_s = now_s;
-  o->waiting_s = NAN;
-}
-
 static dea_status ask(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi_question what,
                       const char *question)
 {
@@ -64,19 +45,21 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, doub
   char command[DEA_SCPI_COMMAND_SIZE];
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, &volts, 1));
   dea_scpi_output_command(&s->raw, volts, command);
-  note_sent(s, volts, dea_clock_s());
+  dea_timed_sent(&s->output, volts, dea_clock_s());
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, command));
   return ask(ctx, s, DEA_SCPI_CONFIRM, s->raw.confirm.text);
 }
 
 dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)
 {
-  struct dea_scpi_output *o = &s->output;
-  o->rate_Hz = s->protocol->rate_Hz.si;
-  o->clock_s = o->waiting_s = NAN;
-  o->room = (size_t)(s->raw.queue_s.si * o->rate_Hz) + 1;
-  o->queue = dea_alloc(ctx, o->room, sizeof *o->queue);
-  return o->queue != NULL ? DEA_OK : DEA_E_MEMORY;
+  const struct dea_scpi_raw *raw = &s->raw;
+  s->output.rate_Hz = s->protocol->rate_Hz.si;
+  s->output.queue_s = raw->queue_s.si;
+  s->output.behind_s = raw->behind_s.si;
+  s->output.output_interval_s = raw->output_interval_s.si;
+  s->output.measure_interval_s =
+      raw->measure.origin != DEA_ABSENT ? raw->interval_s.si : (double)INFINITY;
+  return dea_timed_begin(ctx, &s->output);
 }
 
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
@@ -114,8 +97,8 @@ dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
 
 dea_status dea_scpi_output_start(struct dea_context *ctx, struct dea_scpi *s)
 {
-  struct dea_scpi_output *o = &s->output;
-  o->turned_s = o->clock_s = o->window_s = o->measured_s = o->fed_s = s->start_s;
+  dea_timed_start(&s->output, s->start_s);
+  s->fed_s = s->start_s;
   return s->raw.watchdog.arm.origin != DEA_ABSENT
              ? dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, s->raw.watchdog.arm.text)
              : DEA_OK;
@@ -123,84 +106,56 @@ dea_status dea_scpi_output_start(struct dea_context *ctx, struct dea_scpi *s)
 
 // The queue --------------------------------------------------------------------------------------
 
-/* Whether the computer was away while there was something to play: neither a loop that is late, nor
- * a jump to where the waveform has got to meanwhile. */
-static dea_status check_stall(struct dea_context *ctx, struct dea_scpi *s, double now_s)
+/* Feeds the watchdog when that is due; *next_s: when it will be. */
+static dea_status feed(struct dea_context *ctx, struct dea_scpi *s, double now_s, double *next_s)
 {
-  struct dea_scpi_output *o = &s->output;
-  double due_s = o->count > 0 ? o->clock_s + (double)o->played / o->rate_Hz : now_s;
-  double away_s = fmax(now_s - due_s, now_s - o->turned_s);
-  bool idle = o->count == 0 && o->sent_V == 0 && o->wanted_V == 0;
-  o->turned_s = now_s;
-  return idle || away_s <= s->raw.queue_s.si + 1 / o->rate_Hz
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_INTERLOCK,
-                        "the computer was away for %.3g s, longer than the queue of %g s: it was "
-                        "stopped, or is too busy",
-                        away_s, s->raw.queue_s.si);
+  const struct dea_scpi_raw *raw = &s->raw;
+  *next_s = INFINITY;
+  if (raw->watchdog.feed.origin == DEA_ABSENT) {
+    return DEA_OK;
+  }
+  if (now_s >= s->fed_s + raw->watchdog.period_s.si) {
+    s->fed_s = now_s;
+    DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, raw->behind_s.si, raw->watchdog.feed.text));
+  }
+  *next_s = s->fed_s + raw->watchdog.period_s.si;
+  return DEA_OK;
 }
 
-/* Takes the samples whose time has come out of the queue. */
-static void take_due(struct dea_scpi *s, double now_s)
+/* From when on the open question is late; readings have a time of their own. */
+static double late_at(const struct dea_scpi *s)
 {
-  struct dea_scpi_output *o = &s->output;
-  while (o->count > 0 && o->clock_s + (double)o->played / o->rate_Hz <= now_s) {
-    o->wanted_V = o->queue[o->first];
-    o->first = (o->first + 1) % o->room;
-    o->count--;
-    o->played++;
-  }
-  if (o->wanted_V == o->sent_V) {
-    o->waiting_s = NAN;
-  } else if (isnan(o->waiting_s)) {
-    o->waiting_s = now_s;
-  }
+  double wait_s = s->asked == DEA_SCPI_READING ? (double)INFINITY : s->raw.behind_s.si;
+  return s->asked == DEA_SCPI_NOTHING ? (double)NAN : s->asked_s + wait_s;
 }
 
 dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, double *next_s)
 {
   const struct dea_scpi_raw *raw = &s->raw;
-  struct dea_scpi_output *o = &s->output;
-  double now_s = dea_clock_s(), measure_s = o->measured_s + raw->interval_s.si;
+  struct dea_timed_output *o = &s->output;
+  double now_s = dea_clock_s(), feed_s;
+  bool confirms = s->asked == DEA_SCPI_CONFIRM;
   *next_s = INFINITY;
-  if (o->queue == NULL || isnan(o->clock_s)) {
+  if (!dea_timed_plays(o)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, check_stall(ctx, s, now_s));
-  take_due(s, now_s);
-  if (raw->watchdog.feed.origin != DEA_ABSENT) {
-    if (now_s >= o->fed_s + raw->watchdog.period_s.si) {
-      o->fed_s = now_s;
-      DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, raw->behind_s.si, raw->watchdog.feed.text));
-    }
-    *next_s = o->fed_s + raw->watchdog.period_s.si;
-  }
-  double behind_s = raw->behind_s.si;
-  if (s->asked == DEA_SCPI_CONFIRM && now_s > s->asked_s + behind_s) {
-    return dea_scpi_no_response(ctx, s, raw->confirm.text, behind_s);
-  }
-  if (s->asked == DEA_SCPI_MEASURE && now_s > s->asked_s + behind_s) {
-    return dea_scpi_no_response(ctx, s, raw->measure.text, behind_s);
-  }
-  if (!isnan(o->waiting_s) && now_s > o->waiting_s + behind_s + raw->output_interval_s.si) {
+  DEA_TRY(ctx, dea_timed_take(ctx, o, now_s));
+  DEA_TRY(ctx, feed(ctx, s, now_s, &feed_s));
+  enum dea_timed_action action = dea_timed_next(o, now_s, late_at(s), next_s);
+  *next_s = fmin(*next_s, feed_s);
+  switch (action) {
+  case DEA_TIMED_LATE:
+    return dea_scpi_no_response(ctx, s, confirms ? raw->confirm.text : raw->measure.text,
+                                raw->behind_s.si);
+  case DEA_TIMED_BEHIND:
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is more than %g s behind with its voltage", s->name,
-                    behind_s);
-  }
-  *next_s = fmin(*next_s, o->count > 0 ? o->clock_s + (double)o->played / o->rate_Hz : INFINITY);
-  if (s->asked != DEA_SCPI_NOTHING) {
-    *next_s = fmin(*next_s, s->asked_s + behind_s);
-    return DEA_OK;
-  }
-  if (raw->measure.origin != DEA_ABSENT && now_s >= measure_s) {
-    o->measured_s = now_s;
+                    raw->behind_s.si);
+  case DEA_TIMED_MEASURE:
     return ask(ctx, s, DEA_SCPI_MEASURE, raw->measure.text);
-  }
-  *next_s = fmin(*next_s, raw->measure.origin != DEA_ABSENT ? measure_s : INFINITY);
-  if (!isnan(o->waiting_s)) {
-    if (now_s >= o->sent_s + raw->output_interval_s.si) {
-      return send_voltage(ctx, s, o->wanted_V);
-    }
-    *next_s = fmin(*next_s, o->sent_s + raw->output_interval_s.si);
+  case DEA_TIMED_SEND:
+    return send_voltage(ctx, s, o->wanted_V);
+  case DEA_TIMED_NOTHING:
+    break;
   }
   return DEA_OK;
 }
@@ -223,7 +178,7 @@ static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double unti
 dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
                                size_t count)
 {
-  struct dea_scpi_output *o = &s->output;
+  struct dea_timed_output *o = &s->output;
   double next_s;
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
   for (size_t i = 0; i < count; i++) {
@@ -231,9 +186,9 @@ dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, cons
       if (isnan(o->clock_s)) {
         return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->room);
       }
-      DEA_TRY(ctx, serve(ctx, s, o->clock_s + (double)o->played / o->rate_Hz));
+      DEA_TRY(ctx, serve(ctx, s, dea_timed_due(o)));
     }
-    o->queue[(o->first + o->count++) % o->room] = volts[i];
+    dea_timed_add(o, volts[i]);
   }
   return dea_scpi_output_play(ctx, s, &next_s);
 }
@@ -242,14 +197,9 @@ dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *
                                 double *volts)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
-  struct dea_scpi_output *o = &s->output;
   (void)ctx;
-  o->first = o->count = 0;
-  o->wanted_V = o->sent_V;
-  o->waiting_s = NAN;
-  o->turned_s = s->asked_s = dea_clock_s(); // a response may wait since then
-  o->clock_s = o->turned_s - (double)o->played / o->rate_Hz;
-  *volts = o->sent_V;
+  s->asked_s = dea_clock_s(); // a response may wait since then
+  *volts = dea_timed_hold(&s->output, s->asked_s);
   return DEA_OK;
 }
 
@@ -258,19 +208,15 @@ dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *
 /* A supply that is where it was asked to be within `behind` measures what was sent since. */
 static dea_status check_measured(struct dea_context *ctx, struct dea_scpi *s, double volts)
 {
-  struct dea_scpi_output *o = &s->output;
   double gain = s->protocol->amplifier.gain.si;
   double error_V = s->protocol->safety.voltage_error_V.si / gain;
-  double lowest_V = fmin(o->lowest_V[0], o->lowest_V[1]);
-  double highest_V = fmax(o->highest_V[0], o->highest_V[1]);
-  bool wrong = volts < lowest_V - error_V || volts > highest_V + error_V;
-  o->deviations = wrong ? o->deviations + 1 : 0;
-  return o->deviations < DEVIATIONS_MAX
+  return dea_timed_measured(&s->output, volts, error_V)
              ? DEA_OK
              : dea_fail(ctx, DEA_E_INSTRUMENT,
                         "%s measures %.4g kV where %.4g kV was set, more than "
                         "safety.voltage_error of %.4g V away",
-                        s->name, 1e-3 * gain * volts, 1e-3 * gain * o->sent_V, gain * error_V);
+                        s->name, 1e-3 * gain * volts, 1e-3 * gain * s->output.sent_V,
+                        gain * error_V);
 }
 
 dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,

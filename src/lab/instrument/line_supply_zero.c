@@ -1,0 +1,137 @@
+/* How a supply on a serial line is brought to 0 V, and what is known of it then.
+ *
+ * 0 V is set and the output switched off, each command behind the answer to the one before, or
+ * without one where none comes; then its voltage is read back until it has been at 0 V for
+ * `behind`. Nothing that it says is believed but behind a new answer to `sync`. Where that does not
+ * come all begins anew on another connection, until the time is over. */
+#include "base/clock.h"
+#include "lab/instrument/line_supply.h"
+#include "lab/instrument/serial.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double poll_s = 0.05, again_s = 0.1;
+/* Of the time left: how long an answer is waited for, so that there is time for another try. */
+static const double share = 0.2;
+
+struct zeroing {
+  struct dea_line_link *link;
+  const struct dea_line_supply_language *language;
+  const struct dea_line_supply_raw *raw;
+  const struct dea_protocol *protocol;
+  double until_s;
+};
+
+static double wait_until(const struct zeroing *z)
+{
+  double now_s = dea_clock_s();
+  return now_s + fmin(z->raw->behind_s.si, share * fmax(z->until_s - now_s, 0));
+}
+
+/* Whatever it answers, or not. False: nothing can be sent. */
+static bool command(struct dea_context *ctx, const struct zeroing *z, const char *text)
+{
+  const char *answer;
+  double until_s = wait_until(z);
+  return dea_line_supply_send(ctx, z->link, fmax(until_s - dea_clock_s(), 0), text) == DEA_OK &&
+         dea_line_supply_wait(ctx, z->link, until_s, &answer) == DEA_OK;
+}
+
+static bool command_zero(struct dea_context *ctx, const struct zeroing *z)
+{
+  char text[DEA_LINE_SUPPLY_COMMAND_SIZE];
+  snprintf(text, sizeof text, "%s0", z->language->set);
+  bool sent = command(ctx, z, ""); // ends what may stand in its buffer
+  sent = command(ctx, z, text) && sent;
+  for (size_t i = 0; z->language->off[i] != NULL; i++) {
+    sent = command(ctx, z, z->language->off[i]) && sent;
+  }
+  return sent;
+}
+
+/* Its voltage now. False: it does not answer, or nothing that can be believed. */
+static bool read_voltage(struct dea_context *ctx, const struct zeroing *z, double *volts)
+{
+  const char *answer;
+  double until_s = wait_until(z);
+  if (dea_line_supply_send(ctx, z->link, poll_s, z->language->sync) != DEA_OK) {
+    return false;
+  }
+  do { // older answers come first
+    if (dea_line_supply_wait(ctx, z->link, until_s, &answer) != DEA_OK || answer == NULL) {
+      return false;
+    }
+  } while (!z->language->is_synced(answer));
+  return dea_line_supply_send(ctx, z->link, poll_s, z->language->measure) == DEA_OK &&
+         dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) == DEA_OK && answer != NULL &&
+         !z->language->is_error(answer) && z->language->voltage(answer, volts);
+}
+
+/* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
+static bool read_back(struct dea_context *ctx, const struct zeroing *z, struct dea_zero *zero)
+{
+  double since_s = NAN;
+  while (dea_clock_s() < z->until_s) {
+    double asked_s = dea_clock_s(), volts;
+    if (!read_voltage(ctx, z, &volts)) {
+      return false;
+    }
+    zero->volts = volts / z->protocol->amplifier.gain.si;
+    if (!(fabs(volts) <= z->protocol->safety.at_zero_V.si)) {
+      since_s = NAN;
+    } else if (isnan(since_s)) {
+      since_s = asked_s;
+    } else if (asked_s - since_s >= z->raw->behind_s.si) {
+      zero->state = DEA_ZERO_READ_BACK;
+      return true;
+    }
+    dea_clock_wait(poll_s);
+  }
+  return true;
+}
+
+/* On connections of its own, until one has said something or the time is over. */
+static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
+{
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  bool told = false;
+  while (!told && dea_clock_s() < z->until_s) {
+    struct dea_line_link link = {.socket.descriptor = -1};
+    z->link = &link;
+    if (dea_serial_open(ctx, z->language->what, z->raw->device.text, (int)z->raw->baud.si, 0,
+                        &link.socket) == DEA_OK) {
+      told = command_zero(ctx, z) && read_back(ctx, z, &zero);
+      dea_socket_close(&link.socket);
+    }
+    if (!told) {
+      dea_clock_wait(fmin(again_s, fmax(z->until_s - dea_clock_s(), 0)));
+    }
+  }
+  return zero;
+}
+
+struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct dea_line_supply *s = (struct dea_line_supply *)instrument;
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct zeroing z = {&s->link, s->language, &s->raw, s->protocol,
+                      dea_clock_s() + s->protocol->safety.zero_time_s.si};
+  if (s->link.socket.descriptor >= 0) {
+    bool told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
+    dea_socket_close(&s->link.socket);
+    if (told) {
+      return zero;
+    }
+  }
+  return zero_anew(ctx, &z);
+}
+
+struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
+                                     const struct dea_line_supply_language *language,
+                                     const void *data, const struct dea_protocol *protocol)
+{
+  struct zeroing z = {NULL, language, data, protocol,
+                      dea_clock_s() + protocol->safety.zero_time_s.si};
+  return zero_anew(ctx, &z);
+}

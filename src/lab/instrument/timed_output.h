@@ -1,0 +1,64 @@
+/* The output of a supply that the computer's clock plays: what waits to be sent, what is due, and
+ * what a measured voltage may be. It sends nothing itself. Voltages are control voltages.
+ *
+ * At most one question is open at a time, so that an answer can belong to nothing else, and a
+ * voltage counts as set once it was confirmed: a supply never has more to do than one voltage, and
+ * one that takes longer than `behind` for it has failed. */
+#ifndef DEA_LAB_INSTRUMENT_TIMED_OUTPUT_H
+#define DEA_LAB_INSTRUMENT_TIMED_OUTPUT_H
+
+#include "base/context.h"
+
+/* What is to be done now. */
+enum dea_timed_action {
+  DEA_TIMED_NOTHING, // until *next_s
+  DEA_TIMED_LATE,    // the open question was not answered in time
+  DEA_TIMED_BEHIND,  // a voltage could not be sent in time
+  DEA_TIMED_MEASURE, // ask for the voltage; measured_s is now
+  DEA_TIMED_SEND     // send wanted_V, then note it
+};
+
+/* Zero-initialised: it plays nothing. */
+struct dea_timed_output {
+  double *queue; // [room], a ring; owned. NULL: it plays nothing
+  size_t room, first, count;
+  size_t played;                    // samples taken out of the queue since clock_s
+  double queue_s, behind_s;         // that the queue holds; that a voltage may take
+  double output_interval_s;         // shortest time between two voltages
+  double measure_interval_s;        // between two measured ones; INFINITY: none
+  double rate_Hz, clock_s;          // sample 0 is at clock_s, by the computer's clock; NAN: not
+                                    // started
+  double wanted_V, sent_V;          // what the output should be, and the last that was sent
+  double sent_s, waiting_s;         // when that was; since when `wanted_V` waits, NAN: it does not
+  double measured_s;                // when the voltage was asked for last
+  double lowest_V[2], highest_V[2]; // sent in this window and the one before
+  double window_s;                  // when this window began; each is `behind` long
+  size_t deviations;                // measured voltages in a row that were none of these
+  double turned_s;                  // when it was played last
+};
+
+/* Makes the queue; the times are set before. */
+dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *output);
+void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *output);
+void dea_timed_start(struct dea_timed_output *output, double now_s);
+/* Whether there is something to play. */
+bool dea_timed_plays(const struct dea_timed_output *output);
+/* When the next sample of the queue is due. */
+double dea_timed_due(const struct dea_timed_output *output);
+/* Adds a sample to a queue that is not full. */
+void dea_timed_add(struct dea_timed_output *output, double volts);
+/* Takes what is due out of the queue. DEA_E_INTERLOCK when the computer was away for longer than
+ * the queue: neither a loop that is late, nor a jump to where the waveform has got to meanwhile. */
+dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *output, double now_s);
+/* What to do after that. late_s: from when on the open question is late; NAN: none is open.
+ * *next_s: when there will be something to do. */
+enum dea_timed_action dea_timed_next(struct dea_timed_output *output, double now_s, double late_s,
+                                     double *next_s);
+void dea_timed_sent(struct dea_timed_output *output, double volts, double now_s);
+/* After a stall: drops the queue; the voltage where the output stands. */
+double dea_timed_hold(struct dea_timed_output *output, double now_s);
+/* False once two measured voltages in a row were more than error_V from all that was sent within
+ * `behind`: one may be taken while it moves. */
+bool dea_timed_measured(struct dea_timed_output *output, double volts, double error_V);
+
+#endif

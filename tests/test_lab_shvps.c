@@ -1,0 +1,230 @@
+/* The open high-voltage supply SHVPS, imitated on a pseudo-terminal: what dea drive plays on it,
+ * and what it says of the output when the supply is slow, hangs, lies, makes no sense, begins anew
+ * or is pulled out, and when dea itself is killed or stopped. */
+// ctest: supply
+#define _GNU_SOURCE // posix_openpt, ptsname_r
+#include "supply_drive.h"
+
+#include "line_supply.h"
+
+static const double range_V = 2500;
+
+static void answer(struct line_supply *s, const char *command, char out[LINE_SUPPLY_ANSWER])
+{
+  double value;
+  int number;
+  if (sscanf(command, "SVset%lf", &value) == 1) {
+    s->set_V = value;
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", value);
+  } else if (sscanf(command, "SSwMode%d", &number) == 1) {
+    s->mode = number;
+    snprintf(out, LINE_SUPPLY_ANSWER, "%d", number);
+  } else if (sscanf(command, "SF%lf", &value) == 1) {
+    s->frequency_Hz = value;
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.3f", value);
+  } else if (strcmp(command, "SSwSrc0") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "0");
+  } else if (strcmp(command, "QF") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.3f", s->frequency_Hz);
+  } else if (strcmp(command, "QVnow") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", s->lied_V);
+  } else if (strcmp(command, "QVmax") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", range_V);
+  } else if (strcmp(command, "QName") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "bench 5");
+  }
+}
+
+/* Longer times than usual, as the machine may be busy; more: keys of the supply. */
+#define PATIENT ", behind: 1.5 s"
+static void write_protocol(const struct line_supply *s, double highest_kV, int cycles,
+                           const char *more)
+{
+  char text[2048];
+  snprintf(text, sizeof text,
+           "dea-protocol: 1\n"
+           "waveform: {kind: triangle, low: 0 kV, high: %g kV, cycles: %d, frequency: 0.25 Hz}\n"
+           "amplifier: {gain: 1000, max_voltage: 5 kV, min_voltage: 0 V}\n"
+           "rate: 100 Hz\n"
+           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s, "
+           "guard_time: 2 s}\n"
+           "instruments:\n"
+           "  - {kind: shvps, device: %s, queue: 1 s, timeout: 2 s%s}\n",
+           highest_kV, cycles, supply_zero_V, s->device, more);
+  command_write("p.yaml", text);
+}
+
+static void begin(struct line_supply *s)
+{
+  s->answer = answer;
+  s->error = "Err";
+  s->buffer = LINE_SUPPLY_BUFFER;
+  line_supply_start(s);
+}
+
+/* Whatever the one before has left: a line may have the name of another. */
+static pid_t arm_anew(const char *file)
+{
+  const char *const arguments[] = {"drive", "p.yaml", "--arm", "--checked", "-f", "-o", file, NULL};
+  return supply_begin(arguments);
+}
+
+/* Whether the supply was at 0 V if dea said so, and stayed there. */
+static void check_said(struct line_supply *s, int code)
+{
+  double volts = line_supply_volts(s);
+  (void)line_supply_highest(s);
+  dea_clock_wait(1);
+  double later_V = line_supply_highest(s);
+  if (supply_said_zero() && !(volts <= supply_zero_V && later_V <= supply_zero_V)) {
+    fail_msg("'at 0 V' and exit code %d, with %.0f V at the end and %.0f V later", code, volts,
+             later_V);
+  }
+}
+
+/* In pieces of 1 to 3 bytes too: a triangle up to 2 kV, whose voltage the recording has. */
+static void test_plays(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  for (size_t fragment = 0; fragment < 4; fragment += 3) {
+    s = (struct line_supply){.fragment = fragment};
+    begin(&s);
+    write_protocol(&s, 2, 1, PATIENT ", channel: supply, name: bench");
+    pid_t child = arm_anew("good.h5");
+    bool reached = line_supply_reaches(&s, 1900, 10);
+    int code = supply_wait(child, 20);
+    if (code != 0 || !reached) {
+      fail_msg("%d\n%s%s", code, command_out, command_err);
+    }
+    assert_true(supply_said_zero());
+    assert_true(line_supply_volts(&s) <= supply_zero_V && s.mode == 0);
+    double highest_V = line_supply_highest(&s);
+    assert_true(highest_V > 1900 && highest_V <= 2000);
+    assert_true(s.commands > 100 && s.overflows == 0 && s.hurried == 0);
+    assert_int_equal(command_run("recording good.h5 --csv csv"), 0);
+    assert_contains(command_out, "supply");
+    assert_contains(command_out, "at 0 V (0 V read back)");
+    line_supply_stop(&s);
+  }
+}
+
+struct fault_case {
+  enum line_supply_fault fault;
+  const char *message;
+};
+
+/* Above 1 kV something happens; dea says so, and of the output only what is true. */
+static void test_faults(void **state)
+{
+  (void)state;
+  static const struct fault_case cases[] = {
+      {LINE_SUPPLY_SLOW, "did not answer"},  {LINE_SUPPLY_HANGS, "did not answer"},
+      {LINE_SUPPLY_LIES, "measures"},        {LINE_SUPPLY_STUCK, "measures"},
+      {LINE_SUPPLY_GARBLES, "answered '"},   {LINE_SUPPLY_ERRS, "answered 'Err' to '"},
+      {LINE_SUPPLY_RESETS, "to 'QF' where"}, {LINE_SUPPLY_PULLED, "the connection to the SHVPS"}};
+  static struct line_supply s;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    // what is compared with all that was set within `behind` has to be found by a shorter one
+    bool compared = cases[i].fault == LINE_SUPPLY_LIES || cases[i].fault == LINE_SUPPLY_STUCK;
+    s = (struct line_supply){.delay_s = 2};
+    begin(&s);
+    write_protocol(&s, 2, 20, compared ? ", behind: 0.5 s" : PATIENT);
+    pid_t child = arm_anew("fault.h5");
+    assert_true(line_supply_reaches(&s, 1000, 10));
+    atomic_store(&s.fault, cases[i].fault);
+    int code = supply_wait(child, 20);
+    check_said(&s, code);
+    print_message("fault %d: exit code %d, %s, %.0f V\n", (int)cases[i].fault, code,
+                  supply_said_zero() ? "at 0 V" : "not known", line_supply_volts(&s));
+    assert_int_equal(code, 6);
+    assert_contains(command_err, cases[i].message);
+    // one that began anew answers, and one that is slow may: all others cannot be believed
+    assert_true(supply_said_zero() == (cases[i].fault == LINE_SUPPLY_RESETS) ||
+                cases[i].fault == LINE_SUPPLY_SLOW);
+    line_supply_stop(&s);
+  }
+}
+
+/* What was left up is known by the next program, and ends with a supply that answers. */
+static void test_zero(void **state)
+{
+  (void)state;
+  static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
+  static struct line_supply s;
+  s = (struct line_supply){0};
+  begin(&s);
+  write_protocol(&s, 2, 20, PATIENT);
+  pid_t child = arm_anew("left.h5");
+  assert_true(line_supply_reaches(&s, 1000, 10));
+  atomic_store(&s.fault, LINE_SUPPLY_HANGS);
+  assert_int_equal(supply_wait(child, 20), 6);
+  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_contains(command_out, "not known to be at 0 V");
+  assert_true(line_supply_volts(&s) > 500);
+  atomic_store(&s.fault, LINE_SUPPLY_GOOD);
+  assert_int_equal(supply_wait(supply_arm("next.h5"), 20), 6);
+  assert_contains(command_err, "did not end at 0 V as far as is known");
+  assert_int_equal(supply_run_dea(zero, 20), 0);
+  assert_contains(command_out, "output            at 0 V (0 V read back)");
+  assert_true(line_supply_volts(&s) <= supply_zero_V);
+  line_supply_stop(&s);
+}
+
+/* The guard opens the line by itself. */
+static void test_killed_and_stopped(void **state)
+{
+  (void)state;
+  static const int signals[] = {SIGKILL, SIGSTOP};
+  static struct line_supply s;
+  for (size_t i = 0; i < 2; i++) {
+    s = (struct line_supply){0};
+    begin(&s);
+    write_protocol(&s, 2, 20, PATIENT);
+    pid_t child = arm_anew("killed.h5");
+    assert_true(line_supply_reaches(&s, 1000, 10));
+    assert_int_equal(kill(child, signals[i]), 0);
+    double until_s = dea_clock_s() + 10;
+    while (line_supply_volts(&s) > supply_zero_V && dea_clock_s() < until_s) {
+      dea_clock_wait(0.01);
+    }
+    dea_clock_wait(2); // until it was read back
+    (void)line_supply_highest(&s);
+    assert_int_equal(kill(child, SIGCONT), 0);
+    assert_int_equal(supply_wait(child, 20), signals[i] == SIGKILL ? -SIGKILL : 6);
+    assert_true(line_supply_highest(&s) <= supply_zero_V);
+    line_supply_stop(&s);
+  }
+}
+
+/* Refused before any voltage: more than it says that it gives, another one, a negative sign. */
+static void test_refused(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  s = (struct line_supply){0};
+  begin(&s);
+  write_protocol(&s, 3, 1, PATIENT);
+  assert_int_equal(supply_wait(arm_anew("r.h5"), 20), 6);
+  assert_contains(command_err, "the sequence goes to 3 kV, and the SHVPS at /dev/");
+  assert_contains(command_err, "says that it gives 2.5 kV at most");
+  write_protocol(&s, 2, 1, PATIENT ", name: rack");
+  assert_int_equal(supply_wait(arm_anew("r.h5"), 20), 6);
+  assert_contains(command_err, "is a 'bench 5', not a 'rack'");
+  assert_true(line_supply_highest(&s) == 0);
+  static const char *const negative[] = {"drive", "p.yaml", "--set", "amplifier.min_voltage=-5 kV",
+                                         NULL};
+  assert_int_equal(supply_run_dea(negative, 20), 3);
+  assert_contains(command_err, "this supply gives one sign only");
+  line_supply_stop(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_plays),   cmocka_unit_test(test_faults),
+      cmocka_unit_test(test_zero),    cmocka_unit_test(test_killed_and_stopped),
+      cmocka_unit_test(test_refused),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
