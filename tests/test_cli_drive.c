@@ -96,6 +96,8 @@ static void test_usage(void **state)
       {"drive a b", "one protocol at a time", 2},
       {"drive a --arm --sim", "exclude each other", 2},
       {"drive a --armed", "there is no option '--armed'", 2},
+      {"drive -zv a", "there is no option '-z'", 2},
+      {"drive -fv a", "'-v' stands alone", 2},
       {"drive none.yaml", "none.yaml", 5},
       {"drive @/examples/frdea-4.yaml", "this is a design", 3},
       {"drive " EXAMPLE " --arm", "names no `instruments` to play it", 6},

@@ -103,20 +103,41 @@ static int check_exclusions(struct dea_cli *cli, const struct dea_command *comma
   return 0;
 }
 
+/* The common option of a letter, or of a name; NULL: none. */
+static const struct cli_option *find_common(char letter, const char *name)
+{
+  for (const struct cli_option *o = cli_common_options; o->help != NULL; o++) {
+    if (name != NULL ? strcmp(o->name, name) == 0 : o->letter == letter) {
+      return o;
+    }
+  }
+  return NULL;
+}
+
+/* Whether a word is common options only, such as --quiet or -vv; sets them. */
+static bool take_common(struct dea_cli *cli, const char *word)
+{
+  bool is_long = strncmp(word, "--", 2) == 0;
+  size_t count = is_long ? 1 : strlen(word) - (word[0] != '\0');
+  for (int set = 0; set < 2; set++) {
+    for (size_t i = 0; i < count; i++) {
+      const struct cli_option *o = find_common(word[1 + i], is_long ? word + 2 : NULL);
+      if (word[0] != '-' || o == NULL) {
+        return false;
+      }
+      if (set) {
+        *(bool *)((char *)cli + o->target) = true;
+      }
+    }
+  }
+  return count > 0;
+}
+
 int cli_take_common(struct dea_cli *cli, int argc, char **argv)
 {
   int kept = 0;
   for (int i = 0; i < argc; i++) {
-    const struct cli_option *o = cli_common_options;
-    for (; o->help != NULL; o++) {
-      const char letter[] = {'-', o->letter, '\0'};
-      bool is_long = strncmp(argv[i], "--", 2) == 0 && strcmp(argv[i] + 2, o->name) == 0;
-      if (is_long || strcmp(argv[i], letter) == 0) {
-        *(bool *)((char *)cli + o->target) = true;
-        break;
-      }
-    }
-    if (o->help == NULL) {
+    if (!take_common(cli, argv[i])) {
       argv[kept++] = argv[i];
     }
   }
@@ -147,6 +168,13 @@ int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, 
   int found, code = 0;
   opterr = 0;
   while (code == 0 && (found = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
+    if (found == '?' && optopt != 0 && optopt < FIRST_LONG) { // a letter, perhaps one of several
+      return cli_usage_error(cli, command,
+                             find_common((char)optopt, NULL) != NULL
+                                 ? "'-%c' stands alone, not with letters of other options"
+                                 : "there is no option '-%c'",
+                             optopt);
+    }
     if (found == ':' || found == '?') {
       return cli_usage_error(cli, command,
                              found == ':' ? "option '%s' needs a value" : "there is no option '%s'",
