@@ -5,7 +5,7 @@
 
 /* Penalty of the contact: the answer does not depend on it; some modulus over a tenth of the film's
  * thickness settles in few rounds. */
-static const double stiffness_Pa_per_m = 1e11;
+static const double stiffness_Pa_per_m = 1e10;
 static const double first_step_m = 20e-6, largest_step_m = 200e-6, growth = 1.6;
 
 /* Faces that the probe may touch: the film's and, from above, those of electrodes and fibres. */

@@ -23,7 +23,8 @@
  *
  * B0 is that of the start on both sides: with that of where the solid is, kappa (B - B0) theta
  * would be a force on what only shears, kappa/mu times too large. Steps f = (du, dq) are mixed by
- * Anderson's rule. */
+ * Anderson's rule. Multipliers of loads (a contact's pressures) are brought up to date between
+ * steps. */
 
 enum { DEPTH = 6 };                   // steps that are remembered
 static const double compliance = 100; // of a pressure, in 1/kappa
@@ -33,7 +34,7 @@ struct follow {
   struct dea_solid *s;
   struct dea_solid_report *report;
   size_t dofs, pressures, count; // of u, of q, of both
-  double *keep, *first;          // [count] u and multipliers, u and q at the start
+  double *keep, *first;          // [states] state, [count] u and q at the start
   double *b, *L;                 // of each own element there, see find_constraints
   double *weight;                // [pressures] dq weight dq is an energy
   double *theta;                 // [pressures] of this iteration
@@ -43,19 +44,23 @@ struct follow {
   double *dh[DEPTH];             // [dofs]
   int depth;                     // of them that there are
   double size_first, size;       // of f, at first and now
+  double size_renewed;           // when the loads were last brought up to date; or at first
+  int renewed;                   // iteration of that
   double accuracy;               // of the last f over the first
+  double load_error;             // of the loads' multipliers, at most 1: they have followed
   bool equilibrium;              // forces and theta are to be those of one
   double stiff;                  // kappa of the factor over that of the solid
 };
 
 static dea_status allocate(struct follow *w)
 {
-  double **const both[] = {&w->keep, &w->first, &w->x, &w->f, &w->x_old, &w->f_old};
+  double **const both[] = {&w->first, &w->x, &w->f, &w->x_old, &w->f_old};
   double **const moves[] = {&w->h, &w->h_old};
   double **const pressures[] = {&w->theta, &w->weight};
   size_t own = w->s->problem.own_count, most = (size_t)w->s->problem.elements.pressures;
   w->b = dea_arena_alloc(&w->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
   w->L = dea_arena_alloc(&w->memory, own * most * most, sizeof(double));
+  w->keep = dea_arena_alloc(&w->memory, w->s->work.load_steps.state_count, sizeof(double));
   for (size_t i = 0; i < sizeof both / sizeof both[0]; i++) {
     *both[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
   }
@@ -73,13 +78,7 @@ static dea_status allocate(struct follow *w)
   return dea_solid_agree(w->memory.ctx, dea_arena_status(&w->memory));
 }
 
-/* u and multipliers to and from one vector. */
-static void get(const struct follow *w, double *x)
-{
-  memcpy(x, w->s->state.u, w->dofs * sizeof *x);
-  memcpy(x + w->dofs, w->s->state.multiplier, w->pressures * sizeof *x);
-}
-
+/* u and multipliers from one vector. */
 static void set(const struct follow *w, const double *x)
 {
   memcpy(w->s->state.u, x, w->dofs * sizeof *x);
@@ -304,9 +303,25 @@ static dea_status find_step(struct dea_context *ctx, struct follow *w)
 static bool pays(const struct follow *w, int k)
 {
   const struct dea_solid_settings *o = &w->s->settings;
-  double size = w->size / w->size_first; // after k steps
+  double size = w->size / w->size_renewed; // after k steps
+  double goal = w->accuracy * w->size_first / w->size_renewed;
+  k -= w->renewed;
   return k == 0 ||
-         (size < o->follow_rate && (k < 2 || k * log(w->accuracy) / log(size) < o->follow_steps));
+         (size < o->follow_rate && (k < 2 || k * log(goal) / log(size) < o->follow_steps));
+}
+
+/* Brings the loads' multipliers up to date at x, once that is near enough. What is remembered is of
+ * other forces then. */
+static bool renew_loads(struct follow *w, int k)
+{
+  if (w->load_error <= 1 || !(w->size < w->s->settings.follow_on_the_way * w->size_first)) {
+    return false;
+  }
+  set(w, w->x);
+  w->load_error = dea_solid_update_loads(w->s);
+  w->depth = 0;
+  w->renewed = k;
+  return true;
 }
 
 /* One iteration: a step, which is the last one where *there, or none where they do not pay (*ends).
@@ -316,18 +331,20 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
   struct dea_solid *s = w->s;
   const struct dea_solid_settings *o = &s->settings;
   DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+  bool renewed = k == 0 || renew_loads(w, k);
   DEA_TRY(ctx, find_forces(ctx, w));
   w->report->residual = sqrt(dea_solid_dot(s, w->h, w->h)) /
                         (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   w->report->theta_max = dea_solid_theta_max(s);
   DEA_TRY(ctx, find_step(ctx, w));
   w->size_first = k == 0 ? w->size : w->size_first;
+  w->size_renewed = renewed ? w->size : w->size_renewed;
   bool small = k > 0 && w->size < w->accuracy * w->size_first;
-  *there = small && (!w->equilibrium ||
-                     (w->report->theta_max < o->theta && w->report->residual < o->residual));
+  *there = small && (!w->equilibrium || (w->report->theta_max < o->theta &&
+                                         w->report->residual < o->residual && w->load_error <= 1));
   *ends = !*there && !pays(w, k);
   if (!*ends) {
-    if (k > 0) {
+    if (!renewed) {
       remember(w);
     }
     advance(w);
@@ -351,7 +368,7 @@ static dea_status begin(struct dea_context *ctx, struct follow *w)
   struct dea_solid *s = w->s;
   double energy;
   DEA_TRY(ctx, allocate(w));
-  get(w, w->keep);
+  dea_solid_state_get(s, w->keep);
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   memcpy(w->first, w->keep, w->count * sizeof *w->first);
   for (size_t i = 0; i < w->pressures; i++) {
@@ -370,13 +387,17 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
   if (status != DEA_OK) {
     return status;
   }
-  for (int k = 0; k <= w->s->settings.follow_steps && status == DEA_OK && !*there && !ends; k++) {
+  for (size_t i = 0; i < w->s->problem.load_count; i++) {
+    w->load_error = w->s->problem.loads[i].update != NULL ? INFINITY : w->load_error;
+  }
+  for (int k = 0;
+       k - w->renewed <= w->s->settings.follow_steps && status == DEA_OK && !*there && !ends; k++) {
     status = iterate(ctx, w, k, there, &ends);
   }
   if (*there) {
     give_back(w);
   } else {
-    set(w, w->keep);
+    dea_solid_state_set(w->s, w->keep);
   }
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -419,7 +440,7 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
   }
   *there = status == DEA_OK && w->report->unstable_modes == 0;
   if (!*there) {
-    set(w, w->keep);
+    dea_solid_state_set(s, w->keep);
     s->found.factor_fits = s->found.stiff_factor_fits = false;
   }
   if (dea_solid_may_shorten(status)) {

@@ -7,6 +7,7 @@
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/check.h"
 #include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/equilibrate.h"
 #include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"
@@ -327,16 +328,26 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
-/* Whether loads and supports are such that a factor may be kept: nothing is brought in by
- * multipliers that follow from outside, no support moves. */
-static bool may_follow(struct dea_solid *s)
+/* dea_solid_follow, again and again with loads that have new multipliers, until these follow. On
+ * the way to a point that is asked for they need not. */
+static dea_status follow_loads(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
+                               struct dea_solid_report *report, bool *there)
 {
-  for (size_t i = 0; i < s->problem.load_count; i++) {
-    if (s->problem.loads[i].update != NULL) {
-      return false;
+  *there = true;
+  for (int i = 0; i < s->settings.rounds && *there; i++) {
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, on_the_way, report, there));
+    if (*there) {
+      report->load_error = dea_solid_update_loads(s);
+      if (report->load_error <= 1 || on_the_way) {
+        return DEA_OK;
+      }
+    }
+    if (!*there && i > 0) { // the multipliers have moved: there is no way back from here
+      s->found.factor_fits = s->found.stiff_factor_fits = false;
     }
   }
-  return !dea_solid_controls_increment(s, s->work.load_steps.controls_goal);
+  *there = false;
+  return DEA_OK;
 }
 
 /* With the factors of points on the way, report->way, in steps that are halved where one is too
@@ -349,17 +360,19 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   while (report->way < 1 && part >= s->settings.follow_part) {
     double way = fmin(report->way + part, 1);
     set_share(s, way);
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, there));
+    DEA_TRY(ctx, follow_loads(ctx, s, way < 1, report, there));
     if (*there) {
       report->way = way;
+    } else if (s->found.factor_fits || s->found.stiff_factor_fits) {
+      part /= 2;
     } else {
-      part = s->found.factor_fits || s->found.stiff_factor_fits ? part / 2 : 0;
+      return DEA_OK;
     }
   }
   set_share(s, report->way);
   *there = report->way == 0 || report->way >= 1;
   if (!*there) { // it is only near one
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
+    DEA_TRY(ctx, follow_loads(ctx, s, false, report, there));
   }
   return DEA_OK;
 }
@@ -390,7 +403,7 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, d
   bool moves = memcmp(path->controls_from, path->controls_goal,
                       path->control_count * sizeof *path->controls_from) != 0;
   double part = 1;
-  if (moves && may_follow(s)) {
+  if (moves && !dea_solid_controls_increment(s, path->controls_goal)) { // no support moves
     DEA_TRY(ctx, follow_in_steps(ctx, s, report));
     if (report->way >= 1) {
       return DEA_OK;

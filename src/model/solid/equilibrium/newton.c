@@ -280,12 +280,10 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
   return DEA_OK;
 }
 
-/* Stationary point of the energy, downhill from where it is: a minimum, or a point that has a
- * valley on all sides that a Newton step sees. Pressures follow; where they do not,
- * report->theta_max is above settings.theta. */
-static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                           struct dea_solid_report *report)
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
+                              struct dea_solid_report *report)
 {
+  double voltage_V = s->state.voltage_V;
   const struct dea_solid_settings *o = &s->settings;
   struct newton d = {.voltage_V = voltage_V, .start = s->found.factor_fits, .report = report};
   s->found.factor_fits = false;
@@ -358,29 +356,4 @@ double dea_solid_update_loads(struct dea_solid *s)
     }
   }
   return error;
-}
-
-/* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
- * more minima at given multipliers may go on, but violate the constraints more and more. */
-dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
-                                 struct dea_solid_report *report)
-{
-  const struct dea_solid_settings *o = &s->settings;
-  double best = INFINITY;
-  for (int i = 0, worse = 0; i < o->rounds && worse < o->rounds_worse; i++) {
-    DEA_TRY(ctx, minimise(ctx, s, s->state.voltage_V, report));
-    report->load_error = dea_solid_update_loads(s);
-    double error = fmax(report->theta_max / o->theta, report->load_error);
-    if (report->theta_max < o->theta && report->load_error <= 1) {
-      return DEA_OK;
-    }
-    if (report->theta_max >= o->theta) {
-      dea_solid_update_multipliers(s);
-    }
-    worse = error < best ? 0 : worse + 1;
-    best = fmin(best, error);
-  }
-  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                  "the constraints do not settle (J - 1: %.1e; loads: %.2g of what is allowed)",
-                  report->theta_max, report->load_error);
 }

@@ -5,10 +5,11 @@
 
 #include "model/solid/assembly/problem.h"
 
-/* Equilibrium at the controls as they are, downhill from where it is, with the constraints of the
- * multipliers met: a minimum, or a point that has a valley on all sides that a Newton step sees. */
-dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
-                                 struct dea_solid_report *report);
+/* Equilibrium at the controls and multipliers of loads as they are, downhill from where it is: a
+ * minimum, or a point that has a valley on all sides that a Newton step sees. Pressures follow;
+ * where they do not, report->theta_max is above settings.theta. */
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
+                              struct dea_solid_report *report);
 /* One linear step in which the held components go their work.increment and the rest follows. */
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
                                           struct dea_solid_report *report);

@@ -1,0 +1,48 @@
+#include "model/solid/equilibrium/equilibrate.h"
+
+#include "model/solid/assembly/incompressible.h"
+#include "model/solid/equilibrium/follow.h"
+#include "model/solid/equilibrium/newton.h"
+
+#include <math.h>
+
+/* Multipliers of loads from those of a minimum on, with its factor. *there: they have followed. */
+static dea_status follow_loads(struct dea_context *ctx, struct dea_solid *s,
+                               struct dea_solid_report *report, bool *there)
+{
+  DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
+  if (*there) {
+    report->load_error = dea_solid_update_loads(s);
+    *there = report->load_error <= 1;
+  }
+  return DEA_OK;
+}
+
+/* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
+ * more minima at given multipliers may go on, but violate the constraints more and more. */
+dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report)
+{
+  const struct dea_solid_settings *o = &s->settings;
+  double best = INFINITY;
+  for (int i = 0, worse = 0; i < o->rounds && worse < o->rounds_worse; i++) {
+    DEA_TRY(ctx, dea_solid_minimise(ctx, s, report));
+    report->load_error = dea_solid_update_loads(s);
+    double error = fmax(report->theta_max / o->theta, report->load_error);
+    bool there = report->theta_max < o->theta && report->load_error <= 1;
+    if (!there && report->theta_max < o->theta) {
+      DEA_TRY(ctx, follow_loads(ctx, s, report, &there));
+    }
+    if (there) {
+      return DEA_OK;
+    }
+    if (report->theta_max >= o->theta) {
+      dea_solid_update_multipliers(s);
+    }
+    worse = error < best ? 0 : worse + 1;
+    best = fmin(best, error);
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                  "the constraints do not settle (J - 1: %.1e; loads: %.2g of what is allowed)",
+                  report->theta_max, report->load_error);
+}
