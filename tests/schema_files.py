@@ -73,7 +73,8 @@ def kind_of(path, data):
     if "dea_explore" in data:
         return "explore"
     if "dea_fit" in data:
-        return "fit-device" if "design" in data else "fit"
+        return ("fit-device" if "design" in data else "fit-breakdown" if "breakdown" in data
+                else "fit")
     return "design"
 
 

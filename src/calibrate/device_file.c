@@ -148,23 +148,6 @@ static dea_status check(struct dea_context *ctx, const void *file)
                              "parameter");
 }
 
-dea_status dea_device_file_is(struct dea_context *ctx, const char *file, bool *out)
-{
-  char *bytes;
-  size_t length;
-  struct dea_yaml *document = NULL;
-  *out = false;
-  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  dea_status status = dea_yaml_parse(ctx, file, bytes, length, &document);
-  if (status == DEA_OK) {
-    const struct dea_node *root = dea_yaml_root(document);
-    *out = root->kind == DEA_NODE_SECTION && dea_node_find(root, "design") != NULL;
-    dea_yaml_destroy(ctx, document);
-  }
-  dea_free(ctx, bytes);
-  return status;
-}
-
 dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
                                 struct dea_device_file **out)
 {

@@ -33,8 +33,6 @@ struct dea_device_file {
 
 extern const struct dea_record dea_device_file_record;
 
-/* Whether a fit file is one of a device: it has the key `design`. Status as of reading. */
-dea_status dea_device_file_is(struct dea_context *ctx, const char *file, bool *out);
 /* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
  * failure. */
 dea_status dea_device_file_read(struct dea_context *ctx, const char *file,

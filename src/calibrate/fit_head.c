@@ -55,6 +55,23 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
                                head->file, found, found > 1 ? "s" : "");
 }
 
+dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out)
+{
+  char *bytes;
+  size_t length;
+  struct dea_yaml *document = NULL;
+  *out = false;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = dea_yaml_parse(ctx, file, bytes, length, &document);
+  if (status == DEA_OK) {
+    const struct dea_node *root = dea_yaml_root(document);
+    *out = root->kind == DEA_NODE_SECTION && dea_node_find(root, key) != NULL;
+    dea_yaml_destroy(ctx, document);
+  }
+  dea_free(ctx, bytes);
+  return status;
+}
+
 dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
                              const struct dea_record *record, size_t size,
                              dea_status (*check)(struct dea_context *ctx, const void *fit),

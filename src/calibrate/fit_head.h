@@ -67,6 +67,10 @@ struct dea_fit_parameter_text {
   }
 extern const char *const dea_fit_no_yes[];
 
+/* Whether a file has a key, by which the kinds of fit files are told apart: `design` of a device,
+ * `breakdown` of breakdown tests, neither of a material. Status as of reading. */
+dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out);
+
 /* Reads a file into a new struct of `size` bytes that begins with its head; check: what the table
  * cannot say, asked where the table is kept. Errors are findings with their places; DEA_E_DESIGN
  * then. out: owned by the caller, NULL on failure. */

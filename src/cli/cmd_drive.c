@@ -71,7 +71,12 @@ static void print_breakdown(const struct dea_protocol_plan *plan)
   if (isnan(plan->breakdown_probability)) {
     puts("unknown");
   } else {
-    printf("%.2g %%\n", 100 * plan->breakdown_probability);
+    printf("%.2g %%", 100 * plan->breakdown_probability);
+    if (!isnan(plan->breakdown_probability_band[0])) {
+      printf(" (%.2g to %.2g %% by its sources)", 100 * plan->breakdown_probability_band[0],
+             100 * plan->breakdown_probability_band[1]);
+    }
+    putchar('\n');
   }
 }
 
@@ -149,6 +154,8 @@ static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_p
   dea_json_put(json, "allowed_field_V_per_m", plan->allowed_field_V_per_m);
   dea_json_put(json, "breakdown_field_V_per_m", plan->breakdown_field_V_per_m);
   dea_json_put(json, "breakdown_probability", plan->breakdown_probability);
+  dea_json_put(json, "breakdown_probability_low", plan->breakdown_probability_band[0]);
+  dea_json_put(json, "breakdown_probability_high", plan->breakdown_probability_band[1]);
   dea_json_put(json, "pull_in_V", plan->pull_in_V);
   dea_json_put(json, "capacitance_F", plan->capacitance_F);
   dea_json_put(json, "stored_energy_J", plan->stored_energy_J);

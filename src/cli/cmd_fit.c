@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 #include "cli/print_fit.h"
 #include "job/device_fit.h"
+#include "output/breakdown_fit.h"
 #include "output/device_fit_files.h"
 #include "output/fit_files.h"
 
@@ -75,19 +76,55 @@ static int fit_device(struct dea_cli *cli, const struct request *request)
   return code;
 }
 
+static dea_status fit_breakdown_file(struct dea_cli *cli, const struct request *request,
+                                     struct dea_breakdown_file **file,
+                                     struct dea_breakdown_fit **fit)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, dea_breakdown_file_read(ctx, request->file, file));
+  DEA_TRY(ctx, dea_breakdown_fit_run(ctx, *file, fit));
+  DEA_TRY(ctx, dea_breakdown_fit_folder(ctx, *file, request->output, request->force));
+  return dea_breakdown_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
+}
+
+static int fit_breakdown(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_breakdown_file *file = NULL;
+  struct dea_breakdown_fit *fit = NULL;
+  dea_status status = fit_breakdown_file(cli, request, &file, &fit);
+  if (fit != NULL && request->json) {
+    cli_print_json(dea_breakdown_fit_json(fit, cli->command_line));
+  } else if (fit != NULL) {
+    cli_print_breakdown_fit(fit);
+    if (status == DEA_OK) {
+      printf("\nwritten to %s\n", request->output);
+    }
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_breakdown_fit_destroy(cli->ctx, fit);
+  dea_breakdown_file_destroy(cli->ctx, file);
+  return code;
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
-  bool of_device = false;
+  bool of_device = false, of_breakdown = false;
   if (request->output == NULL) {
     cli_folder_name(request->file, "fit", &folder);
     request->output = dea_text_get(&folder);
   }
-  dea_status status =
-      folder.failed ? DEA_E_MEMORY : dea_device_file_is(cli->ctx, request->file, &of_device);
+  dea_status status = folder.failed
+                          ? DEA_E_MEMORY
+                          : dea_fit_file_has(cli->ctx, request->file, "design", &of_device);
+  if (status == DEA_OK) {
+    status = dea_fit_file_has(cli->ctx, request->file, "breakdown", &of_breakdown);
+  }
   int code = status != DEA_OK ? cli_report(cli, status)
              : of_device      ? fit_device(cli, request)
+             : of_breakdown   ? fit_breakdown(cli, request)
                               : fit_material(cli, request);
   dea_text_free(&folder);
   return code;
@@ -114,7 +151,8 @@ const struct dea_command cmd_fit = {
     .about = "Writes the material, or the design of the device as it was built, as NAME.yaml, "
              "fit.csv (measurements, model, band), fit.json and figures. What a fit file holds "
              "says 'dea schema --fit', that of a device (with the key design) 'dea schema "
-             "--fit-device'.",
+             "--fit-device', of breakdown tests (with the key breakdown) 'dea schema "
+             "--fit-breakdown'.",
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,

@@ -5,6 +5,7 @@
 #include "cli/models.h"
 #include "cli/print_tables.h"
 #include "job/job.h"
+#include "material/plane.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -153,7 +154,12 @@ static void print_breakdown(const struct dea_load_point *p, const struct dea_bre
     printf("; by source %.4g to %.4g V/um", film->law.low * field, film->law.high * field);
   }
   if (!isnan(p->breakdown_probability)) {
+    double band[2];
+    dea_breakdown_probability_band(film, p->breakdown_margin, band);
     printf("; breaks down by here with at most %.0f %%", 100 * p->breakdown_probability);
+    if (!isnan(band[0])) {
+      printf(", by source %.0f to %.0f %%", 100 * band[0], 100 * band[1]);
+    }
   }
   puts(")");
 }

@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 
+#include "calibrate/breakdown_file.h"
 #include "calibrate/device_file.h"
 #include "explore/explore_file.h"
 #include "lab/import/import.h"
@@ -7,7 +8,8 @@
 #include "study/design_file.h"
 
 struct request {
-  bool json, markdown, general, material, protocol, mapping, fit, fit_device, explore;
+  bool json, markdown, general, material, protocol, mapping, fit, fit_device, fit_breakdown,
+      explore;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -17,14 +19,15 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_protocol_schema protocol;
   dea_design_file_schema(&design);
   dea_instrument_protocol_schema(&protocol);
-  const struct dea_record *record = request->material     ? &dea_material_file_record
-                                    : request->protocol   ? &protocol.record
-                                    : request->mapping    ? &dea_mapping_record
-                                    : request->fit        ? &dea_fit_record
-                                    : request->fit_device ? &dea_device_file_record
-                                    : request->explore    ? &dea_explore_record
-                                    : request->general    ? &design.general.record
-                                                          : &design.disc.record;
+  const struct dea_record *record = request->material        ? &dea_material_file_record
+                                    : request->protocol      ? &protocol.record
+                                    : request->mapping       ? &dea_mapping_record
+                                    : request->fit           ? &dea_fit_record
+                                    : request->fit_device    ? &dea_device_file_record
+                                    : request->fit_breakdown ? &dea_breakdown_file_record
+                                    : request->explore       ? &dea_explore_record
+                                    : request->general       ? &design.general.record
+                                                             : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   if (request->json && record == &design.disc.record) {
@@ -54,6 +57,8 @@ static const struct cli_option options[] = {
      .or_before = true},
     {"fit-device", 0, CLI_FLAG, NULL, "the keys of a fit file of a device instead",
      CLI_AT(fit_device), .or_before = true},
+    {"fit-breakdown", 0, CLI_FLAG, NULL, "the keys of a fit file of breakdown tests instead",
+     CLI_AT(fit_breakdown), .or_before = true},
     {"explore", 0, CLI_FLAG, NULL, "the keys of a file for `dea sweep` and `dea optimise` instead",
      CLI_AT(explore), .or_before = true},
     {0}};

@@ -270,3 +270,43 @@ void cli_print_device_fit(const struct dea_device_fit *fit)
   print_pairs(fit);
   print_next("measurement", fit->next, fit->next_count);
 }
+
+// Breakdown ---------------------------------------------------------------------------------------
+
+void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit)
+{
+  static const struct {
+    const char *name;
+    struct shown shown;
+  } rows[DEA_WEIBULL_PARAMS] = {{"at_rest", {"V/um", 1e-6}},
+                                {"weibull_shape", {"", 1}},
+                                {"exponent", {"", 1}},
+                                {"thickness_exponent", {"", 1}}};
+  printf("Weibull's law of breakdown: %zu films, of which %zu broke\n"
+         "at_rest: the field at which 63.2 %% break of films of %.4g um and %.4g mm^2%s\n\n",
+         fit->rows, fit->fit.broken, 1e6 * fit->data.thickness0_m, 1e6 * fit->data.area0_m2,
+         fit->data.held[DEA_WEIBULL_STRETCH] && fit->data.given[DEA_WEIBULL_STRETCH] == 0
+             ? ""
+             : ", unstretched");
+  for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
+    const struct dea_fit_value value = {.value = fit->fit.value[k],
+                                        .std = fit->fit.std[k],
+                                        .low = fit->fit.low[k],
+                                        .high = fit->fit.high[k],
+                                        .fixed = fit->data.held[k]};
+    if (value.fixed && value.value == 0) {
+      printf("  %-20s    unknown: all films were alike in it, or it was not given\n", rows[k].name);
+    } else {
+      printf("  %-20s %10.6g", rows[k].name, rows[k].shown.factor * value.value);
+      print_known(&value, &rows[k].shown, 3, "", false);
+    }
+  }
+  static const double shares[] = {0.01, 0.1, 0.5};
+  putchar('\n');
+  for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++) {
+    double std;
+    const double field = dea_breakdown_fit_quantile(fit, shares[k], &std);
+    printf("%4.0f %% of such films break by %.4g V/um (68 %%: %.4g to %.4g)\n", 100 * shares[k],
+           1e-6 * field, 1e-6 * field * exp(-std), 1e-6 * field * exp(std));
+  }
+}

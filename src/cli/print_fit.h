@@ -3,8 +3,12 @@
 #define DEA_CLI_PRINT_FIT_H
 
 #include "calibrate/device_fit.h"
+#include "output/breakdown_fit.h"
 
 void cli_print_fit(const struct dea_fit *fit);
 void cli_print_device_fit(const struct dea_device_fit *fit);
+
+/* Weibull's law of breakdown. */
+void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit);
 
 #endif

@@ -121,8 +121,11 @@ static struct dea_bench_point complete(const struct film_model *m,
   double permittivity =
       DEA_EPSILON_0 * (film->permittivity.at_rest + film->permittivity.slope * (stretch - 1));
   const double low = film->breakdown.law.low; // of the values that sources give; 0: by hand
+  double band[2];
+  dea_breakdown_probability_band(&film->breakdown, point->breakdown_margin, band);
   return (struct dea_bench_point){
       .point = *point,
+      .breakdown_probability_band = {band[0], band[1]},
       .breakdown_V_per_m = (low > 0 ? low : 1) * dea_breakdown_field(film, stretch),
       .leakage_s =
           film->resistivity_ohm_m > 0 ? film->resistivity_ohm_m * permittivity : (double)INFINITY,

@@ -166,4 +166,13 @@ double dea_breakdown_probability(const struct dea_breakdown *breakdown, double m
   }
   return -expm1(-pow(fmax(1 - margin, 0), breakdown->law.shape));
 }
+
+void dea_breakdown_probability_band(const struct dea_breakdown *breakdown, double margin,
+                                    double out[2])
+{
+  const struct dea_breakdown_law *law = &breakdown->law;
+  const bool known = law->low > 0 && law->high > law->low;
+  out[0] = known ? dea_breakdown_probability(breakdown, 1 - (1 - margin) / law->high) : NAN;
+  out[1] = known ? dea_breakdown_probability(breakdown, 1 - (1 - margin) / law->low) : NAN;
+}
 #endif

@@ -50,5 +50,9 @@ void dea_breakdown_specialise(double thickness_m, double area_m2, struct dea_bre
  * smallest: exact for a uniform field, else an upper bound. NAN without Weibull's shape or a
  * margin. */
 double dea_breakdown_probability(const struct dea_breakdown *breakdown, double margin);
+/* The same by the largest and by the smallest value of the sources, in this order; NAN where there
+ * is no range. */
+void dea_breakdown_probability_band(const struct dea_breakdown *breakdown, double margin,
+                                    double out[2]);
 
 #endif

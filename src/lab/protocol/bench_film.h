@@ -28,6 +28,8 @@ struct dea_bench_point {
   // true field that the material stands as it is stretched, by the smallest value of its sources;
   // NAN: unknown
   double breakdown_V_per_m;
+  // breakdown probability by the largest and by the smallest value of its sources; NAN: unknown
+  double breakdown_probability_band[2];
   double leakage_s; // resistivity times permittivity; INFINITY: nothing leaks
 };
 

@@ -333,6 +333,7 @@ dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol
       .allowed_field_V_per_m = NAN,
       .breakdown_field_V_per_m = NAN,
       .breakdown_probability = NAN,
+      .breakdown_probability_band = {NAN, NAN},
       .pull_in_V = NAN,
       .capacitance_F = NAN,
       .stored_energy_J = NAN,

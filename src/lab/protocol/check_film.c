@@ -120,6 +120,8 @@ static dea_status check_peak(const struct film *film, const struct dea_protocol_
   plan->allowed_field_V_per_m = allowed_field(film, &at);
   plan->breakdown_field_V_per_m = at.breakdown_V_per_m;
   plan->breakdown_probability = at.point.breakdown_probability;
+  plan->breakdown_probability_band[0] = at.breakdown_probability_band[0];
+  plan->breakdown_probability_band[1] = at.breakdown_probability_band[1];
   plan->capacitance_F = at.point.capacitance_F;
   plan->stored_energy_J = 0.5 * at.point.capacitance_F * voltage_V * voltage_V;
   if (plan->pull_in_V <= voltage_V) {

@@ -150,11 +150,12 @@ struct dea_protocol_plan {
   double lowest_V, highest_V;   // of the asked voltage
   double largest_field_V_per_m; // true field of the film at that
   double allowed_field_V_per_m;
-  double breakdown_field_V_per_m; // of the film there, by the smallest value of its sources
-  double breakdown_probability;   // of one way up; NAN where nobody measured the distribution
-  double pull_in_V;               // lowest voltage without equilibrium; NAN: none below limits
-  double capacitance_F, rise_s;   // of the film; for the largest jump, by slew and current
-  double stored_energy_J;         // in the film at the largest voltage
+  double breakdown_field_V_per_m;       // of the film there, by the smallest value of its sources
+  double breakdown_probability;         // of one way up; NAN where nobody measured the distribution
+  double breakdown_probability_band[2]; // by the largest and smallest value of its sources; or NAN
+  double pull_in_V;             // lowest voltage without equilibrium; NAN: none below limits
+  double capacitance_F, rise_s; // of the film; for the largest jump, by slew and current
+  double stored_energy_J;       // in the film at the largest voltage
 };
 /* Compares the protocol with its amplifier, its channels and its design. What must not be played is
  * an error finding, what a user should know a warning or a note. DEA_E_INTERLOCK with errors. */
