@@ -1,14 +1,18 @@
 /* dea sweep: many designs that differ in some values. */
+#define _DEFAULT_SOURCE // readlink
 #include "cli/cli.h"
 
+#include "explore/slurm.h"
 #include "explore/sweep.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 struct request {
   const char *file;
   double processes; // 0: not given
+  double slurm;     // parts of an array of jobs; 0: none
   struct dea_sweep_options options;
 };
 
@@ -45,6 +49,26 @@ static void print_report(const struct dea_sweep_report *report, const struct req
   fflush(stdout);
 }
 
+/* Hands the sweep to Slurm. */
+static dea_status submit(struct dea_cli *cli, const struct request *request)
+{
+  char program[4096], array[32], merge[32];
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[length > 0 ? length : 0] = '\0';
+  const struct dea_slurm_options options = {
+      .program = length > 0 ? program : "dea",
+      .file = request->file,
+      .folder = request->options.folder,
+      .parts = (size_t)request->slurm,
+      .processes = request->processes > 0 ? (size_t)request->processes : 1,
+  };
+  DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
+  printf("job %s: an array of %zu parts; job %s: the tables, after all of them, in %s\n", array,
+         options.parts, merge, options.folder);
+  fflush(stdout);
+  return DEA_OK;
+}
+
 static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
   struct dea_explore_file *file;
@@ -53,7 +77,8 @@ static dea_status sweep(struct dea_cli *cli, const struct request *request)
   DEA_TRY(cli->ctx, dea_explore_file_read(cli->ctx, request->file, &file));
   dea_status status = dea_question_make(cli->ctx, file, &question);
   if (status == DEA_OK) {
-    status = dea_sweep_run(question, &request->options, &report);
+    status = request->slurm > 0 ? submit(cli, request)
+                                : dea_sweep_run(question, &request->options, &report);
     if (report.planned > 0) {
       print_report(&report, request);
     }
@@ -87,6 +112,12 @@ static const struct cli_option options[] = {
      cli_take_processes},
     {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
      CLI_AT(options.shard), take_shard},
+    {"slurm", 0, CLI_TEXT, "N",
+     "hand N parts to Slurm as an array of jobs, with -j processes each (1 if not given), and a "
+     "job "
+     "that writes the tables after them; what else sbatch should know says SBATCH_PARTITION and "
+     "the like",
+     CLI_AT(slurm), cli_take_processes},
     {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",
      CLI_AT(options.merge)},
     {"force", 'f', CLI_FLAG, NULL, "throw away the cases that are there", CLI_AT(options.force)},

@@ -126,6 +126,11 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   dea_status status = dea_device_model_sweep(&question->model, io->p, question->points);
   snprintf(io->id, sizeof io->id, "%s", question->id);
   snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, question->model.why);
+  if (status == DEA_E_UNSUPPORTED || status == DEA_E_ARGUMENT) { // of this design: a mesh
+    snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, dea_context_message(ctx));
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
   if (status == DEA_E_DOMAIN) {
     tell_design(question, ctx, io);
     return DEA_OK;
