@@ -145,6 +145,11 @@ struct dea_design {
       struct dea_choice field;            // enum dea_solid_electrostatics
       struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
       struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes
+      struct {                            // meshes by the estimated error of a monitor
+        bool asked;
+        struct dea_label monitor; // its name
+        struct dea_quantity tolerance, passes;
+      } adapt;
     } solid;
   } compute;
 

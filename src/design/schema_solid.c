@@ -12,6 +12,37 @@ static const char *const electrostatics[] = {"thin", "coupled",
 static const char *const domains[] = {"sector", "disc", "whole", NULL}; // whole: as disc
 static const char *const branches[] = {"any", "fibres", "back", NULL};
 
+static const struct dea_field adapt_fields[] = {
+    {.key = "monitor",
+     .kind = DEA_FIELD_LABEL,
+     .offset = AT(adapt.monitor),
+     .required = true,
+     .doc = "monitor whose error decides: of a point or a body its largest displacement, of a line "
+            "its length, of a shape its area",
+     .example = "hub"},
+    {.key = "tolerance",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(adapt.tolerance),
+     .unit = "1",
+     .above_min = true,
+     .max = 1,
+     .default_text = "1 %",
+     .doc = "estimated error that is small enough, over that motion",
+     .example = "0.5 %"},
+    {.key = "passes",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(adapt.passes),
+     .unit = "1",
+     .min = 1,
+     .max = 12,
+     .default_text = "5",
+     .doc = "meshes that are made at most",
+     .example = "3"},
+};
+static const struct dea_record adapt_record = {
+    "adapt", "refinement until a monitor is exact enough", adapt_fields,
+    sizeof adapt_fields / sizeof adapt_fields[0]};
+
 static const struct dea_field fields[] = {
     {.key = "film",
      .kind = DEA_FIELD_CHOICE,
@@ -41,6 +72,12 @@ static const struct dea_field fields[] = {
      .doc = "fineness of the mesh: 1 is within about 1 % at a fibre tip, each one more halves all "
             "sizes in the plane",
      .example = "1.5"},
+    {.key = "adapt",
+     .kind = DEA_FIELD_RECORD,
+     .record = &adapt_record,
+     .present_offset = AT(adapt.asked),
+     .doc = "finer where the error of a monitor at the last voltage comes from, until it is small "
+            "enough; of devices made of `plies`"},
     {.key = "order",
      .kind = DEA_FIELD_INTEGER,
      .offset = AT(order),

@@ -7,6 +7,12 @@ const struct dea_model_type *dea_model_of_device(const struct dea_model_type *ty
   return general && type->of_layouts != NULL ? type->of_layouts : type;
 }
 
+static double last_voltage_V(const struct dea_design *design)
+{
+  size_t count = design->compute.voltage_count;
+  return count > 0 ? design->compute.voltages_V[count - 1] : 0;
+}
+
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 {
   return (struct dea_model_settings){
@@ -18,6 +24,12 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
       .refinement = design->compute.solid.refinement.si,
       .order = (int)design->compute.solid.order.si,
       .order_z = (int)design->compute.solid.order_z.si,
+      .adapt = {.monitor = design->compute.solid.adapt.asked
+                               ? design->compute.solid.adapt.monitor.text
+                               : NULL,
+                .tolerance = design->compute.solid.adapt.tolerance.si,
+                .voltage_V = last_voltage_V(design),
+                .passes = (int)design->compute.solid.adapt.passes.si},
   };
 }
 

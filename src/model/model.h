@@ -35,6 +35,20 @@ struct dea_model_settings {
   double refinement;                        // of the mesh; up to 1: the coarsest
   int order;                                // of the elements in the plane, 1 to 3; 0: 2
   int order_z;                              // through the thickness of a layer, the same
+  const double (*sizes)[3]; // of elements of a free mesh: [size_count] x, y, size there [m]; lent
+  size_t size_count;        // until the model is made; 0: by the refinement
+  struct {                  // meshes of a layout by the error of a monitor
+    const char *monitor;    // lent; NULL: not asked for
+    double tolerance, voltage_V; // relative; where it is looked at
+    int passes;
+  } adapt;
+};
+
+/* One mesh of an adaptive refinement. */
+struct dea_adapt_pass {
+  size_t elements, unknowns;
+  double value, error; // of the monitor, and estimated; NAN: not known
+  bool within;         // that is the tolerance or less
 };
 
 /* What `fields` hands out: all of the device, or the middle surface of its film. */
@@ -125,6 +139,12 @@ struct dea_model_type {
    * the model until the next call. NULL when the model knows none. */
   dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,
                         struct dea_observation *out);
+  /* Estimated errors at the last point solved of the monitors' motions that `dea_observed_main`
+   * names, [monitor_count]; NAN where none is known, also of a point with a doubt. NULL when the
+   * model estimates none. */
+  dea_status (*errors)(struct dea_context *ctx, struct dea_model *model, double *error);
+  /* The meshes that were made for it, lent; NULL when the model does not adapt. */
+  const struct dea_adapt_pass *(*passes)(const struct dea_model *model, size_t *count);
   /* Profile at the last point solved; NULL when the model has none. */
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage

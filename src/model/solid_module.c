@@ -5,6 +5,9 @@
 #include "model/model.h"
 #include "model/solid_access.h"
 
+#include <stdio.h>
+#include <string.h>
+
 static const char module_file[] = "dea_solid_module.so";
 static const char advice[] =
     "it is built when libpetsc-real-dev and libslepc-real-dev are installed";
@@ -90,6 +93,11 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
                         "model 3d: a coupled field needs a film with a thickness "
                         "(compute.solid.film: solid)"));
   }
+  if (design->compute.solid.adapt.asked) {
+    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.adapt.monitor.location,
+                        "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
+                        "a frame take compute.solid.refinement and the study convergence"));
+  }
   if (film->law != NULL && film->law->anisotropic) {
     DEA_TRY(ctx,
             refuse(ctx,
@@ -98,6 +106,26 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
                        : &design->film.law.location,
                    "model 3d: the film's law has a direction of its own, which this model "
                    "does not know yet"));
+  }
+  return DEA_OK;
+}
+
+/* Of devices of any layout: the monitor that a mesh is refined for is there. */
+static dea_status check_layout(struct dea_context *ctx, const struct dea_design *design,
+                               const struct dea_device *device)
+{
+  const struct dea_layout *l = device->layout;
+  const char *name = design->compute.solid.adapt.monitor.text;
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    if (strcmp(l->monitors[i].name, name) == 0) {
+      return DEA_OK;
+    }
+  }
+  if (design->compute.solid.adapt.asked) {
+    char message[300];
+    snprintf(message, sizeof message,
+             "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
+    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.adapt.monitor.location, message));
   }
   return DEA_OK;
 }
@@ -152,6 +180,17 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
 {
   DEA_TRY(ctx, dea_model_observe(ctx, model->type, model->inner, out));
   return DEA_OK;
+}
+
+static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
+{
+  DEA_TRY(ctx, model->type->errors(ctx, model->inner, error));
+  return DEA_OK;
+}
+
+static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
+{
+  return model->type->passes(model->inner, count);
 }
 
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
@@ -232,12 +271,15 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
 static const struct dea_model_type of_layouts = {
     .name = "3d",
     .long_name = "3D solid",
+    .check = check_layout,
     .create = create,
     .destroy = destroy,
     .limit = limit,
     .passed = passed,
     .solve = solve,
     .observe = observe,
+    .errors = errors,
+    .passes = passes,
     .move = move,
     .soften = soften,
     .push = push,

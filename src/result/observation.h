@@ -29,6 +29,10 @@ enum dea_observed {
 /* The first of them are motions, which answer to an excitation. */
 enum { DEA_OBSERVED_MOTIONS = DEA_OBSERVED_FORCE_X };
 
+/* The motion of a monitor that its estimated error is of: stretch of a line, area stretch of a
+ * region, otherwise the largest displacement. */
+enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT]);
+
 /* Of a channel; ground is [0]. */
 struct dea_channel_values {
   double voltage_V;

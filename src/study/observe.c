@@ -22,10 +22,7 @@
 enum { BEFORE = 2, OF_CHANNEL = 3 }; // columns before the quantities; quantities of a channel
 
 /* In the order of enum dea_observed. */
-#define MONITOR_COLUMNS_AT(where)                                                                  \
-  {                                                                                                \
-    where, NAME("monitor", "name in the design"), DEA_OBSERVED_COLUMNS                             \
-  }
+#define MONITOR_COLUMNS_AT(where) where, NAME("monitor", "name in the design"), DEA_OBSERVED_COLUMNS
 #define CHANNEL_COLUMNS_AT(where)                                                                  \
   {                                                                                                \
     where, NAME("channel", "name in the design"),                                                  \
@@ -36,15 +33,36 @@ enum { BEFORE = 2, OF_CHANNEL = 3 }; // columns before the quantities; quantitie
                           "change of the channel's charge with its voltage, the film held"),       \
   }
 
-static const struct dea_result_column monitor_columns[] = MONITOR_COLUMNS_AT(VOLTAGE);
-static const struct dea_result_column monitor_time_columns[] = MONITOR_COLUMNS_AT(TIME);
+static const struct dea_result_column monitor_columns[] = {
+    MONITOR_COLUMNS_AT(VOLTAGE),
+    DEA_NUMBER_COLUMN("error_m", "m", "um", 1e6, "error",
+                      "estimated error of the largest displacement of a point or a body"),
+    DEA_NUMBER_COLUMN("stretch_error", "1", "1", 1, "stretch error",
+                      "estimated error of the stretch of a line, of the area stretch of a region"),
+};
+static const struct dea_result_column monitor_time_columns[] = {MONITOR_COLUMNS_AT(TIME)};
+static const struct dea_result_column pass_columns[] = {
+    {.key = "pass", .kind = DEA_CELL_COUNT, .title = "pass", .meaning = "number of the mesh"},
+    {.key = "elements", .kind = DEA_CELL_COUNT, .title = "elements", .meaning = "of the mesh"},
+    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
+    DEA_NUMBER_COLUMN("value", "1", "1", 1, "monitor",
+                      "motion of the monitor: displacement in m, or stretch"),
+    DEA_NUMBER_COLUMN("error", "1", "1", 1, "error", "its estimated error"),
+    {.key = "within",
+     .kind = DEA_CELL_FLAG,
+     .title = "small enough",
+     .meaning = "the error is the tolerance or less"},
+};
 static const struct dea_result_column channel_columns[] = CHANNEL_COLUMNS_AT(VOLTAGE);
 static const struct dea_result_column channel_time_columns[] = CHANNEL_COLUMNS_AT(TIME);
 enum {
   MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0],
+  MONITOR_TIME_COLUMNS = sizeof monitor_time_columns / sizeof monitor_time_columns[0],
+  PASS_COLUMNS = sizeof pass_columns / sizeof pass_columns[0],
   CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0]
 };
-_Static_assert(MONITOR_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
+_Static_assert(MONITOR_TIME_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
+_Static_assert(MONITOR_COLUMNS == MONITOR_TIME_COLUMNS + 2, "and two errors");
 _Static_assert(CHANNEL_COLUMNS == BEFORE + OF_CHANNEL, "a column a quantity");
 
 /* Tables of a study: against the voltage of a sweep, against time. */
@@ -73,7 +91,7 @@ static const struct tables of_history = {
                  .title = "Monitors in time",
                  .where = DEA_IN_CSV,
                  .columns = monitor_time_columns,
-                 .column_count = MONITOR_COLUMNS},
+                 .column_count = MONITOR_TIME_COLUMNS},
     .channels = {.study = "transient",
                  .name = "channels",
                  .title = "Channels in time",
@@ -81,6 +99,15 @@ static const struct tables of_history = {
                  .columns = channel_time_columns,
                  .column_count = CHANNEL_COLUMNS},
 };
+
+static const struct dea_result_table_type of_passes = {.study = "sweep",
+                                                       .name = "adaptation",
+                                                       .key = "adaptation",
+                                                       .title = "Adaptive refinement",
+                                                       .where =
+                                                           DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
+                                                       .columns = pass_columns,
+                                                       .column_count = PASS_COLUMNS};
 
 /* The model's table of that type, a new one when there is none. */
 static dea_status get_table(struct dea_context *ctx, const struct dea_result_table_type *type,
@@ -125,30 +152,41 @@ dea_status dea_observe_take(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
+/* error: of a monitor in a sweep. */
 static dea_status add_row(struct dea_context *ctx, struct dea_result_table *table, double where,
-                          const char *name, const double *values)
+                          const char *name, const double *values, double error)
 {
   struct dea_result_table_value row[DEA_RESULT_TABLE_COLUMNS_MAX] = {{.number = where},
                                                                      {.text = name}};
-  for (size_t k = BEFORE; k < table->type.column_count; k++) {
+  size_t count = table->type.column_count;
+  if (table->type.columns == monitor_columns) {
+    count = MONITOR_TIME_COLUMNS;
+    enum dea_observed main = dea_observed_main(values);
+    bool stretch = main == DEA_OBSERVED_STRETCH || main == DEA_OBSERVED_AREA_STRETCH;
+    row[count].number = stretch ? NAN : error;
+    row[count + 1].number = stretch ? error : NAN;
+  }
+  for (size_t k = BEFORE; k < count; k++) {
     row[k].number = values[k - BEFORE];
   }
   return dea_result_table_add_row(ctx, table, row);
 }
 
-/* Rows of one point. */
+/* Rows of one point. error: [monitor_count], NULL: not known. */
 static dea_status add_point(struct dea_context *ctx, const struct tables *tables, const char *model,
-                            double where, const double *values, struct dea_result *result)
+                            double where, const double *values, const double *error,
+                            struct dea_result *result)
 {
   const struct dea_layout *layout = result->device->layout;
   struct dea_result_table *table = NULL;
   for (size_t i = 0; i < layout->monitor_count; i++, values += DEA_OBSERVED_COUNT) {
     DEA_TRY(ctx, get_table(ctx, &tables->monitors, model, result, &table));
-    DEA_TRY(ctx, add_row(ctx, table, where, layout->monitors[i].name, values));
+    DEA_TRY(ctx, add_row(ctx, table, where, layout->monitors[i].name, values,
+                         error != NULL ? error[i] : NAN));
   }
   for (size_t k = 1; k < layout->channel_count; k++, values += OF_CHANNEL) {
     DEA_TRY(ctx, get_table(ctx, &tables->channels, model, result, &table));
-    DEA_TRY(ctx, add_row(ctx, table, where, layout->channels[k].name, values));
+    DEA_TRY(ctx, add_row(ctx, table, where, layout->channels[k].name, values, NAN));
   }
   return DEA_OK;
 }
@@ -160,13 +198,39 @@ dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_typ
   if (width == 0) {
     return DEA_OK;
   }
-  double *values = dea_alloc(ctx, width, sizeof *values);
+  double *values = dea_alloc(ctx, width + result->device->layout->monitor_count, sizeof *values);
   dea_status status = values != NULL ? dea_observe_take(ctx, type, model, values) : DEA_E_MEMORY;
+  double *error = type->errors != NULL && values != NULL ? values + width : NULL;
+  if (status == DEA_OK && error != NULL) {
+    status = type->errors(ctx, model, error);
+  }
   if (status == DEA_OK) {
-    status = add_point(ctx, &of_sweep, type->name, voltage_V, values, result);
+    status = add_point(ctx, &of_sweep, type->name, voltage_V, values, error, result);
   }
   dea_free(ctx, values);
   return status;
+}
+
+dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_model_type *type,
+                                    const struct dea_model *model, struct dea_result *result)
+{
+  size_t count = 0;
+  const struct dea_adapt_pass *pass = type->passes != NULL ? type->passes(model, &count) : NULL;
+  if (count == 0 || dea_result_find_table(result, type->name, "sweep", of_passes.name) != NULL) {
+    return DEA_OK;
+  }
+  struct dea_result_table *table;
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &of_passes, type->name, 0, &table));
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_result_table_value row[PASS_COLUMNS] = {{.number = (double)(i + 1)},
+                                                             {.number = (double)pass[i].elements},
+                                                             {.number = (double)pass[i].unknowns},
+                                                             {.number = pass[i].value},
+                                                             {.number = pass[i].error},
+                                                             {.number = pass[i].within ? 1 : 0}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
 }
 
 dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_type *type,
@@ -176,7 +240,7 @@ dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_t
   size_t width = dea_observe_width(type, result);
   for (size_t i = 0; i < curve->count && width > 0; i++) {
     DEA_TRY(ctx, add_point(ctx, &of_history, type->name, curve->points[i].time_s,
-                           values + i * width, result));
+                           values + i * width, NULL, result));
   }
   return DEA_OK;
 }

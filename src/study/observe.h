@@ -42,6 +42,9 @@
  * that knows none. */
 dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, double voltage_V, struct dea_result *result);
+/* The meshes of an adaptive refinement as the model's table "adaptation", once; nothing without. */
+dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_model_type *type,
+                                    const struct dea_model *model, struct dea_result *result);
 
 /* How many numbers monitors and channels have at a point; 0 where nothing is observed. */
 size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result);

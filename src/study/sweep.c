@@ -181,6 +181,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
   snprintf(what, sizeof what, "%s sweep", type->name);
   open_curve(curve);
+  DEA_TRY(ctx, dea_study_observe_passes(ctx, type, model, result));
   dea_status status = DEA_OK;
   if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
     status = restore(ctx, type, model, result->checkpoint);

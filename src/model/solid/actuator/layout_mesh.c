@@ -192,6 +192,18 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
   return dea_arena_status(memory);
 }
 
+/* Sizes of elements that were asked for, in the place of those of the plan. */
+static void take_sizes(const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
+{
+  plan->sizes = settings->sizes;
+  plan->size_count = settings->size_count;
+  plan->growth = 0; // the usual one
+  plan->size_m = 0;
+  for (size_t i = 0; i < plan->size_count; i++) {
+    plan->size_m = fmax(plan->size_m, plan->sizes[i][2]);
+  }
+}
+
 static dea_status make_plane(struct dea_context *ctx, const struct dea_model_settings *settings,
                              struct dea_layout_mesh *mesh)
 {
@@ -212,6 +224,9 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   }
   if (status == DEA_OK) {
     status = fill_plan(&memory, mesh, settings, clipped, &plan);
+  }
+  if (status == DEA_OK && settings->size_count > 0) {
+    take_sizes(settings, &plan);
   }
   if (status == DEA_OK) {
     status = dea_gmsh_mesh(ctx, &plan, &mesh->plane);

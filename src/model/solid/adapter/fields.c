@@ -76,7 +76,8 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
 }
 
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
-                            const double *const *weight, size_t count, double *error_m)
+                            const double *const *weight, size_t count, double *error_m,
+                            double *part)
 {
   const struct dea_solid_problem *p = &s->problem;
   double *z = NULL;
@@ -97,7 +98,7 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
     status = dea_solid_solve_linear(ctx, s, z + k * p->dofs, z + k * p->dofs);
   }
   if (status == DEA_OK) {
-    status = dea_recover_errors(ctx, &work.in, each, count, error_m);
+    status = dea_recover_errors(ctx, &work.in, each, count, error_m, part);
   }
   release(ctx, &work);
   dea_free(ctx, z);

@@ -12,8 +12,9 @@ dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *so
                              struct dea_field_mesh **out);
 /* Estimated errors [m] of displacements, not negative, each a sum of weight[k] [3 nodes] times
  * u, from the factor of the last equilibrium; NAN where there is none, or it is of an unstable one.
- * count <= DEA_ERRORS_MAX. */
+ * part: as dea_recover_errors, untouched where the errors are NAN. count <= DEA_ERRORS_MAX. */
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *solid,
-                            const double *const *weight, size_t count, double *error_m);
+                            const double *const *weight, size_t count, double *error_m,
+                            double *part);
 
 #endif

@@ -2,12 +2,14 @@
 #include "base/module.h"
 #include "model/make.h"
 #include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/adapter/adapt.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/standing.h"
 #include "model/solid/assembly/film.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
 #include "result/copies.h"
@@ -28,6 +30,8 @@ struct marks {
 struct dea_model {
   const struct dea_layout *layout;
   struct dea_model_settings settings;
+  struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
+  size_t pass_count;
   struct dea_arena memory; // of all arrays
   struct dea_layout_mesh mesh;
   struct dea_constituent *constituents; // [ply_count]
@@ -609,6 +613,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_observer_destroy(ctx, model->observer);
   dea_standing_free(ctx, &model->at);
   dea_free(ctx, model->answers);
+  dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);
   for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
     dea_spring_destroy(ctx, model->springs[i]);
@@ -1082,8 +1087,78 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
                                  .unknowns = 3 * model->mesh.grid->node_count};
 }
 
-static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         const struct dea_model_settings *settings, struct dea_model **out)
+static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
+{
+  *count = model->pass_count;
+  return model->passes;
+}
+
+// Estimated errors -------------------------------------------------------------------------------
+
+/* Whether the mesh is all that a point's error is of; a membrane has one too. */
+static bool has_error(const struct dea_load_point *point)
+{
+  struct dea_load_point solid = *point;
+  solid.told &= ~(1u << DEA_FLAG_PREVIEW);
+  return dea_load_point_trusted(&solid);
+}
+
+/* Of the main motion of a monitor at a point without a doubt; otherwise, and of a body that is held
+ * along it, NAN. part: of each element, may be NULL. */
+static dea_status find_error(struct dea_context *ctx, struct dea_model *model, size_t monitor,
+                             const double *values, double *weight, double *error, double *part)
+{
+  const struct dea_layout_monitor *m = &model->layout->monitors[monitor];
+  enum dea_observed motion = dea_observed_main(values);
+  *error = NAN;
+  if (m->kind == DEA_MONITOR_BODY) {
+    size_t node = model->bodies[m->body].node;
+    if ((model->solid->problem.held[3 * node + (size_t)motion]) != 0) {
+      return DEA_OK;
+    }
+  }
+  dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
+  const double *one[1] = {weight};
+  dea_status status = dea_solid_errors(ctx, model->solid, one, 1, error, part);
+  return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
+}
+
+static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
+{
+  struct dea_load_point point;
+  struct dea_observation seen;
+  DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, &point));
+  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  for (size_t i = 0; i < seen.monitor_count; i++) {
+    error[i] = NAN;
+  }
+  if (!has_error(&point)) {
+    return DEA_OK;
+  }
+  double *weight = dea_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
+  dea_status status = dea_solid_any(weight == NULL) ? DEA_E_MEMORY : DEA_OK;
+  for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
+    status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
+  }
+  dea_free(ctx, weight);
+  return status;
+}
+
+// Adaptive refinement ----------------------------------------------------------------------------
+
+/* One mesh after the other, each finer where the error of the last one came from. */
+struct adaptation {
+  const struct dea_device *device;
+  struct dea_model_settings settings; // with the sizes of the present mesh
+  size_t monitor;                     // of the layout
+  struct dea_adapt_pass *pass;        // [settings.adapt.passes], owned
+  size_t count;
+  double (*now)[3], (*next)[3]; // sizes of this mesh and the next one, owned
+  size_t next_count;
+};
+
+static dea_status make(struct dea_context *ctx, const struct dea_device *device,
+                       const struct dea_model_settings *settings, struct dea_model **out)
 {
   DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   struct dea_model *model = *out;
@@ -1103,6 +1178,137 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
+/* The error on a mesh at the voltage, and the sizes of the next one. */
+static dea_status look_at_mesh(struct dea_context *ctx, struct adaptation *a,
+                               struct dea_model *model, struct dea_adapt_pass *pass)
+{
+  struct dea_load_point point;
+  struct dea_observation seen;
+  const struct dea_grid *grid = model->mesh.grid;
+  DEA_TRY(ctx, solve(ctx, model, a->settings.adapt.voltage_V, &point));
+  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  const double *values = seen.monitor[a->monitor];
+  enum dea_observed motion = dea_observed_main(values);
+  bool ratio = motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH;
+  *pass = (struct dea_adapt_pass){.elements = grid->element_count,
+                                  .unknowns = 3 * grid->node_count,
+                                  .value = values[motion],
+                                  .error = NAN};
+  double *weight = dea_alloc(ctx, 3 * grid->node_count, sizeof *weight);
+  double *part = dea_alloc(ctx, grid->element_count, sizeof *part);
+  double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
+  a->next = at != NULL ? at : a->next;
+  dea_status status =
+      dea_solid_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK && has_error(&point)) {
+    status = find_error(ctx, model, a->monitor, values, weight, &pass->error, part);
+  }
+  double wanted = a->settings.adapt.tolerance * fabs(pass->value - (ratio ? 1 : 0));
+  if (status == DEA_OK && wanted > 0 && !isnan(pass->error)) {
+    pass->within = pass->error <= wanted;
+    a->next_count = model->mesh.plane->quad_count;
+    status = dea_adapt_sizes(ctx, &model->mesh, part, wanted, a->next);
+  } else if (status == DEA_OK) {
+    pass->error = NAN; // of what does not move, too
+  }
+  dea_free(ctx, part);
+  dea_free(ctx, weight);
+  return status;
+}
+
+static dea_status find_monitor(struct dea_context *ctx, struct adaptation *a)
+{
+  const struct dea_layout *l = a->device->layout;
+  const char *name = a->settings.adapt.monitor;
+  while (a->monitor < l->monitor_count && strcmp(l->monitors[a->monitor].name, name) != 0) {
+    a->monitor++;
+  }
+  return a->monitor < l->monitor_count
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "compute.solid.adapt: there is no monitor '%s'", name);
+}
+
+/* Where the error of a mesh is not known the last one is as good as any. */
+static dea_status say_end(struct dea_context *ctx, const struct adaptation *a)
+{
+  const struct dea_adapt_pass *last = &a->pass[a->count - 1];
+  if (!isnan(last->error) && last->within) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         isnan(last->error)
+                             ? "model 3d: no error of the monitor '%s' is known at %.4g kV: its "
+                               "mesh stays as it is"
+                             : "model 3d: the error of the monitor '%s' at %.4g kV is not yet that "
+                               "of compute.solid.adapt.tolerance (compute.solid.adapt.passes)",
+                         a->settings.adapt.monitor, 1e-3 * a->settings.adapt.voltage_V);
+}
+
+/* Another model, on a mesh of the present sizes, in the place of *model. */
+static dea_status make_anew(struct dea_context *ctx, const struct adaptation *a,
+                            struct dea_model **model)
+{
+  destroy(ctx, *model);
+  *model = NULL;
+  DEA_TRY(ctx, make(ctx, a->device, &a->settings, model));
+  return DEA_OK;
+}
+
+/* To the mesh that is exact enough; *model: on it, at rest. */
+static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct dea_model **model)
+{
+  size_t most = (size_t)a->settings.adapt.passes;
+  a->pass = dea_alloc(ctx, most, sizeof *a->pass);
+  if (dea_solid_any(a->pass == NULL)) {
+    return DEA_E_MEMORY;
+  }
+  for (bool on = true; on;) {
+    struct dea_adapt_pass *pass = &a->pass[a->count];
+    DEA_TRY(ctx, look_at_mesh(ctx, a, *model, pass));
+    a->count++;
+    on = a->count < most && !pass->within && !isnan(pass->error);
+    if (on) {
+      double(*sizes)[3] = a->now;
+      a->now = a->next;
+      a->next = sizes;
+      a->settings.sizes = (const double(*)[3])a->now;
+      a->settings.size_count = a->next_count;
+    }
+    DEA_TRY(ctx, make_anew(ctx, a, model)); // the last one too: to be at rest
+  }
+  DEA_TRY(ctx, say_end(ctx, a));
+  return DEA_OK;
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  static const struct dea_model_settings usual = {0};
+  struct adaptation a = {.device = device, .settings = settings != NULL ? *settings : usual};
+  bool asked = a.settings.adapt.monitor != NULL;
+  *out = NULL;
+  dea_status status = asked ? find_monitor(ctx, &a) : DEA_OK;
+  if (status == DEA_OK) {
+    status = make(ctx, device, &a.settings, out);
+  }
+  if (asked && status == DEA_OK) {
+    status = adapt(ctx, &a, out);
+  }
+  if (status == DEA_OK) {
+    (*out)->passes = a.pass;
+    (*out)->pass_count = a.count;
+    a.pass = NULL;
+  } else if (*out != NULL) {
+    destroy(ctx, *out);
+    *out = NULL;
+  }
+  dea_free(ctx, a.pass);
+  dea_free(ctx, a.now);
+  dea_free(ctx, a.next);
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_layout_module;
 
 const struct dea_model_type dea_solid_layout_module = {
@@ -1114,6 +1320,8 @@ const struct dea_model_type dea_solid_layout_module = {
     .limit = limit,
     .passed = passed,
     .observe = observe,
+    .errors = errors,
+    .passes = passes,
     .move = move,
     .soften = soften,
     .push = push,

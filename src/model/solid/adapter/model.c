@@ -209,7 +209,7 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
     weights[EDGE * dofs + 3 * two[1][i]] += 0.5 * X[0] / hypot(X[0], X[1]);
     weights[EDGE * dofs + 3 * two[1][i] + 1] += 0.5 * X[1] / hypot(X[0], X[1]);
   }
-  dea_status status = dea_solid_errors(ctx, model->solid, each, COUNT, error_m);
+  dea_status status = dea_solid_errors(ctx, model->solid, each, COUNT, error_m, NULL);
   dea_free(ctx, weights);
   if (status == DEA_OK) {
     out->centre_z_error_m = error_m[CENTRE];

@@ -2,6 +2,7 @@
 
 #include "base/quadrature.h"
 #include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/problem.h"
 
 #include <math.h>
 #include <string.h>
@@ -445,4 +446,126 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
   memcpy(u, keep, count * sizeof *u);
   dea_free(ctx, keep);
   return DEA_OK;
+}
+
+// Gradients --------------------------------------------------------------------------------------
+
+/* Of a point's displacement, or a line's stretch, by differences at the nodes of its elements. */
+static void gradient_of_probes(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
+                               enum dea_observed motion, double *weight)
+{
+  static const double little = 1e-5; // of the size of the mesh
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
+  double *u = dea_solid_displacement(solid), value[2][DEA_OBSERVED_COUNT];
+  double step = little * dea_layout_mesh_near_m(o->mesh) / 1e-6;
+  int probes = m->kind == DEA_MONITOR_LINE ? 2 : 1;
+  for (int p = 0; p < probes; p++) {
+    const struct probe *probe = &o->probes[monitor][p];
+    for (int i = 0; i < 2 * 3 * probe->count; i++) {
+      double *at = &u[3 * probe->node[i % 2][i / 6] + i / 2 % 3], keep = *at;
+      for (int side = 0; side < 2; side++) {
+        *at = keep + (side == 0 ? -step : step);
+        if (m->kind == DEA_MONITOR_LINE) {
+          observe_line(o->mesh, m, o->probes[monitor], u, value[side]);
+        } else {
+          displacement_at(o->mesh, probe, u, value[side]);
+        }
+      }
+      *at = keep;
+      weight[at - u] = (value[1][motion] - value[0][motion]) / (2 * step);
+    }
+  }
+}
+
+/* Gradients of the nodal basis at a point of an element in the plane, its area by local
+ * coordinates, and those of the deformed middle surface dx/dX. */
+static double slopes_of(const struct dea_grid *grid, const int *const face[2], const double at[2],
+                        const double *u, double (*slope)[2], double F[3][2])
+{
+  double value[PLANE_MAX], X[2][2] = {{0}};
+  int per = (grid->order + 1) * (grid->order + 1);
+  basis(grid->order, at, value, slope);
+  for (int n = 0; n < per; n++) {
+    for (int i = 0; i < 4; i++) {
+      X[i / 2][i % 2] += slope[n][i % 2] * grid->X[3 * face[0][n] + i / 2];
+    }
+  }
+  double det = X[0][0] * X[1][1] - X[0][1] * X[1][0];
+  memset(F, 0, 3 * sizeof *F);
+  F[0][0] = F[1][1] = 1;
+  for (int n = 0; n < per; n++) {
+    const double d[2] = {slope[n][0], slope[n][1]};
+    slope[n][0] = (d[0] * X[1][1] - d[1] * X[1][0]) / det;
+    slope[n][1] = (d[1] * X[0][0] - d[0] * X[0][1]) / det;
+    for (int i = 0; i < 6; i++) {
+      double w = 0.5 * (u[3 * face[0][n] + i / 2] + u[3 * face[1][n] + i / 2]);
+      F[i / 2][i % 2] += slope[n][i % 2] * w;
+    }
+  }
+  return det;
+}
+
+/* Of a region's mean area stretch J = sqrt(det C), C = F^T F: dJ = J C^-1 : F^T dF. Returns the
+ * area that the means are over. */
+static double gradient_of_region(const struct dea_layout_mesh *mesh,
+                                 const struct dea_layout_monitor *m, const double *u,
+                                 double *weight)
+{
+  const struct dea_grid *grid = mesh->grid;
+  size_t points = (size_t)grid->order + 1;
+  int per = (grid->order + 1) * (grid->order + 1);
+  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], area = 0;
+  dea_gauss_rule(points, place, part);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *face[2];
+    faces(grid, e, &face[0], &face[1]);
+    for (size_t p = 0; p < points * points && (size_t)grid->ply[e] == m->ply &&
+                       dea_layout_mesh_within(mesh, e, m->region);
+         p++) {
+      const double at[2] = {place[p % points], place[p / points]};
+      double slope[PLANE_MAX][2], F[3][2], C[3] = {0};
+      double dA = slopes_of(grid, face, at, u, slope, F) * part[p % points] * part[p / points];
+      for (int i = 0; i < 3; i++) {
+        C[0] += F[i][0] * F[i][0];
+        C[1] += F[i][1] * F[i][1];
+        C[2] += F[i][0] * F[i][1];
+      }
+      double J = sqrt(C[0] * C[1] - C[2] * C[2]);
+      area += dA;
+      for (int n = 0; n < per; n++) { // C^-1 slope times J
+        const double *d = slope[n];
+        const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
+        for (int i = 0; i < 3; i++) {
+          double amount = 0.5 * dA * (F[i][0] * c[0] + F[i][1] * c[1]);
+          weight[3 * face[0][n] + i] += amount;
+          weight[3 * face[1][n] + i] += amount;
+        }
+      }
+    }
+  }
+  return area;
+}
+
+void dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
+                           enum dea_observed motion, double *weight)
+{
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
+  size_t count = 3 * o->mesh->grid->node_count;
+  memset(weight, 0, count * sizeof *weight);
+  switch (m->kind) {
+  case DEA_MONITOR_POINT:
+  case DEA_MONITOR_LINE:
+    gradient_of_probes(o, solid, monitor, motion, weight);
+    break;
+  case DEA_MONITOR_REGION: {
+    double area = gradient_of_region(o->mesh, m, dea_solid_displacement(solid), weight);
+    for (size_t i = 0; i < count; i++) {
+      weight[i] /= area;
+    }
+    break;
+  }
+  case DEA_MONITOR_BODY:
+    weight[3 * solid->problem.bodies[m->body].node + (size_t)motion] = 1;
+    break;
+  }
 }

@@ -22,4 +22,9 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *obser
 dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *observer,
                                       struct dea_solid *solid, const double *v, double *out);
 
+/* How a motion of a monitor, that of dea_observed_main, changes with each displacement, from where
+ * the solid is: weight [3 node_count]. */
+void dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
+                           enum dea_observed motion, double *weight);
+
 #endif

@@ -20,7 +20,8 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LINES_SAID = 6, SAMPLES_MAX = 20000, FOLDER_SIZE = 1000 };
+enum { LINES_SAID = 6, SAMPLES_MAX = 20000, FOLDER_SIZE = 1000, LATTICE = 300 };
+#define SIZES_FILE "sizes.txt"
 static const double pi = 3.14159265358979323846;
 static const double mm = 1e3, unit_m = 1e-3; // of the script
 static const double near = 1e-6;             // of the mesh's size: a node on a contour
@@ -163,10 +164,56 @@ static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
                mm * (fine + fmax(plan->size_m - fine, 1e-3 * fine) / growth));
 }
 
+/* The smallest of the plan's sizes as they grow away from their places. */
+static double size_at(const struct dea_gmsh_plan *plan, double growth, double x, double y)
+{
+  double least = INFINITY;
+  for (size_t i = 0; i < plan->size_count; i++) {
+    const double *at = plan->sizes[i];
+    double away = hypot(x - at[0], y - at[1]) - 0.5 * at[2];
+    least = fmin(least, at[2] + growth * fmax(0, away));
+  }
+  return least;
+}
+
+/* The sizes on a lattice of points around all of them, which gmsh interpolates: its file. */
+static void write_sizes(struct dea_text *out, const struct dea_gmsh_plan *plan,
+                        const struct way *way)
+{
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, largest = 0;
+  double growth = plan->growth > 0 ? plan->growth : 0.4;
+  for (size_t i = 0; i < plan->size_count; i++) {
+    largest = fmax(largest, plan->sizes[i][2]);
+    for (int k = 0; k < 2; k++) {
+      low[k] = fmin(low[k], plan->sizes[i][k]);
+      high[k] = fmax(high[k], plan->sizes[i][k]);
+    }
+  }
+  double step = (fmax(high[0] - low[0], high[1] - low[1]) + 2 * largest) / LATTICE;
+  int count[2];
+  for (int k = 0; k < 2; k++) {
+    low[k] -= largest;
+    count[k] = (int)ceil((high[k] + largest - low[k]) / step) + 1;
+  }
+  dea_text_add(out, "%.10g %.10g 0\n%.10g %.10g 1\n%d %d 1\n", mm * low[0], mm * low[1], mm * step,
+               mm * step, count[0], count[1]);
+  for (int i = 0; i < count[0]; i++) {
+    for (int j = 0; j < count[1]; j++) {
+      double size = size_at(plan, growth, low[0] + i * step, low[1] + j * step);
+      dea_text_add(out, "%.6g\n", mm * way->size * size);
+    }
+  }
+}
+
 static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
                          const struct way *way)
 {
   size_t sources = 0;
+  if (plan->size_count > 0) {
+    dea_text_add(out, "Field[1] = Structured;\nField[1].FileName = \"" SIZES_FILE "\";\n"
+                      "Field[1].TextFormat = 1;\nBackground Field = 1;\n");
+    return;
+  }
   for (size_t i = 0; i < plan->shape_count; i++) {
     if (plan->shapes[i].edge_size_m > 0) {
       write_field(out, plan, &plan->shapes[i], ++sources, way);
@@ -262,6 +309,14 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   char said[DEA_PROGRAM_SAID];
   write_script(&script, plan, way);
   dea_status status = dea_text_write(ctx, &script, folder, "mesh.geo");
+  if (status == DEA_OK && plan->size_count > 0) {
+    struct dea_text sizes = {.ctx = ctx};
+    void *locale = dea_c_locale_enter();
+    write_sizes(&sizes, plan, way);
+    dea_c_locale_leave(locale);
+    status = dea_text_write(ctx, &sizes, folder, SIZES_FILE);
+    dea_text_free(&sizes);
+  }
   dea_text_free(&script);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, run_gmsh(ctx, plan, folder, said));

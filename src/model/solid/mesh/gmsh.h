@@ -19,11 +19,13 @@ struct dea_gmsh_plan {
   size_t shape_count;
   const struct dea_gmsh_shape *curves; // [curve_count]
   size_t curve_count;
-  int order;           // of the elements, 1 or 2
-  double size_m;       // of elements, up to which they grow away from fine edges
-  double growth;       // by that share of the distance from them; 0: 0.4
-  double time_limit_s; // of processor time; 0: 120
-  const char *program; // NULL: gmsh, from the PATH
+  int order;                // of the elements, 1 or 2
+  double size_m;            // of elements, up to which they grow away from fine edges
+  double growth;            // by that share of the distance from them; 0: 0.4
+  const double (*sizes)[3]; // [size_count] x, y, size there [m], in the place of all that; between
+  size_t size_count;        // them sizes grow by that share
+  double time_limit_s;      // of processor time; 0: 120
+  const char *program;      // NULL: gmsh, from the PATH
 };
 
 /* Meshes all that is inside a shape. Groups are the shapes, in their order; curves the shapes'

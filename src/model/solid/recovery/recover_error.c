@@ -154,20 +154,23 @@ static double product(const struct work *w, size_t e, size_t k)
 }
 
 /* The sum of the elements, or a share of their magnitudes where they happen to cancel. */
-static double estimate(const struct work *w, size_t k)
+static double estimate(const struct work *w, size_t k, double *part)
 {
   static const double share = 1.0 / 3; // of docs/verification/trust.md
   double sum = 0, magnitudes = 0;
   for (size_t e = 0; e < w->in->grid->element_count; e++) {
     double one = product(w, e, k);
     sum += one;
+    if (part != NULL) {
+      part[k * w->in->grid->element_count + e] = one;
+    }
     magnitudes += fabs(one);
   }
   return fmax(fabs(sum), share * magnitudes);
 }
 
 dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_input *in,
-                              const double *const *z, size_t count, double *error)
+                              const double *const *z, size_t count, double *error, double *part)
 {
   struct work w = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .count = count};
   struct dea_recovered *at = dea_alloc(ctx, 1, sizeof *at);
@@ -178,7 +181,7 @@ dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_
   if (status == DEA_OK) {
     take_means(&w);
     for (size_t k = 0; k < count; k++) {
-      error[k] = estimate(&w, k);
+      error[k] = estimate(&w, k, part);
     }
   }
   dea_free(ctx, at);
