@@ -1,6 +1,10 @@
+#define _POSIX_C_SOURCE 200809L // iconv
 #include "lab/import/text_file.h"
 
+#include <iconv.h>
 #include <string.h>
+
+enum { HEAD_BYTES = 1 << 20 }; // in which its letters are looked at
 
 /* 0: no mark of UTF-16, 1: little-endian, 2: big-endian. */
 static int utf16_mark(const unsigned char *bytes, size_t length)
@@ -60,6 +64,69 @@ bool dea_text_file_is(const unsigned char *head, size_t length)
   return utf16_mark(head, length) != 0 || memchr(head, 0, length) == NULL;
 }
 
+/* Whether what is not ASCII comes in pairs as Chinese letters are written (GB 2312, the letters of
+ * GB 18030 that are used): two of them at least, and no single byte as those of Latin-1. UTF-8 is
+ * none: its letters have three bytes, or a second one below 0xa1 sooner or later. */
+static bool is_chinese(const unsigned char *bytes, size_t length)
+{
+  enum { ENOUGH = 2 };
+  size_t pairs = 0;
+  for (size_t i = 0; i < length; i++) {
+    if (bytes[i] >= 0x80) {
+      bool pair = i + 1 < length && bytes[i] >= 0xa1 && bytes[i] <= 0xf7 && bytes[i + 1] >= 0xa1 &&
+                  bytes[i + 1] <= 0xfe;
+      if (!pair) {
+        return false;
+      }
+      pairs++;
+      i++;
+    }
+  }
+  return pairs >= ENOUGH;
+}
+
+static bool is_utf8(const unsigned char *bytes, size_t length)
+{
+  for (size_t i = 0; i < length;) {
+    size_t more = bytes[i] < 0x80 ? 0 : bytes[i] >= 0xf0 ? 3 : bytes[i] >= 0xe0 ? 2 : 1;
+    if ((bytes[i] >= 0x80 && bytes[i] < 0xc2) || bytes[i] > 0xf4 || i + more >= length) {
+      return false;
+    }
+    for (size_t k = 1; k <= more; k++) {
+      if ((bytes[i + k] & 0xc0) != 0x80) {
+        return false;
+      }
+    }
+    i += more + 1;
+  }
+  return true;
+}
+
+/* Text of GB 18030 as UTF-8; *copy stays NULL where the system cannot. */
+static dea_status from_chinese(struct dea_context *ctx, struct dea_slice text, char **copy,
+                               struct dea_slice *out)
+{
+  iconv_t converter = iconv_open("UTF-8", "GB18030");
+  if (converter == (iconv_t)-1) {
+    return DEA_OK;
+  }
+  size_t left = text.length, most = 2 * text.length + 4, room = most; // 3 bytes for 2
+  *copy = dea_alloc(ctx, most, 1);
+  char *from = (char *)text.text, *to = *copy;
+  bool good = to != NULL && iconv(converter, &from, &left, &to, &room) != (size_t)-1;
+  iconv_close(converter);
+  if (*copy == NULL) {
+    return DEA_E_MEMORY;
+  }
+  if (good) {
+    *out = (struct dea_slice){*copy, most - room};
+  } else {
+    dea_free(ctx, *copy);
+    *copy = NULL;
+  }
+  return DEA_OK;
+}
+
 /* *copy: the text where it had to be converted, the caller's; else NULL and the bytes are lent. */
 static dea_status open_text(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                             size_t length, char **copy, struct dea_slice *text)
@@ -85,7 +152,9 @@ static dea_status open_text(struct dea_context *ctx, const char *file, const uns
                     "'%s' is no text: byte %zu is 0 (UTF-16 needs its byte order mark)", file,
                     (size_t)(zero - bytes));
   }
-  return DEA_OK;
+  size_t head = length < HEAD_BYTES ? length : HEAD_BYTES;
+  return is_chinese(bytes, head) && !is_utf8(bytes, head) ? from_chinese(ctx, *text, copy, text)
+                                                          : DEA_OK;
 }
 
 dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,

@@ -5,9 +5,9 @@
 #include "lab/import/import.h"
 #include "lab/import/slices.h"
 
-/* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8. UTF-8
- * and Latin-1 stay as they are: what is not ASCII is in names only, which dea_table_add converts.
- * DEA_E_IO when a byte 0 says that it is no text. */
+/* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8, and so
+ * Chinese text of GB 18030. UTF-8 and Latin-1 stay as they are: what is not ASCII is in names only,
+ * which dea_table_add converts. DEA_E_IO when a byte 0 says that it is no text. */
 dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
                               dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
                                                  struct dea_table *out),

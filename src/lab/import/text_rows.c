@@ -1,5 +1,7 @@
 #include "lab/import/text_rows.h"
 
+#include "lab/import/clock_text.h"
+#include "lab/import/guess.h"
 #include "lab/import/titles.h"
 
 #include <math.h>
@@ -20,11 +22,12 @@ struct rows {
   struct dea_context *ctx;
   const struct dea_csv_dialect *dialect;
   struct dea_table *table;
-  int *column;         // [dialect->count] of the table, or NONE: text
-  double *row;         // [dialect->count]
-  struct marks *marks; // [dialect->count]
-  size_t count;        // of rows so far
-  size_t blank;        // lines of separators only since the last row
+  int *column;                   // [dialect->count] of the table, or NONE: text
+  double *row;                   // [dialect->count]
+  struct marks *marks;           // [dialect->count]
+  struct dea_text_clock *clocks; // [dialect->count], begun for columns of times as text
+  size_t count;                  // of rows so far
+  size_t blank;                  // lines of separators only since the last row
   size_t errors;
 };
 
@@ -45,12 +48,12 @@ static size_t rows_room(struct dea_slice text, const struct dea_csv_dialect *dia
   return lines < most ? lines : most;
 }
 
-/* A name for what has none: "column 3". */
-static dea_status add_column(struct rows *rows, size_t index, struct dea_slice title,
-                             const struct dea_slice *given, size_t room)
+/* Name and unit of a title; given: its unit in a line of its own, NULL: none is. */
+static void name_and_unit(struct dea_context *ctx, struct dea_slice title,
+                          const struct dea_slice *given, struct dea_slice *name_out,
+                          struct dea_slice *unit_out)
 {
   struct dea_slice name = title, unit = {"", 0};
-  char number[32];
   if (given != NULL && given->length > 0) {
     double factor;
     char text[64];
@@ -58,12 +61,23 @@ static dea_status add_column(struct rows *rows, size_t index, struct dea_slice t
     bool bracket = unit.length > 2 && (unit.text[0] == '(' || unit.text[0] == '[');
     unit = bracket ? dea_slice_trim((struct dea_slice){unit.text + 1, unit.length - 2}) : unit;
     snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
-    unit = dea_slice_is(unit, "-") && dea_title_unit(rows->ctx, text, &factor) == NULL
+    unit = dea_slice_is(unit, "-") && dea_title_unit(ctx, text, &factor) == NULL
                ? (struct dea_slice){"", 0}
                : unit;
   } else {
-    dea_title_split(rows->ctx, title, &name, &unit);
+    dea_title_split(ctx, title, &name, &unit);
   }
+  *name_out = name;
+  *unit_out = unit;
+}
+
+/* A name for what has none: "column 3". */
+static dea_status add_column(struct rows *rows, size_t index, struct dea_slice title,
+                             const struct dea_slice *given, size_t room)
+{
+  struct dea_slice name, unit;
+  char number[32];
+  name_and_unit(rows->ctx, title, given, &name, &unit);
   if (name.length == 0) {
     snprintf(number, sizeof number, "column %zu", index + 1);
     name = (struct dea_slice){number, strlen(number)};
@@ -75,13 +89,51 @@ static dea_status add_column(struct rows *rows, size_t index, struct dea_slice t
              : dea_context_status(rows->ctx);
 }
 
+/* Whether a column of text is one of times, by its first row. */
+static bool is_clock(struct rows *rows, struct dea_slice text, size_t index)
+{
+  struct dea_lines lines = {rows->dialect->data, text.text + text.length, 0};
+  struct dea_slice line, field = {"", 0};
+  double seconds;
+  bool more = dea_lines_next(&lines, &line);
+  for (size_t i = 0; i <= index && more; i++) {
+    more = dea_slice_field(&line, rows->dialect->separator, &field);
+  }
+  return more && dea_text_clock_next(&rows->clocks[index], field, &seconds);
+}
+
+/* Whether a column of numbers has the times, by its unit or its name. */
+static bool has_times(const struct rows *rows, const struct dea_slice *titles,
+                      const struct dea_slice *units)
+{
+  for (size_t i = 0; i < rows->dialect->count; i++) {
+    struct dea_slice name, unit;
+    char text[64];
+    double factor;
+    name_and_unit(rows->ctx, titles[i], units != NULL ? &units[i] : NULL, &name, &unit);
+    snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
+    const char *si = unit.length > 0 ? dea_title_unit(rows->ctx, text, &factor) : NULL;
+    snprintf(text, sizeof text, "%.*s", shown(name), name.text);
+    if (!rows->dialect->text[i] &&
+        ((si != NULL && strcmp(si, "s") == 0) || dea_guess_by_name(text) == DEA_GUESS_TIME)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 static dea_status add_columns(struct rows *rows, struct dea_slice text,
                               const struct dea_slice *titles, const struct dea_slice *units)
 {
+  static const struct dea_slice second = {"s", 1};
   size_t room = rows_room(text, rows->dialect);
+  bool numbers = has_times(rows, titles, units);
   for (size_t i = 0; i < rows->dialect->count; i++) {
     rows->column[i] = NONE;
-    if (!rows->dialect->text[i]) {
+    if (!numbers && rows->dialect->text[i] && is_clock(rows, text, i)) {
+      numbers = true; // one clock is enough
+      DEA_TRY(rows->ctx, add_column(rows, i, titles[i], &second, room));
+    } else if (!rows->dialect->text[i]) {
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
     } else {
       const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
@@ -170,13 +222,21 @@ static dea_status read_field(struct rows *rows, size_t line, struct dea_slice wh
   if (index >= rows->dialect->count || rows->column[index] == NONE) {
     return DEA_OK;
   }
-  if (dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
+  bool clock = rows->clocks[index].begun;
+  if (clock && dea_text_clock_next(&rows->clocks[index], field, &rows->row[index])) {
+    return DEA_OK;
+  }
+  if (!clock && dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
     count_marks(&rows->marks[index], field, rows->dialect->decimal, line);
     return DEA_OK;
   }
   const struct dea_location location = {rows->table->file, line,
                                         (size_t)(field.text - whole.text) + 1};
   rows->errors++;
+  if (clock) {
+    return dea_finding_add(rows->ctx, DEA_ERROR, location,
+                           "'%.*s' is no time as those above it are", shown(field), field.text);
+  }
   return dea_finding_add(rows->ctx, DEA_ERROR, location,
                          "'%.*s' is not a number%s; write a missing one as NaN or leave it empty",
                          shown(field), field.text,
@@ -217,6 +277,28 @@ static dea_status read_line(struct rows *rows, size_t line, struct dea_slice who
   return DEA_OK;
 }
 
+/* Times as text often have whole seconds, and rows come faster: those are left out. */
+static dea_status drop_standing_clocks(struct rows *rows)
+{
+  const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
+  for (size_t i = 0; i < rows->dialect->count; i++) {
+    if (rows->clocks[i].stands) {
+      struct dea_table_column *column = &rows->table->columns[rows->column[i]];
+      size_t after = rows->table->column_count - (size_t)rows->column[i] - 1;
+      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, DEA_WARNING, location,
+                                         "the times in '%.60s' repeat or fall, and are left out",
+                                         column->name));
+      dea_free(rows->ctx, column->name);
+      dea_free(rows->ctx, column->unit);
+      dea_free(rows->ctx, column->values);
+      memmove(column, column + 1, after * sizeof *column);
+      rows->table->column_count--;
+      return DEA_OK; // there is one at most
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status read_lines(struct rows *rows, struct dea_slice text)
 {
   struct dea_lines lines = {rows->dialect->data, text.text + text.length, rows->dialect->line};
@@ -245,6 +327,7 @@ static dea_status read_lines(struct rows *rows, struct dea_slice text)
   }
   if (rows->errors == 0) {
     DEA_TRY(rows->ctx, refuse_thousands(rows));
+    DEA_TRY(rows->ctx, drop_standing_clocks(rows));
   }
   return rows->errors == 0 ? DEA_OK
                            : dea_fail(rows->ctx, DEA_E_IO, "'%s' has lines that cannot be read",
@@ -259,12 +342,14 @@ dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
   rows.column = dea_alloc(ctx, dialect->count, sizeof *rows.column);
   rows.row = rows.column != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.row) : NULL;
   rows.marks = rows.row != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.marks) : NULL;
-  dea_status status = rows.marks != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
+  rows.clocks = rows.marks != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.clocks) : NULL;
+  dea_status status = rows.clocks != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = read_lines(&rows, text);
   }
   dea_free(ctx, rows.column);
   dea_free(ctx, rows.row);
   dea_free(ctx, rows.marks);
+  dea_free(ctx, rows.clocks);
   return status;
 }

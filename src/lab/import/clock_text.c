@@ -1,0 +1,116 @@
+#include "lab/import/clock_text.h"
+
+static const double day_s = 86400;
+
+/* Digits at the start, `least` to `most` of them; takes them out of the field. */
+static bool take_digits(struct dea_slice *field, size_t least, size_t most, int *value)
+{
+  size_t n = 0;
+  *value = 0;
+  while (n < field->length && n < most && field->text[n] >= '0' && field->text[n] <= '9') {
+    *value = 10 * *value + (field->text[n++] - '0');
+  }
+  field->text += n;
+  field->length -= n;
+  return n >= least;
+}
+
+static bool take(struct dea_slice *field, const char *one_of, char *found)
+{
+  for (const char *c = one_of; *c != '\0' && field->length > 0; c++) {
+    if (field->text[0] == *c) {
+      *found = *c;
+      field->text++;
+      field->length--;
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Days since 1970-01-01 in the calendar of today; false: there is no such day. */
+static bool days_of(int year, int month, int day, double *days)
+{
+  static const int before[] = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334, 365};
+  bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+  if (month < 1 || month > 12 || day < 1 || year < 1900 || year > 2200 ||
+      day > before[month] - before[month - 1] + (leap && month == 2)) {
+    return false;
+  }
+  int past = year - 1;
+  int leaps = past / 4 - past / 100 + past / 400 - 477; // since 1970
+  *days = 365.0 * (year - 1970) + leaps + before[month - 1] + (leap && month > 2) + day - 1;
+  return true;
+}
+
+/* A date and what parts it from the time; true and nothing taken when there is none. */
+static bool take_date(struct dea_slice *field, double *days, bool *dated)
+{
+  struct dea_slice rest = *field;
+  int a, b, c;
+  char mark = '\0', again = '\0', gap;
+  *days = 0;
+  *dated = take_digits(&rest, 1, 4, &a) && take(&rest, "-/.", &mark);
+  if (!*dated) {
+    return true;
+  }
+  bool year_first = field->length > 4 && field->text[4] == mark;
+  bool good = take_digits(&rest, 1, 2, &b) && take(&rest, "-/.", &again) && again == mark &&
+              take_digits(&rest, year_first ? 1 : 4, year_first ? 2 : 4, &c) &&
+              take(&rest, " T", &gap) && (year_first ? mark != '.' : mark == '.');
+  *field = rest;
+  return good && (year_first ? days_of(a, b, c, days) : days_of(c, b, a, days));
+}
+
+/* Digits behind the point. */
+static double take_part(struct dea_slice *field)
+{
+  double value = 0, unit = 1;
+  int digit;
+  while (take_digits(field, 1, 1, &digit)) {
+    value = 10 * value + digit;
+    unit *= 10;
+  }
+  return value / unit;
+}
+
+bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool *dated)
+{
+  int hours, minutes, whole;
+  double part = 0;
+  char mark;
+  field = dea_slice_trim(field);
+  if (!take_date(&field, days, dated)) {
+    return false;
+  }
+  field = dea_slice_trim(field);
+  if (!take_digits(&field, 1, 2, &hours) || !take(&field, ":", &mark) ||
+      !take_digits(&field, 2, 2, &minutes) || !take(&field, ":", &mark) ||
+      !take_digits(&field, 2, 2, &whole) || hours > 23 || minutes > 59 || whole > 60) {
+    return false;
+  }
+  if (take(&field, ".,", &mark)) {
+    part = take_part(&field);
+  }
+  take(&field, *dated ? "Z" : "", &mark);
+  *seconds = 3600.0 * hours + 60.0 * minutes + whole + part;
+  return field.length == 0;
+}
+
+bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double *seconds)
+{
+  double days, now_s;
+  bool dated, first = !clock->begun;
+  if (!dea_clock_text(field, &days, &now_s, &dated) || (clock->begun && dated != clock->dated)) {
+    return false;
+  }
+  if (first) {
+    *clock = (struct dea_text_clock){true, dated, days, now_s, now_s, 0, -1, false};
+  }
+  clock->midnights += !dated && now_s < clock->last_s - 0.5 * day_s;
+  clock->last_s = now_s;
+  *seconds = (days - clock->first_day + clock->midnights) * day_s + (now_s - clock->first_s);
+  clock->stands = clock->stands || !(*seconds > clock->before_s);
+  clock->before_s = first ? -1 : *seconds;
+  return true;
+}

@@ -1,0 +1,191 @@
+/* Files of load frames as they are written, each by a mapping, and times that are text. */
+#define _GNU_SOURCE
+#include "import_text.h"
+
+#include "lab/import/clock_text.h"
+
+/* The recording that a mapping makes of a file's bytes. */
+static struct dea_recording *record(const char *name, const char *bytes, const char *map)
+{
+  struct dea_table *table = read_text(name, bytes);
+  struct dea_mapping *mapping;
+  struct dea_recording *recording;
+  dea_status status = dea_mapping_read_memory(ctx, "map.yaml", map, strlen(map), &mapping);
+  if (status == DEA_OK) {
+    status = dea_table_record(ctx, table, mapping, &recording);
+  }
+  if (status != DEA_OK) {
+    size_t count;
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
+  }
+  dea_mapping_destroy(ctx, mapping);
+  dea_table_destroy(ctx, table);
+  return recording;
+}
+
+/* All fixtures hold the same pull of a strip: 10 Hz, these displacements and forces. */
+static const double pulled_m[] = {0, 0.167e-3, 0.334e-3, 0.501e-3};
+static const double pulled_N[] = {0.0012, 0.0243, 0.0481, 0.0702};
+
+static void assert_pull(struct dea_recording *recording, const char *way, const char *force)
+{
+  const struct dea_channel *z = dea_recording_channel(recording, way);
+  const struct dea_channel *f = dea_recording_channel(recording, force);
+  assert_true(z != NULL && f != NULL);
+  assert_true(z->kind == DEA_CHANNEL_DISPLACEMENT && f->kind == DEA_CHANNEL_FORCE);
+  assert_true(z->count == 4 && f->count == 4);
+  assert_close(z->interval_s, 0.1, 1e-9, 0);
+  assert_close(z->start_s, 0, 0, 1e-12);
+  for (size_t i = 0; i < 4; i++) {
+    assert_close(z->values[i], pulled_m[i], 1e-12, 1e-18);
+    assert_close(f->values[i], pulled_N[i], 1e-12, 0);
+  }
+  dea_recording_destroy(ctx, recording);
+}
+
+/* Instron Bluehill: "key : value" lines, quoted titles, a line of units. */
+static void test_bluehill(void **state)
+{
+  (void)state;
+  assert_pull(record("vhb 10x20 mm 1 mm.csv",
+                     "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
+                     "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
+                     "\"Time\",\"Extension\",\"Load\",\"Tensile stress\"\r\n"
+                     "\"(s)\",\"(mm)\",\"(N)\",\"(MPa)\"\r\n"
+                     "\"0.000\",\"0.000\",\"0.0012\",\"0.0001\"\r\n"
+                     "\"0.100\",\"0.167\",\"0.0243\",\"0.0024\"\r\n"
+                     "\"0.200\",\"0.334\",\"0.0481\",\"0.0048\"\r\n"
+                     "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
+                     "dea-import: 1\ntime: Time\ncolumns:\n"
+                     "  - {column: Extension, as: displacement}\n"
+                     "  - {column: Load, as: force}\nignore: [Tensile*]\n"),
+              "Extension", "Load");
+}
+
+/* Decimal commas, semicolons, Latin-1, kN. */
+static void test_decimal_comma(void **state)
+{
+  (void)state;
+  assert_pull(record("zug.csv",
+                     "\"Pr\xfc"
+                     "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
+                     "\"Zeit\";\"Verl\xe4ngerung\";\"Kraft\"\r\n"
+                     "\"(s)\";\"(mm)\";\"(kN)\"\r\n"
+                     "\"0,000\";\"0,000\";\"0,0000012\"\r\n"
+                     "\"0,100\";\"0,167\";\"0,0000243\"\r\n"
+                     "\"0,200\";\"0,334\";\"0,0000481\"\r\n"
+                     "\"0,300\";\"0,501\";\"0,0000702\"\r\n",
+                     "dea-import: 1\ntime: Zeit\ncolumns:\n"
+                     "  - {column: Verl\xc3\xa4ngerung, as: displacement, name: way}\n"
+                     "  - {column: Kraft, as: force}\n"),
+              "way", "Kraft");
+}
+
+/* GB18030 as it is saved in China, each number in quotes: names are letters, not noise. */
+static void test_gb18030(void **state)
+{
+  (void)state;
+  static const char bytes[] = "\"\xca\xd4\xd1\xe9\xb7\xbd\xb7\xa8\",\"\xc0\xad\xc9\xec\"\r\n"
+                              "\"\xca\xb1\xbc\xe4\",\"\xce\xbb\xd2\xc6\",\"\xc1\xa6\"\r\n"
+                              "\"(s)\",\"(mm)\",\"(N)\"\r\n"
+                              "\"0.00\",\"0.000\",\"0.0012\"\r\n\"0.10\",\"0.167\",\"0.0243\"\r\n"
+                              "\"0.20\",\"0.334\",\"0.0481\"\r\n\"0.30\",\"0.501\",\"0.0702\"\r\n";
+  assert_pull(record("gb.csv", bytes,
+                     "dea-import: 1\ntime: \xe6\x97\xb6\xe9\x97\xb4\ncolumns:\n"
+                     "  - {column: \xe4\xbd\x8d\xe7\xa7\xbb, as: displacement}\n"
+                     "  - {column: \xe5\x8a\x9b, as: force}\n"),
+              "\xe4\xbd\x8d\xe7\xa7\xbb", "\xe5\x8a\x9b");
+  // a sign of Latin-1 is not half of a letter, and UTF-8 stays what it is
+  static const double values[] = {1, 2};
+  struct dea_table *table = read_text("latin.csv", "\xc4nderung (\xb5m);Gr\xf6\xdf"
+                                                   "e (mN)\n1;1\n2;2\n");
+  assert_column(table, "\xc3\x84nderung", "\xc2\xb5m", values, 2);
+  dea_table_destroy(ctx, table);
+  table = read_text("utf8.csv", "\xe6\x97\xb6\xe9\x97\xb4 (s),\xe5\x8a\x9b (N)\n1,1\n2,2\n");
+  assert_column(table, "\xe6\x97\xb6\xe9\x97\xb4", "s", values, 2);
+  dea_table_destroy(ctx, table);
+}
+
+/* A clock beside the force, once with a date and across midnight, once without. */
+static void test_times_as_text(void **state)
+{
+  (void)state;
+  static const char *const times[][4] = {{"2026-02-28 23:59:59.9", "2026-03-01 00:00:00.0",
+                                          "2026-03-01 00:00:00.1", "2026-03-01 00:00:00.2"},
+                                         {"28.02.2024 23:59:59,9", "29.02.2024 00:00:00,0",
+                                          "29.02.2024 00:00:00,1", "29.02.2024 00:00:00,2"},
+                                         {"2026/12/31T23:59:59.90Z", "2027/01/01T00:00:00.00Z",
+                                          "2027/01/01T00:00:00.10Z", "2027/01/01T00:00:00.20Z"},
+                                         {"23:59:59.9", "0:00:00.0", "0:00:00.1", "0:00:00.2"}};
+  for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
+    char text[1024] = "When;Travel (mm);Load (N)\n";
+    for (size_t i = 0; i < 4; i++) {
+      size_t at = strlen(text);
+      snprintf(text + at, sizeof text - at, "%s;%.3f;%.4f\n", times[k][i], 1e3 * pulled_m[i],
+               pulled_N[i]);
+    }
+    assert_pull(record("clock.csv", text,
+                       "dea-import: 1\ntime: When\ncolumns:\n"
+                       "  - {column: Travel, as: displacement}\n  - {column: Load, as: force}\n"),
+                "Travel", "Load");
+  }
+}
+
+/* Whole seconds of faster rows are no clock; numbers are the better one; what changes its form in
+ * the middle is an error; a date that is two is text. */
+static void test_other_times(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 0.5, 1}, f[] = {1, 2, 3};
+  struct dea_table *table = read_text("a.csv", "Clock,F (N)\n10:00:00,1\n10:00:00,2\n10:00:01,3\n");
+  assert_int_equal(table->column_count, 1);
+  assert_column(table, "F", "N", f, 3);
+  assert_true(is_said(DEA_WARNING, "the times in 'Clock' repeat or fall"));
+  dea_table_destroy(ctx, table);
+  table = read_text("b.csv", "Clock,Time (s),F (N)\n10:00:00,0,1\n10:00:00,0.5,2\n10:00:01,1,3\n");
+  assert_int_equal(table->column_count, 2);
+  assert_column(table, "Time", "s", t, 3);
+  dea_table_destroy(ctx, table);
+  table = read_text("c.csv", "Clock,F (N)\n03/02/2026 10:00:00,1\n03/02/2026 10:00:01,2\n");
+  assert_int_equal(table->column_count, 1);
+  dea_table_destroy(ctx, table);
+  static const struct refused wrong[] = {
+      {"Clock,F (N)\n10:00:00,1\n2026-03-02 10:00:01,2\n", 3, "is no time as those above it are"},
+      {"Clock,F (N)\n10:00:00,1\n10:00:61,2\n", 3, "'10:00:61' is no time"},
+      {"Clock,F (N)\n2026-02-28 10:00:00,1\n2026-02-29 10:00:00,2\n", 3, "is no time"}};
+  assert_all_refused("d.csv", wrong, 3);
+}
+
+/* Days between dates against a count day by day. */
+static void test_days(void **state)
+{
+  (void)state;
+  static const int lengths[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  double wanted = 0;
+  for (int year = 1970; year < 2110; year++) {
+    bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    for (int month = 1; month <= 12; month++) {
+      char text[40];
+      double days, seconds;
+      bool dated;
+      int last = lengths[month - 1] + (leap && month == 2);
+      snprintf(text, sizeof text, "%04d-%02d-01 01:02:03.25", year, month);
+      assert_true(dea_clock_text((struct dea_slice){text, strlen(text)}, &days, &seconds, &dated));
+      assert_true(dated && days == wanted && seconds == 3723.25);
+      snprintf(text, sizeof text, "%04d-%02d-%02d 00:00:00", year, month, last + 1);
+      assert_false(dea_clock_text((struct dea_slice){text, strlen(text)}, &days, &seconds, &dated));
+      wanted += last;
+    }
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_bluehill),    cmocka_unit_test(test_decimal_comma),
+      cmocka_unit_test(test_gb18030),     cmocka_unit_test(test_times_as_text),
+      cmocka_unit_test(test_other_times), cmocka_unit_test(test_days),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
