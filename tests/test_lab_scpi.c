@@ -369,6 +369,10 @@ static void test_wrong_keys(void **state)
        "':source:voltage 5E3' sets the output"},
       {"kind: scpi\naddress: x\noutput: \"C1:BSWV OFST,%g\"\nsetup: [\"*RST;C1:BSWV OFST,5\"]\n",
        "sets the output"},
+      {"kind: scpi\naddress: x\noutput: \"C1:BSWV OFST,%g\"\nsetup: [\"C1:BSWV WVTP,DC,OFST,5\"]\n",
+       "sets the output"},
+      {"kind: scpi\naddress: x\noutput: \"C1:BSWV OFST,%g\"\nsetup: [\"c1:bswv hlev, -2.5V\"]\n",
+       "sets the output"},
       {"kind: scpi\naddress: x\noutput: VOLT %g\nat_stop: [VOLT 1]\n", "'VOLT 1' sets the output"},
       {"kind: scpi\nadress: x\noutput: VOLT %g\n", "did you mean 'address'?"},
       {"kind: scpi\naddress: x\nport: 70000\noutput: VOLT %g\n", "port"},
@@ -388,6 +392,50 @@ static void test_wrong_keys(void **state)
     }
   }
   dea_finding_clear(ctx);
+}
+
+/* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
+ * numbers in its own words, and off comes before 0 V. */
+static void test_generator(void **state)
+{
+  (void)state;
+  static const char generator[] =
+      "kind: scpi\naddress: 127.0.0.1\nport: %d\nidentity: SDG\n"
+      "setup: [\"C1:BSWV WVTP,DC,OFST,0\", \"C1:BTWV STPS,270\", \"C1:OUTP LOAD,HZ\", \"C1:OUTP "
+      "ON\"]\n"
+      "output: \"C1:BSWV OFST,%%g\"\noutput_off: \"C1:OUTP OFF\"\nbehind: 5 s\nqueue: 5 s\n";
+  static const double volts[] = {0, 2.5, 2.5, 0};
+  static struct bench b;
+  struct behaviour behaviour = usual;
+  struct emulator_sink sink = {0};
+  memset(&b, 0, sizeof b);
+  b.protocol.rate_Hz.si = 20;
+  b.protocol.safety.zero_time_s.si = 2;
+  behaviour.identity = "Siglent Technologies,SDG2042X,1,2";
+  assert_int_equal(begin(&b, &behaviour, generator), DEA_OK);
+  assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 4), DEA_OK);
+  const struct dea_sink to = {&sink, emulator_samples, emulator_profile, emulator_reading};
+  for (double until_s = dea_clock_s() + 0.5; dea_clock_s() < until_s;) {
+    assert_int_equal(b.instrument->type->get(ctx, b.instrument, 0.02, &to), DEA_OK);
+  }
+  emulator_close(ctx, b.instrument);
+  b.instrument = NULL;
+  end(&b);
+  static const char *const order[] = {"C1:BSWV OFST,0\n",
+                                      "C1:BSWV WVTP,DC,OFST,0\nC1:BTWV STPS,270\n",
+                                      "C1:OUTP ON\n",
+                                      "C1:BSWV OFST,2.5\n*OPC?\n",
+                                      "C1:BSWV OFST,0\n*OPC?\n",
+                                      "C1:OUTP OFF\nC1:BSWV OFST,0\n*OPC?\n"};
+  const char *at = b.emulator.log;
+  for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
+    const char *next = strstr(at, order[i]);
+    if (next == NULL) {
+      fail_msg("no '%s' behind those before it in\n%s", order[i], b.emulator.log);
+    } else {
+      at = next + strlen(order[i]);
+    }
+  }
 }
 
 static struct bench memory_bench;
@@ -424,6 +472,7 @@ int main(void)
       cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_not_there),
       cmocka_unit_test(test_refuses),        cmocka_unit_test(test_wrong_keys),
       cmocka_unit_test(test_memory),         cmocka_unit_test(test_changes_its_unit),
+      cmocka_unit_test(test_generator),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

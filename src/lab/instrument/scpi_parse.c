@@ -86,6 +86,19 @@ static const char *last_mnemonic(const char *header, size_t length, size_t *coun
   return header + start;
 }
 
+/* Whether one of the values of a command, behind blanks or commas, is a number. */
+static bool has_any_number(const char *values)
+{
+  for (const char *at = values; *at != '\0' && *at != ';';) {
+    at += strspn(at, " \t,");
+    if (has_number(at)) {
+      return true;
+    }
+    at += strcspn(at, " \t,;");
+  }
+  return false;
+}
+
 /* One command of a line. */
 static bool sets(const char *command, const char *output)
 {
@@ -96,8 +109,11 @@ static bool sets(const char *command, const char *output)
   if (same_letters(command, output, before)) {
     return has_number(command + before);
   }
-  return other + 1 == before && count == wanted && same_letters(mine, set, wanted) &&
-         has_number(command + header);
+  if (count != wanted || !same_letters(mine, set, wanted)) {
+    return false;
+  }
+  // "BSWV OFST,%g": it may be called by other words too, "BSWV WVTP,DC,OFST,5", "BSWV HLEV,5"
+  return other + 1 == before ? has_number(command + header) : has_any_number(command + header);
 }
 
 bool dea_scpi_sets_output(const char *command, const char *output)

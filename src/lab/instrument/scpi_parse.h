@@ -20,7 +20,8 @@ bool dea_scpi_error(const char *response, int *code, const char **text);
  * what the number means: no digit, sign or unit beside it, no second command. */
 bool dea_scpi_output_is_plain(const char *output);
 /* Whether a command gives a number other than 0 to what `output` (a plain one) sets: the same text
- * before the number, or the same last mnemonic by its short form of four letters. */
+ * before the number, or the same last mnemonic by its short form of four letters; where words stand
+ * between that and the number ("BSWV OFST,%g"), with a number anywhere. */
 bool dea_scpi_sets_output(const char *command, const char *output);
 
 #endif
