@@ -217,12 +217,92 @@ static void test_round_trip(void **state)
   assert_close(value, 1.42, 0, 3 * std);
 }
 
+/* The step response of a known film: back from another start, the resistance of the supply and a
+ * viscous branch. The model's own steps are finer in the fit, so what is left is their error. */
+static void test_transient(void **state)
+{
+  static const char film[] =
+      "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.3\n"
+      "frame: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+      "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
+      "drive:\n  series_resistance: 300 Mohm\n  waveform: {kind: step, to: 3 kV, duration: 12 s}\n"
+      "compute: {models: [lumped], transient: {interval: 1e-12 s, tolerance: 1e-6}}\n";
+  (void)state;
+  command_write("step.yaml", film);
+  assert_int_equal(command_run("run step.yaml --study transient --no-figures -o step --force"), 0);
+  command_write("back.yaml",
+                "dea_fit: 1\nname: back\ndesign: step.yaml\nmodel: lumped\nparameters:\n"
+                "  - {name: drive.series_resistance, start: 200 Mohm}\n"
+                "  - {name: film.branch.2.modulus, start: 3 kPa}\n"
+                "  - {name: film.branch.2.time, start: 2 s}\n"
+                "curves: [{name: s, file: step/lumped_transient.csv, kind: transient, quantities: "
+                "[electrode_edge_u_m], uncertainty_absolute: 0.3 um}]\n");
+  assert_int_equal(command_run("fit back.yaml --force"), 0);
+  static const double truth[] = {3e8, 10.704, 3};
+  const char *at = command_out;
+  for (int k = 0; k < 3; k++) {
+    double value, std;
+    at = strstr(at, "-> ");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at, "-> %lf +- %lf", &value, &std), 2);
+    assert_close(value, truth[k], 1e-3, 0);
+    assert_true(std < 0.1 * value);
+    at += 3;
+  }
+  static const char in_time[] = "name: s, file: sweep.csv, kind: transient";
+  command_write("sweep.csv", curve);
+  expect("lumped", "{name: film.thickness}", in_time, 3, "sweep.csv:2:1: error: no time");
+  command_write("sweep.csv", "time (s),V (kV),u electrode edge (um)\n0,1,14\n1,1,15\n2,1,15\n");
+  expect("lumped", "{name: film.thickness}", in_time, 3,
+         "the design plays nothing: it needs drive.waveform");
+  expect("lumped", "{name: film.branch.3.time}", one, 3, "is no branch that the film has");
+}
+
+/* The membrane film of model 3d: thickness and pre-stretch back from a sweep of its own. */
+static void test_membrane(void **state)
+{
+  static const char film[] =
+      "dea: 1\nfilm: {material: elastosil-2030, thickness: %g um, viscosity: none}\n"
+      "pre_stretch: %g\nframe: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+      "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
+      "compute: {models: [3d], voltage: {values: [0 kV, 2 kV, 4 kV]}, solid: {film: membrane}}\n";
+  char text[1000];
+  (void)state;
+  snprintf(text, sizeof text, film, 96.0, 1.45);
+  command_write("true.yaml", text);
+  snprintf(text, sizeof text, film, 100.0, 1.5);
+  command_write("meant.yaml", text);
+  const int code = command_run("run true.yaml --study sweep --no-figures -o true --force");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  command_write("back.yaml",
+                "dea_fit: 1\nname: back\ndesign: meant.yaml\nmodel: 3d\n"
+                "parameters: [{name: film.thickness}, {name: pre_stretch}]\ncurves:\n"
+                "  - {name: u, file: true/3d_sweep.csv, quantities: [electrode_edge_u_m], "
+                "uncertainty_absolute: 0.5 um}\n"
+                "  - {name: c, file: true/3d_sweep.csv, quantities: [capacitance_F], "
+                "uncertainty_absolute: 0.05 pF}\n");
+  assert_int_equal(command_run("fit back.yaml --force"), 0);
+  double value, std;
+  const char *row = strstr(command_out, "film.thickness");
+  assert_non_null(row);
+  assert_int_equal(sscanf(row, "film.thickness 100 -> %lf +- %lf", &value, &std), 2);
+  assert_close(value, 96, 1e-4, 0);
+  row = strstr(command_out, "pre_stretch");
+  assert_int_equal(sscanf(row, "pre_stretch 1.5 -> %lf +- %lf", &value, &std), 2);
+  assert_close(value, 1.45, 1e-4, 0);
+  assert_true(std > 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_parameters), cmocka_unit_test(test_curves),
       cmocka_unit_test(test_example),    cmocka_unit_test(test_folder),
-      cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_round_trip), cmocka_unit_test(test_transient),
+      cmocka_unit_test(test_membrane),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

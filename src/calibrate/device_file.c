@@ -6,9 +6,9 @@
 #define AT(member) offsetof(struct dea_device_file, member)
 #define CURVE_AT(member) offsetof(struct dea_device_curve_text, member)
 
-static const char *const kinds[] = {"sweep", "force", NULL}; // enum dea_device_kind
-static const char *const uses[] = {"fit", "check", NULL};    // the first of enum dea_fit_use
-static const char *const slacks[] = {"cut", "keep", NULL};   // enum dea_device_slack
+static const char *const kinds[] = {"sweep", "force", "transient", NULL}; // enum dea_device_kind
+static const char *const uses[] = {"fit", "check", NULL};  // the first of enum dea_fit_use
+static const char *const slacks[] = {"cut", "keep", NULL}; // enum dea_device_slack
 
 static const struct dea_field curve_fields[] = {
     {.key = "name",
@@ -39,8 +39,10 @@ static const struct dea_field curve_fields[] = {
      .offset = CURVE_AT(kind),
      .choices = kinds,
      .default_text = "sweep",
-     .doc = "sweep: the film moves freely; force: the tip of compute.force is held at its first "
-            "depth, from which a column 'tip depth (um)' counts",
+     .doc =
+         "sweep: the film moves freely; force: the tip of compute.force is held at its first "
+         "depth, from which a column 'tip depth (um)' counts; transient: the design's waveform is "
+         "played, rows have 'time (s)'",
      .example = "force"},
     {.key = "use",
      .kind = DEA_FIELD_CHOICE,
@@ -81,8 +83,8 @@ static const struct dea_field parameter_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = offsetof(struct dea_fit_parameter_text, name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
-            "film.law.NAME of a parameter of the law",
+     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
+            "film.law.NAME of a parameter of the law, film.branch.N.modulus or .time",
      .example = "film.thickness"},
     DEA_FIT_PARAMETER_FIELD(start, "where the search begins", "100 um", "the design's"),
     DEA_FIT_PARAMETER_FIELD(low, "lower bound", "80 um", "the key's"),

@@ -10,7 +10,7 @@ enum {
   DEA_DEVICE_QUANTITIES_MAX = 8,
 };
 
-enum dea_device_kind { DEA_DEVICE_SWEEP, DEA_DEVICE_FORCE };
+enum dea_device_kind { DEA_DEVICE_SWEEP, DEA_DEVICE_FORCE, DEA_DEVICE_TRANSIENT };
 enum dea_device_slack { DEA_DEVICE_SLACK_CUT, DEA_DEVICE_SLACK_KEEP };
 
 /* Curves of one file as written. */

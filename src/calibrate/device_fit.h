@@ -11,7 +11,12 @@
 enum { DEA_DEVICE_CURVES_MAX = 32, DEA_DEVICE_PAIRS_MAX = 8, DEA_DEVICE_DERIVED_MAX = 4 };
 
 /* What a parameter is in the design. */
-enum dea_device_param_kind { DEA_DEVICE_KEY, DEA_DEVICE_LAW, DEA_DEVICE_PERMITTIVITY };
+enum dea_device_param_kind {
+  DEA_DEVICE_KEY,
+  DEA_DEVICE_LAW,
+  DEA_DEVICE_PERMITTIVITY,
+  DEA_DEVICE_BRANCH, // of the film's viscosity: moduli have even numbers, times odd ones
+};
 
 struct dea_device_param {
   struct dea_fit_param param; // its name is the key; numbers in SI, as the key has them
@@ -19,7 +24,8 @@ struct dea_device_param {
   const char *state; // " stretched", " unstretched" or ""; static storage
   bool list;         // the key is a list of one number
   bool whole;        // the key is a whole number
-  size_t index;      // of a law's parameter; of the permittivity 0: at_rest, 1: slope
+  size_t index;      // of a law's parameter; of the permittivity 0: at_rest, 1: slope; of branch b
+                     // 2 b: modulus, 2 b + 1: time
   double designed;   // the design's value; NAN: it has none
   char prior_of[64]; // material of the catalogue that the prior is from; "": none
 };
@@ -31,13 +37,13 @@ struct dea_device_curve {
   char sha256[65];
   int column; // of dea_point_columns
   size_t rows;
-  size_t *line, *stop;                       // line in the file; point of the model
-  double *voltage_V, *depth_m, *value, *std; // depth_m, std: NAN where there is none
-  double *model, *model_std, *designed;      // at the parameters found; designed: the design's
-  bool *used;                                // fitted: not slack, of a curve that is fitted
-  size_t slack;                              // rows that were cut
-  double slack_from_V;                       // lowest voltage of them
-  double lag, effective;                     // as of a material's test; NAN where it is not fitted
+  size_t *line, *stop;                                // line in the file; point of the model
+  double *voltage_V, *time_s, *depth_m, *value, *std; // time_s, depth_m, std: NAN: there is none
+  double *model, *model_std, *designed; // at the parameters found; designed: the design's
+  bool *used;                           // fitted: not slack, of a curve that is fitted
+  size_t slack;                         // rows that were cut
+  double slack_from_V;                  // lowest voltage of them
+  double lag, effective;                // as of a material's test; NAN where it is not fitted
   double rms, largest; // misfit of the rows that were not cut; largest over the range of values
 };
 

@@ -1,6 +1,7 @@
 #include "job/device_fit.h"
 
 #include "base/file.h"
+#include "base/yaml_write.h"
 #include "job/device_fit_parts.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
@@ -22,6 +23,7 @@ struct work {
   struct dea_design *design;
   struct dea_device *device;
   char *path, *bytes; // of the design
+  char *fine;         // the same for curves in time; NULL: there are none
   size_t length;
   struct dea_device_model model;
   double start[DEA_DEVICE_PARAMS_MAX], low[DEA_DEVICE_PARAMS_MAX], high[DEA_DEVICE_PARAMS_MAX],
@@ -106,6 +108,54 @@ static dea_status make_params(struct work *w)
   }
   w->model.params = fit->params;
   w->model.param_count = fit->param_count;
+  return DEA_OK;
+}
+
+/* In time every step is kept, and short enough for derivatives by differences. */
+static dea_status make_fine(struct work *w)
+{
+  static const char *const keys[][2] = {{"compute.transient.interval", "1e-12 s"},
+                                        {"compute.transient.tolerance", "1e-6"}};
+  struct dea_yaml *document;
+  struct dea_text text = {.ctx = w->ctx};
+  DEA_TRY(w->ctx, dea_yaml_parse(w->ctx, w->path, w->bytes, w->length, &document));
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < 2 && status == DEA_OK; k++) {
+    status = dea_yaml_override(w->ctx, document, keys[k][0], keys[k][1]);
+  }
+  if (status == DEA_OK) {
+    dea_yaml_write(dea_yaml_root(document), &text);
+    w->fine = text.failed ? NULL : dea_copy_text(w->ctx, dea_text_get(&text), SIZE_MAX);
+    status = w->fine != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  dea_text_free(&text);
+  dea_yaml_destroy(w->ctx, document);
+  if (status == DEA_OK) {
+    w->model.bytes = w->fine;
+    w->model.length = strlen(w->fine);
+  }
+  return status;
+}
+
+/* Curves in time want a waveform, and a model that knows time. */
+static dea_status check_times(struct work *w)
+{
+  for (size_t c = 0; c < w->fit->curve_count; c++) {
+    const struct dea_choice *kind = &w->fit->curves[c].text->kind;
+    const bool lacks_waveform = w->design->drive.waveform == NULL;
+    if (kind->value != DEA_DEVICE_TRANSIENT) {
+      continue;
+    }
+    if (lacks_waveform || w->model.type->advance == NULL) {
+      DEA_TRY(w->ctx, lacks_waveform
+                          ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
+                                            "the design plays nothing: it needs drive.waveform")
+                          : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
+                                            "the model %s knows no time", w->fit->model));
+      return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
+    }
+    return make_fine(w);
+  }
   return DEA_OK;
 }
 
@@ -359,6 +409,7 @@ static dea_status prepare(struct work *w)
   bool changed;
   DEA_TRY(w->ctx, dea_device_curves_read(w->ctx, w->fit));
   DEA_TRY(w->ctx, check_tips(w));
+  DEA_TRY(w->ctx, check_times(w));
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, dea_device_stops_make(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
@@ -605,7 +656,8 @@ static bool propose_quantity(struct work *w, const struct slopes *s, const char 
   const size_t n = w->fit->param_count;
   double most = 0;
   size_t rows = 0, stops[64];
-  for (size_t g = 0; g < w->model.group_count && !w->model.groups[g].held; g++) {
+  for (size_t g = 0;
+       g < w->model.group_count && !w->model.groups[g].held && !w->model.groups[g].in_time; g++) {
     const struct dea_device_group *group = &w->model.groups[g];
     for (size_t k = group->first; k < group->first + group->count && rows < 64; k++) {
       const double value = dea_point_get(&s->at[k], column);
@@ -682,7 +734,8 @@ static dea_status finish(struct work *w)
   DEA_TRY(w->ctx, tell(w, &slopes));
   fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
   fit->evaluations = w->model.evaluations;
-  return dea_device_design_make(w->ctx, fit, &w->model, w->device);
+  const struct dea_design_bytes file = {w->path, w->bytes, w->length};
+  return dea_device_design_make(w->ctx, fit, &file, w->device);
 }
 
 static dea_status run(struct work *w)
@@ -709,6 +762,7 @@ dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_f
     dea_device_model_end(&w->model);
     dea_device_destroy(ctx, w->device);
     dea_design_destroy(ctx, w->design);
+    dea_free(ctx, w->fine);
     dea_free(ctx, w->bytes);
     dea_free(ctx, w->path);
   }

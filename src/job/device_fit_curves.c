@@ -23,6 +23,11 @@ struct reading {
   char sha256[65];
 };
 
+static bool is_in_time(const struct dea_device_curve *curve)
+{
+  return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
+}
+
 static dea_status no_memory(const struct dea_device_fit *fit)
 {
   return dea_arena_status(&fit->memory);
@@ -111,8 +116,8 @@ static dea_status add_curve(struct reading *r, int column)
   *curve = (struct dea_device_curve){
       .text = r->text, .file = r->table->file, .column = column, .lag = NAN, .effective = NAN};
   memcpy(curve->sha256, r->sha256, sizeof curve->sha256);
-  double **arrays[] = {&curve->voltage_V, &curve->depth_m,   &curve->value,   &curve->std,
-                       &curve->model,     &curve->model_std, &curve->designed};
+  double **arrays[] = {&curve->voltage_V, &curve->time_s, &curve->depth_m,   &curve->value,
+                       &curve->std,       &curve->model,  &curve->model_std, &curve->designed};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) {
     *arrays[k] = dea_arena_alloc(&fit->memory, from->count, sizeof(double));
   }
@@ -129,7 +134,15 @@ static dea_status add_curve(struct reading *r, int column)
     }
     curve->line[n] = r->table->line[i];
     curve->voltage_V[n] = from->points[i].voltage_V;
+    curve->time_s[n] = from->points[i].time_s;
     curve->depth_m[n] = from->points[i].tip_depth_m;
+    if (is_in_time(curve) && isnan(curve->time_s[n])) {
+      const struct dea_location location = {curve->file, r->table->line[i], 1};
+      return dea_finding_add(
+          r->ctx, DEA_ERROR, location,
+          "no time: a transient needs a column 'time (s)', from the start of the "
+          "waveform");
+    }
     curve->value[n] = value;
     DEA_TRY(r->ctx, take_std(r, curve, absolute, dea_point_get(&r->table->std[i], column),
                              curve->line[n], value, &curve->std[n]));
@@ -221,18 +234,30 @@ static double depth_of(const struct dea_device_curve *curve, size_t i)
   return is_held(curve) && !isnan(curve->depth_m[i]) ? curve->depth_m[i] : 0;
 }
 
-static struct dea_device_group *find_group(struct dea_device_model *model, bool held, double depth)
+/* The group that a row belongs to, a new one where there is none; NULL: there are too many. */
+static struct dea_device_group *find_group(struct dea_device_model *model,
+                                           const struct dea_device_curve *curve, size_t i)
 {
+  const struct dea_device_group wanted = {
+      .held = is_held(curve), .in_time = is_in_time(curve), .depth_m = depth_of(curve, i)};
   for (size_t g = 0; g < model->group_count; g++) {
-    if (model->groups[g].held == held && model->groups[g].depth_m == depth) {
+    const struct dea_device_group *group = &model->groups[g];
+    if (group->held == wanted.held && group->in_time == wanted.in_time &&
+        group->depth_m == wanted.depth_m) {
       return &model->groups[g];
     }
   }
   if (model->group_count == DEA_DEVICE_GROUPS_MAX) {
     return NULL;
   }
-  model->groups[model->group_count] = (struct dea_device_group){.held = held, .depth_m = depth};
+  model->groups[model->group_count] = wanted;
   return &model->groups[model->group_count++];
+}
+
+/* Where a row stands in its group: a voltage, or a time. */
+static double place_of(const struct dea_device_curve *curve, size_t i)
+{
+  return is_in_time(curve) ? curve->time_s[i] : curve->voltage_V[i];
 }
 
 static int rising(const void *a, const void *b)
@@ -241,7 +266,7 @@ static int rising(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Voltages of one group, sorted, each once, at the end of model->voltage_V. */
+/* Voltages, or times, of one group, sorted, each once, at the end of model->voltage_V. */
 static void add_stops(const struct dea_device_fit *fit, struct dea_device_model *model,
                       struct dea_device_group *group)
 {
@@ -250,8 +275,8 @@ static void add_stops(const struct dea_device_fit *fit, struct dea_device_model 
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
     for (size_t i = 0; i < curve->rows; i++) {
-      if (is_held(curve) == group->held && depth_of(curve, i) == group->depth_m) {
-        to[n++] = curve->voltage_V[i];
+      if (find_group(model, curve, i) == group) {
+        to[n++] = place_of(curve, i);
       }
     }
   }
@@ -267,10 +292,10 @@ static void add_stops(const struct dea_device_fit *fit, struct dea_device_model 
 }
 
 static size_t stop_of(const struct dea_device_model *model, const struct dea_device_group *group,
-                      double voltage_V)
+                      double place)
 {
   size_t k = group->first;
-  while (model->voltage_V[k] != voltage_V) {
+  while (model->voltage_V[k] != place) {
     k++;
   }
   return k;
@@ -284,7 +309,7 @@ dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit 
     rows += fit->curves[c].rows;
     for (size_t i = 0; i < fit->curves[c].rows; i++) {
       const struct dea_device_curve *curve = &fit->curves[c];
-      if (find_group(model, is_held(curve), depth_of(curve, i)) == NULL) {
+      if (find_group(model, curve, i) == NULL) {
         return dea_fail(ctx, DEA_E_UNSUPPORTED, "more than %d depths of a tip",
                         DEA_DEVICE_GROUPS_MAX);
       }
@@ -299,8 +324,8 @@ dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit 
   for (size_t c = 0; c < fit->curve_count; c++) {
     struct dea_device_curve *curve = &fit->curves[c];
     for (size_t i = 0; i < curve->rows; i++) {
-      const struct dea_device_group *group = find_group(model, is_held(curve), depth_of(curve, i));
-      curve->stop[i] = stop_of(model, group, curve->voltage_V[i]);
+      const struct dea_device_group *group = find_group(model, curve, i);
+      curve->stop[i] = stop_of(model, group, place_of(curve, i));
     }
   }
   return DEA_OK;

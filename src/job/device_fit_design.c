@@ -180,6 +180,9 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_va
       DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
     } else if (param->kind == DEA_DEVICE_LAW) {
       film->param[param->index] = value;
+    } else if (param->kind == DEA_DEVICE_BRANCH) {
+      struct dea_branch *branch = &film->branches[param->index / 2];
+      *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;
     } else if (param->index == 0) {
       film->permittivity.at_rest = value;
     } else {
@@ -249,7 +252,7 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
 }
 
 dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                  const struct dea_device_model *model,
+                                  const struct dea_design_bytes *file,
                                   const struct dea_device *device)
 {
   double values[DEA_DEVICE_PARAMS_MAX];
@@ -268,10 +271,9 @@ dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit
                                          .name = fit->file->head.name.text,
                                          .title = fit->file->head.title.text,
                                          .uncertainty = dea_text_get(&uncertainty)};
-  const struct dea_design_bytes file = {model->name, model->bytes, model->length};
   dea_status status = uncertainty.failed
                           ? DEA_E_MEMORY
-                          : dea_device_design_text(ctx, &file, device, &with, &fit->design);
+                          : dea_device_design_text(ctx, file, device, &with, &fit->design);
   dea_text_free(&uncertainty);
   return status;
 }

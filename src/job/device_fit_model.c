@@ -1,8 +1,10 @@
 #include "job/device_fit_model.h"
 
 #include "base/write_file.h"
+#include "result/compare.h"
 #include "study/design_file.h"
 #include "study/force.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -88,6 +90,53 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
   return status;
 }
 
+/* Points at the times of a group, on the straight pieces between the steps of the study. */
+static void take_times(const struct dea_device_model *model, const struct dea_device_group *group,
+                       const struct dea_curve *curve, double *time_s, double *values,
+                       struct dea_load_point *points)
+{
+  for (size_t i = 0; i < curve->count; i++) {
+    time_s[i] = curve->points[i].time_s;
+  }
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    for (size_t i = 0; i < curve->count; i++) {
+      values[i] = dea_point_get(&curve->points[i], c);
+    }
+    for (size_t k = group->first; k < group->first + group->count; k++) {
+      dea_point_set(&points[k], c,
+                    dea_interpolate_linear(time_s, values, curve->count, model->voltage_V[k]));
+    }
+  }
+}
+
+/* Plays the waveform by study "transient". */
+static dea_status play(struct dea_device_model *model, const struct dea_design *design,
+                       const struct dea_device *device, const struct dea_device_group *group,
+                       struct dea_load_point *points)
+{
+  static const char *const names[] = {"transient"};
+  struct dea_context *ctx = model->ctx;
+  struct dea_result *result;
+  DEA_TRY(ctx, dea_result_create(ctx, design, device, &result));
+  dea_status status = dea_study_run(ctx, model->type, names, 1, result);
+  const struct dea_curve *curve = dea_result_find(result, model->type->name, names[0]);
+  if (curve != NULL && curve->count > 0 && !is_fatal(status)) {
+    double *both = dea_alloc(ctx, curve->count, 2 * sizeof *both);
+    if (both != NULL) {
+      take_times(model, group, curve, both, both + curve->count, points);
+    }
+    status = both != NULL ? status : DEA_E_MEMORY;
+    dea_free(ctx, both);
+  }
+  dea_result_destroy(ctx, result);
+  if (status != DEA_OK && !is_fatal(status)) {
+    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
 static dea_status evaluate(struct dea_device_model *model, const double *p,
                            struct dea_load_point *points)
 {
@@ -109,7 +158,8 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
     status = model->built(model->user, design, device);
   }
   for (size_t g = 0; g < model->group_count && status == DEA_OK; g++) {
-    status = follow(model, design, device, &model->groups[g], points);
+    status = model->groups[g].in_time ? play(model, design, device, &model->groups[g], points)
+                                      : follow(model, design, device, &model->groups[g], points);
   }
   dea_finding_trial_end(ctx, errors);
   dea_device_destroy(ctx, device);

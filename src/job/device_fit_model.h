@@ -9,9 +9,9 @@
 enum { DEA_DEVICE_MEMO = 48, DEA_DEVICE_GROUPS_MAX = 64 };
 
 /* Points of one path: voltages that rise, freely or with a tip held `depth_m` beyond the design's
- * first depth. */
+ * first depth; or times while the design's waveform is played. */
 struct dea_device_group {
-  bool held;
+  bool held, in_time;
   double depth_m;
   size_t first, count;
 };
@@ -32,7 +32,7 @@ struct dea_device_model {
   struct dea_device_group groups[DEA_DEVICE_GROUPS_MAX];
   size_t group_count;
   size_t stop_count;
-  double *voltage_V; // [stop_count], in the arena of who fills it
+  double *voltage_V; // [stop_count] of a group in time its times [s]; in the arena of who fills it
   bool *wanted;      // [stop_count]: the others are not computed where they come last in a group
   bool slack_too;    // rows count where the film is slack: no warm starts
   struct dea_device_memo memo[DEA_DEVICE_MEMO];

@@ -9,9 +9,9 @@ dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit
 /* Sets groups and stops of a model: each voltage once, rising; and the stop of each row. */
 dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit *fit,
                                  struct dea_device_model *model);
-/* The fitted design as a file, into fit->design; device: built from the design. */
+/* The fitted design as a file, into fit->design; file: as it was, device: built from it. */
 dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                  const struct dea_device_model *model,
+                                  const struct dea_design_bytes *file,
                                   const struct dea_device *device);
 
 #endif

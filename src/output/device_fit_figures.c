@@ -13,14 +13,33 @@ static const enum dea_colour colours[] = {DEA_BLUE,   DEA_GREEN, DEA_PURPLE,
 enum { COLOURS = sizeof colours / sizeof colours[0] };
 
 struct place {
-  double voltage_V;
+  double at; // kV, or s of a transient
   size_t row;
 };
+
+static bool is_in_time(const struct dea_device_curve *curve)
+{
+  return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
+}
+
+/* Whether the times of the transients of a quantity are best seen on a logarithmic axis. */
+static bool spans_decades(const struct dea_device_fit *fit, int column)
+{
+  double first = INFINITY, last = 0;
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    const struct dea_device_curve *curve = &fit->curves[c];
+    for (size_t i = 0; i < curve->rows && is_in_time(curve) && curve->column == column; i++) {
+      first = fmin(first, curve->time_s[i]);
+      last = fmax(last, curve->time_s[i]);
+    }
+  }
+  return first > 0 && last > 30 * first;
+}
 
 static int rising(const void *a, const void *b)
 {
   const struct place *x = a, *y = b;
-  return (x->voltage_V > y->voltage_V) - (x->voltage_V < y->voltage_V);
+  return (x->at > y->at) - (x->at < y->at);
 }
 
 static dea_status add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
@@ -73,7 +92,7 @@ static void fill(const struct dea_device_curve *curve, const struct place *place
     const double y = factor * curve->model[i], half = 2 * factor * curve->model_std[i];
     const bool counts = curve->used[i] || curve->text->use.value != DEA_FIT_USED;
     for (size_t s = 0; s < sizeof all / sizeof all[0]; s++) {
-      all[s]->values[k] = 1e-3 * curve->voltage_V[i];
+      all[s]->values[k] = places[k].at;
     }
     to->band->values[n + k] = y - half;
     to->band->values[2 * n + k] = y + half;
@@ -96,7 +115,8 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < curve->rows; i++) {
-    places[i] = (struct place){curve->voltage_V[i], i};
+    places[i] =
+        (struct place){is_in_time(curve) ? curve->time_s[i] : 1e-3 * curve->voltage_V[i], i};
   }
   qsort(places, curve->rows, sizeof *places, rising);
   dea_status status = add_series(ctx, plot, curve, number, &look);
@@ -108,13 +128,13 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
 }
 
 static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit, int column,
-                       const struct dea_plot_format *format, const char *directory, char name[64],
-                       bool *drawn)
+                       bool in_time, const struct dea_plot_format *format, const char *directory,
+                       char name[64], bool *drawn)
 {
   enum { SHOWN_MAX = 7 }; // of the 48 series that a panel holds
   struct dea_plot *plot;
   size_t number = 0;
-  snprintf(name, 64, "fit_%.59s", dea_point_columns[column].key);
+  snprintf(name, 64, "fit_%s%.50s", in_time ? "time_" : "", dea_point_columns[column].key);
   DEA_TRY(ctx, dea_plot_create(ctx, name,
                                "measurements with the fitted device, its band of two standard "
                                "uncertainties and the design; model less measurement",
@@ -123,7 +143,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
   plot->second_height = 0.5;
   dea_status status = DEA_OK;
   for (size_t c = 0; c < fit->curve_count && status == DEA_OK && number < SHOWN_MAX; c++) {
-    if (fit->curves[c].column == column) {
+    if (fit->curves[c].column == column && is_in_time(&fit->curves[c]) == in_time) {
       status = add_curve(ctx, plot, &fit->curves[c], number++);
     }
   }
@@ -135,7 +155,12 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
     snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Residual %.60s",
              unit != NULL ? unit : "");
     for (size_t p = 0; p < 2; p++) {
-      dea_panel_voltage_axis(&plot->panels[p]);
+      if (in_time) {
+        plot->panels[p].logarithmic_x = spans_decades(fit, column);
+        snprintf(plot->panels[p].x_label, sizeof plot->panels[p].x_label, "Time {/:Italic t} (s)");
+      } else {
+        dea_panel_voltage_axis(&plot->panels[p]);
+      }
       dea_panel_even_tics(&plot->panels[p], p == 0 ? 7 : 4);
     }
     dea_panel_place_key(&plot->panels[0]);
@@ -148,12 +173,12 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
 dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_fit *fit,
                                const struct dea_plot_format *format, const char *directory)
 {
-  char names[DEA_LOAD_POINT_COLUMNS][64];
-  const char *list[DEA_LOAD_POINT_COLUMNS];
+  char names[2 * DEA_LOAD_POINT_COLUMNS][64];
+  const char *list[2 * DEA_LOAD_POINT_COLUMNS];
   size_t count = 0;
-  for (int column = 0; column < DEA_LOAD_POINT_COLUMNS; column++) {
+  for (int k = 0; k < 2 * DEA_LOAD_POINT_COLUMNS; k++) {
     bool drawn;
-    DEA_TRY(ctx, draw(ctx, fit, column, format, directory, names[count], &drawn));
+    DEA_TRY(ctx, draw(ctx, fit, k / 2, k % 2 == 1, format, directory, names[count], &drawn));
     list[count] = names[count];
     count += drawn ? 1U : 0U;
   }

@@ -16,8 +16,9 @@ dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_devic
 dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
                                 const char *command, const struct dea_plot_format *format,
                                 const char *directory);
-/* fit_KEY for each quantity that was measured: measurements with the model, its band of two
- * standard uncertainties and the design's answer over the voltage, and the residuals below. */
+/* fit_KEY, and of transients fit_time_KEY, for each quantity that was measured: measurements with
+ * the model, its band of two standard uncertainties and the design's answer over the voltage, and
+ * the residuals below. */
 dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_fit *fit,
                                const struct dea_plot_format *format, const char *directory);
 

@@ -22,7 +22,9 @@ static void add_rows(struct dea_text *out, const struct dea_device_curve *curve)
     dea_fit_add_field(out, column->factor * curve->model[i]);
     dea_fit_add_field(out, column->factor * curve->model_std[i]);
     dea_fit_add_field(out, column->factor * curve->designed[i]);
-    dea_text_add(out, ",%s\n", column->display_unit);
+    dea_text_add(out, ",%s", column->display_unit);
+    dea_fit_add_field(out, curve->time_s[i]);
+    dea_text_add(out, "\n");
   }
 }
 
@@ -123,14 +125,15 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
 dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_device_file *file,
                                  const char *directory, bool force)
 {
-  char names[DEA_LOAD_POINT_COLUMNS][64];
-  const char *figures[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    snprintf(names[c], sizeof names[c], "fit_%.59s", dea_point_columns[c].key);
+  enum { COUNT = 2 * DEA_LOAD_POINT_COLUMNS };
+  char names[COUNT][64];
+  const char *figures[COUNT];
+  for (int c = 0; c < COUNT; c++) {
+    snprintf(names[c], sizeof names[c], "fit_%s%.50s", c % 2 == 0 ? "" : "time_",
+             dea_point_columns[c / 2].key);
     figures[c] = names[c];
   }
-  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, DEA_LOAD_POINT_COLUMNS,
-                             force);
+  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, COUNT, force);
 }
 
 static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,
@@ -138,7 +141,7 @@ static dea_status write_texts(struct dea_context *ctx, const struct dea_device_f
 {
   struct dea_text csv = {.ctx = ctx};
   dea_text_add(&csv, "curve,quantity,use,line,fitted,V (kV),tip depth (mm),measured,measured std,"
-                     "model,model std,as designed,unit\n");
+                     "model,model std,as designed,unit,time (s)\n");
   for (size_t c = 0; c < fit->curve_count; c++) {
     add_rows(&csv, &fit->curves[c]);
   }

@@ -6,9 +6,11 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.";
+static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.",
+                  branch_prefix[] = "film.branch.";
 static const char *const permittivity_keys[] = {"at_rest", "slope"};
 
 static bool is_number(const struct dea_field *field)
@@ -138,6 +140,32 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   return DEA_OK;
 }
 
+/* "film.branch.1.modulus": the first of the film's branches. */
+static dea_status from_branch(struct dea_context *ctx, const struct dea_device_param_source *source,
+                              const struct dea_label *name, struct dea_device_param *out,
+                              bool *good)
+{
+  const struct dea_material *film = &source->device->film;
+  const char *rest = name->text + strlen(branch_prefix);
+  char *end;
+  const unsigned long number = strtoul(rest, &end, 10);
+  const bool modulus = strcmp(end, ".modulus") == 0, time = strcmp(end, ".time") == 0;
+  *good = end > rest && (modulus || time) && number >= 1 && number <= film->branch_count;
+  if (!*good) {
+    return dea_device_param_unknown(ctx, source, name,
+                                    "is no branch that the film has: film.branch.1.modulus, "
+                                    "film.branch.1.time, ...");
+  }
+  const struct dea_branch *branch = &film->branches[number - 1];
+  out->kind = DEA_DEVICE_BRANCH;
+  out->index = 2 * (number - 1) + (time ? 1U : 0U);
+  out->param.unit = time ? "s" : "Pa";
+  out->param.low = 0;
+  out->param.high = INFINITY;
+  out->designed = time ? branch->time_s : branch->modulus_Pa;
+  return DEA_OK;
+}
+
 static dea_status from_material(struct dea_context *ctx,
                                 const struct dea_device_param_source *source,
                                 const struct dea_label *name, struct dea_device_param *out,
@@ -185,6 +213,7 @@ dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_label *name, struct dea_device_param *out,
                                  bool *good)
 {
+  const bool of_branch = strncmp(name->text, branch_prefix, strlen(branch_prefix)) == 0;
   const bool of_material =
       strncmp(name->text, law_prefix, strlen(law_prefix)) == 0 ||
       strncmp(name->text, permittivity_prefix, strlen(permittivity_prefix)) == 0;
@@ -195,8 +224,9 @@ dea_status dea_device_param_find(struct dea_context *ctx,
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.39s", name->text);
-  return of_material ? from_material(ctx, source, name, out, good)
-                     : from_key(ctx, source, name, out, good);
+  return of_branch     ? from_branch(ctx, source, name, out, good)
+         : of_material ? from_material(ctx, source, name, out, good)
+                       : from_key(ctx, source, name, out, good);
 }
 
 dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
@@ -264,6 +294,9 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
       film->permittivity.at_rest = p[j];
     } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY) {
       film->permittivity.slope = p[j];
+    } else if (params[j].kind == DEA_DEVICE_BRANCH) {
+      struct dea_branch *branch = &film->branches[params[j].index / 2];
+      *(params[j].index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = p[j];
     }
   }
   return DEA_OK;
