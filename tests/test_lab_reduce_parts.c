@@ -313,6 +313,37 @@ static void test_breakdown(void **state)
 
 // Rise -------------------------------------------------------------------------------------------
 
+/* Seconds under voltage against those counted by hand: a square of 2 s, at rest every other second,
+ * with a lost sample, the other sign, and an offset that a film idles at. */
+static void test_time_under_voltage(void **state)
+{
+  (void)state;
+  double values[80];
+  for (size_t i = 0; i < 80; i++) { // 10 Hz
+    values[i] = i % 20 < 10 ? 0.0 : i < 40 ? 2000.0 : -2000.0;
+  }
+  values[15] = NAN;
+  struct dea_channel u = {.values = values, .count = 80, .interval_s = 0.1};
+  struct dea_reduced_cycle cycles[4] = {0};
+  for (size_t k = 0; k < 4; k++) {
+    cycles[k].cycle.end_s = 2.0 * (double)(k + 1) - (k == 3 ? 0.55 : 0.0);
+  }
+  dea_cycles_dose(&u, 100.0, cycles, 4);
+  static const double wanted_s[] = {1.0, 2.0, 3.0, 3.45};
+  for (size_t k = 0; k < 4; k++) {
+    assert_close(cycles[k].under_voltage_s, wanted_s[k], 1e-9, 0.0);
+  }
+  cycles[1].cycle.end_s = 1.5; // one within another
+  dea_cycles_dose(&u, 100.0, cycles, 2);
+  assert_close(cycles[0].under_voltage_s, 1.0, 1e-9, 0.0);
+  assert_close(cycles[1].under_voltage_s, 0.5, 1e-9, 0.0);
+  for (size_t i = 0; i < 80; i++) {
+    values[i] = i % 20 < 10 ? 1000.0 : 2000.0; // idles at half of it
+  }
+  dea_cycles_dose(&u, 100.0, cycles, 1);
+  assert_close(cycles[0].under_voltage_s, 2.0, 1e-9, 0.0);
+}
+
 static void test_rise_of_a_straight_line(void **state)
 {
   (void)state;
@@ -350,6 +381,7 @@ int main(void)
       cmocka_unit_test(test_discharges_are_found),
       cmocka_unit_test(test_nothing_is_found_in_quiet),
       cmocka_unit_test(test_breakdown),
+      cmocka_unit_test(test_time_under_voltage),
       cmocka_unit_test(test_rise_of_a_straight_line),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -263,6 +263,29 @@ dea_status dea_cycles_find(struct dea_context *ctx, const struct dea_recording *
   return DEA_OK;
 }
 
+void dea_cycles_dose(const struct dea_channel *voltage, double least_V,
+                     struct dea_reduced_cycle *cycles, size_t count)
+{
+  size_t i = 0;
+  double sum_s = 0;
+  bool under = false;
+  for (size_t k = 0; k < count; k++) {
+    double end_s = cycles[k].cycle.end_s;
+    if (i > 0 && time_of(voltage, i - 1) >= end_s) { // of plateaus within one another
+      i = 0;
+      sum_s = 0;
+      under = false;
+    }
+    for (; i < voltage->count && time_of(voltage, i) < end_s; i++) {
+      // what the sample before had lasted until this one
+      sum_s += under && i > 0 ? time_of(voltage, i) - time_of(voltage, i - 1) : 0;
+      under = isnan(voltage->values[i]) ? under : fabs(voltage->values[i]) > least_V;
+    }
+    double last_s = i > 0 ? time_of(voltage, i - 1) : end_s;
+    cycles[k].under_voltage_s = sum_s + (under && i < voltage->count ? end_s - last_s : 0);
+  }
+}
+
 struct dea_span dea_span_settled(struct dea_span part, double settle, bool held)
 {
   double share = held ? settle : 1.0;

@@ -102,7 +102,10 @@ static dea_status find_cycles(struct job *job)
     return DEA_E_MEMORY;
   }
   r->cycle_count = job->list.count;
-  return set_voltages(job);
+  DEA_TRY(job->ctx, set_voltages(job));
+  dea_cycles_dose(job->measured != NULL ? job->measured : voltage, job->scale.active_V, r->cycles,
+                  r->cycle_count);
+  return DEA_OK;
 }
 
 static dea_status note_cycles(const struct job *job)

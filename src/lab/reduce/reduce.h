@@ -31,7 +31,8 @@ enum dea_reduced_kind {
 
 struct dea_reduced_cycle {
   struct dea_recorded_cycle cycle;
-  double voltage_V; // measured in the active part, or asked when it was not measured
+  double voltage_V;       // measured in the active part, or asked when it was not measured
+  double under_voltage_s; // that the film was under voltage from the recording's begin to its end
   struct dea_cycle_value values[DEA_REDUCED_KINDS]; // NAN: not measured
   double shape; // of the profile: 0 flat over the electrode, 1 a cone; NAN
 };

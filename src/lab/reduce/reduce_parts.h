@@ -77,6 +77,10 @@ struct dea_cycle_list {
 dea_status dea_cycles_find(struct dea_context *ctx, const struct dea_recording *recording,
                            const struct dea_channel *voltage, const struct dea_voltage_scale *scale,
                            struct dea_cycle_list *out);
+/* Sets under_voltage_s of cycles: the time before each one's end in which |voltage| is above
+ * least_V. A sample counts until the next; one that is NAN as the one before. */
+void dea_cycles_dose(const struct dea_channel *voltage, double least_V,
+                     struct dea_reduced_cycle *cycles, size_t count);
 /* The last share of a part that is held, all of one that is not. */
 struct dea_span dea_span_settled(struct dea_span part, double settle, bool held);
 

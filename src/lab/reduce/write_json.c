@@ -90,6 +90,7 @@ static json_t *cycle_json(const struct dea_reduced_cycle *cycle)
   dea_json_put_count(object, "number", cycle->cycle.number);
   dea_json_put(object, "start_s", cycle->cycle.start_s);
   dea_json_put(object, "end_s", cycle->cycle.end_s);
+  dea_json_put(object, "under_voltage_s", cycle->under_voltage_s);
   dea_json_put(object, "asked_V", cycle->cycle.level_V);
   dea_json_put(object, "voltage_V", cycle->voltage_V);
   dea_json_put(object, "shape", cycle->shape);

@@ -275,7 +275,7 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
 {
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
-  dea_text_add(&text, "step,cycle,start (s),end (s),asked V (kV),V (kV),shape");
+  dea_text_add(&text, "step,cycle,start (s),end (s),under voltage (s),asked V (kV),V (kV),shape");
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     const struct dea_reduced_meaning *m = &dea_reduced_meanings[kind];
     if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
@@ -293,6 +293,7 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
     dea_text_add(&text, "\n%zu,%zu", c->cycle.step, c->cycle.number);
     add(&text, c->cycle.start_s);
     add(&text, c->cycle.end_s);
+    add(&text, c->under_voltage_s);
     add(&text, 1e-3 * c->cycle.level_V);
     add(&text, 1e-3 * c->voltage_V);
     add(&text, c->shape);
