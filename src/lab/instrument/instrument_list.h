@@ -10,4 +10,5 @@
   X(keyence)                                                                                       \
   X(optoncdt)                                                                                      \
   X(scpi)                                                                                          \
-  X(shvps)
+  X(shvps)                                                                                         \
+  X(ochvps)

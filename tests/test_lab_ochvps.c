@@ -1,0 +1,129 @@
+/* The open high-voltage supply with eight channels, imitated on a pseudo-terminal: what dea drive
+ * plays on it, and what it says of the output when the supply fails. */
+// ctest: supply
+#define _GNU_SOURCE // posix_openpt, ptsname_r
+#include "supply_drive.h"
+
+#include "line_supply.h"
+
+static void answer(struct line_supply *s, const char *command, char out[LINE_SUPPLY_ANSWER])
+{
+  double value;
+  int number;
+  if (sscanf(command, "SHV %lf", &value) == 1) {
+    s->set_V = value;
+    snprintf(out, LINE_SUPPLY_ANSWER, "[HV] %.1f", value);
+  } else if (strcmp(command, "QMes") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "[QMes] HV = %.1f V // LV = 5.1 V", s->lied_V);
+  } else if (strcmp(command, "EStop") == 0) {
+    s->mode = 0;
+    s->set_V = 0;
+    snprintf(out, LINE_SUPPLY_ANSWER, "[EStop]");
+  } else if (sscanf(command, "SM%d 1 255", &number) == 1) {
+    s->mode = number;
+    snprintf(out, LINE_SUPPLY_ANSWER, "[SM%d]", number);
+  }
+}
+
+static void begin(struct line_supply *s, const char *connect)
+{
+  char text[2048];
+  s->answer = answer;
+  s->error = "unknown command";
+  s->buffer = 60;
+  line_supply_start(s);
+  snprintf(text, sizeof text,
+           "dea-protocol: 1\n"
+           "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 2, frequency: 0.25 Hz}\n"
+           "amplifier: {gain: 1000, max_voltage: 5 kV, min_voltage: 0 V}\n"
+           "rate: 100 Hz\n"
+           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s}\n"
+           "instruments:\n"
+           "  - {kind: ochvps, device: %s, connect: [\"%s\"], channel: supply, queue: 1 s,\n"
+           "     behind: 1.5 s, timeout: 3 s}\n",
+           supply_zero_V, s->device, connect);
+  command_write("p.yaml", text);
+}
+
+/* Whatever the one before has left: a line may have the name of another. */
+static pid_t arm(void)
+{
+  static const char *const arguments[] = {"drive", "p.yaml", "--arm", "--checked",
+                                          "-f",    "-o",     "o.h5",  NULL};
+  return supply_begin(arguments);
+}
+
+static void test_plays(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  s = (struct line_supply){0};
+  begin(&s, "SM1 1 255 1 100 0 0 0");
+  pid_t child = arm();
+  bool reached = line_supply_reaches(&s, 1900, 10);
+  int mode = s.mode, code = supply_wait(child, 30);
+  if (code != 0 || !reached) {
+    fail_msg("%d\n%s%s", code, command_out, command_err);
+  }
+  assert_int_equal(mode, 1);
+  assert_true(supply_said_zero() && s.mode == 0 && s.overflows == 0 && s.hurried == 0);
+  double highest_V = line_supply_highest(&s);
+  assert_true(highest_V > 1900 && highest_V <= 2000);
+  line_supply_stop(&s);
+}
+
+static void test_faults(void **state)
+{
+  (void)state;
+  static const struct {
+    enum line_supply_fault fault;
+    const char *message;
+  } cases[] = {{LINE_SUPPLY_HANGS, "did not answer"},
+               {LINE_SUPPLY_GARBLES, "which"},
+               {LINE_SUPPLY_ERRS, "answered 'unknown command'"},
+               {LINE_SUPPLY_PULLED, "the connection to the OCHVPS"}};
+  static struct line_supply s;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    s = (struct line_supply){0};
+    begin(&s, "SM1 1 255 1 100 0 0 0");
+    pid_t child = arm();
+    assert_true(line_supply_reaches(&s, 1000, 10));
+    atomic_store(&s.fault, cases[i].fault);
+    assert_int_equal(supply_wait(child, 20), 6);
+    assert_false(supply_said_zero());
+    assert_contains(command_err, cases[i].message);
+    line_supply_stop(&s);
+  }
+}
+
+static void test_refused(void **state)
+{
+  (void)state;
+  static const char *const wrong[] = {"SHV 3000", "SM1 1 255\\rSHV 3000", "EStop"};
+  static const char *const dry[] = {"drive", "p.yaml", NULL};
+  static struct line_supply s;
+  for (size_t i = 0; i < 3; i++) {
+    s = (struct line_supply){0};
+    begin(&s, wrong[i]);
+    assert_int_equal(supply_run_dea(dry, 20), 3);
+    assert_contains(command_err, "that connect channels");
+    assert_true(line_supply_highest(&s) == 0);
+    line_supply_stop(&s);
+  }
+  s = (struct line_supply){0}; // a command that it does not know
+  begin(&s, "SMA");
+  assert_int_equal(supply_wait(arm(), 20), 6);
+  assert_contains(command_err, "answered 'unknown command' to 'SMA', which is an error");
+  assert_true(line_supply_highest(&s) == 0);
+  line_supply_stop(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_plays),
+      cmocka_unit_test(test_faults),
+      cmocka_unit_test(test_refused),
+  };
+  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+}
