@@ -97,6 +97,13 @@ static void open_example(void)
   open_page("a.html");
 }
 
+static void set_scheme(const char *scheme)
+{
+  browser_do(
+      &browser, "Emulation.setEmulatedMedia",
+      json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value", scheme));
+}
+
 static void test_opens_without_a_request(void **state)
 {
   (void)state;
@@ -115,16 +122,94 @@ static void test_opens_without_a_request(void **state)
   assert_holds("[...document.querySelectorAll('table')].every((t) => t.closest('.scroll'))");
   // the style has arrived: its hash is that of the policy
   assert_holds("getComputedStyle(document.querySelector('.cards')).display === 'grid'");
-  browser_do(
-      &browser, "Emulation.setEmulatedMedia",
-      json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value", "dark"));
+  set_scheme("dark");
   assert_holds("getComputedStyle(document.body).backgroundColor === 'rgb(15, 19, 25)'");
   // narrow: nothing but tables that scroll is wider than the window
   browser_do(&browser, "Emulation.setDeviceMetricsOverride",
-             json_pack("{s:i, s:i, s:i, s:b}", "width", 360, "height", 800, "deviceScaleFactor", 1,
+             json_pack("{s:i, s:i, s:i, s:b}", "width", 390, "height", 800, "deviceScaleFactor", 1,
                        "mobile", 0));
-  assert_holds("document.documentElement.scrollWidth <= 360");
+  assert_holds("document.documentElement.scrollWidth <= 390");
   assert_quiet();
+}
+
+/* WCAG 2.1, 1.4.3: the ratio of luminances of all text that is seen to what lies behind it. */
+static void test_contrast(void **state)
+{
+  (void)state;
+  static const char worst[] =
+      "(() => { const rgb = (c) => c.match(/[\\d.]+/g).map(Number); "
+      "const L = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / "
+      "12.92 "
+      ": ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; }; "
+      "const back = (e) => { for (; e; e = e.parentElement) { const c = "
+      "rgb(getComputedStyle(e).backgroundColor); if (c.length < 4 || c[3] > 0) { return c; } } "
+      "return [255, 255, 255]; }; "
+      "let worst = 21, count = 0; document.querySelectorAll('details').forEach((d) => { d.open = "
+      "true; }); for (const e of document.querySelectorAll('body *')) { "
+      "if (![...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim()) || "
+      "e.closest('script, style, svg.device, .map') || !e.checkVisibility()) { continue; } "
+      "const s = getComputedStyle(e); const c = rgb(e.closest('svg') ? s.fill : s.color); "
+      "const [a, b] = [L(c.slice(0, 3)), L(back(e).slice(0, 3))]; "
+      "const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); count++; "
+      "const large = parseFloat(s.fontSize) >= 24 || (parseFloat(s.fontSize) >= 18.7 && "
+      "s.fontWeight >= 700); worst = Math.min(worst, large ? ratio * 1.5 : ratio); } "
+      "return count > 200 ? worst : 0; })()";
+  static const char *const schemes[] = {"light", "dark"};
+  open_example();
+  for (int k = 0; k < 2; k++) {
+    set_scheme(schemes[k]);
+    assert_true(browser_number(&browser, worst) >= 4.5);
+  }
+  assert_quiet();
+}
+
+static void press_tab(void)
+{
+  static const char *const kinds[] = {"rawKeyDown", "keyUp"};
+  for (int k = 0; k < 2; k++) {
+    browser_do(&browser, "Input.dispatchKeyEvent",
+               json_pack("{s:s, s:s, s:s, s:i}", "type", kinds[k], "key", "Tab", "code", "Tab",
+                         "windowsVirtualKeyCode", 9));
+  }
+}
+
+/* The tabulator visits all that can be used, in the order of the page; each says what it is, and is
+ * seen to have the focus. */
+static void test_keyboard(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("(() => { window.stops = [...document.querySelectorAll('a[href], button, select, "
+               "input, summary, canvas[tabindex], [tabindex=\"0\"]')].filter((e) => "
+               "e.checkVisibility() && !e.disabled); return stops.length > 20 && "
+               "document.querySelectorAll('[tabindex]:not([tabindex=\"0\"], "
+               "[tabindex=\"-1\"])').length === 0; })()");
+  assert_holds("stops.every((e) => e.textContent.trim() || e.getAttribute('aria-label') || "
+               "e.closest('label') || (e.labels && e.labels.length > 0))");
+  int count = (int)browser_number(&browser, "stops.length");
+  for (int k = 0; k < count; k++) {
+    press_tab();
+    if (browser_number(&browser, "stops.indexOf(document.activeElement)") != k) {
+      json_t *where = browser_value(&browser, "document.activeElement.outerHTML.slice(0, 200)");
+      fail_msg("stop %d of %d is %s", k, count, json_string_value(where));
+    }
+    assert_holds("parseFloat(getComputedStyle(document.activeElement).outlineWidth) > 0");
+  }
+  assert_quiet();
+}
+
+/* What says nothing is not there: columns without a value, rows without a number. */
+static void test_no_empty_columns(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("(() => { const tables = [...document.querySelectorAll('table')].filter((t) => "
+               "t.querySelector('[colspan]') === null); return tables.length > 4 && "
+               "tables.every((t) => [...t.tHead.rows[0].cells].every((head, c) => "
+               "[...t.tBodies[0].rows].some((row) => !['', '\u2013']"
+               ".includes(row.cells[c].textContent.trim())))); })()");
+  assert_holds("[...document.querySelectorAll('table')].every((t) => [...t.rows].every((row) => "
+               "row.cells.length === t.rows[0].cells.length || t.querySelector('[colspan]')))");
 }
 
 static void test_network_is_shut(void **state)
@@ -300,6 +385,19 @@ static void test_map_of_two_parameters(void **state)
                "return map.querySelectorAll('rect').length > 1000 && "
                "map.querySelector('.plot').innerHTML !== before && "
                "map.textContent.includes('breakdown'); })()");
+  // a slider of no axis: the map waits for it; one of an axis moves the ring alone
+  assert_holds("(async () => { const host = document.querySelector('.explorer'); const map = "
+               "host.querySelector('.map'); const cells = () => map.querySelector('.plot')"
+               ".innerHTML; const wait = async (done) => { for (let i = 0; i < 400 && !done(); i++)"
+               " { await new Promise((d) => setTimeout(d, 20)); } return done(); }; "
+               "const move = (k, share) => { const input = host.querySelectorAll('input')[k]; "
+               "input.value = Number(input.min) + share * (input.max - input.min); "
+               "input.dispatchEvent(new Event('input')); }; "
+               "const before = cells(); move(4, 0.9); "
+               "if (!await wait(() => map.classList.contains('stale'))) { return 'not stale'; } "
+               "if (!await wait(() => !map.classList.contains('stale') && cells() !== before)) { "
+               "return 'not computed again'; } const after = cells(); move(0, 0.3); "
+               "return wait(() => cells() !== after && !map.classList.contains('stale')); })()");
   assert_quiet();
 }
 
@@ -380,6 +478,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_text_is_text),
       cmocka_unit_test(test_opens_without_a_request),
+      cmocka_unit_test(test_contrast),
+      cmocka_unit_test(test_keyboard),
+      cmocka_unit_test(test_no_empty_columns),
       cmocka_unit_test(test_network_is_shut),
       cmocka_unit_test(test_values_under_the_pointer),
       cmocka_unit_test(test_map_and_touch),

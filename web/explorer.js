@@ -118,6 +118,7 @@
     const table = dea.element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Values at this voltage', 'aria-live': 'polite' });
     const problem = dea.element('p', { class: 'warning', hidden: '' });
     let pending = false;
+    let operating = null;
     let first = null; // paths of the run's own design, for comparison
 
     const film = () => base.materials[chosen.material];
@@ -163,6 +164,7 @@
       }
       spec(2, 'True field against the voltage', 'True field (V/µm)', (p) => 1e-6 * p.true_field_V_per_m);
       fill(good, kV);
+      operating?.follow();
     };
     const event = (m, kind) => m.events.find((e) => e.kind === kind)?.point.voltage_V / 1e3;
     const fill = (good, kV) => {
@@ -243,8 +245,8 @@
     };
     more.append(map);
     host.append(more);
-    const drawMap = dea.map(map, { axes, solve, now: () => chosen, lift: base.fibres > 0 });
-    more.addEventListener('toggle', () => more.open && drawMap());
+    operating = dea.map(map, { axes, solve, now: () => chosen, lift: base.fibres > 0 });
+    more.addEventListener('toggle', () => more.open && operating.compute());
     draw();
     dea.onVoltage(host, (kV) => {
       chosen.voltage_V = 1e3 * kV;
@@ -252,7 +254,7 @@
       later();
     });
     dea.explorers = [...(dea.explorers ?? []), {
-      map: drawMap,
+      map: operating.compute,
       // A point of a model for other values than the run's, in SI: for tests and the console.
       solve: (model, values) => solve({ ...initial, ...values }, model === 'axisymmetric' ? 1 : 0),
     }];

@@ -15,6 +15,9 @@ dea.map = (host, { axes, solve, now, lift }) => {
   const run = dea.element('button', { type: 'button' }, 'Compute the map');
   let [x, y] = [axes[1], axes[0]];
   let turn = 0;
+  let drawn = null; // what the map shows: its points, axes, and the other values that they were computed for
+  let timer = 0;
+  const others = (x, y, values) => JSON.stringify({ ...values, [x.key]: 0, [y.key]: 0 });
 
   // Straight pieces of the line at which a quantity on the lattice has a level.
   const contour = (at, level, px, py) => {
@@ -81,6 +84,8 @@ dea.map = (host, { axes, solve, now, lift }) => {
   const compute = async () => {
     const mine = ++turn;
     const [ax, ay] = [x, y];
+    const kept = { ...now() };
+    clearTimeout(timer);
     if (ax === ay) {
       words.textContent = 'Choose two different parameters.';
       return;
@@ -89,6 +94,7 @@ dea.map = (host, { axes, solve, now, lift }) => {
     for (let j = 0; j <= NY; j++) {
       for (let i = 0; i <= NX; i++) {
         grid.push(solve({
+          ...kept,
           [ax.key]: ax.low + ((ax.high - ax.low) * i) / NX,
           [ay.key]: ay.low + ((ay.high - ay.low) * j) / NY,
         }));
@@ -101,7 +107,23 @@ dea.map = (host, { axes, solve, now, lift }) => {
         }
       }
     }
+    drawn = { grid, x: ax, y: ay, others: others(ax, ay, kept) };
+    host.classList.remove('stale');
     draw(grid, ax, ay);
+  };
+  // The sliders have moved: along the axes only the ring does, else the map is computed again.
+  const follow = () => {
+    if (drawn === null) {
+      return;
+    }
+    clearTimeout(timer);
+    if (drawn.x === x && drawn.y === y && drawn.others === others(x, y, now())) {
+      host.classList.remove('stale');
+      draw(drawn.grid, x, y);
+    } else {
+      host.classList.add('stale');
+      timer = setTimeout(compute, 150);
+    }
   };
   const labels = axes.map((a) => a.label);
   const across = dea.choice('Across', labels, (i) => { x = axes[i]; compute(); });
@@ -110,5 +132,5 @@ dea.map = (host, { axes, solve, now, lift }) => {
   up.select.value = 0;
   run.addEventListener('click', compute);
   host.append(dea.element('div', { class: 'controls' }, across.node, up.node, dea.element('div', { class: 'buttons' }, run)), plot, words);
-  return compute;
+  return { compute, follow };
 };

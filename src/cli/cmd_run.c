@@ -141,7 +141,8 @@ static void print_cell(double value, double factor, int width, int digits)
   if (isnan(value)) {
     printf("%*s", width, "-");
   } else {
-    printf("%*.*f", width, digits, value * factor);
+    double shown = value * factor; // without the sign of what is 0 to all digits shown
+    printf("%*.*f", width, digits, fabs(shown) < 0.5 * pow(10, -digits) ? 0.0 : shown);
   }
 }
 

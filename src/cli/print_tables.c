@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { ROWS_SHOWN = 40, WIDTH_MAX = 36, DIGITS = 5, ERROR_DIGITS = 2 };
@@ -27,6 +28,16 @@ static bool has_any(const struct dea_result_table *table, size_t column)
   return table->row_count == 0;
 }
 
+/* Whether a cell holds what rounding left of 0: display units are chosen so that numbers are
+ * near 1. */
+static bool is_noise(const struct dea_result_column *column, const char *text)
+{
+  const double least = 1e-9;
+  const char *unit = column->display_unit;
+  return column->kind == DEA_CELL_NUMBER && unit != NULL && strcmp(unit, "1") != 0 &&
+         fabs(strtod(text, NULL)) < least;
+}
+
 /* A cell as text, with the unit of its quantity where the title cannot say it; row SIZE_MAX: the
  * title. */
 static void add_cell(const struct dea_result_table *table, size_t row, size_t column, size_t value,
@@ -43,6 +54,12 @@ static void add_cell(const struct dea_result_table *table, size_t row, size_t co
   }
   bool percent = c->display_unit != NULL && strcmp(c->display_unit, "%") == 0 && c->list;
   dea_result_table_cell_text(table, row, column, value, percent ? ERROR_DIGITS : DIGITS, out);
+  if (out->length > 0 && is_noise(c, dea_text_get(out))) {
+    struct dea_context *ctx = out->ctx;
+    dea_text_free(out);
+    *out = (struct dea_text){.ctx = ctx};
+    dea_text_add(out, "0");
+  }
   if (out->length > 0 && c->kind == DEA_CELL_VALUE && strcmp(quantity->display_unit, "1") != 0) {
     dea_text_add(out, " %s", quantity->display_unit);
   } else if (out->length == 0 && c->kind != DEA_CELL_TEXT) {

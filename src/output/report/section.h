@@ -14,8 +14,9 @@ struct dea_report {
   size_t count;
   const struct dea_measurement *measurement; // lent; NULL: none
   struct dea_text text;
-  int level;   // of the headings of a run's sections
-  int figures; // so far
+  size_t table; // where the last table begins in the text
+  int level;    // of the headings of a run's sections
+  int figures;  // so far
 };
 
 /* "<section ...><h2>title</h2>": of a run, or of the page (number 0), with an id made of both. */
@@ -25,6 +26,7 @@ void dea_section_end(struct dea_report *report);
 void dea_section_heading(struct dea_report *report, const char *text);
 /* A table that scrolls sideways: caption, then the header's cells (ours). */
 void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
+/* Ends it, and takes out columns in which no row has anything, but for tables with merged cells. */
 void dea_table_end(struct dea_report *report);
 
 /* Figures of a run that belong to a study; NULL: those that stand in no study's section. */

@@ -142,10 +142,6 @@ static void add_limit(struct dea_text *out, const char *model, const char *what,
   dea_text_add(out, "<tr>");
   dea_html_element(out, "th scope=\"row\"", model);
   dea_text_add(out, "<td>%s</td>", what);
-  if (event == NULL) {
-    dea_text_add(out, "<td colspan=\"4\">none on the path</td></tr>");
-    return;
-  }
   double at_V = event->point.voltage_V;
   dea_html_cell(out, 1e-3 * at_V, 5);
   dea_html_cell(out, event->point.electrode_stretch, 5);
@@ -154,8 +150,31 @@ static void add_limit(struct dea_text *out, const char *model, const char *what,
                last_V < at_V ? "the sweep stays below" : "the sweep goes beyond");
 }
 
+static const struct {
+  enum dea_event_kind kind;
+  const char *what;
+} limits[] = {{DEA_EVENT_SLACK, "loss of tension"},
+              {DEA_EVENT_BREAKDOWN, "breakdown"},
+              {DEA_EVENT_PULL_IN, "pull-in"},
+              {DEA_EVENT_SNAP_BACK, "snap-back"}};
+enum { LIMITS = sizeof limits / sizeof limits[0] };
+
+/* What a path was followed for and did not meet. Of a model without a path that is not known. */
+static void add_unmet(struct dea_text *out, const struct dea_curve *path)
+{
+  const char *join = "";
+  for (size_t k = 0; k < LIMITS; k++) {
+    if (limits[k].kind != DEA_EVENT_SNAP_BACK &&
+        dea_curve_first_event(path, limits[k].kind) == NULL) {
+      dea_text_add(out, "%s%s", *join != '\0' ? join : "; on its path no ", limits[k].what);
+      join = ", no ";
+    }
+  }
+}
+
 /* What the sweep itself says of stability: models without a path have nothing else. */
-static void add_worst(struct dea_text *out, const struct dea_curve *sweep)
+static void add_worst(struct dea_text *out, const struct dea_curve *sweep,
+                      const struct dea_curve *path)
 {
   double margin = INFINITY, tension = INFINITY, margin_V = NAN, tension_V = NAN;
   size_t unstable = 0;
@@ -193,6 +212,9 @@ static void add_worst(struct dea_text *out, const struct dea_curve *sweep)
     dea_html_number(out, 1e-3 * tension_V, 4);
     dea_text_add(out, " kV%s", tension < 0 ? ": the film is slack there" : "");
   }
+  if (path != NULL && path->count > 0) {
+    add_unmet(out, path);
+  }
   dea_text_add(out, ".</li>");
 }
 
@@ -218,26 +240,18 @@ static bool find_limit(const struct dea_curve *path, const struct dea_curve *swe
   return false;
 }
 
-/* Rows of a model. Of one without a path, what its sweep did not meet is not said to be none. */
+/* Rows of a model. */
 static void add_model_limits(struct dea_text *out, const struct dea_result *result,
                              const char *model)
 {
-  static const struct {
-    enum dea_event_kind kind;
-    const char *what;
-  } limits[] = {{DEA_EVENT_SLACK, "loss of tension"},
-                {DEA_EVENT_BREAKDOWN, "breakdown"},
-                {DEA_EVENT_PULL_IN, "pull-in"},
-                {DEA_EVENT_SNAP_BACK, "snap-back"}};
   const struct dea_curve *path = dea_result_find(result, model, "path");
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   double last_V =
       sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].voltage_V : NAN;
-  for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
+  for (size_t k = 0; k < LIMITS; k++) {
     struct dea_event event;
-    bool found = find_limit(path, sweep, limits[k].kind, &event);
-    if (found || (path != NULL && limits[k].kind != DEA_EVENT_SNAP_BACK)) {
-      add_limit(out, model, limits[k].what, found ? &event : NULL, last_V);
+    if (find_limit(path, sweep, limits[k].kind, &event)) {
+      add_limit(out, model, limits[k].what, &event, last_V);
     }
   }
 }
@@ -288,7 +302,7 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
   dea_text_add(out, "<ul>");
   for (size_t c = 0; c < result->curve_count; c++) {
     if (strcmp(result->curves[c].kind, "sweep") == 0 && result->curves[c].count > 0) {
-      add_worst(out, &result->curves[c]);
+      add_worst(out, &result->curves[c], dea_result_find(result, result->curves[c].model, "path"));
     }
   }
   dea_text_add(out, "</ul>");
