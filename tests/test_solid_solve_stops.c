@@ -77,6 +77,44 @@ static void test_pull_in_agrees_with_the_exact_disc(void **state)
   assert_close(far.point.voltage_V, near.point.voltage_V, 1e-5, 0);
 }
 
+/* What a path has come by. */
+struct watched {
+  size_t count;
+  struct dea_load_point last;
+};
+
+static dea_status watch_point(void *user, const struct dea_load_point *point)
+{
+  struct watched *watched = user;
+  watched->count++;
+  watched->last = *point;
+  return DEA_OK;
+}
+
+/* By arc-length one comes to the equilibria of load steps, and the model stays where it was. */
+static void test_path_beside_load_steps(void **state)
+{
+  (void)state;
+  struct dea_device device =
+      disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
+  device.film.permittivity.at_rest = 4.8;
+  const struct dea_path_options options = {INFINITY, 200, 50};
+  struct dea_model *model;
+  struct dea_load_point rest, end;
+  struct watched watched = {0};
+  assert_int_equal(dea_solid_module.create(ctx, &device, &solid_film, &model), DEA_OK);
+  assert_int_equal(
+      dea_model_path(ctx, &dea_solid_module, model, &options, watch_point, NULL, &watched), DEA_OK);
+  assert_true(watched.count > 2 && watched.last.voltage_V >= 200);
+  assert_int_equal(dea_solid_module.solve(ctx, model, 0, &rest), DEA_OK);
+  assert_close(rest.electrode_edge_u_m, 0, 0, 1e-12);
+  assert_int_equal(dea_solid_module.solve(ctx, model, watched.last.voltage_V, &end), DEA_OK);
+  assert_close(watched.last.energy_J, end.energy_J, 1e-7, 0);
+  assert_close(watched.last.electrode_edge_u_m, end.electrode_edge_u_m, 1e-5, 0);
+  assert_int_equal(watched.last.unstable_modes, end.unstable_modes);
+  dea_solid_module.destroy(ctx, model);
+}
+
 /* A membrane that goes slack under its electrodes thins there without limit, which is before the
  * exact disc, whose film carries compression, pulls in. */
 static void test_loss_of_tension_is_located(void **state)
@@ -103,6 +141,7 @@ static void test_loss_of_tension_is_located(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_path_beside_load_steps),
       cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
       cmocka_unit_test(test_loss_of_tension_is_located),
   };

@@ -396,8 +396,48 @@ static void other_numbers(const struct swept *b4)
   close_model(&open);
 }
 
+/* Which of our states has the shape and the size of each of its figures: what is known, no guess.
+ */
+static void its_figures(void)
+{
+  puts(
+      "## Its figures, and which of our states they may show\n"
+      "\n"
+      "Sizes are those of the tables above; the states of the slack film as built are in "
+      "`docs/verification/states.md`.\n"
+      "\n"
+      "| figure | what it shows | our state of that shape | its size beside the paper's | band "
+      "over the unknowns | open |\n"
+      "|---|---|---|---|---|---|\n"
+      "| 7 | simulated shapes at 6 kV, a rise over the whole middle | the film without "
+      "pre-stretch, on either branch: a dome | centre 1.2 mm, largest in the paper 1.5 mm by 7 kV "
+      "| table, \"as simulated\" | which branch theirs is on; four over eight fibres |\n"
+      "| 8a, 9 | measured at 8 kV, four fibres, 100 um: 0.5 mm, \"conical and flat\" in the middle "
+      "| **none as built**: the centre is flat at -0.05 to -0.06 mm in every state found, and "
+      "dents or waves, less than 1 mm wide, stand in front of the fibre tips | the farthest place "
+      "of a dent comes near 0.5 mm, the centre to a tenth of it | table, \"as built, 8 kV\"; "
+      "states add the rest | the shape. A film that kept a pre-stretch of 1.3 has its centre at "
+      "+0.41 mm, but another place farther to the other side: its shape was not compared |\n"
+      "| 8b, 8c | eight fibres, 200 um at 16 kV and 100 um at 8 kV | not known: their states were "
+      "not searched for | the text gives no size | not made | all of it |\n"
+      "| 8d | no fibres, 200 um, 16 kV | the flat disc | no displacement; strain in the table on "
+      "200 um | | whether theirs is flat: the text does not say |\n"
+      "| 10 | displacement at the fibres' edge against V: simulated, analytic, measured | "
+      "simulated: none, for our tip without pre-stretch moves a twentieth of the centre; measured: "
+      "none | tip as built, table \"meshes\" | table, \"as built\" | what \"top edge of the "
+      "fibres\" is, and what it measured below 8 kV, which the text does not give |\n"
+      "| 11 | centre in pulses of 7 kV, eight fibres, either way up; \"on the side of the "
+      "fibers\", but down with the fibres on top | as built away from the fibres, which agrees "
+      "with the second; without pre-stretch either branch | the text gives no size | not made | "
+      "the side, and the size |\n"
+      "| 12 | force against V and time, 0.18 N at 6 kV, linear | as built, pressed by a tip | "
+      "table \"Force\": the change is less than half, and goes with V^2 | depth of the tip, table "
+      "| the depth, and what was subtracted |\n");
+}
+
 static void why(const struct swept *s4, const struct swept *b4)
 {
+  its_figures();
   puts("## Why they differ\n");
   printf(
       "* **Pre-stretch** decides everything. Without it the film cannot carry compression, buckles "

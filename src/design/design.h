@@ -150,6 +150,7 @@ struct dea_design {
         struct dea_label monitor; // its name
         struct dea_quantity tolerance, passes;
       } adapt;
+      struct dea_choice path; // 1: study path follows it too
     } solid;
   } compute;
 

@@ -79,8 +79,11 @@ dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *
                           struct dea_model *model, const struct dea_path_options *options,
                           dea_point_sink points, dea_event_sink events, void *user)
 {
-  return type->path != NULL ? type->path(ctx, model, options, points, events, user)
-                            : lacks(ctx, type, "equilibrium path");
+  dea_status (*path)(struct dea_context *, struct dea_model *, const struct dea_path_options *,
+                     dea_point_sink, dea_event_sink, void *) =
+      type->path != NULL ? type->path : type->long_path;
+  return path != NULL ? path(ctx, model, options, points, events, user)
+                      : lacks(ctx, type, "equilibrium path");
 }
 
 dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,

@@ -135,6 +135,11 @@ struct dea_model_type {
   dea_status (*path)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_path_options *options, dea_point_sink points,
                      dea_event_sink events, void *user);
+  /* The same where it costs more than a sweep, so that only a design that asks for it has it
+   * (compute.solid.path); the model then stands where it did. `path` is NULL then. */
+  dea_status (*long_path)(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_path_options *options, dea_point_sink points,
+                          dea_event_sink events, void *user);
   /* Monitors, bodies and channels of the device's layout at the last point solved; out lends from
    * the model until the next call. NULL when the model knows none. */
   dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,

@@ -161,6 +161,14 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
+                            const struct dea_path_options *options, dea_point_sink points,
+                            dea_event_sink events, void *user)
+{
+  DEA_TRY(ctx, dea_model_path(ctx, model->type, model->inner, options, points, events, user));
+  return DEA_OK;
+}
+
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
@@ -281,6 +289,7 @@ static const struct dea_model_type of_layouts = {
     .errors = errors,
     .passes = passes,
     .move = move,
+    .long_path = long_path,
     .soften = soften,
     .push = push,
     .modes = modes,
@@ -306,6 +315,7 @@ const struct dea_model_type dea_model_3d = {
     .passed = passed,
     .solve = solve,
     .indent = indent,
+    .long_path = long_path,
     .soften = soften,
     .push = push,
     .modes = modes,

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { POINTS_MAX = 20000 };
+enum { POINTS_MAX = 20000, LONG_POINTS_MAX = 500 };
 
 struct target {
   struct dea_context *ctx;
@@ -60,21 +60,33 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
   return status == DEA_E_MEMORY ? status : DEA_OK; // without equilibrium: the sweep will say so
 }
 
+/* A long path ends at the highest voltage, and before only where the design says so. */
+static struct dea_path_options long_options(const struct dea_design *design)
+{
+  const struct dea_quantity *end = &design->compute.path_max_stretch;
+  return (struct dea_path_options){
+      .max_stretch = end->origin == DEA_DEFAULT ? (double)INFINITY : end->si,
+      .max_voltage_V = dea_design_highest_V(design),
+      .max_points = LONG_POINTS_MAX,
+  };
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
   struct target target = {.ctx = ctx};
-  if (type->path == NULL) {
+  bool is_long = type->path == NULL && type->long_path != NULL;
+  if ((type->path == NULL && !is_long) ||
+      (is_long && result->design->compute.solid.path.value == 0)) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
-  double end;
-  DEA_TRY(ctx, choose_end(ctx, type, result, &end));
-  const struct dea_path_options options = {
-      .max_stretch = end,
-      .max_voltage_V = INFINITY,
-      .max_points = POINTS_MAX,
-  };
+  struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = POINTS_MAX};
+  if (is_long) {
+    options = long_options(result->design);
+  } else {
+    DEA_TRY(ctx, choose_end(ctx, type, result, &options.max_stretch));
+  }
   dea_status status = dea_model_path(ctx, type, model, &options, take_point, take_event, &target);
   DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));
   fill_distances(target.curve);

@@ -452,6 +452,16 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
+static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
+                            const struct dea_path_options *options, dea_point_sink points,
+                            dea_event_sink events, void *user)
+{
+  struct dea_path_options own = *options;
+  own.max_stretch /= model->device->pre_stretch;
+  DEA_TRY(ctx, dea_standing_path(ctx, &model->at, &own, points, events, user));
+  return DEA_OK;
+}
+
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
@@ -524,6 +534,7 @@ const struct dea_model_type dea_solid_module = {
     .limit = limit,
     .passed = passed,
     .indent = indent,
+    .long_path = long_path,
     .soften = soften,
     .push = push,
     .modes = modes,

@@ -2,6 +2,7 @@
 
 #include "model/solid/adapter/state.h"
 #include "model/solid/assembly/problem.h"
+#include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 
@@ -10,6 +11,10 @@
 enum { VOLTAGE, LEFT_A_STATE, NUMBERS };
 static const char own_name[] = "model";
 static const double pi = 3.14159265358979323846;
+static const double path_step = 0.05; // of the square of the voltage, or of path_unit
+static const double path_step_most = 0.5;
+static const double path_unit = 2; // of the solid's length: displacement that counts as much as
+                                   // all of the voltage
 
 static void end_history(struct dea_context *ctx, struct dea_standing *standing)
 {
@@ -46,6 +51,111 @@ const struct dea_event *dea_standing_limit(const struct dea_standing *standing)
 const struct dea_event *dea_standing_passed(const struct dea_standing *standing)
 {
   return dea_ending_passed(&standing->ending);
+}
+
+// Path -------------------------------------------------------------------------------------------
+
+/* Where its points go. */
+struct path_sinks {
+  const struct dea_path_options *options;
+  dea_point_sink points;
+  dea_event_sink events; // NULL: not wanted
+  void *user;
+};
+
+/* What the model says of a point of a path. */
+static dea_status path_point(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_continuation_point *at, struct dea_load_point *out)
+{
+  const struct dea_ending_owner *owner = &standing->ending.owner;
+  standing->report.energy_J = at->energy_J;
+  standing->report.unstable_modes = at->unstable_modes;
+  DEA_TRY(ctx, owner->point(ctx, owner->model, at->voltage_V, out));
+  return DEA_OK;
+}
+
+/* The limit point or bifurcation that the last step has passed; where it cannot be closed in on
+ * there is none. */
+static dea_status path_event(struct dea_context *ctx, struct dea_standing *standing,
+                             struct dea_solid_continuation *path, const struct path_sinks *sinks,
+                             const struct dea_continuation_point *after)
+{
+  struct dea_continuation_point at = {0};
+  struct dea_event event;
+  dea_status status = dea_solid_continuation_locate(ctx, path, &at);
+  if (dea_solid_may_shorten(status) || status == DEA_E_ARGUMENT) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, status);
+  if (after->passed == DEA_CONTINUATION_BIFURCATION) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "model 3d: another branch crosses the path at %.4g kV; the path goes "
+                           "on with %d unstable modes",
+                           1e-3 * at.voltage_V, after->unstable_modes);
+  }
+  event.kind = after->slope < 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
+  DEA_TRY(ctx, path_point(ctx, standing, &at, &event.point));
+  return sinks->events != NULL ? sinks->events(sinks->user, &event) : DEA_OK;
+}
+
+/* Step by step to one of the ends. */
+static dea_status follow_path(struct dea_context *ctx, struct dea_standing *standing,
+                              struct dea_solid_continuation *path, const struct path_sinks *sinks)
+{
+  const struct dea_path_options *o = sinks->options;
+  struct dea_load_point point;
+  for (size_t i = 1; i < o->max_points; i++) {
+    struct dea_continuation_point at;
+    if (dea_solid_any(dea_interrupted(ctx))) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the path");
+    }
+    dea_status status = dea_solid_continuation_step(ctx, path, &at);
+    if (status == DEA_E_DOMAIN) { // 0 V, or the end of a law
+      dea_context_clear(ctx);
+      return DEA_OK;
+    }
+    DEA_TRY(ctx, status);
+    DEA_TRY(ctx, path_point(ctx, standing, &at, &point));
+    DEA_TRY(ctx, sinks->points(sinks->user, &point));
+    if (at.passed != DEA_CONTINUATION_NOTHING) {
+      DEA_TRY(ctx, path_event(ctx, standing, path, sinks, &at));
+    }
+    if (at.voltage_V >= o->max_voltage_V || point.electrode_stretch > o->max_stretch) {
+      return DEA_OK;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_path_options *options, dea_point_sink points,
+                             dea_event_sink events, void *user)
+{
+  struct dea_solid *solid = standing->ending.owner.solid;
+  const struct dea_continuation_options steps = {path_step, path_step_most,
+                                                 path_unit * solid->problem.length_m};
+  const struct path_sinks sinks = {options, points, events, user};
+  struct dea_solid_continuation *path = NULL;
+  struct dea_load_point point;
+  struct dea_solid_stand from;
+  dea_standing_end_history(ctx, standing);
+  const struct dea_solid_report report = standing->report;
+  DEA_TRY(ctx, standing->ending.owner.point(ctx, standing->ending.owner.model, standing->voltage_V,
+                                            &point));
+  DEA_TRY(ctx, points(user, &point));
+  dea_status status = dea_solid_stand_keep(ctx, solid, &from);
+  if (status == DEA_OK) {
+    status = dea_solid_continuation_create(ctx, solid, options->max_voltage_V, &steps, &path);
+  }
+  if (status == DEA_OK) {
+    status = follow_path(ctx, standing, path, &sinks);
+    dea_solid_stand_again(solid, &from);
+    standing->report = report;
+  }
+  dea_solid_continuation_destroy(ctx, path);
+  dea_solid_stand_free(&from);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 // Other states -----------------------------------------------------------------------------------

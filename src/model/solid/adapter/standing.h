@@ -28,6 +28,11 @@ dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *stan
 const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
 const struct dea_event *dea_standing_passed(const struct dea_standing *standing);
 
+/* `long_path` of it, from where the solid is. */
+dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *standing,
+                             const struct dea_path_options *options, dea_point_sink points,
+                             dea_event_sink events, void *user);
+
 /* `soften` and `push` of it. fold: [node_count][3] what a push of that kind does; NULL: none is
  * known. */
 dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *standing, size_t count,

@@ -245,7 +245,7 @@ double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_stand
   return sqrt(3 * sum / (double)count);
 }
 
-static void stand_again(struct dea_solid *s, const struct dea_solid_stand *at)
+void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at)
 {
   dea_solid_state_set(s, at->state);
   dea_solid_controls_set(s, at->controls);
@@ -262,7 +262,7 @@ static dea_status search_back(struct dea_context *ctx, struct search *a,
   a->from = room.controls;
   a->goal = now->controls;
   if (status == DEA_OK) {
-    stand_again(a->s, from);
+    dea_solid_stand_again(a->s, from);
     status = search_path(ctx, a);
   }
   dea_solid_stand_free(&room);
@@ -281,7 +281,7 @@ dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
   dea_status status = dea_solid_stand_keep(ctx, s, &now);
   if (status == DEA_OK && s->problem.field == NULL) {
     status = search_back(ctx, &a, from, &now);
-    stand_again(s, &now);
+    dea_solid_stand_again(s, &now);
   }
   dea_solid_stand_free(&now);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

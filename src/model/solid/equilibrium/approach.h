@@ -42,6 +42,8 @@ struct dea_solid_stand {
 dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *solid,
                                 struct dea_solid_stand *out);
 void dea_solid_stand_free(struct dea_solid_stand *stand);
+/* Brings the solid back to there. */
+void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand *at);
 /* Root of the mean square of how far the nodes are from there. */
 double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
 
