@@ -32,7 +32,7 @@ struct dea_pool {
 
 struct reply {
   struct dea_case done;
-  int status;
+  dea_status status;
   char message[256];
 };
 
@@ -201,7 +201,7 @@ static dea_status hear(struct dea_pool *pool, struct worker *worker, dea_case_si
     bury(pool, worker, &reply);
   }
   if (reply.status != DEA_OK) {
-    return dea_fail(pool->ctx, (dea_status)reply.status, "%s", reply.message);
+    return dea_fail(pool->ctx, reply.status, "%s", reply.message);
   }
   return sink(user, &reply.done);
 }
