@@ -1,6 +1,7 @@
 /* The open high-voltage supply SHVPS, imitated on a pseudo-terminal: what dea drive plays on it,
  * and what it says of the output when the supply is slow, hangs, lies, makes no sense, begins anew
- * or is pulled out, and when dea itself is killed or stopped. */
+ * or is pulled out, and when dea itself is killed or stopped. `test_lab_shvps COUNT [SEED]` makes
+ * that many runs with a fault at a random moment. */
 // ctest: supply
 #define _GNU_SOURCE // posix_openpt, ptsname_r
 #include "supply_drive.h"
@@ -146,6 +147,46 @@ static void test_faults(void **state)
   }
 }
 
+static size_t run_count = 3;
+static unsigned first_seed = 1;
+
+static double uniform(unsigned *seed, double from, double to)
+{
+  return from + (to - from) * rand_r(seed) / RAND_MAX;
+}
+
+/* At any moment from the start on, for good or for a while: what is said is true. */
+static void test_faults_at_random_moments(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  for (size_t i = 0; i < run_count; i++) {
+    unsigned seed = 2654435761U * (first_seed + (unsigned)i); // neighbours are alike otherwise
+    enum line_supply_fault fault =
+        (enum line_supply_fault)(1 + (int)uniform(&seed, 0, LINE_SUPPLY_PULLED - 1e-6));
+    double after_s = uniform(&seed, 0, 5), lasts_s = uniform(&seed, 0.05, 6);
+    s = (struct line_supply){.delay_s = uniform(&seed, 0.2, 3),
+                             .slew_V_per_s = uniform(&seed, 0, 1) < 0.5 ? 100e3 : 2e3,
+                             .fragment = (size_t)uniform(&seed, 0, 4)};
+    begin(&s);
+    write_protocol(&s, 2, 1, ", behind: 0.5 s");
+    pid_t child = arm_anew("random.h5");
+    dea_clock_wait(after_s);
+    atomic_store(&s.fault, fault);
+    if (uniform(&seed, 0, 1) < 0.5 && fault != LINE_SUPPLY_PULLED) {
+      dea_clock_wait(lasts_s);
+      atomic_store(&s.fault, LINE_SUPPLY_GOOD);
+    }
+    int code = supply_wait(child, 40);
+    print_message("seed %u: fault %d after %.2f s, exit code %d, %s, %.0f V\n",
+                  first_seed + (unsigned)i, (int)fault, after_s, code,
+                  supply_said_zero() ? "at 0 V" : "not known", line_supply_volts(&s));
+    assert_true(code >= 0);
+    check_said(&s, code);
+    line_supply_stop(&s);
+  }
+}
+
 /* What was left up is known by the next program, and ends with a supply that answers. */
 static void test_zero(void **state)
 {
@@ -219,12 +260,18 @@ static void test_refused(void **state)
   line_supply_stop(&s);
 }
 
-int main(void)
+int main(int count, char **arguments)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_plays),   cmocka_unit_test(test_faults),
       cmocka_unit_test(test_zero),    cmocka_unit_test(test_killed_and_stopped),
-      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_refused), cmocka_unit_test(test_faults_at_random_moments),
   };
+  const struct CMUnitTest many[] = {cmocka_unit_test(test_faults_at_random_moments)};
+  if (count > 1) {
+    run_count = (size_t)strtoul(arguments[1], NULL, 10);
+    first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
+    return cmocka_run_group_tests(many, command_set_up, command_tear_down);
+  }
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }
