@@ -126,6 +126,7 @@ static void test_killed(void **state)
                    401 + lines_with("cut/part-1-of-1.csv", "\n\n"));
   assert_int_equal(lines_with("cut/cases.csv", "\n"), 401);
   assert_int_equal(lines_with("cut/statistics.csv", "electrode_edge_u_m,m,5,400,"), 1);
+  assert_int_equal(lines_with("cut/band_breakdown_margin.svg", "<svg"), 1);
   assert_int_equal(lines_with("cut/limits.csv", "breakdown_margin,-0.8,,400,"), 1);
 }
 

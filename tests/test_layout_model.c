@@ -167,16 +167,17 @@ static struct dea_device *turned_square(double angle)
   l->supports[l->support_count++] = (struct dea_layout_support){
       .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
   l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "corner",
+      (struct dea_layout_monitor){.name = "side",
                                   .kind = DEA_MONITOR_POINT,
-                                  .at_m = {{c * 7e-3 - s * 7e-3, s * 7e-3 + c * 7e-3}}};
+                                  .at_m = {{c * 7e-3 - s * 5e-3, s * 7e-3 + c * 5e-3}}};
   l->monitors[l->monitor_count++] =
       (struct dea_layout_monitor){.name = "active", .kind = DEA_MONITOR_REGION, .region = 1};
   return device;
 }
 
 /* A device that is turned does what it did, turned, but for the mesh, which gmsh makes anew (to
- * 1e-9 on one mesh: test_solid_solve_angle). */
+ * 1e-9 on one mesh: test_solid_solve_angle); looked at in the middle of a side, as the electrode's
+ * corner is 0.5 % off on meshes that are not the same (docs/theory/trust.md). */
 static void test_pre_stretch_at_an_angle(void **state)
 {
   (void)state;

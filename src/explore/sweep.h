@@ -27,6 +27,10 @@ struct dea_sweep_report {
 dea_status dea_sweep_run(const struct dea_question *question,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
+/* Figures band_KEY of spreads [voltages][quantities] of samples, into a folder. */
+struct dea_spread;
+dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
+                          const char *folder);
 /* The tables of a plan's cases as far as they are done, into a folder. */
 dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
                            const struct dea_store *store, const char *folder);

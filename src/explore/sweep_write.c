@@ -170,10 +170,9 @@ static size_t independent(const struct work *w)
   return w->question->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
 }
 
-static dea_status write_statistics(const struct work *w, double *values)
+static dea_status write_statistics(const struct work *w, double *values, struct dea_spread *spreads)
 {
   struct dea_text out = {.ctx = w->ctx};
-  struct dea_spread spread;
   dea_status status = DEA_OK;
   char name[64];
   dea_text_add(&out, "quantity,unit,V (kV),samples,mean,std");
@@ -183,15 +182,15 @@ static dea_status write_statistics(const struct work *w, double *values)
   dea_text_add(&out, "\n");
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
     take_values(w, i, 0, independent(w), values);
-    status = dea_spread_find(w->ctx, values, independent(w), &spread);
+    status = dea_spread_find(w->ctx, values, independent(w), &spreads[i]);
     dea_question_value_name(w->question, i, name, sizeof name);
     name[strcspn(name, "@")] = '\0';
     dea_text_add(&out, "%s,%s,%.6g,%zu", name, unit_of(w, i),
-                 1e-3 * w->question->voltages_V[i / w->question->quantity_count], spread.count);
-    add_field(&out, spread.mean);
-    add_field(&out, spread.std);
+                 1e-3 * w->question->voltages_V[i / w->question->quantity_count], spreads[i].count);
+    add_field(&out, spreads[i].mean);
+    add_field(&out, spreads[i].std);
     for (size_t k = 0; k < DEA_SHARES; k++) {
-      add_field(&out, spread.quantile[k]);
+      add_field(&out, spreads[i].quantile[k]);
     }
     dea_text_add(&out, "\n");
   }
@@ -260,11 +259,17 @@ static dea_status write_all(const struct work *w)
     return DEA_OK;
   }
   double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);
-  dea_status status = values != NULL ? write_statistics(w, values) : DEA_E_MEMORY;
+  struct dea_spread *spreads = dea_alloc(w->ctx, w->values, sizeof *spreads);
+  dea_status status =
+      values != NULL && spreads != NULL ? write_statistics(w, values, spreads) : DEA_E_MEMORY;
   status = status == DEA_OK ? write_limits(w) : status;
   if (status == DEA_OK && w->question->file->plan.value == DEA_PLAN_INDICES) {
     status = write_indices(w, values);
   }
+  if (status == DEA_OK && w->question->voltage_count > 1) {
+    status = dea_sweep_draw(w->question, spreads, w->folder);
+  }
+  dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);
   return status;
 }

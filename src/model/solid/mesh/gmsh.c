@@ -71,19 +71,38 @@ static void write_settings(struct dea_text *out, const struct dea_gmsh_plan *pla
       "Mesh.SubdivisionAlgorithm = %d;\nMesh.ElementOrder = %d;\n"
       "Mesh.SecondOrderLinear = 0;\nMesh.SecondOrderIncomplete = 0;\n"
       "Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n"
-      "Mesh.MeshSizeFromCurvature = %d;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n",
+      "Mesh.MeshSizeFromCurvature = %d;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.10g;\n",
       way->recombine, way->algorithm, way->subdivision, plan->order, way->curvature,
       mm * plan->size_m * way->size);
 }
 
-/* Numbers of what was written last. */
+/* Numbers of what was written last; decimals: of coordinates. */
 struct numbers {
   size_t point, curve, surface;
+  int decimals;
 };
+
+/* Digits after the point, to 1e-10 of an element: gmsh meshes equal shapes in different ways when
+ * their last bits differ, as those of one shape do that was moved or read from a file. */
+static int decimals_of(const struct dea_gmsh_plan *plan)
+{
+  return (int)fmax(0, 10 - floor(log10(mm * plan->size_m)));
+}
+
+static void write_place(struct dea_text *out, int decimals, const double x[2])
+{
+  double rounded[2], unit = pow(10, -decimals);
+  for (int i = 0; i < 2; i++) { // never -0
+    rounded[i] = fabs(mm * x[i]) < 0.5 * unit ? 0 : mm * x[i];
+  }
+  dea_text_add(out, "{%.*f, %.*f, 0}", decimals, rounded[0], decimals, rounded[1]);
+}
 
 static void write_point(struct dea_text *out, struct numbers *last, const double x[2])
 {
-  dea_text_add(out, "Point(%zu) = {%.17g, %.17g, 0};\n", ++last->point, mm * x[0], mm * x[1]);
+  dea_text_add(out, "Point(%zu) = ", ++last->point);
+  write_place(out, last->decimals, x);
+  dea_text_add(out, ";\n");
 }
 
 /* The curves of a piece, from the last point written to the point `to` (0: one that is made). An
@@ -146,19 +165,21 @@ static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
   for (size_t k = 0; k < shape->count; k++) {
     for (size_t i = 0; i < dea_contour_pieces(&shape->contours[k]); i++) {
       const struct dea_piece piece = dea_contour_piece(&shape->contours[k], i);
-      int parts = (int)ceil(piece.length_m / step) + 1;
+      int parts = (int)ceil(piece.length_m / step - 1e-9) + 1;
       for (int j = 0; j <= parts; j++) {
         double x[2];
         dea_piece_point(&piece, (double)j / parts, x);
-        dea_text_add(out, "Point(p + n) = {%.17g, %.17g, 0}; n++;\n", mm * x[0], mm * x[1]);
+        dea_text_add(out, "Point(p + n) = ");
+        write_place(out, decimals_of(plan), x);
+        dea_text_add(out, "; n++;\n");
       }
     }
   }
   dea_text_add(out,
                "Field[%zu] = Distance;\nField[%zu].PointsList = {p:p + n - 1};\n"
-               "Field[%zu] = Threshold;\nField[%zu].IField = %zu;\nField[%zu].LcMin = %.17g;\n"
-               "Field[%zu].LcMax = %.17g;\nField[%zu].DistMin = %.17g;\nField[%zu].DistMax = "
-               "%.17g;\n",
+               "Field[%zu] = Threshold;\nField[%zu].IField = %zu;\nField[%zu].LcMin = %.10g;\n"
+               "Field[%zu].LcMax = %.10g;\nField[%zu].DistMin = %.10g;\nField[%zu].DistMax = "
+               "%.10g;\n",
                2 * source - 1, 2 * source - 1, 2 * source, 2 * source, 2 * source - 1, 2 * source,
                scale * fine, 2 * source, scale * plan->size_m, 2 * source, mm * fine, 2 * source,
                mm * (fine + fmax(plan->size_m - fine, 1e-3 * fine) / growth));
@@ -237,7 +258,7 @@ static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
 static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
                          const struct way *way)
 {
-  struct numbers last = {0};
+  struct numbers last = {.decimals = decimals_of(plan)};
   void *locale = dea_c_locale_enter();
   write_settings(out, plan, way);
   for (size_t i = 0; i < plan->shape_count; i++) {
