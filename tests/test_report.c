@@ -391,6 +391,37 @@ static void test_measurement(void **state)
   assert_contains(command_err, "not negative");
 }
 
+/* A section of the fit beside the runs; its texts are text, its figures in the page. */
+static void test_fit(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device.fit"), 0);
+  assert_int_equal(command_run("run device.fit/sample-3.yaml --model lumped --no-figures -o "
+                               "device.run"),
+                   0);
+  assert_int_equal(command_run("report device.run --fit device.fit -o fit.html --quiet"), 0);
+  read_page("fit.html");
+  assert_well_formed();
+  assert_contains(page, "<section id=\"fit-0\"");
+  assert_contains(page, "film.permittivity.at_rest</th>");
+  assert_contains(page, "are not told apart");
+  assert_contains(page, "src=\"data:image/svg+xml;base64,");
+  assert_contains(page, "what one standard uncertainty changes");
+  assert_int_equal(command_run("report device.run --fit device.run -o fit.html"), 5);
+  assert_contains(command_err, "fit.json");
+  char text[700];
+  snprintf(text, sizeof text, "%s/evil.fit", command_folder);
+  assert_int_equal(mkdir(text, 0777), 0);
+  command_write("evil.fit/fit.json",
+                "{\"parameters\": [{\"name\": \"<script>alert(1)</script>\", \"value\": 1}]}");
+  assert_int_equal(command_run("report device.run --fit evil.fit -o fit.html --quiet"), 0);
+  command_read("fit.html", page);
+  assert_null(strstr(page, "<script>alert"));
+  command_write("evil.fit/fit.json", "[1, 2]");
+  assert_int_equal(command_run("report device.run --fit evil.fit -o fit.html"), 5);
+  assert_contains(command_err, "holds no fit");
+}
+
 static void test_only_pages_are_replaced(void **state)
 {
   (void)state;
@@ -522,6 +553,7 @@ int main(void)
       cmocka_unit_test(test_page_of_an_example),
       cmocka_unit_test(test_sections_of_studies),
       cmocka_unit_test(test_measurement),
+      cmocka_unit_test(test_fit),
       cmocka_unit_test(test_only_pages_are_replaced),
       cmocka_unit_test(test_studies_of_the_run_or_of_the_page),
       cmocka_unit_test(test_runs_beside_each_other),

@@ -113,6 +113,7 @@ static dea_status add_page(struct dea_report *report)
   for (size_t i = 0; i < report->count; i++) {
     DEA_TRY(report->ctx, add_run(report, &report->runs[i]));
   }
+  DEA_TRY(report->ctx, dea_section_fit(report));
   add_end(report);
   return report->text.failed ? DEA_E_MEMORY : DEA_OK;
 }

@@ -10,6 +10,7 @@ struct dea_report_options {
   const char *command;     // command line of the report, for its last line; NULL: none
   double finger_N_per_m;   // stiffness of a fingertip against which a load line is set; 0: none
   const char *measurement; // set beside the runs: CSV or folder (output/measured.h); NULL: none
+  const char *fit;         // folder of dea fit, a section of its own; NULL: none
 };
 
 /* One of the runs; all lent to the report. design, device: NULL when the file cannot be read any
@@ -27,7 +28,8 @@ struct dea_report_run {
 };
 
 /* Writes one page of the runs [count], 1 to DEA_REPORT_RUNS_MAX, as a whole or not at all. What a
- * run does not have is left out. path: of the file. DEA_E_IO as dea_measured_read. */
+ * run does not have is left out. path: of the file. DEA_E_IO as dea_measured_read, or where
+ * there is no fit. */
 dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run *runs,
                             size_t count, const struct dea_report_options *options,
                             const char *path);
