@@ -1,5 +1,9 @@
 #include "model/model.h"
 
+#include "result/columns.h"
+
+#include <math.h>
+
 const struct dea_model_type *dea_model_of_device(const struct dea_model_type *type,
                                                  const struct dea_device *device)
 {
@@ -90,6 +94,62 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
                              struct dea_model *model, struct dea_profile *out)
 {
   return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
+}
+
+/* Quantities of a device at a voltage, out [column_count]; NAN without an equilibrium there. */
+static dea_status answer(struct dea_context *ctx, const struct dea_model_type *type,
+                         const struct dea_model_settings *settings, const struct dea_device *device,
+                         double voltage_V, const struct dea_gradient_ask *ask, double *out)
+{
+  struct dea_model *model;
+  struct dea_load_point point;
+  size_t errors = dea_finding_trial_begin(ctx);
+  dea_status status = type->create(ctx, device, settings, &model);
+  if (status == DEA_OK) {
+    status = type->solve(ctx, model, voltage_V, &point);
+    type->destroy(ctx, model);
+  }
+  dea_finding_trial_end(ctx, errors);
+  for (size_t i = 0; i < ask->column_count; i++) {
+    out[i] = status == DEA_OK ? dea_point_get(&point, ask->columns[i]) : NAN;
+  }
+  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  if (status != DEA_OK) {
+    dea_context_clear(ctx);
+  }
+  return DEA_OK;
+}
+
+/* Differences of the changed devices, which are solved each by itself. */
+static dea_status difference(struct dea_context *ctx, const struct dea_model_type *type,
+                             const struct dea_model_settings *settings,
+                             const struct dea_gradient_ask *ask, double *out)
+{
+  double *sides = dea_alloc(ctx, 2 * ask->column_count, sizeof *sides);
+  dea_status status = sides != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t c = 0; c < ask->change_count && status == DEA_OK; c++) {
+    const struct dea_design_change *change = &ask->changes[c];
+    for (size_t k = 0; k < 2 && status == DEA_OK; k++) {
+      status = answer(ctx, type, settings, change->device[k], change->voltage_V[k], ask,
+                      sides + k * ask->column_count);
+    }
+    for (size_t i = 0; i < ask->column_count && status == DEA_OK; i++) {
+      out[c * ask->column_count + i] = (sides[ask->column_count + i] - sides[i]) / change->width;
+    }
+  }
+  dea_free(ctx, sides);
+  return status;
+}
+
+dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_model_settings *settings,
+                              const struct dea_gradient_ask *ask, double *out)
+{
+  DEA_TRY(ctx, type->gradient != NULL ? type->gradient(ctx, model, ask, out)
+                                      : difference(ctx, type, settings, ask, out));
+  return DEA_OK;
 }
 
 dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,

@@ -42,6 +42,9 @@ struct dea_model_settings {
     double tolerance, voltage_V; // relative; where it is looked at
     int passes;
   } adapt;
+  /* Another device of which the mesh is, moved to this one: so that answers change smoothly with
+   * lengths. Lent, outlives the model; NULL: a mesh of its own. */
+  const struct dea_device *mesh_of;
 };
 
 /* One mesh of an adaptive refinement. */
@@ -103,6 +106,21 @@ struct dea_time_options {
   double rho_inf; // spectral radius of generalised alpha at high frequencies, 0 to 1
 };
 
+/* A small change of one number p of a design: devices and voltages at p - width/2 and p + width/2,
+ * in the unit of p. */
+struct dea_design_change {
+  const struct dea_device *device[2];
+  double voltage_V[2];
+  double width;
+};
+/* Slopes that are wanted: of columns of load points (result/columns.h) by changes. All lent. */
+struct dea_gradient_ask {
+  const struct dea_design_change *changes; // [change_count]
+  size_t change_count;
+  const int *columns; // [column_count]
+  size_t column_count;
+};
+
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
@@ -140,6 +158,11 @@ struct dea_model_type {
   dea_status (*long_path)(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_path_options *options, dea_point_sink points,
                           dea_event_sink events, void *user);
+  /* Slopes of quantities of the last point solved, out [change_count][column_count]
+   * (docs/theory/gradients.md): NAN where the model has none, and of a change that its mesh cannot
+   * follow, with a note. NULL: dea_model_gradient computes the changed devices. */
+  dea_status (*gradient)(struct dea_context *ctx, struct dea_model *model,
+                         const struct dea_gradient_ask *ask, double *out);
   /* Monitors, bodies and channels of the device's layout at the last point solved; out lends from
    * the model until the next call. NULL when the model knows none. */
   dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,
@@ -257,6 +280,11 @@ dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *
                           dea_point_sink points, dea_event_sink events, void *user);
 dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, struct dea_profile *out);
+/* Of any model: one without a gradient of its own is made anew for each changed device and solved
+ * at its voltage, with these settings. */
+dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_model_settings *settings,
+                              const struct dea_gradient_ask *ask, double *out);
 dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, struct dea_observation *out);
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,

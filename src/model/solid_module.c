@@ -183,6 +183,15 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   return DEA_OK;
 }
 
+static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_gradient_ask *ask, double *out)
+{
+  return model->type->gradient != NULL
+             ? model->type->gradient(ctx, model->inner, ask, out)
+             : dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' knows no gradients of this device",
+                        model->type->name);
+}
+
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
@@ -285,6 +294,7 @@ static const struct dea_model_type of_layouts = {
     .limit = limit,
     .passed = passed,
     .solve = solve,
+    .gradient = gradient,
     .observe = observe,
     .errors = errors,
     .passes = passes,
@@ -314,6 +324,7 @@ const struct dea_model_type dea_model_3d = {
     .limit = limit,
     .passed = passed,
     .solve = solve,
+    .gradient = gradient,
     .indent = indent,
     .long_path = long_path,
     .soften = soften,

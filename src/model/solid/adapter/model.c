@@ -5,17 +5,21 @@
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/adapter/buckling_branch.h"
 #include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/gradient.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/standing.h"
+#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/recovery/line_profile.h"
+#include "result/columns.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
@@ -34,6 +38,8 @@ struct dea_model {
   struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
   struct dea_branches branches[DEA_CONSTITUENT_COUNT];
   double leakage_per_s[DEA_CONSTITUENT_COUNT]; // of films, see circuit_step.h
+  double *rest;                                // u and multipliers without voltage
+  struct variant *variant;                     // a changed device is under the solid; NULL: its own
 };
 
 /* The node at the mirror image of another one by the middle plane. */
@@ -95,14 +101,10 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
   return DEA_OK;
 }
 
-/* Puts the weight of all parts among the loads of every solve: also that at 0 V. */
-static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+/* The weight of all parts on the nodes. */
+static dea_status find_weight(struct dea_context *ctx, const struct dea_model *model, double *out)
 {
   enum dea_gravity gravity = model->device->gravity;
-  if (gravity == DEA_GRAVITY_OFF) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
   double *fall = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fall);
   if (dea_solid_any(fall == NULL)) {
     dea_free(ctx, fall);
@@ -111,9 +113,20 @@ static dea_status add_weight(struct dea_context *ctx, const struct dea_model *mo
   for (size_t n = 0; n < model->grid->node_count; n++) {
     fall[3 * n + 2] = gravity == DEA_GRAVITY_FIBRES_UP ? -free_fall_m_per_s2 : free_fall_m_per_s2;
   }
-  dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, dea_solid_force(model->solid));
+  dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, out);
   dea_free(ctx, fall);
   return status;
+}
+
+/* Puts it among the loads of every solve: also that at 0 V. */
+static dea_status add_weight(struct dea_context *ctx, const struct dea_model *model)
+{
+  if (model->device->gravity == DEA_GRAVITY_OFF) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  DEA_TRY(ctx, find_weight(ctx, model, dea_solid_force(model->solid)));
+  return DEA_OK;
 }
 
 /* Where the weight alone brings the film. */
@@ -131,22 +144,55 @@ static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model
   return DEA_OK;
 }
 
+/* A mesh of its own, or another one's moved to it. */
+static dea_status make_grid(struct dea_context *ctx, const struct dea_actuator *actuator,
+                            struct dea_grid **out)
+{
+  struct dea_fibre_disc like = actuator->plate;
+  if (actuator->settings.mesh_of != NULL) {
+    DEA_TRY(ctx,
+            dea_fibre_disc_of_device(ctx, actuator->settings.mesh_of, &actuator->settings, &like));
+  }
+  DEA_TRY(ctx, dea_fibre_disc_create_like(ctx, &actuator->plate, &like, out));
+  return DEA_OK;
+}
+
+static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_solid *s = model->solid;
+  size_t dofs = s->problem.dofs, pressures = dea_solid_pressure_count(s);
+  model->rest = dea_alloc(ctx, dofs + pressures, sizeof *model->rest);
+  if (dea_solid_any(model->rest == NULL)) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(model->rest, s->state.u, dofs * sizeof *model->rest);
+  memcpy(model->rest + dofs, s->state.multiplier, pressures * sizeof *model->rest);
+  model->at.rest_energy_J = model->at.report.energy_J;
+  return DEA_OK;
+}
+
+static void set_films(struct dea_model *model)
+{
+  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
+    model->films[i] =
+        (struct dea_solid_film_data){&model->device->film, model->device->pre_stretch};
+  }
+}
+
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
   model->device = device;
   DEA_TRY(ctx, dea_actuator_create(ctx, device, settings, &model->actuator));
-  DEA_TRY(ctx, dea_fibre_disc_create(ctx, &model->actuator.plate, &model->grid));
+  DEA_TRY(ctx, make_grid(ctx, &model->actuator, &model->grid));
   DEA_TRY(ctx, say_mesh(ctx, model));
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx, dea_solid_of_actuator(ctx, &model->actuator, model->grid, &model->solid));
   find_nodes(model);
   DEA_TRY(ctx, add_weight(ctx, model));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
-  model->at.rest_energy_J = model->at.report.energy_J;
-  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
-    model->films[i] = (struct dea_solid_film_data){&device->film, device->pre_stretch};
-  }
+  DEA_TRY(ctx, keep_rest(ctx, model));
+  set_films(model);
   dea_branches_of_device(device, model->branches);
   model->leakage_per_s[DEA_CONSTITUENT_FILM] =
       dea_leakage_per_s(&device->film, &model->actuator.constituents[DEA_CONSTITUENT_FILM]);
@@ -162,6 +208,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
     dea_indent_destroy(ctx, model->indent);
     dea_grid_destroy(ctx, model->grid);
     dea_free(ctx, model->profile);
+    dea_free(ctx, model->rest);
     dea_free(ctx, model);
   }
 }
@@ -180,6 +227,28 @@ static void find_heights(const struct dea_model *model, const double *u, struct 
   }
 }
 
+/* Reported displacements as sums of weights times u; weights [dofs] are 0 before. */
+static void weigh_tip(const struct dea_model *model, double *weight)
+{
+  weight[3 * model->tip + 2] = 1;
+}
+
+static void weigh_centre(const struct dea_model *model, double *weight)
+{
+  weight[3 * model->centre + 2] += 0.5;
+  weight[3 * model->centre_twin + 2] += 0.5;
+}
+
+static void weigh_edge(const struct dea_model *model, double *weight)
+{
+  const double *X = model->grid->X + 3 * model->between;
+  const size_t two[2] = {model->between, model->between_twin};
+  for (int i = 0; i < 2; i++) {
+    weight[3 * two[i]] += 0.5 * X[0] / hypot(X[0], X[1]);
+    weight[3 * two[i] + 1] += 0.5 * X[1] / hypot(X[0], X[1]);
+  }
+}
+
 /* Estimated errors of the reported displacements, where the state is one of which they say
  * something. */
 static dea_status report_errors(struct dea_context *ctx, struct dea_model *model,
@@ -187,9 +256,6 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
 {
   enum { CENTRE, TIP, EDGE, COUNT };
   size_t dofs = model->solid->problem.dofs;
-  const double *X = model->grid->X + 3 * model->between;
-  const size_t two[2][2] = {{model->centre, model->centre_twin},
-                            {model->between, model->between_twin}};
   double error_m[COUNT], *weights;
   const double *each[COUNT];
   if (!dea_load_point_trusted(out) || out->voltage_V == 0) {
@@ -203,12 +269,9 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
   for (int k = 0; k < COUNT; k++) {
     each[k] = weights + (size_t)k * dofs;
   }
-  weights[TIP * dofs + 3 * model->tip + 2] = 1;
-  for (int i = 0; i < 2; i++) {
-    weights[CENTRE * dofs + 3 * two[0][i] + 2] += 0.5;
-    weights[EDGE * dofs + 3 * two[1][i]] += 0.5 * X[0] / hypot(X[0], X[1]);
-    weights[EDGE * dofs + 3 * two[1][i] + 1] += 0.5 * X[1] / hypot(X[0], X[1]);
-  }
+  weigh_tip(model, weights + TIP * dofs);
+  weigh_centre(model, weights + CENTRE * dofs);
+  weigh_edge(model, weights + EDGE * dofs);
   dea_status status = dea_solid_errors(ctx, model->solid, each, COUNT, error_m, NULL);
   dea_free(ctx, weights);
   if (status == DEA_OK) {
@@ -219,21 +282,11 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
   return status;
 }
 
-static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
-                         struct dea_load_point *out)
+/* What of a point the displacements say by themselves. */
+static void describe(const struct dea_model *model, double voltage_V, struct dea_load_point *out)
 {
-  struct dea_model *model = self;
   const struct dea_device *d = model->device;
   const double *u = dea_solid_displacement(model->solid);
-  struct dea_solid_extremes extremes;
-  double capacitance_F;
-  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
-  if (status == DEA_OK) {
-    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
-  }
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
-  }
   const double *X = model->grid->X + 3 * model->between;
   const double *v = u + 3 * model->between, *w = u + 3 * model->between_twin;
   double outwards = 0.5 * ((v[0] + w[0]) * X[0] + (v[1] + w[1]) * X[1]) / hypot(X[0], X[1]);
@@ -245,22 +298,38 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->fibre_tip_z_m = d->fibre_count > 0 ? u[3 * model->tip + 2] : NAN;
   find_heights(model, u, out);
   out->nominal_field_V_per_m = voltage_V / d->film_thickness_unstretched_m;
+  out->energy_J =
+      dea_actuator_copies(&model->actuator) * (model->at.report.energy_J - model->at.rest_energy_J);
+}
+
+static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
+                         struct dea_load_point *out)
+{
+  struct dea_model *model = self;
+  struct dea_solid_extremes extremes;
+  double capacitance_F, copies = dea_actuator_copies(&model->actuator);
+  dea_status status = dea_solid_extremes(model->solid, model->films, &extremes);
+  if (status == DEA_OK) {
+    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
+  }
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
+  }
+  describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
   out->breakdown_probability =
-      dea_breakdown_probability(&d->film.breakdown, extremes.breakdown_margin);
+      dea_breakdown_probability(&model->device->film.breakdown, extremes.breakdown_margin);
   out->min_tension_N_per_m = extremes.min_tension_N_per_m;
   out->locking_share = extremes.reach.locking_share;
   out->range_share = extremes.reach.range_share;
-  double copies = dea_actuator_copies(&model->actuator);
   out->compression_ratio = copies * extremes.compression_ratio;
   out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->actuator.plate.membrane << DEA_FLAG_PREVIEW;
-  out->energy_J = copies * (model->at.report.energy_J - model->at.rest_energy_J);
   out->capacitance_F = copies * capacitance_F;
   if (model->indent != NULL) {
     out->tip_depth_m = model->indent->depth_m;
-    out->force_N = dea_indent_force(model->indent, u);
+    out->force_N = dea_indent_force(model->indent, dea_solid_displacement(model->solid));
   }
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
@@ -310,6 +379,237 @@ static const struct dea_event *limit(const struct dea_model *model)
 static const struct dea_event *passed(const struct dea_model *model)
 {
   return dea_standing_passed(&model->at);
+}
+
+/* ---- slopes (docs/theory/gradients.md) ---- */
+
+/* What a changed device takes the place of. */
+struct variant {
+  struct dea_model own; // as it was
+  struct dea_grid *grid;
+  double *force; // [2][dofs] dead loads as they were, and those of the changed device
+  const struct dea_constituent *constituents; // as they were
+  struct dea_film_place place[DEA_FILM_EXTREMES];
+  bool placed[DEA_FILM_EXTREMES];
+  const struct dea_gradient_ask *ask;
+};
+
+/* Columns of extremes of the film. */
+static bool extreme_of(int column, enum dea_film_extreme *out)
+{
+  static const char *const keys[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = "true_field_V_per_m",
+      [DEA_FILM_MARGIN] = "breakdown_margin",
+      [DEA_FILM_TENSION] = "min_tension_N_per_m",
+  };
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    if (column == dea_point_column_find(keys[i])) {
+      *out = (enum dea_film_extreme)i;
+      return true;
+    }
+  }
+  return false;
+}
+
+/* The film's node that is highest, sign 1, or lowest, -1. */
+static void weigh_height(const struct dea_model *model, double sign, double *weight)
+{
+  double face = 0.5 * model->actuator.plate.film_thickness * (1 + 1e-9), best = -INFINITY;
+  const double *u = dea_solid_displacement(model->solid);
+  size_t at = 0;
+  for (size_t n = 0; n < model->grid->node_count; n++) {
+    if (fabs(model->grid->X[3 * n + 2]) <= face && sign * u[3 * n + 2] > best) {
+      best = sign * u[3 * n + 2];
+      at = n;
+    }
+  }
+  weight[3 * at + 2] = 1;
+}
+
+static dea_status slope(struct dea_context *ctx, void *self, int column, double *out,
+                        double *pressures, bool *known)
+{
+  struct dea_model *model = self;
+  struct dea_solid *s = model->solid;
+  const char *key = dea_point_columns[column].key;
+  double copies = dea_actuator_copies(&model->actuator), factor = 1;
+  enum dea_film_extreme which;
+  *known = true;
+  if (strcmp(key, "centre_z_m") == 0) {
+    weigh_centre(model, out);
+  } else if (strcmp(key, "fibre_tip_z_m") == 0) {
+    weigh_tip(model, out);
+  } else if (strcmp(key, "electrode_edge_u_m") == 0 || strcmp(key, "electrode_stretch") == 0) {
+    weigh_edge(model, out);
+    factor = strcmp(key, "electrode_stretch") == 0 ? 1 / model->device->electrode_radius_m : 1;
+  } else if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
+    weigh_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1, out);
+  } else if (extreme_of(column, &which)) {
+    *known = model->variant->placed[which];
+    if (*known) {
+      dea_solid_extreme_slope(s, model->films, which, &model->variant->place[which], out,
+                              pressures);
+    }
+  } else if (strcmp(key, "capacitance_F") == 0) {
+    DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, s, out));
+    factor = copies;
+  } else { // forces of the energy are 0
+    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0;
+  }
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    out[i] *= factor;
+  }
+  return DEA_OK;
+}
+
+/* Energy of the changed device without voltage, at its own unknowns. */
+static dea_status rest_energy(struct dea_model *model, double *out)
+{
+  struct dea_solid *s = model->solid;
+  double *multiplier = s->state.multiplier;
+  s->state.multiplier = model->rest + s->problem.dofs;
+  dea_status status = dea_solid_energy(s, model->rest, 0, out);
+  s->state.multiplier = multiplier;
+  return status;
+}
+
+static bool is_asked(const struct variant *v, const char *key)
+{
+  for (size_t i = 0; i < v->ask->column_count; i++) {
+    if (strcmp(dea_point_columns[v->ask->columns[i]].key, key) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
+                                double energy_J, struct dea_load_point *out)
+{
+  struct dea_model *model = self;
+  const struct variant *v = model->variant;
+  dea_status status = DEA_OK;
+  model->at.report.energy_J = energy_J;
+  if (is_asked(v, "energy_J")) {
+    status = rest_energy(model, &model->at.rest_energy_J);
+  }
+  describe(model, voltage_V, out);
+  double *const extremes[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = &out->true_field_V_per_m,
+      [DEA_FILM_MARGIN] = &out->breakdown_margin,
+      [DEA_FILM_TENSION] = &out->min_tension_N_per_m,
+  };
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) { // where they are without the change
+    if (v->placed[i]) {
+      *extremes[i] = dea_solid_extreme_at(model->solid, model->films, (enum dea_film_extreme)i,
+                                          &v->place[i], voltage_V);
+    }
+  }
+  if (status == DEA_OK && is_asked(v, "capacitance_F")) {
+    status = dea_solid_capacitance_wide(ctx, model->solid, &out->capacitance_F);
+    out->capacitance_F *= dea_actuator_copies(&model->actuator);
+  }
+  return status == DEA_OK
+             ? DEA_OK
+             : dea_fail(ctx, status, "a changed device cannot be evaluated at %g V", voltage_V);
+}
+
+static bool same_mesh(const struct dea_grid *a, const struct dea_grid *b)
+{
+  return a->node_count == b->node_count && a->element_count == b->element_count &&
+         memcmp(a->nodes, b->nodes, a->element_count * DEA_HEX_NODES_MAX * sizeof *a->nodes) == 0;
+}
+
+/* The weight of the changed device in place of the other. */
+static dea_status change_weight(struct dea_context *ctx, struct dea_model *model)
+{
+  struct dea_solid *s = model->solid;
+  size_t dofs = s->problem.dofs;
+  if (model->device->gravity == DEA_GRAVITY_OFF) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, find_weight(ctx, model, model->variant->force + dofs));
+  memcpy(s->state.force, model->variant->force + dofs, dofs * sizeof *s->state.force);
+  return DEA_OK;
+}
+
+static dea_status enter(struct dea_context *ctx, void *self, const struct dea_device *device)
+{
+  struct dea_model *model = self;
+  struct variant *v = model->variant;
+  struct dea_model_settings settings = v->own.actuator.settings;
+  if (device == v->own.device) {
+    return DEA_OK;
+  }
+  settings.mesh_of = settings.mesh_of != NULL ? settings.mesh_of : v->own.device;
+  model->device = device;
+  DEA_TRY(ctx, dea_actuator_create(ctx, device, &settings, &model->actuator));
+  DEA_TRY(ctx, make_grid(ctx, &model->actuator, &v->grid));
+  if (!same_mesh(v->grid, v->own.grid)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow the change");
+  }
+  model->grid = v->grid;
+  model->solid->problem.grid = v->grid;
+  model->solid->problem.constituents = model->actuator.constituents;
+  set_films(model);
+  DEA_TRY(ctx, change_weight(ctx, model));
+  return DEA_OK;
+}
+
+static void leave(struct dea_context *ctx, void *self)
+{
+  struct dea_model *model = self;
+  struct variant *v = model->variant;
+  struct dea_solid *s = model->solid;
+  dea_grid_destroy(ctx, v->grid);
+  v->grid = NULL;
+  *model = v->own;
+  s->problem.grid = model->grid;
+  s->problem.constituents = v->constituents;
+  memcpy(s->state.force, v->force, s->problem.dofs * sizeof *s->state.force);
+}
+
+static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_gradient_ask *ask, double *out)
+{
+  struct variant *v = model->variant;
+  struct dea_solid *s = model->solid;
+  const struct dea_gradient_owner owner = {.solid = s,
+                                           .model = model,
+                                           .voltage_V = model->at.voltage_V,
+                                           .slope = slope,
+                                           .enter = enter,
+                                           .leave = leave,
+                                           .point = variant_point};
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    v->placed[i] = dea_solid_extreme_find(s, model->films, (enum dea_film_extreme)i, &v->place[i]);
+  }
+  memcpy(v->force, s->state.force, s->problem.dofs * sizeof *v->force);
+  v->constituents = s->problem.constituents;
+  v->ask = ask;
+  v->own = *model;
+  DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
+  return DEA_OK;
+}
+
+static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_gradient_ask *ask, double *out)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  dea_standing_end_history(ctx, &model->at);
+  if (model->indent != NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no gradients with a tip yet");
+  }
+  model->variant = dea_arena_alloc(&memory, 1, sizeof *model->variant);
+  double *force = dea_arena_alloc(&memory, 2 * model->solid->problem.dofs, sizeof *force);
+  dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  if (status == DEA_OK) {
+    model->variant->force = force;
+    status = find_gradient(ctx, model, ask, out);
+  }
+  model->variant = NULL;
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 /* ---- in time ---- */
@@ -531,6 +831,7 @@ const struct dea_model_type dea_solid_module = {
     .create = create,
     .destroy = destroy,
     .solve = solve,
+    .gradient = gradient,
     .limit = limit,
     .passed = passed,
     .indent = indent,

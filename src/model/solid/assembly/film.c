@@ -65,20 +65,32 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
   return status == DEA_OK ? wear_of(element, &in, &film, data->material, out) : status;
 }
 
-dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
-                                 double *capacitance_F)
+/* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
+ * it is wider, so that rounding does not show in differences. */
+static const double step_V_per_m = 1e6, wide_step_V_per_m = 1e7;
+
+/* Squares of two voltages about that of the state. Charge: minus the derivative of the energy by V
+ * at fixed displacements; by V^2 it is C/2. Returns the step, 0 without electrodes. */
+static double squares_about(const struct dea_solid *s, double field_V_per_m, double squares[2])
 {
   const struct dea_solid_problem *p = &s->problem;
-  // charge: minus the derivative of the energy by V at fixed displacements; by V^2 it is C/2. The
-  // step is small since a film that wrinkles gives way to V (docs/theory/membrane.md)
-  double thickness = 0, energy[2] = {0, 0};
+  double thickness = 0, square = s->state.voltage_V * s->state.voltage_V;
   for (size_t e = 0; e < p->grid->element_count; e++) {
     const struct dea_constituent *constituent = dea_solid_constituent(s, e);
     bool counts = p->active[e] || dea_solid_element(s, e)->type->per_node > 3;
     thickness = fmax(thickness, counts ? constituent->thickness_m : 0);
   }
-  double step = 1e12 * thickness * thickness, square = s->state.voltage_V * s->state.voltage_V;
-  const double squares[2] = {fmax(square - step, 0), square + step};
+  double step = field_V_per_m * field_V_per_m * thickness * thickness;
+  squares[0] = fmax(square - step, 0);
+  squares[1] = square + step;
+  return step;
+}
+
+static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
+                                   double field_V_per_m, double *capacitance_F)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  double energy[2] = {0, 0}, squares[2], step = squares_about(s, field_V_per_m, squares);
   dea_status status = DEA_OK;
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
@@ -91,6 +103,18 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                        ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0])
                        : NAN;
   return status;
+}
+
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
+                                 double *capacitance_F)
+{
+  return find_capacitance(ctx, s, step_V_per_m, capacitance_F);
+}
+
+dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *s,
+                                      double *capacitance_F)
+{
+  return find_capacitance(ctx, s, wide_step_V_per_m, capacitance_F);
 }
 
 /* Largest of all ranks; NAN where none knows it. */
@@ -124,6 +148,111 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
   out->reach.range_share = largest_known(out->reach.range_share);
   if (isinf(out->breakdown_margin)) { // fmin passes over what is unknown
     out->breakdown_margin = NAN;
+  }
+  return DEA_OK;
+}
+
+// Slopes -----------------------------------------------------------------------------------------
+
+/* A film's quantity at its points in the plane, out [DEA_HEX_GAUSS_MAX]; returns their number, 0
+ * where it is not defined. */
+static int values_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                     enum dea_film_extreme which, size_t e, double voltage_V, double *out)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
+  struct dea_solid_element_place at;
+  struct dea_element_input in;
+  struct dea_membrane_state film;
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &at, &in);
+  if (element->type->membrane_state(element, &in, &film) != DEA_OK) {
+    return 0;
+  }
+  for (int p = 0; p < film.count; p++) {
+    double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
+    double stretch = data->pre_stretch * sqrt(film.area[p]);
+    out[p] = which == DEA_FILM_FIELD    ? field
+             : which == DEA_FILM_MARGIN ? 1 - field / dea_breakdown_field(data->material, stretch)
+                                        : film.tension[p];
+  }
+  return film.count;
+}
+
+double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                            enum dea_film_extreme which, const struct dea_film_place *place,
+                            double voltage_V)
+{
+  double values[DEA_HEX_GAUSS_MAX];
+  int count = values_of(s, films, which, place->element, voltage_V, values);
+  return place->point < count ? values[place->point] : NAN;
+}
+
+bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_data *films,
+                            enum dea_film_extreme which, struct dea_film_place *out)
+{
+  double sign = which == DEA_FILM_FIELD ? 1 : -1, best = -INFINITY, values[DEA_HEX_GAUSS_MAX];
+  *out = (struct dea_film_place){0, 0};
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) { // all ranks all of them
+    bool film = dea_solid_constituent(s, e)->permittivity_F_per_m > 0 &&
+                films[s->problem.constituent_of[e]].material != NULL &&
+                (which == DEA_FILM_TENSION || s->problem.active[e]);
+    int count = film ? values_of(s, films, which, e, s->state.voltage_V, values) : 0;
+    for (int p = 0; p < count; p++) {
+      if (sign * values[p] > best) { // not where it is unknown
+        best = sign * values[p];
+        *out = (struct dea_film_place){e, p};
+      }
+    }
+  }
+  return best > -INFINITY;
+}
+
+/* Slope of an extreme by one number of the state, by a central difference. */
+static double slope_by(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                       enum dea_film_extreme which, const struct dea_film_place *place,
+                       double *number, double step)
+{
+  double keep = *number, sides[2];
+  for (int k = 0; k < 2; k++) {
+    *number = keep + (k == 0 ? -step : step);
+    sides[k] = dea_solid_extreme_at(s, films, which, place, s->state.voltage_V);
+  }
+  *number = keep;
+  return (sides[1] - sides[0]) / (2 * step);
+}
+
+void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                             enum dea_film_extreme which, const struct dea_film_place *place,
+                             double *out, double *pressures)
+{
+  static const double share = 1e-5; // of the film's thickness and of its modulus
+  const struct dea_constituent *film = dea_solid_constituent(s, place->element);
+  size_t most = (size_t)s->problem.elements.pressures, first = place->element * most;
+  const int *nodes;
+  int count = dea_solid_nodes(s, place->element, &nodes);
+  for (int i = 0; i < 3 * count; i++) {
+    size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
+    out[at] += slope_by(s, films, which, place, &s->state.u[at], share * film->thickness_m);
+  }
+  for (size_t k = first; k < first + most; k++) {
+    pressures[k] += slope_by(s, films, which, place, &s->state.multiplier[k],
+                             share * dea_constituent_modulus(film));
+  }
+}
+
+dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *s, double *out)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  double squares[2], energy;
+  memset(out, 0, p->dofs * sizeof *out);
+  if (squares_about(s, wide_step_V_per_m, squares) == 0) {
+    return DEA_OK;
+  }
+  for (int i = 0; i < 2; i++) { // C = 2 (E(V0) - E(V1)) / (V1^2 - V0^2)
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(squares[i]), DEA_FORCE, &energy));
+    for (size_t k = 0; k < p->dofs; k++) {
+      out[k] += (i == 0 ? 2 : -2) * s->work.g[k] / (squares[1] - squares[0]);
+    }
   }
   return DEA_OK;
 }

@@ -27,4 +27,32 @@ struct dea_solid_film_data {
 dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_solid_film_data *films,
                               struct dea_solid_extremes *out);
 
+/* ---- slopes, for gradients (docs/theory/gradients.md) ---- */
+
+enum dea_film_extreme { DEA_FILM_FIELD, DEA_FILM_MARGIN, DEA_FILM_TENSION, DEA_FILM_EXTREMES };
+
+/* Where an extreme is: an element and a point in its plane. */
+struct dea_film_place {
+  size_t element;
+  int point;
+};
+/* That of the last equilibrium; false where there is none. All ranks get the same. */
+bool dea_solid_extreme_find(struct dea_solid *solid, const struct dea_solid_film_data *films,
+                            enum dea_film_extreme which, struct dea_film_place *out);
+/* Its quantity at a place, at a voltage; NAN where it is not defined. */
+double dea_solid_extreme_at(const struct dea_solid *solid, const struct dea_solid_film_data *films,
+                            enum dea_film_extreme which, const struct dea_film_place *place,
+                            double voltage_V);
+/* Its slope by the unknowns, out [dofs], and by the multipliers [elements][pressures]; both are
+ * added to. */
+void dea_solid_extreme_slope(const struct dea_solid *solid, const struct dea_solid_film_data *films,
+                             enum dea_film_extreme which, const struct dea_film_place *place,
+                             double *out, double *pressures);
+/* The capacitance with less rounding, for differences, and its slope by the unknowns, out [dofs].
+ */
+dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *solid,
+                                      double *capacitance_F);
+dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *solid,
+                                       double *out);
+
 #endif

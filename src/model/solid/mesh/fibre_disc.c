@@ -249,7 +249,8 @@ static struct dea_block copied(const struct dea_block *block, const struct copy 
 /* ---- building ---- */
 
 struct builder {
-  struct lines lines;
+  struct lines lines; // where nodes lie
+  struct lines cuts;  // of the plate that says how many elements there are and where lines are cut
   struct polar polars[POLARS_MAX];
   struct ring rings[RINGS_MAX];
   struct core cores[WEDGES_MAX];
@@ -297,8 +298,8 @@ static double size_at(const struct dea_fibre_disc *p, double radius)
 static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t i)
 {
   const struct lines *lines = &b->lines;
-  const struct dea_fibre_disc *p = lines->plate;
-  double inner = lines->circle[i], outer = lines->circle[i + 1], close = same * p->frame_radius;
+  const struct dea_fibre_disc *p = b->cuts.plate;
+  double inner = b->cuts.circle[i], outer = b->cuts.circle[i + 1], close = same * p->frame_radius;
   bool electrode = outer < p->electrode_radius + close;
   size_t count =
       dea_cuts_graded(outer - inner, size_at(p, inner), size_at(p, outer),
@@ -310,7 +311,7 @@ static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t 
   double ends[3] = {0, (double)lines->across, (double)lines->count};
   for (int k = lines->across > 0 ? 0 : 1; k < 2; k++) {
     struct polar *polar = &b->polars[b->polar_count++];
-    *polar = (struct polar){lines, inner, outer, ends[k], ends[k + 1]};
+    *polar = (struct polar){lines, lines->circle[i], lines->circle[i + 1], ends[k], ends[k + 1]};
     add_block(b, map_polar, polar, b->radial[i], count, (size_t)(ends[k + 1] - ends[k]),
               (electrode ? DEA_FIBRE_DISC_ELECTRODE : 0) |
                   (fibre && k == 0 ? DEA_FIBRE_DISC_FIBRE : 0));
@@ -349,12 +350,13 @@ static void add_wedge(struct builder *b, size_t from, size_t to, size_t along, d
 /* Everything inside the first circle, which is that of the electrodes or of the tips on them. */
 static dea_status add_inside(struct dea_context *ctx, struct builder *b)
 {
-  const struct lines *lines = &b->lines;
+  const struct lines *lines = &b->cuts;
   const struct dea_fibre_disc *p = lines->plate;
   double first = lines->circle[0], *cuts = b->radial[CIRCLES_MAX - 1];
   bool one = lines->alpha <= 0.51 * pi;
-  double rho = 0.55 * first * fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
-  size_t count = dea_cuts_graded(first - rho, p->size, size_at(p, first), p->size,
+  double part = fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
+  double rho = 0.55 * b->lines.circle[0] * part;
+  size_t count = dea_cuts_graded(first - 0.55 * first * part, p->size, size_at(p, first), p->size,
                                  DEA_FIBRE_DISC_LINE_MAX, cuts);
   if (count == 0) {
     return too_many(ctx);
@@ -466,10 +468,33 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b, struc
   return status;
 }
 
+/* Which of the ends of the fibres lie inside the electrode circle, as bits. */
+static int inside(const struct dea_fibre_disc *p)
+{
+  double edge = p->electrode_radius - same * p->frame_radius;
+  return p->fibres == 0 ? 0 : (p->tip_radius < edge ? 1 : 0) | (p->outer_radius < edge ? 2 : 0);
+}
+
+/* Whether the parts of two plates are the same ones in the same order from the centre. */
+static bool alike(const struct lines *a, const struct lines *b)
+{
+  const struct dea_fibre_disc *p = a->plate, *q = b->plate;
+  return p->order == q->order && p->order_z == q->order_z && p->fibres == q->fibres &&
+         p->membrane == q->membrane && p->sectors == q->sectors && p->end == q->end &&
+         inside(p) == inside(q) && a->circle_count == b->circle_count;
+}
+
 static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                        struct builder *b, struct dea_grid **out)
+                        const struct dea_fibre_disc *like, struct builder *b, struct dea_grid **out)
 {
   DEA_TRY(ctx, lines_create(ctx, plate, &b->lines));
+  DEA_TRY(ctx, lines_create(ctx, like, &b->cuts));
+  if (!alike(&b->lines, &b->cuts)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT,
+                    "the mesh of a plate cannot be moved to one whose parts lie otherwise");
+  }
+  b->lines.across = b->cuts.across;
+  b->lines.count = b->cuts.count;
   DEA_TRY(ctx, add_inside(ctx, b));
   for (size_t i = 0; i + 1 < b->lines.circle_count; i++) {
     DEA_TRY(ctx, add_polars(ctx, b, i));
@@ -478,17 +503,24 @@ static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *pl
   return DEA_OK;
 }
 
-dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                                 struct dea_grid **out)
+dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                      const struct dea_fibre_disc *like, struct dea_grid **out)
 {
   *out = NULL;
   struct builder *b = dea_alloc(ctx, 1, sizeof *b);
   if (b == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = build(ctx, plate, b, out);
+  dea_status status = build(ctx, plate, like, b, out);
   dea_free(ctx, b);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                 struct dea_grid **out)
+{
+  DEA_TRY(ctx, dea_fibre_disc_create_like(ctx, plate, plate, out));
+  return DEA_OK;
 }
 
 /* ---- supports ---- */

@@ -58,6 +58,11 @@ int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate);
  * in a row. out: owned by the caller (dea_grid_destroy), NULL on failure. */
 dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
                                  struct dea_grid **out);
+/* The mesh of `like` with its nodes moved to the lengths of `plate`: the same elements, cut at the
+ * same shares of every line, so that it changes smoothly with those lengths. DEA_E_ARGUMENT also
+ * where the parts of the two do not lie in the same order. */
+dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                      const struct dea_fibre_disc *like, struct dea_grid **out);
 enum { DEA_FIBRE_DISC_LINE_MAX = 256 };
 
 /* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at

@@ -1,0 +1,121 @@
+#include "model/solid/adapter/gradient.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/equilibrium/adjoint.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <string.h>
+
+struct work {
+  const struct dea_gradient_owner *owner;
+  const struct dea_gradient_ask *ask;
+  struct dea_adjoint *adjoint;
+  bool *known;   // [column_count] there is an answer
+  double *slope; // [dofs] then [pressures]
+  double *side;  // [2][column_count]
+};
+
+/* The answers of all columns. */
+static dea_status answer(struct dea_context *ctx, struct work *w)
+{
+  struct dea_solid *s = w->owner->solid;
+  size_t dofs = s->problem.dofs;
+  double *pressures = w->slope + dofs;
+  for (size_t i = 0; i < w->ask->column_count; i++) {
+    memset(w->slope, 0, (dofs + dea_solid_pressure_count(s)) * sizeof *w->slope);
+    DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], w->slope, pressures,
+                                 &w->known[i]));
+    if (w->known[i]) {
+      DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, i, w->slope, pressures));
+    }
+  }
+  return DEA_OK;
+}
+
+/* J - lambda . R - mu . C of every column on one side of a change. */
+static dea_status evaluate(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
+{
+  struct dea_solid *s = w->owner->solid;
+  struct dea_load_point point;
+  double energy_J;
+  s->state.voltage_V = voltage_V;
+  DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
+  for (size_t i = 0; i < w->ask->column_count; i++) {
+    out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
+  }
+  DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
+  for (size_t i = 0; i < w->ask->column_count; i++) {
+    out[i] += dea_point_get(&point, w->ask->columns[i]);
+  }
+  return DEA_OK;
+}
+
+/* Both sides of a change. */
+static dea_status difference(struct dea_context *ctx, struct work *w,
+                             const struct dea_design_change *change)
+{
+  for (int k = 0; k < 2; k++) {
+    dea_status status = w->owner->enter(ctx, w->owner->model, change->device[k]);
+    if (status == DEA_OK) {
+      status = evaluate(ctx, w, change->voltage_V[k], w->side + (size_t)k * w->ask->column_count);
+    }
+    w->owner->solid->state.voltage_V = w->owner->voltage_V;
+    w->owner->leave(ctx, w->owner->model);
+    DEA_TRY(ctx, status);
+  }
+  return DEA_OK;
+}
+
+static dea_status find(struct dea_context *ctx, struct work *w, double *out)
+{
+  size_t count = w->ask->column_count;
+  DEA_TRY(ctx, answer(ctx, w));
+  for (size_t c = 0; c < w->ask->change_count; c++) {
+    size_t errors = dea_finding_trial_begin(ctx);
+    dea_status status = difference(ctx, w, &w->ask->changes[c]);
+    dea_finding_trial_end(ctx, errors);
+    bool follows = status != DEA_E_ARGUMENT && status != DEA_E_UNSUPPORTED;
+    if (!follows) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                   "model 3d: no gradient by one of the numbers: %s",
+                                   dea_context_message(ctx)));
+      dea_context_clear(ctx);
+    } else {
+      DEA_TRY(ctx, status);
+    }
+    for (size_t i = 0; i < count; i++) {
+      out[c * count + i] =
+          follows ? (w->side[count + i] - w->side[i]) / w->ask->changes[c].width : NAN;
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                             const struct dea_gradient_ask *ask, double *out)
+{
+  struct dea_solid *s = owner->solid;
+  struct dea_arena memory = {.ctx = ctx};
+  struct work w = {.owner = owner, .ask = ask};
+  double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
+  w.known = dea_arena_alloc(&memory, ask->column_count, sizeof *w.known);
+  w.slope =
+      dea_arena_alloc(&memory, s->problem.dofs + dea_solid_pressure_count(s), sizeof *w.slope);
+  w.side = dea_arena_alloc(&memory, 2 * ask->column_count, sizeof *w.side);
+  dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  if (status == DEA_OK) {
+    status = dea_adjoint_create(ctx, s, ask->column_count, &w.adjoint);
+  }
+  if (status == DEA_OK) {
+    status = find(ctx, &w, out);
+  }
+  if (status == DEA_OK) { // reactions and scales are those of the equilibrium again
+    s->found.force_largest_N = force_N;
+    s->found.energy_largest_J = all_J;
+    status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
+  }
+  dea_adjoint_destroy(ctx, w.adjoint);
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,35 @@
+/* The linear answer of an equilibrium to loads that are objectives' slopes, for gradients
+ * (docs/theory/gradients.md): lambda of
+ *
+ *   A lambda + B mu = Q_u,   B^T lambda = Q_p,
+ *
+ * with the tangent A, the slope B of the constraints J = 1 at the solid's state, and the slopes of
+ * a quantity Q by displacements and pressures. */
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
+
+#include "model/solid/assembly/problem.h"
+
+struct dea_adjoint;
+
+/* Room for `count` answers; factorises the tangent at the state, of which the solid then has the
+ * factor. solid: lent, outlives the answers, and where it is when one is solved. out: owned by the
+ * caller, NULL on failure. */
+dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
+                              struct dea_adjoint **out);
+void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *adjoint);
+
+/* The answer of that number to the slopes by u [dofs] and by the multipliers [elements][pressures].
+ * DEA_E_NOT_CONVERGED where the constraints do not settle. */
+dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint, size_t number,
+                             const double *slope, const double *pressure_slope);
+/* Residuals and energy of the solid at its state, of another problem than the answers are of, for
+ * dea_adjoint_product. */
+dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adjoint,
+                                double voltage_V, double *energy_J);
+/* lambda . R + mu . C of the last assembly. */
+double dea_adjoint_product(const struct dea_adjoint *adjoint, size_t number);
+/* Solutions with the factor that all answers took. */
+int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
+
+#endif

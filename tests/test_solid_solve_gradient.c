@@ -1,0 +1,257 @@
+/* Gradients of model 3d: Taylor's remainder of each by the changed device, solved by itself. */
+// ctest: solid
+#include "devices.h"
+#include "model/model.h"
+#include "model/solid/assembly/solid.h"
+#include "result/columns.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+extern const struct dea_model_type dea_solid_module;
+static const struct dea_model_type *const solid = &dea_solid_module;
+
+/* ---- the device as a function of its numbers ---- */
+
+enum {
+  VOLTAGE,
+  THICKNESS,
+  MODULUS,
+  STIFFENING,
+  PERMITTIVITY,
+  PRE_STRETCH,
+  ELECTRODE,
+  FRAME,
+  TIP,
+  WIDTH,
+  TIP_WIDTH,
+  FIBRE_THICKNESS,
+  FIBRE_MODULUS,
+  GLUE,
+  GLUE_MODULUS,
+  NUMBERS
+};
+static const char *const names[NUMBERS] = {
+    "voltage",     "thickness",       "modulus",       "stiffening", "permittivity",
+    "pre-stretch", "electrode",       "frame",         "tip",        "width",
+    "tip width",   "fibre thickness", "fibre modulus", "glue",       "glue modulus"};
+
+struct state {
+  struct dea_device device;
+  double voltage_V;
+};
+
+static double *number_of(struct state *s, int i)
+{
+  double *const all[NUMBERS] = {&s->voltage_V,
+                                &s->device.film_thickness_unstretched_m,
+                                &s->device.film.param[0],
+                                &s->device.film.param[2],
+                                &s->device.film.permittivity.at_rest,
+                                &s->device.pre_stretch,
+                                &s->device.electrode_radius_m,
+                                &s->device.frame_radius_m,
+                                &s->device.fibre_tip_radius_m,
+                                &s->device.fibre_width_m,
+                                &s->device.fibre_tip_width_m,
+                                &s->device.fibre_thickness_m,
+                                &s->device.fibre.young_modulus_Pa,
+                                &s->device.bond_thickness_m,
+                                &s->device.bond_modulus_Pa};
+  return all[i];
+}
+
+static struct state changed(const struct state *from, int i, double share)
+{
+  struct state s = *from;
+  *number_of(&s, i) *= 1 + share;
+  s.device.film_thickness_m =
+      s.device.film_thickness_unstretched_m / (s.device.pre_stretch * s.device.pre_stretch);
+  return s;
+}
+
+/* ---- quantities ---- */
+
+static const char *const keys[] = {"centre_z_m",         "fibre_tip_z_m",    "electrode_edge_u_m",
+                                   "true_field_V_per_m", "breakdown_margin", "min_tension_N_per_m",
+                                   "capacitance_F",      "energy_J"};
+enum { KEYS = sizeof keys / sizeof keys[0] };
+
+static struct dea_load_point solve(const struct state *at, const struct dea_device *mesh_of,
+                                   const struct dea_model_settings *settings,
+                                   struct dea_model **keep)
+{
+  struct dea_model_settings own = *settings;
+  struct dea_model *model;
+  struct dea_load_point point;
+  own.mesh_of = mesh_of;
+  if (solid->create(ctx, &at->device, &own, &model) != DEA_OK ||
+      solid->solve(ctx, model, at->voltage_V, &point) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  if (keep != NULL) {
+    *keep = model;
+  } else {
+    solid->destroy(ctx, model);
+  }
+  return point;
+}
+
+/* Slopes by the logarithms of all numbers, out [NUMBERS][KEYS], and where they are of. */
+static struct dea_load_point
+find_slopes(const struct state *at, const struct dea_model_settings *settings, double (*out)[KEYS])
+{
+  const double share = 1e-5;
+  struct dea_model *model;
+  struct state sides[2 * NUMBERS];
+  struct dea_design_change changes[NUMBERS];
+  int columns[KEYS];
+  struct dea_load_point base = solve(at, NULL, settings, &model);
+  for (int k = 0; k < KEYS; k++) {
+    columns[k] = dea_point_column_find(keys[k]);
+  }
+  for (int i = 0; i < NUMBERS; i++) {
+    for (int k = 0; k < 2; k++) {
+      sides[2 * i + k] = changed(at, i, k == 0 ? -share : share);
+      changes[i].device[k] = &sides[2 * i + k].device;
+      changes[i].voltage_V[k] = sides[2 * i + k].voltage_V;
+    }
+    changes[i].width = 2 * share;
+  }
+  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, KEYS};
+  if (solid->gradient(ctx, model, &ask, out[0]) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  solid->destroy(ctx, model);
+  return base;
+}
+
+/* What is left of the change of a quantity after its slope, over the quantity. */
+static double remainder_of(const struct dea_load_point *base, const struct dea_load_point *moved,
+                           int k, double slope, double share)
+{
+  int column = dea_point_column_find(keys[k]);
+  double from = dea_point_get(base, column);
+  return (dea_point_get(moved, column) - from - slope * share) / from;
+}
+
+/* What the solver leaves of a quantity: of the tension more, it has the pressures. */
+static double floor_of(int k)
+{
+  return strcmp(keys[k], "min_tension_N_per_m") == 0 ? 1e-8 : 1e-9;
+}
+
+/* Over a decade of a change the remainder falls by two. */
+static void check(const struct state *at, const struct dea_model_settings *settings)
+{
+  double slopes[NUMBERS][KEYS];
+  struct dea_load_point base = find_slopes(at, settings, slopes);
+  for (int i = 0; i < NUMBERS; i++) {
+    const double shares[] = {3e-3, 3e-4};
+    struct dea_load_point moved[2];
+    for (int n = 0; n < 2; n++) {
+      struct state there = changed(at, i, shares[n]);
+      moved[n] = solve(&there, &at->device, settings, NULL);
+    }
+    for (int k = 0; k < KEYS; k++) {
+      double first = remainder_of(&base, &moved[0], k, slopes[i][k], shares[0]),
+             last = remainder_of(&base, &moved[1], k, slopes[i][k], shares[1]);
+      if (!(fabs(last - 1e-2 * first) <= 0.1 * fabs(1e-2 * first) + floor_of(k))) {
+        fail_msg("%s by %s: remainders %.3e, %.3e", keys[k], names[i], first, last);
+      }
+    }
+  }
+}
+
+static struct state star(void)
+{
+  struct state at = {test_star(4), 3e3};
+  at.device.fibre_tip_radius_m = 3.2e-3;
+  at.device.fibre_tip_width_m = 1e-3;
+  at.device.bond_thickness_m = 50e-6;
+  at.device.bond_modulus_Pa = 1e6;
+  return at;
+}
+
+static void test_solid_film(void **state)
+{
+  (void)state;
+  struct state at = star();
+  const struct dea_model_settings settings = {0};
+  check(&at, &settings);
+}
+
+/* Its weight is a dead load that changes with the device. */
+static void test_membrane_with_weight(void **state)
+{
+  (void)state;
+  struct state at = star();
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  at.device.gravity = DEA_GRAVITY_FIBRES_UP;
+  at.device.film.density_kg_per_m3 = 1080;
+  at.device.fibre.density_kg_per_m3 = 1390;
+  check(&at, &settings);
+}
+
+/* Four decades of the change, eight of the remainder. */
+static void test_four_decades(void **state)
+{
+  (void)state;
+  struct state at = star();
+  const struct dea_model_settings settings = {0};
+  double slopes[NUMBERS][KEYS], first[KEYS] = {0};
+  struct dea_load_point base = find_slopes(&at, &settings, slopes);
+  const int numbers[] = {VOLTAGE, TIP};
+  for (int n = 0; n < 2; n++) {
+    for (double share = 3e-2; share > 1e-5; share /= 10) {
+      struct state there = changed(&at, numbers[n], share);
+      struct dea_load_point moved = solve(&there, &at.device, &settings, NULL);
+      for (int k = 0; k < KEYS; k++) {
+        double left = remainder_of(&base, &moved, k, slopes[numbers[n]][k], share);
+        first[k] = share > 1e-2 ? left : first[k];
+        double wanted = first[k] * pow(share / 3e-2, 2);
+        if (!(fabs(left - wanted) <= 0.2 * fabs(wanted) + floor_of(k))) {
+          fail_msg("%s by %s at %.0e: %.3e, not %.3e", keys[k], names[numbers[n]], share, left,
+                   wanted);
+        }
+      }
+    }
+  }
+}
+
+/* A change of the order of the parts: the tip comes to lie off the electrode. */
+static void test_mesh_that_cannot_follow(void **state)
+{
+  (void)state;
+  struct state at = star(), sides[2] = {at, at};
+  struct dea_model *model;
+  double slope;
+  const struct dea_model_settings settings = {0};
+  const int column = dea_point_column_find("centre_z_m");
+  at.device.fibre_tip_radius_m = at.device.electrode_radius_m;
+  for (int k = 0; k < 2; k++) {
+    sides[k].device.fibre_tip_radius_m =
+        (k == 0 ? 0.99999 : 1.00001) * at.device.electrode_radius_m;
+  }
+  solve(&at, NULL, &settings, &model);
+  const struct dea_design_change change = {
+      {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1};
+  const struct dea_gradient_ask ask = {&change, 1, &column, 1};
+  assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
+  assert_true(isnan(slope));
+  solid->destroy(ctx, model);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_solid_film),
+      cmocka_unit_test(test_membrane_with_weight),
+      cmocka_unit_test(test_four_decades),
+      cmocka_unit_test(test_mesh_that_cannot_follow),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
