@@ -24,6 +24,38 @@ bool dea_field_has_record(const struct dea_field *field)
   return field->kind == DEA_FIELD_RECORD || field->kind == DEA_FIELD_SETTINGS;
 }
 
+const struct dea_field *dea_record_find(const struct dea_record *record, const char *key,
+                                        size_t *offset)
+{
+  const struct dea_field *found = NULL;
+  size_t base = 0;
+  while (record != NULL) {
+    const size_t length = strcspn(key, ".");
+    found = NULL;
+    for (size_t i = 0; i < record->field_count && found == NULL; i++) {
+      const struct dea_field *field = &record->fields[i];
+      found = strlen(field->key) == length && memcmp(field->key, key, length) == 0 ? field : NULL;
+    }
+    base += found != NULL ? found->offset : 0;
+    if (found == NULL || key[length] == '\0') {
+      break;
+    }
+    record = dea_field_has_record(found) && found->list_max == 0 ? found->record : NULL;
+    found = NULL;
+    key += length + 1;
+  }
+  if (offset != NULL) {
+    *offset = base;
+  }
+  return found;
+}
+
+bool dea_field_varies(const struct dea_field *field)
+{
+  return field->kind == DEA_FIELD_NUMBER || field->kind == DEA_FIELD_INPLANE ||
+         field->kind == DEA_FIELD_STRETCHED;
+}
+
 /* Sets every member of a section that is not there. */
 static void absent_section(const struct dea_record *record, char *base,
                            struct dea_location location)

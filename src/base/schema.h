@@ -99,6 +99,13 @@ struct dea_record {
   size_t field_count;
 };
 
+/* Field of a dotted key of sections, "film.thickness"; NULL: there is none, or it is in a list.
+ * offset: of its member from the record's base; NULL: not wanted. */
+const struct dea_field *dea_record_find(const struct dea_record *record, const char *key,
+                                        size_t *offset);
+/* Whether its values can change little by little. */
+bool dea_field_varies(const struct dea_field *field);
+
 /* One reading of a document. listing: NULL if no list of values is wanted. */
 struct dea_reader {
   struct dea_context *ctx;

@@ -10,19 +10,21 @@
 #include "output/summary.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
+static const char sensitivity_name[] = "sensitivity";
 
 struct request {
   struct cli_words designs; // the first, and those that it is compared with
   const char *output;       // NULL: not given
   struct cli_words models, studies;
   struct cli_overrides overrides;
-  bool json, force, resume, no_figures;
+  bool json, force, resume, no_figures, sensitivity;
 };
 
 /* Everything of one run that has to be given back. */
@@ -89,7 +91,7 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
                         size_t length, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
-  struct dea_override overrides[CLI_OVERRIDES_MAX + 1];
+  struct dea_override overrides[CLI_OVERRIDES_MAX + 2];
   size_t count = request->overrides.count;
   memcpy(overrides, request->overrides.at, sizeof request->overrides.at);
   if (request->designs.count > 1) {
@@ -102,6 +104,14 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
+  if (request->sensitivity && request->studies.count == 0 &&
+      !dea_study_asked(run->design, sensitivity_name)) {
+    overrides[count++] = (struct dea_override){"compute.sensitivity", "{}"};
+    dea_design_destroy(ctx, run->design);
+    run->design = NULL;
+    DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides,
+                                        count, &run->design));
+  }
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
   DEA_TRY(ctx, cli_variants_check(cli, run->design));
   DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
@@ -338,6 +348,9 @@ static int run(struct dea_cli *cli, void *user)
     request->json = true;
     request->output = NULL;
   }
+  if (request->sensitivity && request->studies.count > 0 && request->studies.count < STUDIES_MAX) {
+    request->studies.at[request->studies.count++] = sensitivity_name;
+  }
   int code = cli_report(cli, run_all(cli, request, &run));
   release(cli, &run);
   return code;
@@ -353,6 +366,10 @@ static const struct cli_option options[] = {
      CLI_AT(models), take_model, .most = DEA_DESIGN_MODELS_MAX},
     {"study", 0, CLI_STUDY, "NAME", "only this study; can be repeated", CLI_AT(studies),
      .most = STUDIES_MAX, .too_many = "too many studies"},
+    {"sensitivity", 0, CLI_FLAG, NULL,
+     "also what matters: the change of displacement, field, tension, ... by each number of the "
+     "design (study sensitivity)",
+     CLI_AT(sensitivity)},
     CLI_SET_ROW('s', CLI_KEY, "film.thickness=200um"),
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "run folder (default: DESIGN.run here)"),
     CLI_FORCE_ROW('f', "replace the results in an existing run folder"),

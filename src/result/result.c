@@ -136,6 +136,20 @@ dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *resu
   return DEA_OK;
 }
 
+dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *result,
+                                const struct dea_result_table_type *type, const char *model,
+                                struct dea_result_table **out)
+{
+  for (size_t i = 0; i < result->table_count; i++) {
+    if (dea_result_find_table(result, model, type->study, type->name) == &result->tables[i]) {
+      *out = &result->tables[i];
+      return DEA_OK;
+    }
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, type, model, 0, out));
+  return DEA_OK;
+}
+
 dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,
                                  struct dea_result_table *table)
 {

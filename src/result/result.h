@@ -129,6 +129,10 @@ dea_status dea_result_get_curve(struct dea_context *ctx, struct dea_result *resu
 dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
                                 const struct dea_result_table_type *type, const char *model,
                                 size_t width, struct dea_result_table **out);
+/* The model's table of that type, a new one without lists when there is none; *out as above. */
+dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *result,
+                                const struct dea_result_table_type *type, const char *model,
+                                struct dea_result_table **out);
 /* Moves a table here, to the place of the model's of that study and name; it leaves an empty one.
  * On failure it stays where it is. */
 dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,

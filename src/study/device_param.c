@@ -13,32 +13,6 @@ static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.perm
                   branch_prefix[] = "film.branch.";
 static const char *const permittivity_keys[] = {"at_rest", "slope"};
 
-static bool is_number(const struct dea_field *field)
-{
-  return field->kind == DEA_FIELD_NUMBER || field->kind == DEA_FIELD_INPLANE ||
-         field->kind == DEA_FIELD_STRETCHED;
-}
-
-/* The field of a dotted key; NULL: none. */
-static const struct dea_field *find_field(const struct dea_record *record, const char *key)
-{
-  const struct dea_field *found = NULL;
-  while (record != NULL) {
-    const size_t length = strcspn(key, ".");
-    found = NULL;
-    for (size_t i = 0; i < record->field_count && found == NULL; i++) {
-      const struct dea_field *field = &record->fields[i];
-      found = strlen(field->key) == length && memcmp(field->key, key, length) == 0 ? field : NULL;
-    }
-    if (found == NULL || key[length] == '\0') {
-      return found;
-    }
-    record = dea_field_has_record(found) && found->list_max == 0 ? found->record : NULL;
-    key += length + 1;
-  }
-  return NULL;
-}
-
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
 {
   const size_t length = strlen(key);
@@ -62,8 +36,9 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
   for (size_t i = 0; i < values->count && count < 256; i++) {
-    const struct dea_field *field = find_field(&schema.disc.record, values->items[i].path);
-    if (field != NULL && is_number(field)) {
+    const struct dea_field *field =
+        dea_record_find(&schema.disc.record, values->items[i].path, NULL);
+    if (field != NULL && dea_field_varies(field)) {
       known[count++] = values->items[i].path;
     }
   }
@@ -112,13 +87,13 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
 {
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
-  const struct dea_field *field = find_field(&schema.disc.record, name->text);
+  const struct dea_field *field = dea_record_find(&schema.disc.record, name->text, NULL);
   *good = false;
   if (field == NULL) {
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   out->whole = field->kind == DEA_FIELD_INTEGER;
-  if (!is_number(field) && !(source->whole && out->whole)) {
+  if (!dea_field_varies(field) && !(source->whole && out->whole)) {
     return dea_device_param_unknown(ctx, source, name,
                                     source->whole ? "is no number"
                                     : out->whole  ? "is a whole number: only what can change "

@@ -109,21 +109,6 @@ static const struct dea_result_table_type of_passes = {.study = "sweep",
                                                        .columns = pass_columns,
                                                        .column_count = PASS_COLUMNS};
 
-/* The model's table of that type, a new one when there is none. */
-static dea_status get_table(struct dea_context *ctx, const struct dea_result_table_type *type,
-                            const char *model, struct dea_result *result,
-                            struct dea_result_table **out)
-{
-  for (size_t i = 0; i < result->table_count; i++) {
-    if (dea_result_find_table(result, model, type->study, type->name) == &result->tables[i]) {
-      *out = &result->tables[i];
-      return DEA_OK;
-    }
-  }
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, type, model, 0, out));
-  return DEA_OK;
-}
-
 // What is observed at a point --------------------------------------------------------------------
 
 size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result)
@@ -180,12 +165,12 @@ static dea_status add_point(struct dea_context *ctx, const struct tables *tables
   const struct dea_layout *layout = result->device->layout;
   struct dea_result_table *table = NULL;
   for (size_t i = 0; i < layout->monitor_count; i++, values += DEA_OBSERVED_COUNT) {
-    DEA_TRY(ctx, get_table(ctx, &tables->monitors, model, result, &table));
+    DEA_TRY(ctx, dea_result_get_table(ctx, result, &tables->monitors, model, &table));
     DEA_TRY(ctx, add_row(ctx, table, where, layout->monitors[i].name, values,
                          error != NULL ? error[i] : NAN));
   }
   for (size_t k = 1; k < layout->channel_count; k++, values += OF_CHANNEL) {
-    DEA_TRY(ctx, get_table(ctx, &tables->channels, model, result, &table));
+    DEA_TRY(ctx, dea_result_get_table(ctx, result, &tables->channels, model, &table));
     DEA_TRY(ctx, add_row(ctx, table, where, layout->channels[k].name, values, NAN));
   }
   return DEA_OK;

@@ -44,6 +44,16 @@ static bool is_asked(const struct dea_study *study, const struct dea_design *des
   return settings != NULL && settings->written;
 }
 
+bool dea_study_asked(const struct dea_design *design, const char *name)
+{
+  for (size_t k = 0; k < STUDIES; k++) {
+    if (strcmp(studies[k]->name, name) == 0) {
+      return is_asked(studies[k], design);
+    }
+  }
+  return false;
+}
+
 static bool is_wanted(const struct dea_study *study, const char *const names[], size_t name_count,
                       const struct dea_design *design)
 {

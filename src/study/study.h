@@ -37,6 +37,8 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
  * the general form also for a study of a disc, after a finding at what asks for it. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
+/* Whether a design asks for the study of that name. */
+bool dea_study_asked(const struct dea_design *design, const char *name);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
 double dea_study_highest_V(const struct dea_result *result);
 /* Solves at voltages [count] in their order and adds the points to a curve. DEA_E_INTERRUPTED when

@@ -15,4 +15,5 @@
   X(dea_study_convergence)                                                                         \
   X(dea_study_compare_design)                                                                      \
   X(dea_study_operating_map)                                                                       \
-  X(dea_study_load_line)
+  X(dea_study_load_line)                                                                           \
+  X(dea_study_sensitivity)

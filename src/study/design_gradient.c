@@ -1,0 +1,271 @@
+#include "study/design_gradient.h"
+
+#include "design/schema.h"
+#include "device/geometry.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double step_at_state = 1e-5, step_anew = 1e-4; // of a number, to either side
+
+// Numbers ----------------------------------------------------------------------------------------
+
+static void add_number(struct dea_design_number *numbers, size_t *count,
+                       const struct dea_design_number *number)
+{
+  if (*count < DEA_NUMBERS_MAX && number->value != 0 && !isnan(number->value)) {
+    numbers[(*count)++] = *number;
+  }
+}
+
+/* A number of a material, which is no key of the design. */
+static void add_of_device(const struct dea_device *device, const char *key, const char *param,
+                          const char *unit, size_t offset, struct dea_design_number *numbers,
+                          size_t *count)
+{
+  struct dea_design_number number = {.unit = unit, .tolerance = NAN, .offset = offset, .scale = 1};
+  snprintf(number.key, sizeof number.key, "%.30s%.30s", key, param);
+  memcpy(&number.value, (const char *)device + offset, sizeof number.value);
+  add_number(numbers, count, &number);
+}
+
+static void add_law(const struct dea_device *device, const char *key,
+                    const struct dea_material *material, size_t offset,
+                    struct dea_design_number *numbers, size_t *count)
+{
+  for (size_t i = 0; material->law != NULL && i < material->law->param_count; i++) {
+    const struct dea_law_param *param = &material->law->params[i];
+    add_of_device(device, key, param->key, param->unit,
+                  offset + offsetof(struct dea_material, param) + i * sizeof(double), numbers,
+                  count);
+  }
+}
+
+#define AT(member) offsetof(struct dea_device, member)
+
+static void add_materials(const struct dea_device *device, struct dea_design_number *numbers,
+                          size_t *count)
+{
+  add_law(device, "film.law.", &device->film, AT(film), numbers, count);
+  add_of_device(device, "film.permittivity.at_rest", "", "1", AT(film.permittivity.at_rest),
+                numbers, count);
+  add_of_device(device, "film.permittivity.slope", "", "1", AT(film.permittivity.slope), numbers,
+                count);
+  if (device->electrode_thickness_m > 0) {
+    add_law(device, "electrodes.law.", &device->electrode, AT(electrode), numbers, count);
+  }
+  if (device->fibre_count > 0) {
+    add_of_device(device, "fibres.young_modulus", "", "Pa", AT(fibre.young_modulus_Pa), numbers,
+                  count);
+    add_of_device(device, "fibres.poisson_ratio", "", "1", AT(fibre.poisson_ratio), numbers, count);
+  }
+}
+
+/* A length of the workshop in a film state. */
+static double in_state(const struct dea_inplane_length *length, enum dea_film_state state,
+                       double pre_stretch)
+{
+  double factor = state == length->state   ? 1
+                  : state == DEA_STRETCHED ? pre_stretch
+                                           : 1 / pre_stretch;
+  return factor * length->length.si;
+}
+
+/* What the workshop says of a key; NAN: nothing. state: of a length in the plane. */
+static double tolerance_of(const struct dea_design *design, const char *key, double value,
+                           enum dea_film_state state)
+{
+  const struct dea_fabrication *f = &design->fabrication;
+  double l = design->pre_stretch.si;
+  if (strcmp(key, "film.thickness") == 0) {
+    return f->tolerance.thickness.si * value;
+  }
+  if (strcmp(key, "pre_stretch") == 0) {
+    return f->tolerance.pre_stretch.si;
+  }
+  if (strcmp(key, "frame.inner_diameter") == 0 || strcmp(key, "frame.inner_radius") == 0) {
+    return (strcmp(key, "frame.inner_radius") == 0 ? 0.5 : 1) * f->tolerance.frame_m.si;
+  }
+  if (strcmp(key, "electrodes.diameter") == 0 || strcmp(key, "electrodes.radius") == 0) {
+    return (strcmp(key, "electrodes.radius") == 0 ? 0.5 : 1) *
+           in_state(&f->tolerance.electrode, state, l);
+  }
+  bool tip = strcmp(key, "fibres.length") == 0 || strcmp(key, "fibres.tip_radius") == 0 ||
+             strcmp(key, "fibres.overlap") == 0;
+  return tip ? in_state(&f->tolerance.fibre, state, l) : NAN;
+}
+
+/* Sections of a design that its device does not depend on. */
+static bool is_aside(const char *key)
+{
+  static const char *const sections[] = {"compute.", "report.", "fabrication.", "drive."};
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+    if (strncmp(key, sections[i], strlen(sections[i])) == 0) {
+      return strcmp(key, "compute.coverage") != 0;
+    }
+  }
+  return false;
+}
+
+/* One key of the file, if it is such a number and has a value. */
+static void add_key(const struct dea_design *design, const struct dea_record *record,
+                    const struct dea_listed *item, struct dea_design_number *numbers, size_t *count)
+{
+  size_t offset;
+  const struct dea_field *field = dea_record_find(record, item->path, &offset);
+  if (field == NULL || !dea_field_varies(field) || field->list_max > 0 || is_aside(item->path)) {
+    return;
+  }
+  const void *place = (const char *)design + offset;
+  bool inplane = field->kind == DEA_FIELD_INPLANE;
+  const struct dea_inplane_length *length = place;
+  const struct dea_quantity *quantity = inplane ? &length->length : place;
+  struct dea_design_number number = {
+      .unit = field->unit,
+      .of_design = true,
+      .scale = field->scale != 0 ? field->scale : 1,
+      .offset = offset + (inplane ? offsetof(struct dea_inplane_length, length) : 0) +
+                offsetof(struct dea_quantity, si)};
+  if (item->origin != DEA_ABSENT && quantity->origin != DEA_ABSENT) {
+    snprintf(number.key, sizeof number.key, "%.63s", item->path);
+    number.value = quantity->si / number.scale;
+    number.tolerance =
+        tolerance_of(design, number.key, number.value, inplane ? length->state : DEA_STRETCHED);
+    add_number(numbers, count, &number);
+  }
+}
+
+void dea_design_numbers(const struct dea_design *design, const struct dea_device *device,
+                        double voltage_V, struct dea_design_number *out, size_t *count)
+{
+  struct dea_design_schema schema;
+  const struct dea_design_sections none = {0};
+  const struct dea_design_number voltage = {
+      .key = "voltage", .value = voltage_V, .unit = "V", .tolerance = NAN, .scale = 1};
+  *count = 0;
+  add_number(out, count, &voltage);
+  if (device->general) {
+    return;
+  }
+  dea_design_schema_fill(&none, &schema);
+  for (size_t i = 0; i < design->values.count; i++) {
+    add_key(design, &schema.disc.record, &design->values.items[i], out, count);
+  }
+  add_materials(device, out, count);
+}
+
+// Changed devices --------------------------------------------------------------------------------
+
+/* The device with a value in place of the design's. scratch: room for a design. */
+static void change(const struct dea_design_gradient *ask, const struct dea_design_number *number,
+                   double value, struct dea_design *scratch, struct dea_device *out)
+{
+  double kept = number->scale * value;
+  *out = *ask->device;
+  if (number->of_design) {
+    *scratch = *ask->design;
+    memcpy((char *)scratch + number->offset, &kept, sizeof kept);
+    dea_geometry_fill(scratch, out);
+  } else {
+    memcpy((char *)out + number->offset, &kept, sizeof kept);
+  }
+}
+
+/* devices: [2 number_count]. */
+static void make_changes(const struct dea_design_gradient *ask, struct dea_design *scratch,
+                         struct dea_device *devices, struct dea_design_change *changes)
+{
+  double share = ask->type->gradient != NULL ? step_at_state : step_anew;
+  for (size_t i = 0; i < ask->number_count; i++) {
+    const struct dea_design_number *number = &ask->numbers[i];
+    bool voltage = strcmp(number->key, "voltage") == 0;
+    for (size_t k = 0; k < 2; k++) {
+      double value = number->value * (1 + (k == 0 ? -share : share));
+      if (!voltage) {
+        change(ask, number, value, scratch, &devices[2 * i + k]);
+      }
+      changes[i].device[k] = voltage ? ask->device : &devices[2 * i + k];
+      changes[i].voltage_V[k] = voltage ? value : ask->voltage_V;
+    }
+    changes[i].width = 2 * share * number->value;
+  }
+}
+
+dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                                    double *slopes)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  const struct dea_model_settings settings = dea_model_settings_of(ask->design);
+  struct dea_device *devices = dea_arena_alloc(&memory, 2 * ask->number_count, sizeof *devices);
+  struct dea_design *scratch = dea_arena_alloc(&memory, 1, sizeof *scratch);
+  struct dea_design_change *changes = dea_arena_alloc(&memory, ask->number_count, sizeof *changes);
+  dea_status status = dea_arena_status(&memory);
+  if (status == DEA_OK) {
+    make_changes(ask, scratch, devices, changes);
+    const struct dea_gradient_ask all = {changes, ask->number_count, ask->columns,
+                                         ask->column_count};
+    status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &all, slopes);
+  }
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+// All of it --------------------------------------------------------------------------------------
+
+/* The numbers of these keys, out [key_count]. */
+static dea_status choose(struct dea_context *ctx, const struct dea_design_number *all, size_t count,
+                         const char *const *keys, size_t key_count, struct dea_design_number *out)
+{
+  for (size_t k = 0; k < key_count; k++) {
+    size_t at = 0;
+    while (at < count && strcmp(all[at].key, keys[k]) != 0) {
+      at++;
+    }
+    if (at == count || k == DEA_NUMBERS_MAX) {
+      return dea_fail(ctx, DEA_E_ARGUMENT,
+                      "'%.60s' is no number of the design that could change little by little",
+                      keys[k]);
+    }
+    out[k] = all[at];
+  }
+  return DEA_OK;
+}
+
+/* Solves and asks. ask: without the numbers; values: [column_count]. */
+static dea_status solve_and_find(struct dea_context *ctx, struct dea_design_gradient *ask,
+                                 double *values, double *slopes)
+{
+  struct dea_load_point point;
+  DEA_TRY(ctx, ask->type->solve(ctx, ask->model, ask->voltage_V, &point));
+  for (size_t i = 0; i < ask->column_count; i++) {
+    values[i] = dea_point_get(&point, ask->columns[i]);
+  }
+  DEA_TRY(ctx, dea_design_gradient_find(ctx, ask, slopes));
+  return DEA_OK;
+}
+
+dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_model_type *type,
+                                  const struct dea_design *design, const struct dea_device *device,
+                                  double voltage_V, const char *const *keys, size_t key_count,
+                                  const int *columns, size_t column_count, double *values,
+                                  double *slopes)
+{
+  struct dea_design_number all[DEA_NUMBERS_MAX], chosen[DEA_NUMBERS_MAX];
+  size_t count;
+  struct dea_design_gradient ask = {.type = dea_model_of_device(type, device),
+                                    .design = design,
+                                    .device = device,
+                                    .voltage_V = voltage_V,
+                                    .numbers = chosen,
+                                    .number_count = key_count,
+                                    .columns = columns,
+                                    .column_count = column_count};
+  dea_design_numbers(design, device, voltage_V, all, &count);
+  DEA_TRY(ctx, choose(ctx, all, count, keys, key_count, chosen));
+  DEA_TRY(ctx, dea_model_create(ctx, ask.type, design, device, &ask.model));
+  dea_status status = solve_and_find(ctx, &ask, values, slopes);
+  ask.type->destroy(ctx, ask.model);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,312 @@
+/* Study "sensitivity": what matters. Slopes of a model's answers by the numbers of the design, by
+ * one per cent of each and by the workshop's tolerances (docs/theory/gradients.md). */
+#include "base/schema.h"
+#include "result/columns.h"
+#include "study/design_gradient.h"
+#include "study/study.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char study_name[] = "sensitivity";
+
+// Keys -------------------------------------------------------------------------------------------
+
+/* Settings of compute.sensitivity. */
+struct settings {
+  struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: the highest of the run
+  size_t voltage_count;
+};
+
+static const struct dea_field fields[] = {
+    DEA_STUDY_STOPS_FIELD("the highest that the run has reached",
+                          "voltages at which it is asked what matters", "[4 kV, 6 kV]"),
+};
+
+static const struct dea_record record = {
+    study_name,
+    "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
+    "displacements, field, tension, capacitance and energy by the numbers of the design",
+    fields, COUNT(fields)};
+
+static const struct dea_design_section section = {
+    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+
+// Tables -----------------------------------------------------------------------------------------
+
+/* Quantities that are asked for, in the order of the columns below; the first that a model knows is
+ * what the table is sorted by. */
+static const char *const quantities[] = {
+    "fibre_tip_z_m",    "centre_z_m",          "electrode_edge_u_m", "true_field_V_per_m",
+    "breakdown_margin", "min_tension_N_per_m", "capacitance_F",      "energy_J"};
+enum { QUANTITIES = COUNT(quantities) };
+
+static const struct dea_result_column slope_columns[] = {
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    {.key = "number", .kind = DEA_CELL_TEXT, .title = "number", .meaning = "of the design"},
+    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
+    {.key = "number_unit", .kind = DEA_CELL_TEXT, .title = "unit", .meaning = "of the number"},
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .title = "quantity",
+     .meaning = "of load points"},
+    {.key = "value", .kind = DEA_CELL_VALUE, .title = "quantity's value", .meaning = "there"},
+    {.key = "slope",
+     .title = "slope",
+     .meaning = "of the quantity by the number, SI units of both"},
+    {.key = "elasticity",
+     .title = "per cent by one per cent",
+     .meaning = "d ln(quantity) / d ln(number)"},
+    {.key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"},
+    {.key = "change",
+     .kind = DEA_CELL_VALUE,
+     .title = "change by tolerance",
+     .meaning = "of the quantity"},
+};
+static const struct dea_result_table_type slope_table = {.study = study_name,
+                                                         .name = "slopes",
+                                                         .title = "slopes by the design's numbers",
+                                                         .where = DEA_IN_JSON | DEA_IN_CSV,
+                                                         .columns = slope_columns,
+                                                         .column_count = COUNT(slope_columns)};
+
+#define ELASTICITY(its_key, its_title)                                                             \
+  {                                                                                                \
+    .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
+  }
+static const struct dea_result_column matter_columns[] = {
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    {.key = "number", .kind = DEA_CELL_TEXT, .title = "1 % of", .meaning = "of the design"},
+    {.key = "number_text", .kind = DEA_CELL_TEXT, .title = "value", .meaning = "of the number"},
+    ELASTICITY("fibre_tip_z_m", "z tip, %"),
+    ELASTICITY("centre_z_m", "z centre, %"),
+    ELASTICITY("electrode_edge_u_m", "u edge, %"),
+    ELASTICITY("true_field_V_per_m", "field, %"),
+    ELASTICITY("breakdown_margin", "margin, %"),
+    ELASTICITY("min_tension_N_per_m", "tension, %"),
+    ELASTICITY("capacitance_F", "capacitance, %"),
+    ELASTICITY("energy_J", "energy, %"),
+    {.key = "tolerance_text",
+     .kind = DEA_CELL_TEXT,
+     .title = "tolerance",
+     .meaning = "of the workshop"},
+    {.key = "change_text",
+     .kind = DEA_CELL_TEXT,
+     .title = "changes",
+     .meaning = "by the tolerance, of the displacement that comes first in the row"},
+};
+static const struct dea_result_table_type matter_table = {.study = study_name,
+                                                          .name = "matters",
+                                                          .title = "what matters",
+                                                          .where = DEA_IN_SCREEN,
+                                                          .columns = matter_columns,
+                                                          .column_count = COUNT(matter_columns)};
+
+// Study ------------------------------------------------------------------------------------------
+
+/* One voltage. */
+struct stop {
+  double voltage_V;
+  struct dea_load_point point;
+  int columns[QUANTITIES];
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  size_t number_count;
+  double slopes[DEA_NUMBERS_MAX][QUANTITIES];
+};
+
+static double value_of(const struct stop *stop, size_t quantity)
+{
+  return dea_point_get(&stop->point, stop->columns[quantity]);
+}
+
+static double elasticity(const struct stop *stop, size_t number, size_t quantity)
+{
+  double value = value_of(stop, quantity);
+  return value != 0 ? stop->slopes[number][quantity] * stop->numbers[number].value / value : NAN;
+}
+
+/* The first quantity that the model knows at this point. */
+static size_t leading(const struct stop *stop)
+{
+  size_t i = 0;
+  while (i + 1 < QUANTITIES && !(fabs(value_of(stop, i)) > 0)) {
+    i++;
+  }
+  return i;
+}
+
+/* A number as people read it, in a unit that fits. */
+static void write_number(double value, const char *unit, char *out, size_t size)
+{
+  static const struct {
+    const char *unit, *shown;
+    double least, factor;
+  } scales[] = {{"m", " mm", 0.9995e-3, 1e3}, {"m", " um", 0, 1e6},    {"Pa", " MPa", 1e6, 1e-6},
+                {"Pa", " kPa", 1e3, 1e-3},    {"V", " kV", 1e3, 1e-3}, {"1", "", 0, 1}};
+  for (size_t i = 0; i < COUNT(scales); i++) {
+    if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
+      snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
+      return;
+    }
+  }
+  snprintf(out, size, "%.5g %.20s", value, unit);
+}
+
+static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
+                             struct dea_result_table *table)
+{
+  for (size_t i = 0; i < stop->number_count; i++) {
+    const struct dea_design_number *number = &stop->numbers[i];
+    for (size_t k = 0; k < QUANTITIES; k++) {
+      const struct dea_result_table_value row[] = {
+          {.number = stop->voltage_V},    {.text = number->key},
+          {.number = number->value},      {.text = number->unit},
+          {.number = stop->columns[k]},   {.number = value_of(stop, k)},
+          {.number = stop->slopes[i][k]}, {.number = elasticity(stop, i, k)},
+          {.number = number->tolerance},  {.number = stop->slopes[i][k] * number->tolerance},
+      };
+      if (!isnan(stop->slopes[i][k])) {
+        DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t i,
+                             struct dea_result_table *table)
+{
+  const struct dea_design_number *number = &stop->numbers[i];
+  struct dea_result_table_value row[COUNT(matter_columns)] = {{.number = stop->voltage_V},
+                                                              {.text = number->key}};
+  char value[48], tolerance[48] = "", change[48] = "";
+  size_t lead = leading(stop), n = 2;
+  write_number(number->value, number->unit, value, sizeof value);
+  row[n++].text = value;
+  for (size_t k = 0; k < QUANTITIES; k++) {
+    row[n++].number = elasticity(stop, i, k);
+  }
+  if (!isnan(number->tolerance) && number->tolerance > 0) {
+    write_number(number->tolerance, number->unit, tolerance, sizeof tolerance);
+    write_number(stop->slopes[i][lead] * number->tolerance,
+                 dea_point_columns[stop->columns[lead]].si_unit, change, sizeof change);
+  }
+  row[n++].text = tolerance;
+  row[n++].text = change;
+  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  return DEA_OK;
+}
+
+/* Numbers by how much they matter to the leading quantity, most first. */
+static dea_status put_matters(struct dea_context *ctx, const struct stop *stop,
+                              struct dea_result_table *table)
+{
+  bool told[DEA_NUMBERS_MAX] = {false};
+  size_t lead = leading(stop);
+  for (size_t n = 0; n < stop->number_count; n++) {
+    size_t best = stop->number_count;
+    for (size_t i = 0; i < stop->number_count; i++) {
+      double size = fabs(elasticity(stop, i, lead));
+      if (!told[i] && size > 0 &&
+          (best == stop->number_count || size > fabs(elasticity(stop, best, lead)))) {
+        best = i;
+      }
+    }
+    if (best == stop->number_count) {
+      return DEA_OK;
+    }
+    told[best] = true;
+    DEA_TRY(ctx, put_matter(ctx, stop, best, table));
+  }
+  return DEA_OK;
+}
+
+static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type *type,
+                            struct dea_model *model, const struct dea_result *result,
+                            struct stop *stop)
+{
+  dea_design_numbers(result->design, result->device, stop->voltage_V, stop->numbers,
+                     &stop->number_count);
+  for (size_t k = 0; k < QUANTITIES; k++) {
+    stop->columns[k] = dea_point_column_find(quantities[k]);
+  }
+  const struct dea_design_gradient ask = {.type = type,
+                                          .model = model,
+                                          .design = result->design,
+                                          .device = result->device,
+                                          .voltage_V = stop->voltage_V,
+                                          .numbers = stop->numbers,
+                                          .number_count = stop->number_count,
+                                          .columns = stop->columns,
+                                          .column_count = QUANTITIES};
+  DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, stop->slopes[0]));
+  return DEA_OK;
+}
+
+/* Its rows of both tables. */
+static dea_status put_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
+                           struct dea_result *result)
+{
+  struct dea_result_table *table;
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
+  DEA_TRY(ctx, put_matters(ctx, stop, table));
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
+  DEA_TRY(ctx, put_slopes(ctx, stop, table));
+  return DEA_OK;
+}
+
+static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_model *model, const struct dea_load_point *at, size_t number,
+                       struct dea_result *result, struct dea_curve *curve)
+{
+  (void)number;
+  struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
+  if (stop == NULL) {
+    return DEA_E_MEMORY;
+  }
+  stop->voltage_V = at->voltage_V;
+  stop->point = *at;
+  dea_status status = dea_curve_add_point(ctx, curve, at);
+  status = status == DEA_OK ? find_stop(ctx, type, model, result, stop) : status;
+  status = status == DEA_OK ? put_stop(ctx, type->name, stop, result) : status;
+  dea_free(ctx, stop);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
+                      struct dea_model *model, struct dea_result *result)
+{
+  (void)model; // none
+  const struct settings *settings = dea_design_settings(result->design, &section)->values;
+  double voltages_V[DEA_DESIGN_STOPS_MAX] = {dea_study_highest_V(result)};
+  size_t count = settings->voltage_count > 0
+                     ? dea_study_stops(result->design, settings->voltages_V,
+                                       settings->voltage_count, false, voltages_V)
+                     : 1;
+  DEA_TRY(ctx,
+          dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
+  return DEA_OK;
+}
+
+// The study --------------------------------------------------------------------------------------
+
+const struct dea_study dea_study_sensitivity = {
+    .name = study_name,
+    .keys = &section,
+    .own_models = true,
+    .run = run,
+};
