@@ -1,0 +1,116 @@
+/* What gradients of model 3d cost beside a load step of 1 kV (docs/theory/gradients.md): what all
+ * of them share, each quantity, and each number of the design. The paper's actuator with four
+ * fibres. Times are the processor's: other work on the machine counts less. */
+#include "bench.h"
+#include "model/model.h"
+#include "result/columns.h"
+#include "study/design_file.h"
+#include "study/design_gradient.h"
+
+#include <math.h>
+
+enum { REPEATS = 5, QUANTITIES = 6, KV = 4 };
+
+extern const struct dea_model_type dea_solid_module;
+
+static const char *const keys[QUANTITIES] = {"centre_z_m",          "fibre_tip_z_m",
+                                             "electrode_edge_u_m",  "true_field_V_per_m",
+                                             "min_tension_N_per_m", "energy_J"};
+
+/* Processor time of a gradient of the first quantities by the first numbers; the shortest. */
+static double time_of(struct dea_context *ctx, struct dea_design_gradient *ask, size_t numbers,
+                      size_t quantities)
+{
+  static double slopes[DEA_NUMBERS_MAX * QUANTITIES];
+  double best = INFINITY;
+  ask->number_count = numbers;
+  ask->column_count = quantities;
+  for (int i = 0; i < REPEATS; i++) {
+    double start = bench_processor_s();
+    bench_need(dea_design_gradient_find(ctx, ask, slopes), ctx);
+    best = fmin(best, bench_processor_s() - start);
+  }
+  return best;
+}
+
+/* Processor time of the last load step of a sweep; the shortest. *model: at its end. */
+static double step_of(struct dea_context *ctx, const struct dea_device *device,
+                      const struct dea_model_settings *settings, struct dea_model **model)
+{
+  double best = INFINITY;
+  *model = NULL;
+  for (int i = 0; i < REPEATS; i++) {
+    struct dea_load_point point;
+    double start = 0;
+    dea_solid_module.destroy(ctx, *model);
+    bench_need(dea_solid_module.create(ctx, device, settings, model), ctx);
+    for (int kV = 1; kV <= KV; kV++) {
+      start = bench_processor_s();
+      bench_need(dea_solid_module.solve(ctx, *model, 1e3 * kV, &point), ctx);
+    }
+    best = fmin(best, bench_processor_s() - start);
+  }
+  return best;
+}
+
+static void measure(struct dea_context *ctx, const struct dea_design *design,
+                    const struct dea_device *device, double refinement)
+{
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  size_t count;
+  int columns[QUANTITIES];
+  struct dea_model *model;
+  struct dea_model_settings settings = dea_model_settings_of(design);
+  settings.refinement = refinement;
+  double step = step_of(ctx, device, &settings, &model);
+  dea_design_numbers(design, device, 1e3 * KV, numbers, &count);
+  for (int i = 0; i < QUANTITIES; i++) {
+    columns[i] = dea_point_column_find(keys[i]);
+  }
+  struct dea_design_gradient ask = {.type = &dea_solid_module,
+                                    .model = model,
+                                    .design = design,
+                                    .device = device,
+                                    .voltage_V = 1e3 * KV,
+                                    .numbers = numbers,
+                                    .columns = columns};
+  double shared = time_of(ctx, &ask, 0, 0), all = time_of(ctx, &ask, 0, QUANTITIES),
+         whole = time_of(ctx, &ask, count, QUANTITIES);
+  const struct {
+    const char *what;
+    double value;
+    const char *unit;
+  } figures[] = {{"load_step", step, "s"},
+                 {"shared_over_step", shared / step, "1"},
+                 {"quantity_over_step", (all - shared) / QUANTITIES / step, "1"},
+                 {"number_over_step", (whole - all) / (double)count / step, "1"},
+                 {"numbers", (double)count, "1"},
+                 {"all_over_step", whole / step, "1"}};
+  for (size_t i = 0; i < sizeof figures / sizeof figures[0]; i++) {
+    char name[80];
+    snprintf(name, sizeof name, "solid_solve_gradient.refinement_%g.%s", refinement,
+             figures[i].what);
+    bench_print(name, figures[i].value, figures[i].unit);
+  }
+  dea_solid_module.destroy(ctx, model);
+}
+
+int main(void)
+{
+  struct dea_context *ctx = NULL;
+  struct dea_design *design;
+  struct dea_device *device;
+  const struct dea_override overlap = {"fibres.overlap", "0.5 mm stretched"};
+  if (dea_context_create(NULL, &ctx) != DEA_OK) {
+    return 1;
+  }
+  bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", &overlap, 1, &design),
+             ctx);
+  bench_need(dea_device_build(ctx, design, &device), ctx);
+  measure(ctx, design, device, 1);
+  measure(ctx, design, device, 2);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+  dea_context_destroy(ctx);
+  return 0;
+}
