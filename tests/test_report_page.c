@@ -356,15 +356,22 @@ static void test_explorer_follows_its_sliders(void **state)
       "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
       "return before !== cell() && host.querySelectorAll('.plot svg').length >= 3; })()";
   assert_holds(move);
-  // every material of the list can be computed
-  assert_holds(
-      "(async () => { const host = document.querySelector('.explorer'); "
-      "const select = host.querySelector('select'); "
-      "for (let i = 0; i < select.options.length; i++) { select.value = i; "
-      "select.dispatchEvent(new Event('change')); "
-      "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
-      "if (!host.querySelector('.warning').hidden) { return host.textContent; } } "
-      "return select.options.length > 2; })()");
+  // every material of the list can be computed; each has the browser's time for itself
+  int count =
+      (int)browser_number(&browser, "document.querySelector('.explorer select').options.length");
+  assert_true(count > 2);
+  for (int k = 0; k < count; k++) {
+    char choose[500];
+    snprintf(choose, sizeof choose,
+             "(async () => { const host = document.querySelector('.explorer'); "
+             "const select = host.querySelector('select'); select.value = %d; "
+             "select.dispatchEvent(new Event('change')); "
+             "await new Promise((done) => requestAnimationFrame(() => "
+             "requestAnimationFrame(done))); "
+             "return host.querySelector('.warning').hidden; })()",
+             k);
+    assert_holds(choose);
+  }
   assert_quiet();
 }
 
