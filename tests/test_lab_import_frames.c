@@ -9,7 +9,7 @@ static struct dea_recording *record(const char *name, const char *bytes, const c
 {
   struct dea_table *table = read_text(name, bytes);
   struct dea_mapping *mapping;
-  struct dea_recording *recording;
+  struct dea_recording *recording = NULL;
   dea_status status = dea_mapping_read_memory(ctx, "map.yaml", map, strlen(map), &mapping);
   if (status == DEA_OK) {
     status = dea_table_record(ctx, table, mapping, &recording);
