@@ -299,7 +299,6 @@ static const struct dea_model_type of_layouts = {
     .errors = errors,
     .passes = passes,
     .move = move,
-    .long_path = long_path,
     .soften = soften,
     .push = push,
     .modes = modes,

@@ -929,14 +929,6 @@ static void mark_layout(const struct dea_layout *l, struct marks *marks)
   }
 }
 
-static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
-                            const struct dea_path_options *options, dea_point_sink points,
-                            dea_event_sink events, void *user)
-{
-  DEA_TRY(ctx, dea_standing_path(ctx, &model->at, options, points, events, user));
-  return DEA_OK;
-}
-
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
@@ -1331,7 +1323,6 @@ const struct dea_model_type dea_solid_layout_module = {
     .errors = errors,
     .passes = passes,
     .move = move,
-    .long_path = long_path,
     .soften = soften,
     .push = push,
     .modes = modes,
