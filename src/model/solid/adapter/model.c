@@ -597,8 +597,9 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_arena memory = {.ctx = ctx};
   dea_standing_end_history(ctx, &model->at);
-  if (model->indent != NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no gradients with a tip yet");
+  if (model->indent != NULL || model->actuator.settings.field == DEA_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d knows no gradients with a tip or a coupled field yet");
   }
   model->variant = dea_arena_alloc(&memory, 1, sizeof *model->variant);
   double *force = dea_arena_alloc(&memory, 2 * model->solid->problem.dofs, sizeof *force);
