@@ -130,6 +130,21 @@ static void test_killed(void **state)
   assert_int_equal(lines_with("cut/limits.csv", "breakdown_margin,-0.8,,400,"), 1);
 }
 
+/* Ctrl-C: what is done is in the tables, and the rest is not. */
+static void test_interrupted(void **state)
+{
+  (void)state;
+  write_file("{name: film.thickness, distribution: normal, mean: 100 um, std: 4 um}",
+             "plan: random\nsamples: 200000");
+  command_before = "timeout --preserve-status -s INT 1";
+  assert_int_equal(command_run("sweep mine.yaml -j 2 -o early"), 130);
+  command_before = "";
+  assert_contains(command_err, "interrupted; what was done is kept");
+  const int kept = lines_with("early/part-1-of-1.csv", "\n");
+  assert_true(kept < 200001);
+  assert_int_equal(lines_with("early/cases.csv", "\n"), kept); // each has one line for its head
+}
+
 /* A search as a user runs it; docs/explore.md shows it. */
 static void test_optimise(void **state)
 {
@@ -183,8 +198,9 @@ static void test_page(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors), cmocka_unit_test(test_grid),
-                                     cmocka_unit_test(test_killed), cmocka_unit_test(test_optimise),
-                                     cmocka_unit_test(test_page)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_errors),   cmocka_unit_test(test_grid),
+      cmocka_unit_test(test_killed),   cmocka_unit_test(test_interrupted),
+      cmocka_unit_test(test_optimise), cmocka_unit_test(test_page)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -9,7 +9,8 @@ import sys
 import tempfile
 
 DEA, ROOT = sys.argv[1], sys.argv[2]
-WORK = pathlib.Path(tempfile.mkdtemp(prefix="dea-sweep-"))
+FOLDER = tempfile.TemporaryDirectory(prefix="dea-sweep-")
+WORK = pathlib.Path(FOLDER.name)
 FAILED = []
 
 SPREAD = """variables:
@@ -76,8 +77,8 @@ def killed():
     print("## Killed again and again\n")
     print(
         f"1000 designs of model axisymmetric on all cores, `kill -9` after 1.5 s, started again, until\n"
-        f"done: {kills - 1} kills. In the table: {len(b)} designs; lines cut off and computed\n"
-        f"again: {twice}; all numbers those of a sweep that was left alone: {'yes' if a == b else 'no'}.\n"
+        f"done: {kills - 1} kills. In the table: {len(b)} designs; designs that were kept twice: {twice};\n"
+        f"all numbers those of a sweep that was left alone: {'yes' if a == b else 'no'}.\n"
     )
 
 

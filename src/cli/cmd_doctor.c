@@ -4,6 +4,7 @@
 #include "base/version.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
+#include "explore/optimise.h"
 #include "fabricate/canvas.h"
 #include "geometry/boolean.h"
 #include "lab/import/mat.h"
@@ -164,6 +165,13 @@ static void check_geos(struct report *report)
       "install libgeos-dev, and build again; without it regions are not united or cut");
 }
 
+static void check_nlopt(struct report *report)
+{
+  const bool ok = dea_search_is_built();
+  say(report, WISHED, ok, "searches of dea optimise", ok ? "NLopt" : "not built",
+      "install libnlopt-dev, and build again; without it there is dea sweep, but no dea optimise");
+}
+
 static void check_matio(struct report *report)
 {
   char path[4096];
@@ -221,6 +229,7 @@ static int run(struct dea_cli *cli, void *request)
   check_engine(&report);
   check_cairo(&report);
   check_geos(&report);
+  check_nlopt(&report);
   check_matio(&report);
   check_explorer(&report);
   check_folder(&report);

@@ -388,7 +388,17 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
   return status;
 }
 
+bool dea_search_is_built(void)
+{
+  return true;
+}
+
 #else
+
+bool dea_search_is_built(void)
+{
+  return false;
+}
 
 dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count)
 {

@@ -40,5 +40,7 @@ enum { DEA_FRONT_MAX = 100 };
  * DEA_E_INTERRUPTED, all evaluations kept. DEA_E_UNSUPPORTED where the program was built without
  * NLopt. */
 dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count);
+/* Whether it was built with NLopt. */
+bool dea_search_is_built(void);
 
 #endif
