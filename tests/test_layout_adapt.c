@@ -125,6 +125,43 @@ static void test_cone(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* The disc on its mesh of blocks and on a free one, solid: the electrode's edge is the same within
+ * both estimated errors. */
+static void test_blocks_and_free(void **state)
+{
+  (void)state;
+  struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, blocks.frame_radius_m, false, nowhere);
+  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
+  add_film(device, 0, 1.5, 1.5);
+  add_electrode(device, 0, false, 1, 0);
+  add_electrode(device, 0, true, 1, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  const struct dea_model_type *of_disc = dea_model_find("3d"), *type = of_disc->of_layouts;
+  struct dea_model *both[2];
+  struct dea_observation seen;
+  struct dea_load_point point;
+  double error;
+  assert_int_equal(of_disc->create(ctx, &blocks, NULL, &both[0]), DEA_OK);
+  assert_int_equal(type->create(ctx, device, NULL, &both[1]), DEA_OK);
+  assert_int_equal(type->solve(ctx, both[1], 4e3, &point), DEA_OK);
+  assert_int_equal(type->observe(ctx, both[1], &seen), DEA_OK);
+  assert_int_equal(type->errors(ctx, both[1], &error), DEA_OK);
+  assert_int_equal(of_disc->solve(ctx, both[0], 4e3, &point), DEA_OK);
+  double edge = seen.monitor[0][DEA_OBSERVED_X];
+  assert_close(edge, point.electrode_edge_u_m, 0, error + point.electrode_edge_u_error_m);
+  assert_true(error + point.electrode_edge_u_error_m < 0.02 * edge); // which says something
+  for (int i = 0; i < 2; i++) {
+    type->destroy(ctx, both[i]);
+  }
+  dea_device_destroy(ctx, device);
+}
+
 /* A body that is held has no error, a device without a monitor of that name no mesh. */
 static void test_refused(void **state)
 {
@@ -148,6 +185,7 @@ int main(void)
       cmocka_unit_test(test_errors_of_monitors),
       cmocka_unit_test(test_corner),
       cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_blocks_and_free),
       cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
