@@ -85,8 +85,8 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
                                    struct dea_model **keep)
 {
   struct dea_model_settings own = *settings;
-  struct dea_model *model;
-  struct dea_load_point point;
+  struct dea_model *model = NULL;
+  struct dea_load_point point = dea_load_point_empty();
   own.mesh_of = mesh_of;
   if (solid->create(ctx, &at->device, &own, &model) != DEA_OK ||
       solid->solve(ctx, model, at->voltage_V, &point) != DEA_OK) {
@@ -105,7 +105,7 @@ static struct dea_load_point
 find_slopes(const struct state *at, const struct dea_model_settings *settings, double (*out)[KEYS])
 {
   const double share = 1e-5;
-  struct dea_model *model;
+  struct dea_model *model = NULL;
   struct state sides[2 * NUMBERS];
   struct dea_design_change changes[NUMBERS];
   int columns[KEYS];
@@ -227,7 +227,7 @@ static void test_mesh_that_cannot_follow(void **state)
 {
   (void)state;
   struct state at = star(), sides[2] = {at, at};
-  struct dea_model *model;
+  struct dea_model *model = NULL;
   double slope;
   const struct dea_model_settings settings = {0};
   const int column = dea_point_column_find("centre_z_m");
