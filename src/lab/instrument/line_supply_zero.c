@@ -118,6 +118,10 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
   struct zeroing z = {&s->link, s->language, &s->raw, s->protocol,
                       dea_clock_s() + s->protocol->safety.zero_time_s.si};
   if (s->link.socket.descriptor >= 0) {
+    const char *answer;
+    if (s->asked != DEA_LINE_SUPPLY_NOTHING) { // the answer to what was asked before
+      dea_line_supply_wait(ctx, z.link, wait_until(&z), &answer);
+    }
     bool told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
     dea_socket_close(&s->link.socket);
     if (told) {
