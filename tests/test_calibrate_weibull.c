@@ -1,4 +1,5 @@
 /* calibrate: Weibull's law of breakdown against the equations of its maximum, coverage, scaling. */
+// ctest: quick, heavy
 #include "calibrate/weibull.h"
 #include "context_fixture.h"
 #include "testing.h"

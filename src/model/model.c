@@ -19,7 +19,7 @@ static double last_voltage_V(const struct dea_design *design)
 
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 {
-  return (struct dea_model_settings){
+  struct dea_model_settings settings = {
       .film = (enum dea_solid_film)design->compute.solid.film.value,
       .domain = design->compute.solid.domain.value == DEA_DOMAIN_SECTOR ? DEA_DOMAIN_SECTOR
                                                                         : DEA_DOMAIN_DISC,
@@ -28,13 +28,14 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
       .refinement = design->compute.solid.refinement.si,
       .order = (int)design->compute.solid.order.si,
       .order_z = (int)design->compute.solid.order_z.si,
-      .adapt = {.monitor = design->compute.solid.adapt.asked
-                               ? design->compute.solid.adapt.monitor.text
-                               : NULL,
-                .tolerance = design->compute.solid.adapt.tolerance.si,
-                .voltage_V = last_voltage_V(design),
-                .passes = (int)design->compute.solid.adapt.passes.si},
   };
+  if (design->compute.solid.adapt.asked) {
+    settings.adapt.monitor = design->compute.solid.adapt.monitor.text;
+    settings.adapt.tolerance = design->compute.solid.adapt.tolerance.si;
+    settings.adapt.voltage_V = last_voltage_V(design);
+    settings.adapt.passes = (int)design->compute.solid.adapt.passes.si;
+  }
+  return settings;
 }
 
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
