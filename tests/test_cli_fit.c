@@ -170,6 +170,49 @@ static void test_vhb(void **state)
   assert_int_equal(holds, 24);
 }
 
+/* Strain by creep of the standard linear solid, E and E_1 with time tau in parallel, under a stress
+ * that rises evenly within a time; strains of 0.5 % at most. */
+static double creep_strain(double t, double stress, double rise_s)
+{
+  const double E = 180e3, E_1 = 90e3, tau = 20, late = tau * (E + E_1) / E, share = E_1 / (E + E_1);
+  double at[2] = {t, fmax(t - rise_s, 0)}, integral = 0;
+  for (int i = 0; i < 2; i++) {
+    integral += (i == 0 ? 1 : -1) * (at[i] + share * late * (exp(-at[i] / late) - 1)) / E;
+  }
+  return stress / rise_s * integral;
+}
+
+/* Creep gives the branch back, to what strains of half a percent are off the linear solid. */
+static void test_creep(void **state)
+{
+  (void)state;
+  static char rows[16384];
+  double mu, modulus, time_s;
+  size_t used = (size_t)snprintf(rows, sizeof rows, "time (s),stretch,stress (Pa)\n0,1,0\n");
+  for (double t = 0.05; t < 400; t += t < 0.5 ? 0.05 : 0.1 * t) {
+    used += (size_t)snprintf(rows + used, sizeof rows - used, "%.9g,%.12f,%.9g\n", t,
+                             1 + creep_strain(t, 900, 0.5), 900 * fmin(t / 0.5, 1));
+  }
+  command_write("creep.csv", rows);
+  command_write("hung.yaml", "dea_fit: 1\nname: hung\nlaws: [neo-hookean]\nbranches: 1\ntests:\n"
+                             "  - {name: hung, kind: creep, file: creep.csv, "
+                             "uncertainty_absolute: 1 Pa}\n");
+  assert_int_equal(command_run("fit hung.yaml"), 0);
+  const char *numbers = strstr(command_out, "  mu  ");
+  assert_non_null(numbers);
+  assert_int_equal(sscanf(numbers, " mu %lf +- %*f kPa modulus 1 %lf +- %*f kPa time 1 %lf", &mu,
+                          &modulus, &time_s),
+                   3);
+  assert_close(mu, 60, 1e-2, 0);
+  assert_close(modulus, 30, 1e-2, 0);
+  assert_close(time_s, 20, 1e-2, 0);
+  command_write("none.csv", "stretch,stress (Pa)\n1.1,900\n1.2,900\n");
+  command_write("none.yaml", "dea_fit: 1\nname: none\nlaws: [neo-hookean]\ntests:\n"
+                             "  - {name: hung, kind: creep, file: none.csv}\n");
+  assert_int_equal(command_run("fit none.yaml"), 5);
+  assert_contains(command_err, "'none.csv' has no column 'time (s)'");
+}
+
 /* A Gent law in tension: Mooney and Rivlin's fits it better than neo-Hooke's by a negative
  * constant, which has no strength in equibiaxial tension. Where a stable law is as good, that is
  * taken. */
@@ -198,6 +241,7 @@ int main(void)
       cmocka_unit_test(test_fit),
       cmocka_unit_test(test_bad_data),
       cmocka_unit_test(test_names_and_files),
+      cmocka_unit_test(test_creep),
       cmocka_unit_test(test_unstable),
       cmocka_unit_test(test_example),
       cmocka_unit_test(test_vhb),

@@ -88,7 +88,7 @@ static dea_status take_time(struct work *w)
 {
   const struct dea_fit_test *test = w->test;
   const double *time = w->raw->values[DEA_FIT_TIME], rate = test->rate_per_s.si;
-  const bool held = test->kind.value == DEA_FIT_RELAXATION;
+  const bool held = test->kind.value == DEA_FIT_RELAXATION || test->kind.value == DEA_FIT_CREEP;
   if (time == NULL && (held || (test->kind.value == DEA_FIT_CYCLIC && isnan(rate)))) {
     FOUND(w, test->file.location, "'%.80s' has no column '%s'%s", w->raw->file,
           dea_fit_columns[DEA_FIT_TIME].example, held ? "" : ", and the test no rate");

@@ -6,8 +6,8 @@
 #define AT(member) offsetof(struct dea_fit_file, member)
 #define TEST_AT(member) offsetof(struct dea_fit_test, member)
 
-const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1] = {"uniaxial",   "planar", "equibiaxial",
-                                                           "relaxation", "cyclic", NULL};
+const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1] = {
+    "uniaxial", "planar", "equibiaxial", "relaxation", "cyclic", "creep", NULL};
 
 const struct dea_fit_column_type dea_fit_columns[DEA_FIT_COLUMNS] = {
     [DEA_FIT_TIME] = {"time", "s", "time (s)"},
@@ -56,7 +56,7 @@ static const struct dea_field test_fields[] = {
      .offset = TEST_AT(kind),
      .required = true,
      .choices = dea_fit_kind_names,
-     .doc = "kind of test; relaxation and cyclic need times or a rate",
+     .doc = "kind of test; relaxation and cyclic need times or a rate, creep times",
      .example = "uniaxial"},
     {.key = "mode",
      .kind = DEA_FIELD_CHOICE,

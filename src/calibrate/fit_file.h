@@ -16,6 +16,7 @@ enum dea_fit_kind { // the first three: slow, or in time where times or a rate a
   DEA_FIT_EQUIBIAXIAL,
   DEA_FIT_RELAXATION,
   DEA_FIT_CYCLIC,
+  DEA_FIT_CREEP, // compared by the stress that its measured stretches take
   DEA_FIT_KINDS
 };
 extern const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1]; // ended by NULL

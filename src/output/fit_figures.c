@@ -138,7 +138,8 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
   dea_status status = DEA_OK;
   for (size_t s = 0; s < fit->series_count && status == DEA_OK && number < TESTS_MAX; s++) {
     const struct dea_fit_curve *curve = &fit->curves[s];
-    if ((curve->series->test->kind.value == DEA_FIT_RELAXATION) == time) {
+    const int kind = curve->series->test->kind.value;
+    if ((kind == DEA_FIT_RELAXATION || kind == DEA_FIT_CREEP) == time) {
       status = add_test(ctx, plot, curve, time, number++);
     }
   }
