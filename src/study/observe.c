@@ -232,6 +232,8 @@ dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_t
 
 // Figures ----------------------------------------------------------------------------------------
 
+static const double least_drawn = 1e-9; // in display units: less is what rounding left of 0
+
 /* A line of a figure: a column of a table, in the rows of one name. */
 struct line {
   const struct dea_result_table *table;
@@ -269,7 +271,8 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
     if (strcmp(dea_result_table_cell(table, i, 1)->text, line->name) == 0) {
       series->values[k] =
           table->type.columns[0].factor * dea_result_table_cell(table, i, 0)->number;
-      series->values[count + k++] = factor * dea_result_table_cell(table, i, line->column)->number;
+      double value = factor * dea_result_table_cell(table, i, line->column)->number;
+      series->values[count + k++] = fabs(value) < least_drawn ? 0 : value;
     }
   }
   return DEA_OK;
@@ -323,11 +326,40 @@ static void finish(const struct tables *of, struct dea_panel *panel, const char 
   dea_panel_place_key(panel);
 }
 
-static dea_status show_heights(struct dea_context *ctx, const struct dea_result *result,
-                               const struct tables *of, struct dea_panel *panel)
+/* Component of the displacement, 0 to 2, that is largest anywhere; z where nothing moves. */
+static size_t main_component(const struct dea_result *result,
+                             const struct dea_result_table_type *of, const char *const keys[3])
 {
-  DEA_TRY(ctx, add_lines(ctx, result, &of->monitors, "z_m", "", DEA_LINE, panel));
-  finish(of, panel, "Displacement {/:Italic z} (\302\265m)");
+  double most[3] = {0, 0, 0};
+  for (size_t t = 0; t < result->table_count; t++) {
+    const struct dea_result_table *table = &result->tables[t];
+    bool mine =
+        strcmp(table->type.study, of->study) == 0 && strcmp(table->type.name, of->name) == 0;
+    for (size_t c = 0; c < table->type.column_count && mine; c++) {
+      for (size_t k = 0; k < 3; k++) {
+        bool is = strcmp(table->type.columns[c].key, keys[k]) == 0;
+        for (size_t i = 0; i < table->row_count && is; i++) {
+          most[k] = fmax(most[k], fabs(dea_result_table_cell(table, i, c)->number)); // not of NAN
+        }
+      }
+    }
+  }
+  size_t largest = 2;
+  for (size_t k = 0; k < 2; k++) {
+    largest = most[k] > most[largest] ? k : largest;
+  }
+  return largest;
+}
+
+static dea_status show_displacement(struct dea_context *ctx, const struct dea_result *result,
+                                    const struct tables *of, struct dea_panel *panel)
+{
+  static const char *const keys[] = {"x_m", "y_m", "z_m"};
+  size_t component = main_component(result, &of->monitors, keys);
+  char label[DEA_LABEL_SIZE];
+  snprintf(label, sizeof label, "Displacement {/:Italic %c} (\302\265m)", "xyz"[component]);
+  DEA_TRY(ctx, add_lines(ctx, result, &of->monitors, keys[component], "", DEA_LINE, panel));
+  finish(of, panel, label);
   return DEA_OK;
 }
 
@@ -350,10 +382,10 @@ static dea_status show_charges(struct dea_context *ctx, const struct dea_result 
   return DEA_OK;
 }
 
-static dea_status build_heights(struct dea_context *ctx, const struct dea_result *result,
-                                struct dea_plot *plot)
+static dea_status build_displacement(struct dea_context *ctx, const struct dea_result *result,
+                                     struct dea_plot *plot)
 {
-  return show_heights(ctx, result, &of_sweep, &plot->panels[0]);
+  return show_displacement(ctx, result, &of_sweep, &plot->panels[0]);
 }
 
 static dea_status build_stretches(struct dea_context *ctx, const struct dea_result *result,
@@ -369,10 +401,10 @@ static dea_status build_charges(struct dea_context *ctx, const struct dea_result
 }
 
 const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
-    {.name = "monitors_z",
+    {.name = "monitors",
      .study = "sweep",
-     .caption = "displacement of the monitors out of the plane",
-     .build = build_heights},
+     .caption = "displacement of the monitors, along the axis that they move along most",
+     .build = build_displacement},
     {.name = "monitors_stretch",
      .study = "sweep",
      .caption = "stretch between the points of lines, and mean stretch of regions",
@@ -383,10 +415,10 @@ const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
      .build = build_charges},
 };
 
-dea_status dea_observe_heights_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                       struct dea_plot *plot)
+dea_status dea_observe_displacement_in_time(struct dea_context *ctx,
+                                            const struct dea_result *result, struct dea_plot *plot)
 {
-  return show_heights(ctx, result, &of_history, &plot->panels[0]);
+  return show_displacement(ctx, result, &of_history, &plot->panels[0]);
 }
 
 dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,

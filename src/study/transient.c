@@ -846,10 +846,11 @@ static const struct dea_figure figures[] = {
         .build = build_current,
     },
     {
-        .name = "history_monitors_z",
+        .name = "history_monitors",
         .study = study_name,
-        .caption = "displacement of the monitors out of the plane against time",
-        .build = dea_observe_heights_in_time,
+        .caption =
+            "displacement of the monitors against time, along the axis that they move along most",
+        .build = dea_observe_displacement_in_time,
     },
     {
         .name = "history_monitors_stretch",
