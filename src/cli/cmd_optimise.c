@@ -16,7 +16,7 @@ static void print_optimum(const struct dea_question *question, const struct dea_
 {
   for (size_t j = 0; j < question->variable_count; j++) {
     char text[80];
-    dea_device_param_text(&question->params[j], best->p[j], 6, text);
+    dea_device_param_show(&question->params[j], best->p[j], text);
     printf("  %-28s %s\n", question->params[j].param.name, text);
   }
   for (size_t k = 0; k < question->file->objective_count; k++) {

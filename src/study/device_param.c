@@ -241,6 +241,27 @@ void dea_device_param_text(const struct dea_device_param *param, double value, i
   dea_c_locale_leave(before);
 }
 
+void dea_device_param_show(const struct dea_device_param *param, double value, char out[80])
+{
+  static const struct {
+    const char *unit, *shown;
+    double least, factor; // of what is shown so
+  } units[] = {{"m", "mm", 1e-3, 1e3},
+               {"m", "um", 0, 1e6},
+               {"Pa", "MPa", 1e6, 1e-6},
+               {"Pa", "kPa", 1e3, 1e-3},
+               {"V", "kV", 1e3, 1e-3}};
+  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    if (strcmp(units[i].unit, param->param.unit) == 0 && fabs(value) >= units[i].least) {
+      struct dea_device_param other = *param;
+      other.param.unit = units[i].shown;
+      dea_device_param_text(&other, units[i].factor * value, 6, out);
+      return;
+    }
+  }
+  dea_device_param_text(param, value, 6, out);
+}
+
 dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_design_bytes *file,
                                    const struct dea_device_param *params, size_t count,
                                    const double *p, struct dea_design **design,

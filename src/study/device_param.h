@@ -35,6 +35,8 @@ dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device
 /* Value of a parameter as a design file has it, with so many digits: "1.02e-4 m stretched". */
 void dea_device_param_text(const struct dea_device_param *param, double value, int digits,
                            char out[80]);
+/* The same with six digits and the unit that a person would take: "102 um stretched". */
+void dea_device_param_show(const struct dea_device_param *param, double value, char out[80]);
 
 /* The text of a design file; lent. */
 struct dea_design_bytes {
