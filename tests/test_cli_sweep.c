@@ -136,7 +136,7 @@ static void test_interrupted(void **state)
   (void)state;
   write_file("{name: film.thickness, distribution: normal, mean: 100 um, std: 4 um}",
              "plan: random\nsamples: 200000");
-  command_before = "timeout --preserve-status -s INT 1";
+  command_before = "timeout --foreground --preserve-status -s INT 1"; // else it comes twice
   assert_int_equal(command_run("sweep mine.yaml -j 2 -o early"), 130);
   command_before = "";
   assert_contains(command_err, "interrupted; what was done is kept");
