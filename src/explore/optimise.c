@@ -263,7 +263,7 @@ static void descend(struct work *w, double *x)
 static dea_status search_free(struct work *w, const double *extra)
 {
   const struct dea_search *search = w->search;
-  double x[DEA_CASE_PARAMS_MAX], values[FUNCTIONS_MAX];
+  double x[DEA_CASE_PARAMS_MAX] = {0}, values[FUNCTIONS_MAX];
   if (w->n == 0) {
     functions_at(w, x, values, NULL);
     return w->status;
