@@ -38,15 +38,20 @@ static inline int command_tear_down(void **state)
   return system(text);
 }
 
-static inline void command_read(const char *name, char *out)
+static inline void command_read_in(const char *folder, const char *name, char *out)
 {
   char path[600];
-  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
   size_t length = fread(out, 1, COMMAND_TEXT_MAX - 1, file);
   out[length] = '\0';
   fclose(file);
+}
+
+static inline void command_read(const char *name, char *out)
+{
+  command_read_in(command_folder, name, out);
 }
 
 /* Runs "dea <arguments>" in command_folder; returns its exit code. "@" stands for the source tree.
@@ -71,6 +76,31 @@ static inline int command_run(const char *arguments)
   return WEXITSTATUS(status);
 }
 
+#define assert_contains(text, part)                                                                \
+  do {                                                                                             \
+    if (strstr((text), (part)) == NULL) {                                                          \
+      fail_msg("'%s' is not in:\n%s", (part), (text));                                             \
+    }                                                                                              \
+  } while (0)
+
+/* An exit code and a part of what is said on stderr are wanted. */
+static inline void command_expect(const char *arguments, int code, const char *message)
+{
+  int found = command_run(arguments);
+  if (found != code || strstr(command_err, message) == NULL) {
+    fail_msg("dea %s: exit code %d, wanted %d with '%s':\n%s", arguments, found, code, message,
+             command_err);
+  }
+}
+
+/* The page docs/NAME into out; what the command prints stands in it. */
+static inline void command_page(const char *name, const char *arguments, char *out)
+{
+  command_read_in(DEA_SOURCE_DIR "/docs", name, out);
+  assert_int_equal(command_run(arguments), 0);
+  assert_contains(out, command_out);
+}
+
 /* Writes a file into command_folder. */
 static inline void command_write(const char *name, const char *text)
 {
@@ -89,12 +119,5 @@ static inline void command_folder_make(const char *name)
   snprintf(path, sizeof path, "%s/%s", command_folder, name);
   assert_int_equal(mkdir(path, 0777), 0);
 }
-
-#define assert_contains(text, part)                                                                \
-  do {                                                                                             \
-    if (strstr((text), (part)) == NULL) {                                                          \
-      fail_msg("'%s' is not in:\n%s", (part), (text));                                             \
-    }                                                                                              \
-  } while (0)
 
 #endif

@@ -36,6 +36,33 @@ static inline struct dea_table *read_text(const char *name, const char *text)
   return read_bytes(name, text, strlen(text));
 }
 
+static inline struct dea_mapping *map_text(const char *text)
+{
+  struct dea_mapping *mapping;
+  dea_finding_clear(ctx);
+  if (dea_mapping_read_memory(ctx, "map.yaml", text, strlen(text), &mapping) != DEA_OK) {
+    size_t count;
+    fail_msg("%s", dea_finding_get(ctx, &count)[0].text);
+  }
+  return mapping;
+}
+
+/* The recording of a text file; map: of a mapping, NULL guesses. */
+static inline struct dea_recording *record_file(const char *name, const char *text, const char *map)
+{
+  struct dea_table *table = read_text(name, text);
+  struct dea_mapping *mapping = map != NULL ? map_text(map) : NULL;
+  struct dea_recording *recording;
+  if (dea_table_record(ctx, table, mapping, &recording) != DEA_OK) {
+    size_t count;
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
+  }
+  dea_mapping_destroy(ctx, mapping);
+  dea_table_destroy(ctx, table);
+  return recording;
+}
+
 static inline const struct dea_table_column *column_of(const struct dea_table *table,
                                                        const char *name)
 {

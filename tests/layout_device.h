@@ -3,6 +3,7 @@
 #define DEA_TESTS_LAYOUT_DEVICE_H
 
 #include "device/device.h"
+#include "model/model.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -101,6 +102,36 @@ static inline struct dea_device *cone_new(void)
   l->monitors[l->monitor_count++] =
       (struct dea_layout_monitor){.name = "hub", .kind = DEA_MONITOR_BODY, .body = 0};
   return device;
+}
+
+/* A disc of film in a round frame and electrodes on a smaller one; a monitor of their edge. */
+static inline struct dea_device *disc_new(double frame_m, double active_m, double stretch)
+{
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  dea_region_add_circle(add_region(device, "film"), 0, 0, frame_m, false, nowhere);
+  dea_region_add_circle(add_region(device, "active"), 0, 0, active_m, false, nowhere);
+  add_film(device, 0, stretch, stretch);
+  add_electrode(device, 0, false, 1, 0);
+  add_electrode(device, 0, true, 1, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{active_m, 0}}};
+  return device;
+}
+
+/* Model 3d of a device of either form. */
+static inline struct dea_model *layout_model(const struct dea_device *device,
+                                             const struct dea_model_settings *settings)
+{
+  struct dea_model *model;
+  dea_status status = dea_model_find("3d")->create(ctx, device, settings, &model);
+  if (status != DEA_OK) {
+    print_message("%s\n", dea_context_message(ctx));
+  }
+  assert_int_equal(status, DEA_OK);
+  return model;
 }
 
 #endif

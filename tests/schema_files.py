@@ -74,7 +74,7 @@ def kind_of(path, data):
         return "explore"
     if "dea_fit" in data:
         return ("fit-device" if "design" in data else "fit-breakdown" if "breakdown" in data
-                else "fit")
+                else "fit-life" if "life" in data else "fit")
     return "design"
 
 

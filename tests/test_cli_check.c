@@ -41,6 +41,12 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"run @/examples/fit/silicone.yaml", 3, "this is a fit, not a design: it is for 'dea fit'"},
       {"run @/examples/explore/grid.yaml", 3, "this is a file of many designs, not a design"},
       {"check @/data/materials/pet.yaml", 3, "this is a material, not a design"},
+      {"optimise @/examples/frdea-4.yaml", 3,
+       "this is a design, not a file of many designs: it is for 'dea run'"},
+      {"fit @/examples/frdea-4.yaml", 3, "this is a design, not a fit: it is for 'dea run'"},
+      {"fit @/examples/explore/spread.yaml", 3, "it is for 'dea sweep' or 'dea optimise'"},
+      {"sweep @/examples/fit/device.yaml", 3, "this is a fit, not a file of many designs"},
+      {"drive @/examples/fit/silicone.yaml", 3, "this is a fit, not a protocol"},
   };
   command_write("text.yaml", "hello\n");
   command_write("design.yaml", "my own\n");
@@ -182,15 +188,12 @@ static void test_schema(void **state)
   json_decref(json);
 }
 
-/* A page has the table that a command prints, from the row of a key to that of another one; NULL:
- * from its start, to its end. */
+/* A page of docs/ has the table that a command prints, from the row of a key to that of another
+ * one; NULL: from its start, to its end. */
 static void check_page(const char *page, const char *command, const char *start, const char *end)
 {
   static char document[COMMAND_TEXT_MAX];
-  FILE *file = fopen(page, "rb");
-  assert_non_null(file);
-  document[fread(document, 1, sizeof document - 1, file)] = '\0';
-  fclose(file);
+  command_read_in(DEA_SOURCE_DIR "/docs", page, document);
   assert_int_equal(command_run(command), 0);
   char *rest = end != NULL ? strstr(command_out, end) : NULL;
   if (end != NULL) {
@@ -205,12 +208,11 @@ static void check_page(const char *page, const char *command, const char *start,
 static void test_reference_is_that_of_the_table(void **state)
 {
   (void)state;
-  check_page(DEA_SOURCE_DIR "/docs/design-file.md", "schema --markdown", NULL, NULL);
-  check_page(DEA_SOURCE_DIR "/docs/design-file.md", "schema --markdown --material", NULL, NULL);
-  check_page(DEA_SOURCE_DIR "/docs/devices.md", "schema --markdown --general", NULL,
-             "| `drive` | section");
-  check_page(DEA_SOURCE_DIR "/docs/devices.md", "schema --markdown --general",
-             "| `fabrication` | section", "| `report` | section");
+  check_page("design-file.md", "schema --markdown", NULL, NULL);
+  check_page("design-file.md", "schema --markdown --material", NULL, NULL);
+  check_page("devices.md", "schema --markdown --general", NULL, "| `drive` | section");
+  check_page("devices.md", "schema --markdown --general", "| `fabrication` | section",
+             "| `report` | section");
 }
 
 /* What is told and drawn of a design of the general form. */
@@ -244,12 +246,7 @@ static void test_materials(void **state)
   assert_int_equal(command_run("materials elastosil-2030"), 0);
   assert_contains(command_out, "c1             178.4 kPa");
   static char document[COMMAND_TEXT_MAX];
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/materials.md", "rb");
-  assert_non_null(file);
-  document[fread(document, 1, sizeof document - 1, file)] = '\0';
-  fclose(file);
-  assert_int_equal(command_run("materials --markdown"), 0);
-  assert_contains(document, command_out);
+  command_page("materials.md", "materials --markdown", document);
   json_t *json = run_json("materials --json", 0);
   assert_true(json_array_size(json) >= 5);
   json_decref(json);

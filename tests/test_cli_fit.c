@@ -40,8 +40,7 @@ static void test_fit(void **state)
   assert_contains(command_out, "standard_uncertainties");
   command_before = "";
   // nothing is overwritten without --force
-  assert_int_equal(command_run("fit mine.yaml"), 5);
-  assert_contains(command_err, "--force");
+  command_expect("fit mine.yaml", 5, "--force");
   assert_int_equal(command_run("fit mine.yaml --force --json --profile"), 0);
   assert_contains(command_out, "\"interval_low\"");
 }
@@ -51,10 +50,7 @@ static void expect(const char *csv, int code, const char *message)
 {
   command_write("mine.yaml", fit_file);
   command_write("strip.csv", csv);
-  int found = command_run("fit mine.yaml --force");
-  if (found != code || strstr(command_err, message) == NULL) {
-    fail_msg("exit code %d, wanted %d with '%s':\n%s", found, code, message, command_err);
-  }
+  command_expect("fit mine.yaml --force", code, message);
 }
 
 static void test_bad_data(void **state)
@@ -88,34 +84,29 @@ static void test_names_and_files(void **state)
   command_write("strip.csv", good);
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: stretch 2.5, kind: uniaxial, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 0);
-  assert_contains(command_err,
-                  "'stretch 2.5' is named for the stretch 2.5, but its file ends at 1.6");
+  command_expect("fit mine.yaml --force", 0,
+                 "'stretch 2.5' is named for the stretch 2.5, but its file ends at 1.6");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: VHB 2.5, kind: uniaxial, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 0);
-  assert_contains(command_err, "'VHB 2.5' is named for the stretch 2.5, but its file ends at 1.6");
+  command_expect("fit mine.yaml --force", 0,
+                 "'VHB 2.5' is named for the stretch 2.5, but its file ends at 1.6");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hokean]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 3);
-  assert_contains(command_err, "mine.yaml:3:8: error: 'neo-hokean' is not a law; did you mean");
+  command_expect("fit mine.yaml --force", 3,
+                 "mine.yaml:3:8: error: 'neo-hokean' is not a law; did you mean");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [yeoh]\nbranches: 2\n"
                              "parameters: [{name: c4, start: 3 mm}]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 3);
-  assert_contains(command_err, "the law yeoh has no parameter 'c4'; did you mean");
+  command_expect("fit mine.yaml --force", 3, "the law yeoh has no parameter 'c4'; did you mean");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\nbranches: 2\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 3);
-  assert_contains(command_err, "branches need a test in time");
+  command_expect("fit mine.yaml --force", 3, "branches need a test in time");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: hold, kind: relaxation, file: strip.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 3);
-  assert_contains(command_err, "a relaxation needs ramp or rate");
+  command_expect("fit mine.yaml --force", 3, "a relaxation needs ramp or rate");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: none.csv}\n");
-  assert_int_equal(command_run("fit mine.yaml --force"), 5);
-  assert_contains(command_err, "none.csv");
+  command_expect("fit mine.yaml --force", 5, "none.csv");
   assert_int_equal(command_run("fit"), 2);
 }
 
@@ -124,12 +115,7 @@ static void test_example(void **state)
 {
   (void)state;
   static char page[COMMAND_TEXT_MAX];
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
-  assert_non_null(file);
-  page[fread(page, 1, sizeof page - 1, file)] = '\0';
-  fclose(file);
-  assert_int_equal(command_run("schema --fit --markdown"), 0);
-  assert_contains(page, command_out);
+  command_page("fit.md", "schema --fit --markdown", page);
   assert_int_equal(command_run("fit @/examples/fit/silicone.yaml -o silicone"), 0);
   assert_contains(command_out,
                   "yeoh                        3        0     1.01 std    0.60 %  <- taken");
@@ -209,8 +195,7 @@ static void test_creep(void **state)
   command_write("none.csv", "stretch,stress (Pa)\n1.1,900\n1.2,900\n");
   command_write("none.yaml", "dea_fit: 1\nname: none\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: hung, kind: creep, file: none.csv}\n");
-  assert_int_equal(command_run("fit none.yaml"), 5);
-  assert_contains(command_err, "'none.csv' has no column 'time (s)'");
+  command_expect("fit none.yaml", 5, "'none.csv' has no column 'time (s)'");
 }
 
 /* A Gent law in tension: Mooney and Rivlin's fits it better than neo-Hooke's by a negative

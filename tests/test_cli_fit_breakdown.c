@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
-/* dea fit of breakdown tests, as a user runs it: the example, its files, what may be wrong. */
+/* dea fit of breakdown tests and of life tests, as a user runs it: the examples, their files, what
+ * may be wrong. */
 #include "command.h"
 
 /* A table and keys of the fit file; the exit code and one message are wanted. */
@@ -10,10 +11,7 @@ static void expect(const char *keys, const char *table, int code, const char *me
            "dea_fit: 1\nname: mine\nmaterial: elastosil-2030\nbreakdown: films.csv\n%s", keys);
   command_write("mine.yaml", text);
   command_write("films.csv", table);
-  const int found = command_run("fit mine.yaml --force");
-  if (found != code || strstr(command_err, message) == NULL) {
-    fail_msg("exit code %d, wanted %d with '%s':\n%s", found, code, message, command_err);
-  }
+  command_expect("fit mine.yaml --force", code, message);
 }
 
 static const char alike[] = "thickness: 100 um\nstretch: 1.5\narea: 20 mm^2\n";
@@ -41,19 +39,13 @@ static void test_example(void **state)
 {
   (void)state;
   static char page[COMMAND_TEXT_MAX];
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
-  assert_non_null(file);
-  page[fread(page, 1, sizeof page - 1, file)] = '\0';
-  fclose(file);
-  assert_int_equal(command_run("schema --fit-breakdown --markdown"), 0);
-  assert_contains(page, command_out);
+  command_page("fit.md", "schema --fit-breakdown --markdown", page);
   assert_int_equal(command_run("fit @/examples/fit/breakdown.yaml -o films"), 0);
   static const char line[] =
       "at_rest                  97.336 +- 3.32      V/um   (68 %: 94.319 to 101.1)";
   assert_contains(command_out, line);
   assert_contains(page, line);
-  assert_int_equal(command_run("fit @/examples/fit/breakdown.yaml -o films"), 5);
-  assert_contains(command_err, "--force");
+  command_expect("fit @/examples/fit/breakdown.yaml -o films", 5, "--force");
   command_read("films/fit.csv", page);
   assert_contains(page, "chance by the law");
   command_read("films/fit.svg", page);
@@ -68,8 +60,106 @@ static void test_example(void **state)
   assert_contains(command_out, "\"broken\": 21");
 }
 
+// Lives -------------------------------------------------------------------------------------------
+
+/* A week of 1000 cycles at 3 kV, each 604.8 s long and half of that under voltage, with a look at
+ * 1 kV every 100; the stroke falls by `loss` a cycle from `stroke` on. */
+static void write_week(const char *folder, double stroke, double loss, int broken, int ended)
+{
+  static char text[1 << 17];
+  char name[64];
+  size_t n =
+      (size_t)snprintf(text, sizeof text,
+                       "# Reduced from a test\nend (s),under voltage (s),asked V (kV),"
+                       "displacement (um),charge (uC),leakage (nA),breakdowns,ended early\n");
+  for (int k = 1; k <= 1000; k++) {
+    n += (size_t)snprintf(text + n, sizeof text - n, "%.10g,%.10g,%d,%.8g,%.8g,%g,%d,%d\n",
+                          604.8 * k, 302.4 * k, k % 100 == 0 ? 1 : 3,
+                          k % 100 == 0 ? 0.1 * stroke : stroke - loss * k, 0.2 * k,
+                          k > 700 && k < 703 ? 900.0 : 5.0, k == broken, ended && k == 1000);
+  }
+  command_folder_make(folder);
+  snprintf(name, sizeof name, "%s/life.csv", folder);
+  command_write(name, text);
+}
+
+static void fit_lives(const char *keys, int code)
+{
+  char text[1200];
+  snprintf(text, sizeof text, "dea_fit: 1\nname: mine\n%s", keys);
+  command_write("lives.yaml", text);
+  const int found = command_run("fit lives.yaml --force");
+  if (found != code) {
+    fail_msg("exit code %d, wanted %d\n%s%s", found, code, command_out, command_err);
+  }
+}
+
+/* Three specimens of several weeks: by stroke, by breakdown in the second week, and a survivor. */
+static void test_lives_of_recordings(void **state)
+{
+  (void)state;
+  write_week("a1", 400, 0.02, 0, 0); // 400 to 380 um
+  write_week("a2", 380, 0.1, 0, 0);  // below 320 of 399.89 from the 602nd cycle on
+  write_week("b1", 300, 0, 0, 0);
+  write_week("b2", 300, 0, 123, 0);
+  write_week("c1", 500, 0, 0, 1);
+  static const char lives[] = "life:\n  - {name: A, reduced: [a1, a2]}\n"
+                              "  - {name: B, reduced: [b1, b2]}\n  - {name: C, reduced: c1}\n";
+  char keys[600];
+  snprintf(keys, sizeof keys, "%sstroke_loss: 20 %%\n", lives);
+  fit_lives(keys, 0);
+  assert_contains(command_out, "3 specimens, of which 2 failed");
+  assert_contains(command_err, "the last recording of 'C' ended early");
+  static char csv[COMMAND_TEXT_MAX];
+  command_read("lives.fit/fit.csv", csv);
+  // 0.8 times the mean of the first ten cycles: 319.912 um, after 1601 cycles and 269 h of these
+  assert_contains(csv, "A,1,stroke,1601,268.968,134.484,0.3202,0.79996999");
+  assert_contains(csv, "B,1,breakdown,1123,188.664,94.332,0.2246,1,");
+  assert_contains(csv, "C,0,survived,1000,168,84,0.2,1,");
+  snprintf(keys, sizeof keys,
+           "%slargest_leakage: 0.5 uA\nat_breakdown: no\nlasting: 2\nclock: "
+           "under_voltage\n",
+           lives);
+  fit_lives(keys, 0);
+  command_read("lives.fit/fit.csv", csv);
+  assert_contains(csv, "B,1,leakage,701,117.768,58.884,");
+  assert_contains(command_out, "no law: two failures at different lives are needed");
+  snprintf(keys, sizeof keys, "%sat_breakdown: no\n", lives);
+  fit_lives(keys, 0);
+  assert_contains(command_out, "less than 63.2 % fail by 1000 cycles"); // 1 - 0.05^(1/3)
+  fit_lives("life: [{name: A}]\n", 3);
+  assert_contains(command_err, "'A' needs something: its recordings, or its life");
+  fit_lives("life: [{name: A, reduced: none}]\n", 5);
+  assert_contains(command_err, "life.csv");
+}
+
+/* The example as the page has it: the numbers are those of the equations of the maximum, solved by
+ * bisection elsewhere. */
+static void test_life_example(void **state)
+{
+  (void)state;
+  static char page[COMMAND_TEXT_MAX];
+  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
+  assert_non_null(file);
+  page[fread(page, 1, sizeof page - 1, file)] = '\0';
+  fclose(file);
+  assert_int_equal(command_run("schema --fit-life --markdown"), 0);
+  assert_contains(page, command_out);
+  assert_int_equal(command_run("fit @/examples/fit/life.yaml -o batch"), 0);
+  static const char line[] = "scale                    260091 +- 3.78e+04  cycles";
+  assert_contains(command_out, line);
+  assert_contains(page, line);
+  assert_contains(command_out, "shape                   1.67923 +- 0.36");
+  command_read("batch/fit.svg", page);
+  assert_contains(page, "survived until there");
+  assert_int_equal(command_run("fit @/examples/fit/life.yaml -o batch --force --json"), 0);
+  assert_contains(command_out, "\"failed\": 17");
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors), cmocka_unit_test(test_example)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors), cmocka_unit_test(test_example),
+                                     cmocka_unit_test(test_lives_of_recordings),
+                                     cmocka_unit_test(test_life_example)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

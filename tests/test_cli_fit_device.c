@@ -22,10 +22,7 @@ static void expect(const char *model, const char *parameters, const char *curves
                    const char *message)
 {
   write_fit(model, parameters, curves);
-  const int found = command_run("fit mine.yaml --force");
-  if (found != code || strstr(command_err, message) == NULL) {
-    fail_msg("exit code %d, wanted %d with '%s':\n%s", found, code, message, command_err);
-  }
+  command_expect("fit mine.yaml --force", code, message);
 }
 
 static const char one[] = "name: s, file: sweep.csv, quantities: [electrode_edge_u_m]";
@@ -137,20 +134,14 @@ static void test_example(void **state)
 {
   (void)state;
   static char page[COMMAND_TEXT_MAX];
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/fit.md", "rb");
-  assert_non_null(file);
-  page[fread(page, 1, sizeof page - 1, file)] = '\0';
-  fclose(file);
-  assert_int_equal(command_run("schema --fit-device --markdown"), 0);
-  assert_contains(page, command_out);
+  command_page("fit.md", "schema --fit-device --markdown", page);
   assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 0);
   static const char line[] = "pre_stretch                           1.5 ->     1.4209 +- 0.0032";
   assert_contains(command_out, line);
   assert_contains(page, line);
   assert_contains(command_out,
                   "film.thickness and film.permittivity.at_rest are hardly told apart");
-  assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 5);
-  assert_contains(command_err, "--force");
+  command_expect("fit @/examples/fit/device.yaml -o device", 5, "--force");
   command_read("device/fit.csv", page);
   assert_contains(page, "sweep,electrode_edge_u_m,fit,2,yes,0,,-3.7,3,");
   command_read("device/fit_capacitance_F.svg", page);

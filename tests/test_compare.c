@@ -102,6 +102,20 @@ static void test_misfit_figures_are_drawn(void **state)
   assert_string_equal(command_err, "");
 }
 
+/* An uncertainty without name and unit has those of the column before it. */
+static void test_uncertainty_of_the_column_before(void **state)
+{
+  (void)state;
+  command_write("t.csv", "V (kV),z centre (mm),z centre err (mm)\n0,0,0.01\n1,1.5,0.2\n");
+  assert_int_equal(command_run("compare a t.csv --json"), 0);
+  char *named = strdup(command_out);
+  assert_non_null(named);
+  command_write("t.csv", "V (kV),Displacement (mm),err\n0,0,0.01\n1,1.5,0.2\n");
+  assert_int_equal(command_run("compare a t.csv --json"), 0);
+  assert_string_equal(command_out, named);
+  free(named);
+}
+
 static void test_errors_of_the_command_line(void **state)
 {
   (void)state;
@@ -146,6 +160,7 @@ int main(void)
       cmocka_unit_test(test_json_has_the_numbers),
       cmocka_unit_test(test_one_model_against_another),
       cmocka_unit_test(test_misfit_figures_are_drawn),
+      cmocka_unit_test(test_uncertainty_of_the_column_before),
       cmocka_unit_test(test_errors_of_the_command_line),
       cmocka_unit_test(test_plot_draws_again),
   };

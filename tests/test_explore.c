@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 /* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
  * store that is cut off anywhere. */
+#include "explore/order.h"
 #include "explore/plan.h"
 #include "explore/pool.h"
 #include "explore/statistics.h"
@@ -140,6 +141,47 @@ static void test_spread(void **state)
   assert_true(fabs(spread.quantile[0] - 25) < 1e-9 && fabs(spread.quantile[3] - 840) < 1e-9);
 }
 
+/* Groups of neighbours: each case in one, which is a box of the plan; they begin from one of them.
+ */
+static void test_order(void **state)
+{
+  (void)state;
+  enum { N = 1000, D = 3, GROUP = 20 };
+  static double p[N * D];
+  const bool whole[D] = {true, false, false};
+  bool there[N] = {false};
+  struct dea_order order;
+  dea_sample_sobol(D, N, 1, p);
+  for (size_t i = 0; i < N; i++) {
+    p[i * D] = p[i * D] < 0.5 ? 4 : 8;
+    p[i * D + 2] *= 1e-6; // the range counts, not the unit
+  }
+  assert_int_equal(dea_order_of(ctx, p, N, D, whole, GROUP, &order), DEA_OK);
+  size_t groups = 0;
+  for (size_t from = 0, to = 0; from < N; from = to, groups++) {
+    double low[D] = {INFINITY, INFINITY, INFINITY}, high[D] = {0};
+    assert_int_equal(order.first[from], order.cases[from]);
+    for (to = from; to < N && order.first[to] == order.first[from]; to++) {
+      const size_t i = order.cases[to];
+      assert_false(there[i]);
+      there[i] = true;
+      for (size_t j = 0; j < D; j++) {
+        low[j] = fmin(low[j], p[i * D + j]);
+        high[j] = fmax(high[j], p[i * D + j]);
+      }
+    }
+    assert_true(to - from <= GROUP && to - from >= GROUP / 2 - 1);
+    assert_true(high[0] == low[0] && high[1] - low[1] < 0.3 && high[2] - low[2] < 0.3e-6);
+  }
+  assert_int_equal(groups, 64);
+  dea_order_free(ctx, &order);
+  assert_int_equal(dea_order_of(ctx, p, N, D, whole, 1, &order), DEA_OK);
+  for (size_t i = 0; i < N; i++) { // nobody begins from another: as planned
+    assert_true(order.cases[i] == i && order.first[i] == i);
+  }
+  dea_order_free(ctx, &order);
+}
+
 // Processes ---------------------------------------------------------------------------------------
 
 /* q = p0^2 + p1; case 3 has no second value, case 5 ends its process, case 6 that with a signal. */
@@ -243,13 +285,14 @@ static void test_store(void **state)
   const size_t length = fread(bytes, 1, sizeof bytes, file);
   fclose(file);
   const char *head = strchr(bytes, '\n');
-  for (size_t cut = 0; cut <= length; cut += cut < 100 ? 9 : 37) { // ended anywhere
+  for (size_t cut = 0; cut <= length; cut += cut < 100 ? 9 : 37) { // ended anywhere, or zeros there
     size_t whole_lines = 0;
     for (size_t i = (size_t)(head - bytes) + 1; i < cut; i++) {
       whole_lines += bytes[i] == '\n' ? 1U : 0U;
     }
     file = fopen(name, "wb");
     fwrite(bytes, 1, cut, file);
+    fwrite((char[40]){0}, 1, cut % 2 == 0 ? 0 : 40, file);
     fclose(file);
     char in[600];
     snprintf(in, sizeof in, "%s/store", folder);
@@ -267,6 +310,7 @@ static void test_store(void **state)
     dea_store_close(store);
     assert_int_equal(dea_store_open(ctx, in, "q1", &evaluator, NULL, &store), DEA_OK);
     assert_int_equal(dea_store_count(store), 12);
+    assert_int_equal(dea_store_torn(store), 0);
     dea_store_close(store);
   }
 }
@@ -277,6 +321,7 @@ int main(void)
       cmocka_unit_test(test_sobol),    cmocka_unit_test(test_sobol_integral),
       cmocka_unit_test(test_latin),    cmocka_unit_test(test_quantile),
       cmocka_unit_test(test_ishigami), cmocka_unit_test(test_spread),
-      cmocka_unit_test(test_pool),     cmocka_unit_test(test_store)};
+      cmocka_unit_test(test_order),    cmocka_unit_test(test_pool),
+      cmocka_unit_test(test_store)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

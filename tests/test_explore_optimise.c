@@ -10,6 +10,8 @@
 
 #include "own_folder.h"
 
+static bool gradients, partly;
+
 /* Of p: the sum, the product, and the square of the distance to (2.4, p0). */
 static dea_status three(void *user, struct dea_context *own, struct dea_case *io)
 {
@@ -26,6 +28,9 @@ static dea_status three(void *user, struct dea_context *own, struct dea_case *io
   memcpy(io->q, q, sizeof q);
   if (*(const bool *)user) {
     memcpy(io->q + 3, slopes, sizeof slopes);
+  }
+  if (partly) { // none by y
+    io->q[4] = io->q[6] = io->q[8] = NAN;
   }
   return DEA_OK;
 }
@@ -44,7 +49,6 @@ static double product_margin(const void *user, size_t limit, const double *q)
 
 static const double wholes[] = {1, 2, 3, 4, 5};
 
-static bool gradients;
 static struct dea_evaluator evaluator = {
     .param_count = 2, .value_count = 3, .evaluate = three, .user = &gradients};
 
@@ -151,9 +155,66 @@ static void test_front(void **state)
   }
 }
 
+/* Slopes by y are missing: differences stand in for them, and are counted. */
+static void test_slopes_that_are_missing(void **state)
+{
+  (void)state;
+  static const int sum[] = {0, 0};
+  struct dea_optimum best;
+  size_t count, replaced[2] = {0, 0};
+  struct dea_search search = search_of(sum, 1);
+  search.limit_count = 1;
+  search.starts = 1;
+  search.replaced = replaced;
+  gradients = partly = true;
+  const size_t with = run(&search, "partly", &best, &count);
+  gradients = partly = false;
+  assert_close(best.p[0], sqrt(2), 1e-4, 0);
+  assert_close(best.p[1], sqrt(2), 1e-4, 0);
+  assert_int_equal(replaced[0], 0);
+  assert_true(replaced[1] > 1 && with <= 3 * replaced[1]);
+}
+
+/* x is missed by d to either side: the product stays at least 2 at the smaller x, which is then the
+ * root of 2 and d; by the worst, and by mean and spread, where the standard deviations of sum and
+ * product over -d, 0, d are d and d y. */
+static void test_scatter(void **state)
+{
+  (void)state;
+  static const int sum[] = {0, 0};
+  static const double d = 0.3, shifts[] = {0, 0, 0.3, 0, -0.3, 0};
+  struct dea_optimum best;
+  size_t count;
+  for (size_t k = 0; k < 4; k++) {
+    struct dea_search search = search_of(sum, 1);
+    char name[8] = {'s', (char)('0' + k), '\0'};
+    double looked[DEA_SEARCH_VALUES_MAX];
+    search.limit_count = 1;
+    search.scatter = shifts;
+    search.scatter_count = 3;
+    search.quantile = k < 2 ? 1 : NAN;
+    search.spread = k < 2 ? 0 : 2;
+    gradients = k % 2 == 0;
+    run(&search, name, &best, &count);
+    const double far = k < 2 ? d : 2 * d;
+    assert_close(best.p[0], sqrt(2) + far, 1e-4, 0);
+    assert_close(best.p[1], sqrt(2), 1e-4, 0);
+    assert_close(best.f[0], 2 * sqrt(2) + 2 * far, 2e-6, 0);
+    assert_int_equal(dea_store_open(ctx, in_folder(name), "q", &evaluator, NULL, &search.store),
+                     DEA_OK);
+    assert_true(dea_search_look(&search, best.p, looked));
+    assert_close(looked[0], best.f[0], 1e-12, 0);
+    best.p[0] += d; // one that scatters stands for no design of its own
+    assert_false(dea_search_look(&search, best.p, looked));
+    dea_store_close(search.store);
+  }
+  gradients = false;
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_limit), cmocka_unit_test(test_whole),
-                                     cmocka_unit_test(test_front)};
+                                     cmocka_unit_test(test_front), cmocka_unit_test(test_scatter),
+                                     cmocka_unit_test(test_slopes_that_are_missing)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -116,6 +116,9 @@ static void test_shape_faults(void **state)
                "the contour crosses or touches itself at (1.2, 1.2) mm");
   const double flat[3][2] = {{0, 0}, {1e-3, 0}, {2e-3, 0}};
   expect_fault(&dea_shape_polygon, NULL, flat, 3, "a contour encloses no area");
+  const double tie[4][2] = {{-2e-3, -1e-3}, {2e-3, 1e-3}, {2e-3, -1e-3}, {-2e-3, 1e-3}};
+  expect_fault(&dea_shape_polygon, NULL, tie, 4,
+               "the contour crosses or touches itself at (0, 0) mm");
   expect_fault(&dea_shape_polygon, NULL, flat, 2, "needs 3 points or more, not 2");
   const double spike[5][2] = {{0, 0}, {2e-3, 0}, {2e-3, 1e-3}, {2e-3, 0.5e-3}, {0, 1e-3}};
   expect_fault(&dea_shape_polygon, NULL, spike, 5, "touches itself at (2, 0.5) mm");

@@ -1,13 +1,15 @@
 /* dea drive on imitated supplies with a fault at a random moment: whatever happens, "at 0 V" is
  * only said, and a supply only taken for clean, when the imitation was at 0 V and stayed there.
- * Twelve runs by fixed seeds; `test_lab_faults COUNT [SEED]` makes as many as wanted and prints how
- * long it took to 0 V, or to the alarm. */
+ * Twelve runs by fixed seeds; `test_lab_faults COUNT [SEED [TABLE]]` makes as many as wanted,
+ * prints how long it took to 0 V, or to the alarm, and writes a table of the runs
+ * (verify/drive-faults.sh). */
 // ctest: supply
 #define _GNU_SOURCE
 #include "command.h"
 #include "supply.h"
 
 #include <signal.h>
+#include <sys/resource.h>
 
 enum { TOGETHER = 8 };
 static const double zero_V = 20, limit_s = 60, after_s = 2;
@@ -93,8 +95,8 @@ static pid_t start_drive(const struct run *r, const char *folder, int port)
           zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\", is_off: \"OUTP?\"" : "");
   fclose(file);
   snprintf(command, sizeof command,
-           "cd '%s' && %s XDG_STATE_HOME='%s' exec '%s' drive p.yaml --arm -o r.h5 >out 2>err",
-           folder, r->fault == FULL_DISK ? "ulimit -f 36;" : "", folder, DEA_COMMAND);
+           "cd '%s' && XDG_STATE_HOME='%s' exec '%s' drive p.yaml --arm -o r.h5 >out 2>err", folder,
+           folder, DEA_COMMAND);
   pid_t child = fork();
   if (child == 0) {
     execl("/bin/sh", "sh", "-c", command, (char *)NULL);
@@ -103,7 +105,17 @@ static pid_t start_drive(const struct run *r, const char *folder, int port)
   return child;
 }
 
-static void begin_fault(const struct run *r, struct supply *s, pid_t child)
+/* The recording cannot grow any more. */
+static void fill_disk(const char *folder, pid_t child)
+{
+  char path[600];
+  struct stat info;
+  snprintf(path, sizeof path, "%s/r.h5", folder);
+  rlim_t size = stat(path, &info) == 0 ? (rlim_t)info.st_size : 0;
+  (void)prlimit(child, RLIMIT_FSIZE, &(struct rlimit){size, size}, NULL);
+}
+
+static void begin_fault(const struct run *r, const char *folder, struct supply *s, pid_t child)
 {
   static const int of_supply[FAULTS] = {[DELAY] = SUPPLY_SLOW,
                                         [HANG] = SUPPLY_HANGS,
@@ -115,6 +127,8 @@ static void begin_fault(const struct run *r, struct supply *s, pid_t child)
   atomic_store(&s->fault, of_supply[r->fault]);
   if (signals[r->fault] != 0) {
     kill(child, signals[r->fault]);
+  } else if (r->fault == FULL_DISK) {
+    fill_disk(folder, child);
   }
 }
 
@@ -151,7 +165,7 @@ static void make_run(struct run *r)
   while (now_s < began_s + limit_s && !(gone && now_s > ended_s + after_s)) {
     now_s = dea_clock_s();
     if (!faulty && now_s >= fault_at_s && !gone) {
-      begin_fault(r, s, child);
+      begin_fault(r, folder, s, child);
       faulty = true;
     }
     if (faulty && !over && (now_s >= fault_at_s + fmin(r->lasts_s, r->fault == STOP ? 4 : 1e9))) {
@@ -244,7 +258,24 @@ static void print_histogram(void)
   }
 }
 
+/* A row a run: times [s] after the fault; inf: never. */
+static void write_table(const char *path)
+{
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fprintf(file, "seed,fault,after (s),lasts (s),read back,exit,said at 0 V,end (V),later (V),"
+                "at 0 V (s),alarm (s),wrong\n");
+  for (size_t i = 0; i < run_count; i++) {
+    const struct run *r = &runs[i];
+    fprintf(file, "%u,%s,%.3f,%g,%d,%d,%d,%.0f,%.0f,%g,%g,%d\n", r->seed, names[r->fault],
+            r->fault_s, r->lasts_s, r->measures, r->code, r->said_zero, r->end_V, r->later_V,
+            r->zero_s, r->alarm_s, is_wrong(r));
+  }
+  assert_int_equal(fclose(file), 0);
+}
+
 static unsigned first_seed = 1;
+static const char *table;
 
 static void test_faults_at_random_moments(void **state)
 {
@@ -263,6 +294,9 @@ static void test_faults_at_random_moments(void **state)
     pthread_join(threads[i], NULL);
   }
   print_histogram();
+  if (table != NULL) {
+    write_table(table);
+  }
   for (size_t i = 0; i < run_count; i++) {
     const struct run *r = &runs[i];
     if (is_wrong(r)) {
@@ -283,5 +317,6 @@ int main(int count, char **arguments)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_faults_at_random_moments)};
   run_count = count > 1 ? (size_t)strtoul(arguments[1], NULL, 10) : 12;
   first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
+  table = count > 3 ? arguments[3] : NULL;
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

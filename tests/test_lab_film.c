@@ -190,7 +190,10 @@ static void test_check(void **state)
 static void test_bench(void **state)
 {
   (void)state;
-  const struct dea_sim_settings settings = {.model = "capacitor", .breakdown_V = (double)NAN};
+  const struct dea_sim_settings settings = {.model = "capacitor",
+                                            .breakdown_V = (double)NAN,
+                                            .breakdown_s = (double)NAN,
+                                            .fatigue_s = (double)NAN};
   struct dea_sim_bench *bench;
   struct dea_sim_state s;
   struct dea_protocol *p = protocol_of(1000);
@@ -219,7 +222,10 @@ static void test_bench(void **state)
 static void test_breakdown(void **state)
 {
   (void)state;
-  const struct dea_sim_settings settings = {.model = "capacitor", .breakdown_V = (double)NAN};
+  const struct dea_sim_settings settings = {.model = "capacitor",
+                                            .breakdown_V = (double)NAN,
+                                            .breakdown_s = (double)NAN,
+                                            .fatigue_s = (double)NAN};
   struct dea_sim_bench *bench;
   struct dea_sim_state s;
   struct dea_protocol *p = protocol_of(3000);

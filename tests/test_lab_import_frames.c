@@ -4,26 +4,6 @@
 
 #include "lab/import/clock_text.h"
 
-/* The recording that a mapping makes of a file's bytes. */
-static struct dea_recording *record(const char *name, const char *bytes, const char *map)
-{
-  struct dea_table *table = read_text(name, bytes);
-  struct dea_mapping *mapping;
-  struct dea_recording *recording = NULL;
-  dea_status status = dea_mapping_read_memory(ctx, "map.yaml", map, strlen(map), &mapping);
-  if (status == DEA_OK) {
-    status = dea_table_record(ctx, table, mapping, &recording);
-  }
-  if (status != DEA_OK) {
-    size_t count;
-    const struct dea_finding *findings = dea_finding_get(ctx, &count);
-    fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
-  }
-  dea_mapping_destroy(ctx, mapping);
-  dea_table_destroy(ctx, table);
-  return recording;
-}
-
 /* All fixtures hold the same pull of a strip: 10 Hz, these displacements and forces. */
 static const double pulled_m[] = {0, 0.167e-3, 0.334e-3, 0.501e-3};
 static const double pulled_N[] = {0.0012, 0.0243, 0.0481, 0.0702};
@@ -48,18 +28,18 @@ static void assert_pull(struct dea_recording *recording, const char *way, const 
 static void test_bluehill(void **state)
 {
   (void)state;
-  assert_pull(record("vhb 10x20 mm 1 mm.csv",
-                     "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
-                     "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
-                     "\"Time\",\"Extension\",\"Load\",\"Tensile stress\"\r\n"
-                     "\"(s)\",\"(mm)\",\"(N)\",\"(MPa)\"\r\n"
-                     "\"0.000\",\"0.000\",\"0.0012\",\"0.0001\"\r\n"
-                     "\"0.100\",\"0.167\",\"0.0243\",\"0.0024\"\r\n"
-                     "\"0.200\",\"0.334\",\"0.0481\",\"0.0048\"\r\n"
-                     "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
-                     "dea-import: 1\ntime: Time\ncolumns:\n"
-                     "  - {column: Extension, as: displacement}\n"
-                     "  - {column: Load, as: force}\nignore: [Tensile*]\n"),
+  assert_pull(record_file("vhb 10x20 mm 1 mm.csv",
+                          "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
+                          "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
+                          "\"Time\",\"Extension\",\"Load\",\"Tensile stress\"\r\n"
+                          "\"(s)\",\"(mm)\",\"(N)\",\"(MPa)\"\r\n"
+                          "\"0.000\",\"0.000\",\"0.0012\",\"0.0001\"\r\n"
+                          "\"0.100\",\"0.167\",\"0.0243\",\"0.0024\"\r\n"
+                          "\"0.200\",\"0.334\",\"0.0481\",\"0.0048\"\r\n"
+                          "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
+                          "dea-import: 1\ntime: Time\ncolumns:\n"
+                          "  - {column: Extension, as: displacement}\n"
+                          "  - {column: Load, as: force}\nignore: [Tensile*]\n"),
               "Extension", "Load");
 }
 
@@ -67,18 +47,18 @@ static void test_bluehill(void **state)
 static void test_decimal_comma(void **state)
 {
   (void)state;
-  assert_pull(record("zug.csv",
-                     "\"Pr\xfc"
-                     "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
-                     "\"Zeit\";\"Verl\xe4ngerung\";\"Kraft\"\r\n"
-                     "\"(s)\";\"(mm)\";\"(kN)\"\r\n"
-                     "\"0,000\";\"0,000\";\"0,0000012\"\r\n"
-                     "\"0,100\";\"0,167\";\"0,0000243\"\r\n"
-                     "\"0,200\";\"0,334\";\"0,0000481\"\r\n"
-                     "\"0,300\";\"0,501\";\"0,0000702\"\r\n",
-                     "dea-import: 1\ntime: Zeit\ncolumns:\n"
-                     "  - {column: Verl\xc3\xa4ngerung, as: displacement, name: way}\n"
-                     "  - {column: Kraft, as: force}\n"),
+  assert_pull(record_file("zug.csv",
+                          "\"Pr\xfc"
+                          "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
+                          "\"Zeit\";\"Verl\xe4ngerung\";\"Kraft\"\r\n"
+                          "\"(s)\";\"(mm)\";\"(kN)\"\r\n"
+                          "\"0,000\";\"0,000\";\"0,0000012\"\r\n"
+                          "\"0,100\";\"0,167\";\"0,0000243\"\r\n"
+                          "\"0,200\";\"0,334\";\"0,0000481\"\r\n"
+                          "\"0,300\";\"0,501\";\"0,0000702\"\r\n",
+                          "dea-import: 1\ntime: Zeit\ncolumns:\n"
+                          "  - {column: Verl\xc3\xa4ngerung, as: displacement, name: way}\n"
+                          "  - {column: Kraft, as: force}\n"),
               "way", "Kraft");
 }
 
@@ -91,10 +71,10 @@ static void test_gb18030(void **state)
                               "\"(s)\",\"(mm)\",\"(N)\"\r\n"
                               "\"0.00\",\"0.000\",\"0.0012\"\r\n\"0.10\",\"0.167\",\"0.0243\"\r\n"
                               "\"0.20\",\"0.334\",\"0.0481\"\r\n\"0.30\",\"0.501\",\"0.0702\"\r\n";
-  assert_pull(record("gb.csv", bytes,
-                     "dea-import: 1\ntime: \xe6\x97\xb6\xe9\x97\xb4\ncolumns:\n"
-                     "  - {column: \xe4\xbd\x8d\xe7\xa7\xbb, as: displacement}\n"
-                     "  - {column: \xe5\x8a\x9b, as: force}\n"),
+  assert_pull(record_file("gb.csv", bytes,
+                          "dea-import: 1\ntime: \xe6\x97\xb6\xe9\x97\xb4\ncolumns:\n"
+                          "  - {column: \xe4\xbd\x8d\xe7\xa7\xbb, as: displacement}\n"
+                          "  - {column: \xe5\x8a\x9b, as: force}\n"),
               "\xe4\xbd\x8d\xe7\xa7\xbb", "\xe5\x8a\x9b");
   // a sign of Latin-1 is not half of a letter, and UTF-8 stays what it is
   static const double values[] = {1, 2};
@@ -125,10 +105,11 @@ static void test_times_as_text(void **state)
       snprintf(text + at, sizeof text - at, "%s;%.3f;%.4f\n", times[k][i], 1e3 * pulled_m[i],
                pulled_N[i]);
     }
-    assert_pull(record("clock.csv", text,
-                       "dea-import: 1\ntime: When\ncolumns:\n"
-                       "  - {column: Travel, as: displacement}\n  - {column: Load, as: force}\n"),
-                "Travel", "Load");
+    assert_pull(
+        record_file("clock.csv", text,
+                    "dea-import: 1\ntime: When\ncolumns:\n"
+                    "  - {column: Travel, as: displacement}\n  - {column: Load, as: force}\n"),
+        "Travel", "Load");
   }
 }
 

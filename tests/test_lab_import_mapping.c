@@ -3,31 +3,10 @@
 #define _GNU_SOURCE
 #include "import_text.h"
 
-static struct dea_mapping *map_text(const char *text)
-{
-  struct dea_mapping *mapping;
-  dea_finding_clear(ctx);
-  if (dea_mapping_read_memory(ctx, "map.yaml", text, strlen(text), &mapping) != DEA_OK) {
-    size_t count;
-    fail_msg("%s", dea_finding_get(ctx, &count)[0].text);
-  }
-  return mapping;
-}
-
 /* A recording of a text file; mapping: NULL guesses. */
 static struct dea_recording *record_text(const char *text, const char *map)
 {
-  struct dea_table *table = read_text("table.csv", text);
-  struct dea_mapping *mapping = map != NULL ? map_text(map) : NULL;
-  struct dea_recording *recording;
-  if (dea_table_record(ctx, table, mapping, &recording) != DEA_OK) {
-    size_t count;
-    const struct dea_finding *findings = dea_finding_get(ctx, &count);
-    fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
-  }
-  dea_mapping_destroy(ctx, mapping);
-  dea_table_destroy(ctx, table);
-  return recording;
+  return record_file("table.csv", text, map);
 }
 
 static void assert_channel(const struct dea_recording *recording, const char *name,

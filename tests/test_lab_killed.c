@@ -1,5 +1,6 @@
 /* lab/recording: a program that records is killed between any two of its calls; what it had
- * announced is there, and every value is the right one. */
+ * announced is there, and every value is the right one. `test_lab_killed COUNT [SEED]` makes that
+ * many kills at random moments (verify/recordings.sh). */
 #define _GNU_SOURCE
 #include "own_disk.h"
 #include "own_folder.h"
@@ -50,9 +51,9 @@ static void record_for_ever(const char *file, int out)
   }
 }
 
-/* Kills it as soon as so many calls have returned, wherever it is by then; the number of cycles
- * that it had announced. */
-static uint32_t kill_after(const char *file, uint32_t calls)
+/* Kills it some time after so many calls have returned, wherever it is by then; the number of
+ * cycles that it had announced. */
+static uint32_t kill_after(const char *file, uint32_t calls, double wait_s)
 {
   int ends[2], status;
   assert_int_equal(pipe(ends), 0);
@@ -67,6 +68,9 @@ static uint32_t kill_after(const char *file, uint32_t calls)
   while (last < calls) {
     assert_int_equal(read(ends[0], &last, sizeof last), sizeof last);
   }
+  if (wait_s > 0) {
+    dea_clock_wait(wait_s);
+  }
   assert_int_equal(kill(child, SIGKILL), 0);
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
@@ -77,16 +81,25 @@ static uint32_t kill_after(const char *file, uint32_t calls)
   return last / STAGES;
 }
 
+static uint32_t kill_count = KILLS, seed;
+
 static void test_killed_recordings_keep_what_was_announced(void **state)
 {
   (void)state;
-  for (uint32_t k = 0; k < KILLS; k++) {
+  size_t kept = 0;
+  for (uint32_t k = 0; k < kill_count; k++) {
     struct dea_recording *recording;
     char name[32];
     snprintf(name, sizeof name, "killed-%" PRIu32 ".h5", k);
     const char *file = in_folder(name);
     uint32_t calls = 1 + k + k * k / 8; // each stage of a cycle, early and late
-    uint32_t cycles = kill_after(file, calls);
+    double wait_s = 0;
+    if (seed > 0) {
+      unsigned by_chance = 2654435761U * (seed + k);
+      calls = 1 + (uint32_t)rand_r(&by_chance) % 600;
+      wait_s = 2e-3 * rand_r(&by_chance) / RAND_MAX;
+    }
+    uint32_t cycles = kill_after(file, calls, wait_s);
     assert_true(cycles >= calls / STAGES);
     if (dea_recording_read(ctx, file, &recording) != DEA_OK) {
       fail_msg("after %" PRIu32 " calls: %s", calls, dea_context_message(ctx));
@@ -96,7 +109,9 @@ static void test_killed_recordings_keep_what_was_announced(void **state)
     sample_check(recording, (size_t)cycles * SAMPLE_CYCLE, cycles, cycles, cycles);
     dea_recording_destroy(ctx, recording);
     unlink(file);
+    kept += cycles;
   }
+  print_message("%" PRIu32 " kills, %zu cycles announced, all kept\n", kill_count, kept);
 }
 
 /* Records some cycles on a disk that takes so many writes only, the last one in part: the file is
@@ -145,10 +160,17 @@ static void test_every_write_may_be_the_last(void **state)
   assert_true(n > 200);
 }
 
-int main(void)
+int main(int count, char **arguments)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_write_may_be_the_last),
       cmocka_unit_test(test_killed_recordings_keep_what_was_announced)};
+  const struct CMUnitTest many[] = {
+      cmocka_unit_test(test_killed_recordings_keep_what_was_announced)};
+  if (count > 1) {
+    kill_count = (uint32_t)strtoul(arguments[1], NULL, 10);
+    seed = count > 2 ? (uint32_t)strtoul(arguments[2], NULL, 10) : 1;
+    return cmocka_run_group_tests(many, set_up, tear_down);
+  }
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

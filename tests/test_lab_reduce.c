@@ -105,6 +105,33 @@ static void test_frame_is_found_and_taken_off(void **state)
   }
 }
 
+/* Frames that lie higher and lower in turn, by as much: the scatter of their offsets. */
+static void test_scatter_of_the_frames(void **state)
+{
+  (void)state;
+  struct signal_bench b = line_laser();
+  b.point_sigma = b.common_sigma = b.drift_per_s = b.outliers = b.lost = 0.0;
+  struct dea_reduce_options options = plain;
+  options.film_radius_m = b.film_m;
+  options.electrode_radius_m = b.electrode_m;
+  struct dea_recording r = signal_record(&b, 3);
+  const struct dea_profiles *p = &r.profiles;
+  double n = (double)p->count, squares = 0.0, sum = 0.0;
+  for (size_t f = 0; f < p->count; f++) {
+    double by = f % 2 == 0 ? 40e-6 : -20e-6;
+    sum += by;
+    squares += by * by;
+    for (size_t i = 0; i < p->points; i++) {
+      p->z_m[f * p->points + i] += by;
+    }
+  }
+  struct dea_reduction *out = reduced(&r, &options);
+  assert_true(out->levelling.by_frame);
+  assert_close(out->levelling.offset_std_m, sqrt((squares - sum * sum / n) / (n - 1.0)), 1e-4, 0.0);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 static void test_line_beside_the_centre_is_said(void **state)
 {
   (void)state;
@@ -329,6 +356,7 @@ int main(void)
       cmocka_unit_test(test_uncertainty_of_correlated_samples),
       cmocka_unit_test(test_uncertainty_of_profiles),
       cmocka_unit_test(test_frame_is_found_and_taken_off),
+      cmocka_unit_test(test_scatter_of_the_frames),
       cmocka_unit_test(test_line_beside_the_centre_is_said),
       cmocka_unit_test(test_without_frame_the_outer_film_levels),
       cmocka_unit_test(test_shape),

@@ -93,6 +93,30 @@ static void test_filter_has_its_cutoff_and_no_delay(void **state)
   in[50] = NAN;
   dea_filter_apply(&c, NAN, out);
   assert_true(isnan(out[50]) && out[51] == in[51]);
+  for (size_t i = 0; i < N; i++) { // half of an edge is seen before it, exp(-15) of that from afar
+    in[i] = i < N / 2 ? 0.0 : 1.0;
+  }
+  dea_filter_apply(&c, cutoff_Hz, out);
+  size_t reach = (size_t)(dea_filter_reach(cutoff_Hz) * rate_Hz + 0.5);
+  assert_close(out[N / 2 - reach], 0.5 * exp(-15.0), 0.05, 0.0);
+  assert_true(dea_filter_reach(0.0) == 0.0 && dea_filter_reach(NAN) == 0.0);
+}
+
+static void test_a_list_grows(void **state)
+{
+  (void)state;
+  size_t room = 0;
+  size_t *list = NULL;
+  for (size_t n = 0; n < 1000; n++) {
+    size_t before = room;
+    list = dea_list_grow(ctx, list, n, sizeof *list, &room);
+    assert_true(room > n && (before > n ? room == before : room >= 2 * before));
+    list[n] = n;
+  }
+  for (size_t n = 0; n < 1000; n++) {
+    assert_int_equal(list[n], n);
+  }
+  dea_free(ctx, list);
 }
 
 // Noise ------------------------------------------------------------------------------------------
@@ -133,6 +157,34 @@ static void test_noise_of_a_mean(void **state)
     assert_close(sqrt(dea_noise_of_mean(&noise, 80)), sqrt(variance_of_mean(rhos[k], 80)), 0.15,
                  0.0);
   }
+}
+
+/* Of short windows the lines take much of the noise along; what they took is given back: means of
+ * two neighbours, whose covariances are 1 and 1/2. */
+static void test_noise_in_short_windows(void **state)
+{
+  (void)state;
+  enum { WINDOWS = 8000, EACH = 16, N = WINDOWS * EACH };
+  static double values[N];
+  static struct dea_span spans[WINDOWS];
+  struct dea_channel c = {.interval_s = 0.01, .values = values, .count = N};
+  struct dea_noise noise;
+  uint64_t seed = 5;
+  double before = signal_normal(&seed);
+  for (size_t i = 0; i < N; i++) {
+    double next = signal_normal(&seed);
+    values[i] = (next + before) / sqrt(2.0);
+    before = next;
+  }
+  for (size_t s = 0; s < WINDOWS; s++) {
+    double begin_s = 0.01 * EACH * (double)s - 0.005;
+    spans[s] = (struct dea_span){begin_s, begin_s + 0.01 * EACH};
+  }
+  assert_int_equal(dea_noise_estimate(ctx, &c, spans, WINDOWS, &noise), DEA_OK);
+  assert_int_equal(noise.block, 1);
+  assert_int_equal(noise.lags, 1);
+  assert_close(noise.covariance[0], 1.0, 0.02, 0.0);
+  assert_close(noise.covariance[1], 0.5, 0.03, 0.0);
 }
 
 // Edges ------------------------------------------------------------------------------------------
@@ -288,6 +340,28 @@ static void test_nothing_is_found_in_quiet(void **state)
   assert_true(all <= 8);
 }
 
+/* Under a voltage that never rests the leakage is taken off the whole. */
+static void test_discharge_on_a_ramp(void **state)
+{
+  (void)state;
+  static struct currents c;
+  const double sigma = 20e-9;
+  fill_currents(&c, sigma, 9);
+  uint64_t seed = 10;
+  for (size_t k = 0; k < I_COUNT; k++) {
+    c.u[k] = 6000.0 * (double)k / I_COUNT;
+    c.v[k] = c.u[k];
+    c.i[k] = 0.2e-6 * (double)k / I_COUNT + sigma * signal_normal(&seed);
+  }
+  c.i[I_COUNT / 2] += 60.0 * sigma;
+  struct dea_discharge *found;
+  struct dea_current_limits limits;
+  assert_int_equal(discharges(&c, &found, &limits), 1);
+  assert_close(found[0].time_s, 0.5 * I_COUNT / I_RATE, 0.0, 1.5 / I_RATE);
+  assert_close(found[0].charge_C, 60.0 * sigma / I_RATE, 0.1, 0.0);
+  dea_free(ctx, found);
+}
+
 static void test_breakdown(void **state)
 {
   (void)state;
@@ -344,6 +418,44 @@ static void test_time_under_voltage(void **state)
   assert_close(cycles[0].under_voltage_s, 2.0, 1e-9, 0.0);
 }
 
+/* A trapezoid on a film whose capacitance grows with the voltage, with leakage and a monitor that
+ * is off: the charge between two equal ramps is that of the film alone. */
+static void test_charge_between_equal_ramps(void **state)
+{
+  (void)state;
+  enum { RATE = 1000, COUNT = 4000 };
+  static const double C0_F = 30e-12, grows_per_V2 = 2e-8, high_V = 3000, leak_ohm = 1e12;
+  static double volts[COUNT], amperes[COUNT];
+  double before_C = 0;
+  for (size_t i = 0; i < COUNT; i++) { // up from 1 to 1.2 s, down from 2.2 to 2.4 s
+    double t = (double)i / RATE;
+    volts[i] = high_V * fmin(fmax(fmin((t - 1) / 0.2, (2.4 - t) / 0.2), 0.0), 1.0);
+    double charge_C = C0_F * volts[i] * (1 + grows_per_V2 * volts[i] * volts[i]);
+    amperes[i] = (charge_C - before_C) * RATE + volts[i] / leak_ohm + 2e-9;
+    before_C = charge_C;
+  }
+  const struct dea_channel u = {.values = volts, .count = COUNT, .interval_s = 1.0 / RATE};
+  const struct dea_channel a = {.values = amperes, .count = COUNT, .interval_s = 1.0 / RATE};
+  const struct dea_charge_limits limits = {60, 0.05};
+  struct dea_cycle_parts part = {
+      .rest = {0, 1}, .active = {1.2, 2.2}, .after = {2.4, 4}, .held = true};
+  struct dea_reduced_cycle cycles[2] = {{.capacitance_F = NAN}, {.capacitance_F = NAN}};
+  const struct dea_cycle_parts parts[2] = {part, part};
+  assert_int_equal(dea_charge_find(ctx, &a, &u, parts, 2, 0.2, &limits, cycles), DEA_OK);
+  const double wanted_F = C0_F * (1 + grows_per_V2 * high_V * high_V);
+  assert_close(cycles[0].capacitance_F, wanted_F, 1e-4, 0.0);
+  assert_close(cycles[0].leakage_A, high_V / leak_ohm, 1e-6, 0.0);
+  assert_close(cycles[1].charge_C, 2 * wanted_F * high_V, 1e-4, 0.0);
+  part.held = false; // a peak: the windows are the two ways
+  cycles[0].capacitance_F = NAN;
+  assert_int_equal(dea_charge_find(ctx, &a, &u, &part, 1, 0.2, &limits, cycles), DEA_OK);
+  assert_close(cycles[0].capacitance_F, wanted_F, 1e-4, 0.0);
+  part.after.begin_s = 2.6; // another ramp down than up
+  cycles[0].capacitance_F = NAN;
+  assert_int_equal(dea_charge_find(ctx, &a, &u, &part, 1, 0.2, &limits, cycles), DEA_OK);
+  assert_true(isnan(cycles[0].capacitance_F));
+}
+
 static void test_rise_of_a_straight_line(void **state)
 {
   (void)state;
@@ -374,14 +486,18 @@ int main(void)
       cmocka_unit_test(test_running_median),
       cmocka_unit_test(test_spread_is_sigma_of_normal_noise),
       cmocka_unit_test(test_filter_has_its_cutoff_and_no_delay),
+      cmocka_unit_test(test_a_list_grows),
       cmocka_unit_test(test_noise_of_a_mean),
+      cmocka_unit_test(test_noise_in_short_windows),
       cmocka_unit_test(test_edges_in_a_gap),
       cmocka_unit_test(test_edges_beside_a_cable),
       cmocka_unit_test(test_threshold_follows_the_number_of_samples),
       cmocka_unit_test(test_discharges_are_found),
       cmocka_unit_test(test_nothing_is_found_in_quiet),
+      cmocka_unit_test(test_discharge_on_a_ramp),
       cmocka_unit_test(test_breakdown),
       cmocka_unit_test(test_time_under_voltage),
+      cmocka_unit_test(test_charge_between_equal_ramps),
       cmocka_unit_test(test_rise_of_a_straight_line),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -147,6 +147,56 @@ static void test_faults(void **state)
   }
 }
 
+/* Its reading stands at 0 V while the output moves: what it reads back at the end says nothing. */
+static void test_lie_from_the_start(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  s = (struct line_supply){.slew_V_per_s = 500};
+  begin(&s);
+  write_protocol(&s, 2, 20, ", behind: 0.5 s");
+  pid_t child = arm_anew("lie.h5");
+  assert_true(line_supply_reaches(&s, 5, 10));
+  atomic_store(&s.fault, LINE_SUPPLY_LIES);
+  int code = supply_wait(child, 20);
+  check_said(&s, code);
+  assert_int_equal(code, 6);
+  assert_contains(command_err, "measures 0");
+  assert_false(supply_said_zero());
+  line_supply_stop(&s);
+}
+
+/* Pulled out, and another supply at 0 V gets the name of its line: that says nothing of this one.
+ */
+static void test_neighbour(void **state)
+{
+  (void)state;
+  static struct line_supply s, neighbour;
+  s = neighbour = (struct line_supply){0};
+  begin(&s);
+  begin(&neighbour);
+  char folder[] = "/tmp/dea-line-XXXXXX", line[64], next[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(line, sizeof line, "%s/line", folder);
+  snprintf(next, sizeof next, "%s/next", folder);
+  assert_int_equal(symlink(s.device, line), 0);
+  assert_int_equal(symlink(neighbour.device, next), 0);
+  snprintf(s.device, sizeof s.device, "%s", line);
+  write_protocol(&s, 2, 20, ", behind: 0.5 s");
+  pid_t child = arm_anew("neighbour.h5");
+  assert_true(line_supply_reaches(&s, 1000, 10));
+  assert_int_equal(rename(next, line), 0);
+  atomic_store(&s.fault, LINE_SUPPLY_PULLED);
+  int code = supply_wait(child, 20);
+  check_said(&s, code);
+  assert_int_equal(code, 6);
+  assert_true(neighbour.commands > 0 && line_supply_volts(&s) > 500);
+  assert_false(supply_said_zero());
+  line_supply_stop(&s);
+  line_supply_stop(&neighbour);
+  assert_true(unlink(line) == 0 && rmdir(folder) == 0);
+}
+
 static size_t run_count = 3;
 static unsigned first_seed = 1;
 
@@ -263,9 +313,10 @@ static void test_refused(void **state)
 int main(int count, char **arguments)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays),   cmocka_unit_test(test_faults),
-      cmocka_unit_test(test_zero),    cmocka_unit_test(test_killed_and_stopped),
-      cmocka_unit_test(test_refused), cmocka_unit_test(test_faults_at_random_moments),
+      cmocka_unit_test(test_plays),     cmocka_unit_test(test_faults),
+      cmocka_unit_test(test_zero),      cmocka_unit_test(test_killed_and_stopped),
+      cmocka_unit_test(test_refused),   cmocka_unit_test(test_lie_from_the_start),
+      cmocka_unit_test(test_neighbour), cmocka_unit_test(test_faults_at_random_moments),
   };
   const struct CMUnitTest many[] = {cmocka_unit_test(test_faults_at_random_moments)};
   if (count > 1) {

@@ -205,7 +205,10 @@ static void test_truth_is_the_model(void **state)
 /* What is true at the first samples of a protocol: a bench of its own plays it. */
 static void play_truth(const struct dea_protocol *p, size_t count, struct dea_sim_state *truth)
 {
-  const struct dea_sim_settings settings = {.model = "lumped", .breakdown_V = (double)NAN};
+  const struct dea_sim_settings settings = {.model = "lumped",
+                                            .breakdown_V = (double)NAN,
+                                            .breakdown_s = (double)NAN,
+                                            .fatigue_s = (double)NAN};
   struct dea_sim_bench *bench;
   assert_int_equal(dea_sim_bench_create(ctx, p, &settings, &bench), DEA_OK);
   for (size_t i = 0; i < count; i++) {

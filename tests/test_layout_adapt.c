@@ -131,17 +131,7 @@ static void test_blocks_and_free(void **state)
 {
   (void)state;
   struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  dea_region_add_circle(add_region(device, "film"), 0, 0, blocks.frame_radius_m, false, nowhere);
-  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
-  add_film(device, 0, 1.5, 1.5);
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
   const struct dea_model_type *of_disc = dea_model_find("3d"), *type = of_disc->of_layouts;
   struct dea_model *both[2];
   struct dea_observation seen;

@@ -9,13 +9,7 @@ static struct dea_model *model_of(const struct dea_device *device, enum dea_soli
                                   double refinement)
 {
   const struct dea_model_settings settings = {.film = film, .refinement = refinement};
-  struct dea_model *model;
-  dea_status status = dea_model_find("3d")->create(ctx, device, &settings, &model);
-  if (status != DEA_OK) {
-    print_message("%s\n", dea_context_message(ctx));
-  }
-  assert_int_equal(status, DEA_OK);
-  return model;
+  return layout_model(device, &settings);
 }
 
 /* Monitors at a voltage. */
@@ -96,6 +90,8 @@ static void test_pure_shear(void **state)
     double charge = DEA_EPSILON_0 * 2.8 * a * a * l1 * l1 / 100e-6 * 1e3 * table[i].kV;
     assert_close(seen.channel[1].charge_C, charge, 3e-6, 1e-20);
     assert_close(seen.channel[0].charge_C, -charge, 3e-6, 1e-20);
+    assert_close(point.highest_z_m, 0.5 * 100e-6 * (1 / l1 - 1), 0, 1e-10); // the film's middle
+    assert_close(point.lowest_z_m, point.highest_z_m, 0, 1e-12);
   }
   dea_model_find("3d")->destroy(ctx, model);
   dea_device_destroy(ctx, device);
@@ -285,17 +281,7 @@ static void test_disc_of_both_models(void **state)
 {
   (void)state;
   struct dea_device plain = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
-  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
-  add_film(device, 0, 1.5, 1.5);
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  struct dea_device *device = disc_new(plain.frame_radius_m, 3.75e-3, 1.5);
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
   struct dea_model *blocks, *free_mesh = model_of(device, DEA_FILM_MEMBRANE, 1);
   const struct dea_model_type *type = dea_model_find("3d")->of_layouts;

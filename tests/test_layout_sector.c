@@ -119,13 +119,7 @@ static struct dea_model *model_of(const struct dea_device *device, enum dea_soli
                                   enum dea_solid_domain domain)
 {
   const struct dea_model_settings settings = {.film = film, .domain = domain, .refinement = 1};
-  struct dea_model *model;
-  dea_status status = dea_model_find("3d")->of_layouts->create(ctx, device, &settings, &model);
-  if (status != DEA_OK) {
-    print_message("%s\n", dea_context_message(ctx));
-  }
-  assert_int_equal(status, DEA_OK);
-  return model;
+  return layout_model(device, &settings);
 }
 
 static struct dea_observation solve(struct dea_model *model, double voltage_V,

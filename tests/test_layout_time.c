@@ -10,13 +10,7 @@ static const double pi = 3.14159265358979323846;
 static struct dea_model *model_of(const struct dea_device *device, enum dea_solid_film film)
 {
   const struct dea_model_settings settings = {.film = film, .refinement = 1};
-  struct dea_model *model;
-  dea_status status = dea_model_find("3d")->create(ctx, device, &settings, &model);
-  if (status != DEA_OK) {
-    print_message("%s\n", dea_context_message(ctx));
-  }
-  assert_int_equal(status, DEA_OK);
-  return model;
+  return layout_model(device, &settings);
 }
 
 /* From rest as the circuit and inertia say, with a jump of the supply to a voltage. */
@@ -158,18 +152,8 @@ static void test_disc_of_both_models(void **state)
   film.branches[0] = (struct dea_branch){.modulus_Pa = 100e3, .time_s = 0.5};
   film.branch_count = 1;
   struct dea_device plain = test_disc(film, 1.5, 3.75e-3, 0.25, 0);
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
-  dea_region_add_circle(add_region(device, "active"), 0, 0, 3.75e-3, false, nowhere);
-  add_film(device, 0, 1.5, 1.5);
-  l->plies[0].material = film;
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{3.75e-3, 0}}};
+  struct dea_device *device = disc_new(plain.frame_radius_m, 3.75e-3, 1.5);
+  device->layout->plies[0].material = film;
   struct dea_model *blocks = model_of(&plain, DEA_FILM_MEMBRANE);
   struct dea_model *free_mesh = model_of(device, DEA_FILM_MEMBRANE);
   struct dea_load_point of_blocks, of_free;

@@ -1,8 +1,10 @@
-/* What is added to gnuplot's pictures, and what does not set an axis. */
+/* What is added to gnuplot's pictures, what does not set an axis, and what stands in the key. */
 #include "context_fixture.h"
 #include "plot/finish.h"
 #include "plot/plot.h"
 #include "plot/script.h"
+#include "result/columns.h"
+#include "result/figure.h"
 #include "testing.h"
 
 #include <string.h>
@@ -19,7 +21,7 @@ static void test_svg(void **state)
       "<text font-family=\"DejaVu Sans\" >of</text><text font-family=\"Times\">f</text></g>\n";
   static const char after[] =
       "<svg>\n<title>1 &lt; 2 &amp; 3</title>\n<g id=\"gnuplot_plot_1\" >\n"
-      "\t<g stroke='none' stroke-width='0.4' stroke-linejoin='round'>\n"
+      "\t<g stroke='none' stroke-width='0.8' stroke-linejoin='round'>\n"
       "\t\t<polygon fill='rgb(  2, 106, 168)' stroke='rgb(  2, 106, 168)' points='1,2 3,4 5,6 '/>\n"
       "\t\t<polygon fill = 'rgb(1,2,3)' fill-opacity = '0.5' points = '1,2 3,4 5,6 '/>\n\t</g>\n"
       "<text font-family=\"DejaVu Sans, Verdana, sans-serif\" >of</text>"
@@ -95,12 +97,51 @@ static void test_what_is_aside_does_not_set_the_axis(void **state)
   dea_plot_destroy(ctx, plot);
 }
 
+/* How many series of the panel that show something carry that title. */
+static int titled(const struct dea_panel *panel, const char *title)
+{
+  int count = 0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    count += strcmp(series->title, title) == 0 && dea_series_shows(series);
+  }
+  return count;
+}
+
+/* A preview is wholly doubtful: its curve is dashed and still has its name in the key, once. */
+static void test_a_doubtful_curve_keeps_its_name(void **state)
+{
+  (void)state;
+  enum { POINTS = 81 };
+  struct dea_load_point points[POINTS];
+  const struct dea_curve curve = {.points = points, .count = POINTS};
+  const struct dea_series look = {.style = DEA_LINE_MARKED, .title = "3d"};
+  const int column = dea_point_column_find("centre_z_m");
+  struct dea_plot *plot;
+  for (int first = 0; first < 2; first++) { // all points doubtful, all but the first
+    for (size_t i = 0; i < POINTS; i++) {
+      points[i] = dea_load_point_empty();
+      points[i].voltage_V = 100.0 * (double)i;
+      points[i].centre_z_m = 1e-6 * (double)i;
+      points[i].told = i >= (size_t)first ? 1u << DEA_FLAG_PREVIEW : 0;
+    }
+    assert_int_equal(dea_plot_create(ctx, "z", "", &plot), DEA_OK);
+    struct dea_panel *panel = &plot->panels[0];
+    assert_int_equal(dea_figure_add(ctx, panel, &curve, column, 1e6, 0, &look), DEA_OK);
+    assert_int_equal(titled(panel, "3d"), 1);
+    assert_string_equal(panel->dashed, "not to be trusted");
+    assert_int_equal(panel->series_count, first == 0 ? 3 : 2);
+    dea_plot_destroy(ctx, plot);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_svg),
       cmocka_unit_test(test_png),
       cmocka_unit_test(test_what_is_aside_does_not_set_the_axis),
+      cmocka_unit_test(test_a_doubtful_curve_keeps_its_name),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

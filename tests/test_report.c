@@ -6,6 +6,7 @@
 #include "job/report.h"
 #include "output/report/axis.h"
 #include "output/report/html.h"
+#include "output/report/plot_svg.h"
 #include "output/results_h5.h"
 #include "output/run_folder.h"
 #include "plot/plot.h"
@@ -219,6 +220,51 @@ static const char evil[] =
     "'<script>alert(3)</script>'}\n"
     "    permittivity: [{id: one, at_rest: 2.8, source: '<b>bold</b>'}]\n"
     "compute: {models: [lumped, axisymmetric], voltage: {from: 0 kV, to: 2 kV, step: 0.5 kV}}\n";
+
+/* The path of the panel's band, as text. */
+static const char *band_of(struct dea_plot *plot, struct dea_text *out)
+{
+  dea_text_free(out);
+  *out = (struct dea_text){.ctx = ctx};
+  dea_plot_add_svg(out, plot, 1);
+  char *at = strstr(dea_text_get(out), "<path class=\"band");
+  assert_non_null(at);
+  *strstr(at, "/>") = '\0';
+  return at;
+}
+
+/* A narrow band that begins at the top of its panel stays narrow; one to the top goes there. */
+static void test_bands(void **state)
+{
+  (void)state;
+  static const double y[] = {0, -1, -100}, error[] = {0, 0.5, 2};
+  struct dea_text out = {.ctx = ctx};
+  struct dea_plot *plot;
+  struct dea_series *band;
+  assert_int_equal(dea_plot_create(ctx, "bands", "bands", &plot), DEA_OK);
+  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 3, &band), DEA_OK);
+  band->style = DEA_BAND;
+  for (size_t i = 0; i < 3; i++) {
+    band->values[i] = (double)i;
+    band->values[3 + i] = y[i] - error[i];
+    band->values[6 + i] = y[i] + error[i];
+  }
+  double lower[3], upper[3], x[6];
+  for (int to_top = 0; to_top < 2; to_top++) {
+    band->to_top = to_top == 1;
+    assert_int_equal(sscanf(strstr(band_of(plot, &out), " d=\"") + 4,
+                            "M%lf %lfL%lf %lfL%lf %lfL%lf %lfL%lf %lfL%lf %lf", &x[0], &lower[0],
+                            &x[1], &lower[1], &x[2], &lower[2], &x[3], &upper[2], &x[4], &upper[1],
+                            &x[5], &upper[0]),
+                     12);
+    double scale = (lower[2] - lower[0]) / 102;
+    assert_close(x[3], x[2], 0, 1e-9);
+    assert_close(lower[1] - upper[1], to_top == 1 ? lower[1] - upper[0] : scale, 0, 0.11);
+    assert_close(lower[2] - upper[2], to_top == 1 ? lower[2] - upper[0] : 4 * scale, 0, 0.11);
+  }
+  dea_text_free(&out);
+  dea_plot_destroy(ctx, plot);
+}
 
 static void test_text_of_a_design_is_text(void **state)
 {
@@ -549,6 +595,7 @@ int main(void)
       cmocka_unit_test(test_base64),
       cmocka_unit_test(test_labels),
       cmocka_unit_test(test_axes),
+      cmocka_unit_test(test_bands),
       cmocka_unit_test(test_text_of_a_design_is_text),
       cmocka_unit_test(test_page_of_an_example),
       cmocka_unit_test(test_sections_of_studies),

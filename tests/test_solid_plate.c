@@ -414,6 +414,8 @@ static void test_graded_cuts(void **state)
   }
   assert_int_equal(dea_cuts_graded(1, 2, 2, 2, 100, cuts), 1);
   assert_int_equal(dea_cuts_graded(1, 1e-3, 1e-3, 1e-3, 100, cuts), 0);
+  assert_int_equal(dea_cuts_graded(1, 0, 0.02, 0.1, 100, cuts), 0);
+  assert_int_equal(dea_cuts_graded(1, 0.01, 0, 0.1, 100, cuts), 0);
 }
 
 int main(void)

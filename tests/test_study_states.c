@@ -11,10 +11,12 @@
 
 /* One place with energy E0 (x^4/4 - a x^2/2 - b x), a = V/kV - 1, and x its displacement over a
  * length: one state below V = 1.5 kV, two from there on, with a third, unstable one between. */
-static const double length_m = 1e-4, energy_J = 1e-6, b = 0.05;
+static const double length_m = 1e-4, energy_J = 1e-6;
+static double b = 0.05;
 
 struct dea_model {
   double voltage_V, x, kept[2];
+  double shift_V; // a finer mesh is as the coarsest one at that much less
 };
 
 static double a_of(double voltage_V)
@@ -28,10 +30,10 @@ static double energy_of(double voltage_V, double x)
 }
 
 /* Down from x in small steps. */
-static double descend(double voltage_V, double x)
+static double descend(const struct dea_model *m, double x)
 {
   for (int i = 0; i < 200000; i++) {
-    x -= 1e-3 * (x * x * x - a_of(voltage_V) * x - b);
+    x -= 1e-3 * (x * x * x - a_of(m->voltage_V - m->shift_V) * x - b);
   }
   return x;
 }
@@ -48,8 +50,10 @@ static dea_status create(struct dea_context *context, const struct dea_device *d
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
   (void)device;
-  (void)settings;
   *out = dea_alloc(context, 1, sizeof **out);
+  if (*out != NULL) {
+    (*out)->shift_V = settings->refinement > 1 ? 500 * (settings->refinement - 1) : 0;
+  }
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
@@ -63,7 +67,7 @@ static void report(const struct dea_model *m, struct dea_load_point *out)
   *out = dea_load_point_empty();
   out->voltage_V = m->voltage_V;
   out->centre_z_m = out->highest_z_m = out->lowest_z_m = length_m * m->x;
-  out->energy_J = energy_of(m->voltage_V, m->x);
+  out->energy_J = energy_of(m->voltage_V - m->shift_V, m->x);
 }
 
 static dea_status solve(struct dea_context *context, struct dea_model *m, double voltage_V,
@@ -71,7 +75,7 @@ static dea_status solve(struct dea_context *context, struct dea_model *m, double
 {
   (void)context;
   m->voltage_V = voltage_V;
-  m->x = descend(voltage_V, m->x);
+  m->x = descend(m, m->x);
   report(m, out);
   return DEA_OK;
 }
@@ -92,9 +96,20 @@ static dea_status push(struct dea_context *context, struct dea_model *m, const s
   (void)context;
   *found = way->kind == DEA_PUSH_MODE && way->mode == 0;
   if (*found) {
-    m->x = descend(m->voltage_V, m->x + way->side * way->amplitude_m / length_m);
+    m->x = descend(m, m->x + way->side * way->amplitude_m / length_m);
     report(m, out);
   }
+  return DEA_OK;
+}
+
+static dea_status carry(struct dea_context *context, struct dea_model *m,
+                        const struct dea_model *from, struct dea_load_point *out, bool *found)
+{
+  (void)context;
+  m->voltage_V = from->voltage_V;
+  m->x = descend(m, from->x);
+  report(m, out);
+  *found = true;
   return DEA_OK;
 }
 
@@ -136,6 +151,7 @@ static const struct dea_model_type wells = {.name = "wells",
                                             .solve = solve,
                                             .soften = soften,
                                             .push = push,
+                                            .carry = carry,
                                             .fields = fields,
                                             .save = save,
                                             .load = load};
@@ -255,6 +271,68 @@ static void test_nothing_found(void **state)
   end(&r);
 }
 
+/* On finer meshes states follow the roots of those meshes, until there the upper one is lost to the
+ * other. */
+static void test_finer_meshes(void **state)
+{
+  (void)state;
+  struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2, 3, 4.9]}");
+  const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
+  assert_non_null(t);
+  assert_int_equal(t->row_count, 8);
+  for (size_t i = 0; i < 8; i++) {
+    double at_V = 3000 - 500 * (number(t, i, "refinement") - 1);
+    bool upper = i >= 4, lost = i == 7;
+    double x = number(t, i, "centre_z_m") / length_m;
+    assert_string_equal(text(t, i, "state"), upper ? "B" : "A");
+    assert_string_equal(text(t, i, "is"), upper && !lost ? "B" : "A");
+    if (i % 4 < 3) {
+      assert_close(x, root(at_V, upper ? 2 : 0), 0, 1e-9);
+    }
+    assert_close(number(t, i, "energy_J"), energy_of(at_V, x), 0, 1e-18);
+  }
+  assert_close(number(t, 7, "above_J"), 0, 0, 1e-20);
+  assert_close(number(t, 6, "above_J"),
+               energy_of(2000, root(2000, 2)) - energy_of(2000, root(2000, 0)), 0, 1e-18);
+  end(&r);
+}
+
+/* Without the ability the states of the design's mesh are all; meshes have to rise. */
+static void test_no_finer_meshes(void **state)
+{
+  (void)state;
+  const struct dea_override set = {"compute.states", "{refinement: [1, 3, 2]}"};
+  struct dea_design *design;
+  struct dea_device *device;
+  size_t count;
+  assert_int_equal(read_and_build(ctx, GOOD_DESIGN, &set, 1, &design, &device), DEA_E_DESIGN);
+  const struct dea_finding *found = dea_finding_get(ctx, &count);
+  assert_int_equal(count, 2);
+  assert_non_null(strstr(found[0].text, "1 after 1, but each mesh"));
+  assert_non_null(strstr(found[1].text, "2 after 3, but each mesh"));
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+/* Wells that mirror each other, of one energy to the bit, beside the unstable state between them.
+ */
+static void test_mirrored(void **state)
+{
+  (void)state;
+  static const double x[] = {1, -1, 0};
+  b = 0;
+  struct ran r = run("{voltage: [2 kV], push: [300 um], modes: 1}");
+  b = 0.05;
+  assert_int_equal(r.found->row_count, 3);
+  assert_close(number(r.bands, 0, "states"), 3, 0, 0);
+  for (size_t i = 0; i < 3; i++) {
+    const char name[] = {(char)('A' + (int)i), '\0'};
+    assert_string_equal(text(r.found, i, "state"), name);
+    assert_close(number(r.found, i, "centre_z_m"), x[i] * length_m, 0, 1e-12);
+  }
+  end(&r);
+}
+
 /* A model that knows one state says so. */
 static void test_not_able(void **state)
 {
@@ -272,9 +350,9 @@ static void test_not_able(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_wells),
-      cmocka_unit_test(test_bands),
-      cmocka_unit_test(test_nothing_found),
+      cmocka_unit_test(test_two_wells),       cmocka_unit_test(test_bands),
+      cmocka_unit_test(test_nothing_found),   cmocka_unit_test(test_finer_meshes),
+      cmocka_unit_test(test_no_finer_meshes), cmocka_unit_test(test_mirrored),
       cmocka_unit_test(test_not_able),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

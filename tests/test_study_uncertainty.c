@@ -172,6 +172,15 @@ static void test_nothing_and_errors(void **state)
   assert_non_null(find_error(ctx, "1 correlations where 1 parameters have 0"));
   dea_context_clear(ctx);
   dea_finding_clear(ctx);
+  assert_int_equal(read_and_build(ctx,
+                                  GOOD_DESIGN VOLTAGES
+                                  "  uncertainty: {parameters: [{name: pre_stretch, std: 0.1},"
+                                  " {name: pre_stretch, std: 0.1}]}\n",
+                                  NULL, 0, &design, &device),
+                   DEA_E_DESIGN);
+  assert_non_null(find_error(ctx, "the name 'pre_stretch' is taken by the parameter in line"));
+  dea_context_clear(ctx);
+  dea_finding_clear(ctx);
 }
 
 /* The band is in results.h5, in the CSV, which reads as a measurement, and in the summary. */

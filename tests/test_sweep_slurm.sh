@@ -1,7 +1,8 @@
 #!/bin/sh
 # ctest: long
 # dea sweep --slurm against a real munged, slurmctld and slurmd on this computer, with all processes
-# of the node killed in the middle. Skipped where Slurm is not installed, or not by root.
+# of the node killed in the middle. Skipped where Slurm is not installed, or not by root. Many designs
+# of the membrane, as docs/verification/sweep.md has them: DEA_SLURM_MODEL=3d DEA_SLURM_SAMPLES=2000.
 set -eu
 export PATH="$PATH:/usr/sbin:/sbin"
 for program in munged slurmctld slurmd sbatch scontrol; do
@@ -17,6 +18,7 @@ stop() { # NAME...: the daemons of this folder
   done
 }
 trap 'stop slurmd slurmctld munged; rm -rf "$folder"' EXIT
+trap 'exit 143' INT TERM # dash does not leave by the line above otherwise
 chmod 755 "$folder"
 mkdir "$folder/state" "$folder/spool"
 head -c 1024 /dev/urandom >"$folder/key"
@@ -40,6 +42,7 @@ SlurmdLogFile=$folder/slurmd.log
 ProctrackType=proctrack/pgid
 TaskPlugin=task/none
 SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
 SwitchType=switch/none
 MpiDefault=none
 JobAcctGatherType=jobacct_gather/none
@@ -65,22 +68,26 @@ done
 [ "$(sinfo -h -o %T)" = idle ] || { echo "Slurm does not run here: skipped"; exit 77; }
 
 cd "$folder"
+samples=${DEA_SLURM_SAMPLES:-400}
+model=${DEA_SLURM_MODEL:-lumped}
+design=frdea-4.yaml
+[ "$model" != 3d ] || design=explore/fibres-3d.yaml
 cat >many.yaml <<EOF
 dea_explore: 1
 name: many
-design: $1/examples/frdea-4.yaml
-model: lumped
+design: $1/examples/$design
+model: $model
 voltages: [2 kV, 4 kV]
 quantities: [electrode_edge_u_m]
 plan: sobol
-samples: ${DEA_SLURM_SAMPLES:-400}
+samples: $samples
 variables:
   - {name: film.thickness, low: 90 um, high: 110 um}
-  - {name: pre_stretch, low: 1.4, high: 1.6}
+  - {name: pre_stretch, low: 1.45, high: 1.55}
 EOF
 "$DEA_COMMAND" sweep many.yaml -o out --slurm 4
-for _ in $(seq 60); do # until some of it is done
-  [ "$(cat out/part-* 2>/dev/null | wc -l)" -lt 20 ] || break
+for _ in $(seq $((60 + samples))); do # until some of it is done
+  [ "$(cat out/part-* 2>/dev/null | wc -l)" -lt $((samples / 20)) ] || break
   sleep 0.2
 done
 done_before=$(cat out/part-* | wc -l)
@@ -95,14 +102,14 @@ for process in /proc/[0-9]*; do
 done
 sleep 7 # SlurmdTimeout
 slurmd -c
-for _ in $(seq 240); do
+for _ in $(seq $((240 + 5 * samples))); do
   [ ! -f out/cases.csv ] || [ -n "$(squeue -h)" ] || break
   sleep 0.5
 done
 rows=$(tail -n +2 out/cases.csv | wc -l)
 twice=$(cat out/part-* | grep -v '^#' | grep . | cut -d, -f1 | sort | uniq -d | wc -l)
 echo "done before the node failed: $done_before; in the table: $rows; twice: $twice"
-if [ "$rows" -ne "${DEA_SLURM_SAMPLES:-400}" ] || [ "$twice" -ne 0 ]; then
+if [ "$rows" -ne "$samples" ] || [ "$twice" -ne 0 ]; then
   squeue || :
   sinfo || :
   tail -n 20 slurmctld.log slurmd.log

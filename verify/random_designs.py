@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Random designs, each swept by one model, and what came of them, as a table of verdicts.
 
-    random_designs.py DEA [--count 200] [--first 0] [--model 3d] [--seconds 60] [--keep DIR]
-                      [--out rows.jsonl] [--compare rows.jsonl] [--share 0.01]
+    random_designs.py DEA [--count 200] [--first 0] [--model 3d] [--coarse] [--seconds 60]
+                      [--jobs 1] [--keep DIR] [--out rows.jsonl] [--compare rows.jsonl]
+                      [--beside axisymmetric] [--share 0.01]
 
 A design follows from its number alone, so that two versions of the program are asked the same.
 What may vary: catalogue and own laws, 0 to 24 fibres, pre-stretch 1 to 4, 10 um to 1 mm, glue,
@@ -10,12 +11,15 @@ stiff electrodes, weight, membrane and solid film, thin and coupled field, up to
 
 --keep    folder for the design files of what ended as "ours", one line for the reason
 --out     one line of JSON a design
+--beside  designs without fibres are swept by that model too, and where its verdict, pull-in, loss of
+          tension or last stretch is another one, it is listed
 --compare the lines of another version: designs whose verdict is another one are listed
 --share   fails (exit 1) where more than this share of the designs that ran ends as "ours"
 
 Sizes: 20 as a test, 200 and 2000 by hand (docs/theory/stops.md).
 """
 import argparse
+import concurrent.futures
 import json
 import os
 import random
@@ -111,7 +115,7 @@ def design_of(number, coarse):
         lines += ["gravity: " + r.choice(["fibres_up", "fibres_down"])]
     coupled = solid_film and r.random() < 0.1
     lines += ["compute:", "  models: [3d]",
-              "  voltage: {from: %.5g kV, to: %.5g kV, step: %.5g kV}" %
+              "  voltage: {from: %.5g kV, to: %.12g kV, step: %.12g kV}" %
               (0, 1e-3 * highest, 1e-3 * highest / steps),
               "  solid: {film: %s, field: %s%s}" % ("solid" if solid_film else "membrane",
                                                     "coupled" if coupled else "thin",
@@ -128,7 +132,8 @@ def verdict_of(summary, code, stderr):
         refused = code in (2, 3) or (code == 5 and "memory" in stderr)
         return ("refused" if refused else "no answer, exit %d" % code), stderr.strip()[-300:]
     if summary.get("complete"):
-        return "complete", ""
+        leapt = any("states" in point.get("flags", []) for point in summary["points"])
+        return ("complete, in another state" if leapt else "complete"), ""
     why = summary.get("stopped", "")
     verdict = summary.get("verdict", "")
     if verdict:
@@ -138,28 +143,80 @@ def verdict_of(summary, code, stderr):
     return OURS, why or stderr.strip()[-300:]
 
 
-def processor_s():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def run_one(dea, path, model, seconds):
-    """Kind of verdict, the sentence, processor seconds."""
+    """Kind of verdict, the sentence, processor seconds, the summary (None: there is none)."""
     limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 2))
-    before = processor_s()
-    done = subprocess.run([dea, "run", path, "-m", model, "--study", "sweep", "--json"],
-                          capture_output=True, text=True, preexec_fn=limit,
-                          env=dict(os.environ, OMP_NUM_THREADS="1"))
-    used = processor_s() - before
-    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used > 0.9 * seconds:
-        return "out of time", "more than %d s of processor time" % seconds, used
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        child = subprocess.Popen([dea, "run", path, "-m", model, "--study", "sweep", "--json"],
+                                 stdout=out, stderr=err, preexec_fn=limit,
+                                 env=dict(os.environ, OMP_NUM_THREADS="1"))
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        used = usage.ru_utime + usage.ru_stime
+        out.seek(0)
+        err.seek(0)
+        stdout, stderr = out.read(), err.read().decode(errors="replace")
+    if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used > 0.9 * seconds:
+        return "out of time", "more than %d s of processor time" % seconds, used, None
     try:
-        summary = json.loads(done.stdout)
+        summary = json.loads(stdout)
     except ValueError:
         summary = None
     if summary is not None and "model" not in summary:
         summary = None
-    return verdict_of(summary, done.returncode, done.stderr) + (used,)
+    return verdict_of(summary, child.returncode, stderr) + (used, summary)
+
+
+def same_within(a, b, share):
+    return a is not None and b is not None and abs(a - b) <= share * max(abs(a), abs(b))
+
+
+def slack_between(points):
+    """Voltages between which the film loses its tension; None: it keeps it."""
+    before = 0.0
+    for point in points:
+        if point.get("min_tension_N_per_m", 1) < 0:
+            return before, point["voltage_V"]
+        before = point["voltage_V"]
+    return None
+
+
+def differs(mine, other, within):
+    """What two summaries of one disc do not agree on; "" where they do."""
+    kinds = [m.get("verdict", "") or "complete" for m in (mine, other)]
+    limits = [m.get("limits", {}) for m in (mine, other)]
+    if kinds == ["complete", "complete"]:
+        a, b = (m["points"][-1]["electrode_stretch"] for m in (mine, other))
+        return "" if abs(a - b) <= within * abs(b - 1) + 2e-3 else "stretch %.4g, %.4g" % (a, b)
+    if kinds == ["pull_in", "pull_in"]:
+        a, b = (m.get("pull_in_voltage_V") for m in limits)
+        return "" if same_within(a, b, within) else "pull-in at %s, %s V" % (a, b)
+    if kinds[0] == "slack":
+        between, lost = slack_between(other["points"]), limits[0].get("slack_voltage_V")
+        last = other["points"][-1]["voltage_V"]
+        low, high = between if between else (last, limits[1].get("pull_in_voltage_V") or 0)
+        reached = mine["points"][-1]["voltage_V"] if lost is None else lost
+        found = high > 0 and (1 - within) * low <= reached and (
+            lost is None or reached <= (1 + within) * high)
+        return "" if found else "slack at %s V, of the other %s" % (lost, between)
+    return "" if kinds[0] == kinds[1] else "%s, %s" % tuple(kinds)
+
+
+def run_design(a, folder, number):
+    """The row of a design."""
+    path = os.path.join(folder, "%05d.yaml" % number)
+    text = design_of(number, a.coarse)
+    with open(path, "w") as f:
+        f.write(text)
+    verdict, why, seconds, summary = run_one(a.dea, path, a.model, a.seconds)
+    row = {"design": number, "verdict": verdict, "seconds": round(seconds, 2),
+           "why": re.sub(r"\s+", " ", why)}
+    if a.beside and summary is not None and "\nfibres:" not in text:
+        other = run_one(a.dea, path, a.beside, a.seconds)[3]
+        row["beside"] = differs(summary, other, a.within) if other is not None else "no answer"
+    if not a.keep or verdict in ("complete", "refused"):
+        os.remove(path)
+    return row
 
 
 def median(values):
@@ -195,31 +252,43 @@ def main():
     p.add_argument("--seconds", type=int, default=60, help="of processor time, for one design")
     p.add_argument("--total", type=float, default=1e9, help="of processor time, for all")
     p.add_argument("--coarse", action="store_true", help="elements of order 1: a quick look")
+    p.add_argument("--jobs", type=int, default=1)
     p.add_argument("--keep")
+    p.add_argument("--beside")
+    p.add_argument("--within", type=float, default=0.05, help="of voltages and of what moved")
     p.add_argument("--out")
     p.add_argument("--compare")
     p.add_argument("--share", type=float, default=1)
     a = p.parse_args()
-    rows = []
+    rows, spent = [], 0
     folder = a.keep or tempfile.mkdtemp()
     os.makedirs(folder, exist_ok=True)
     out = open(a.out, "w") if a.out else None
-    for number in range(a.first, a.first + a.count):
-        if processor_s() > a.total:
-            break
-        path = os.path.join(folder, "%05d.yaml" % number)
-        with open(path, "w") as f:
-            f.write(design_of(number, a.coarse))
-        verdict, why, seconds = run_one(a.dea, path, a.model, a.seconds)
-        row = {"design": number, "verdict": verdict, "seconds": round(seconds, 2),
-               "why": re.sub(r"\s+", " ", why)}
-        rows.append(row)
-        if out:
-            out.write(json.dumps(row) + "\n")
-            out.flush()
-        if not a.keep or verdict in ("complete", "refused"):
-            os.remove(path)
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        numbers, waiting = iter(range(a.first, a.first + a.count)), set()
+        while True:
+            while spent <= a.total and len(waiting) < a.jobs:
+                number = next(numbers, None)
+                if number is None:
+                    break
+                waiting.add(pool.submit(run_design, a, folder, number))
+            if not waiting:
+                break
+            done, waiting = concurrent.futures.wait(
+                waiting, return_when=concurrent.futures.FIRST_COMPLETED)
+            for row in (future.result() for future in done):
+                rows.append(row)
+                spent += row["seconds"]
+                if out:
+                    out.write(json.dumps(row) + "\n")
+                    out.flush()
     share = table(rows)
+    beside = [row for row in rows if "beside" in row]
+    if beside:
+        off = [row for row in beside if row["beside"]]
+        print("%d designs beside %s, of which %d differ" % (len(beside), a.beside, len(off)))
+        for row in off:
+            print("design %d: %s" % (row["design"], row["beside"]))
     if a.compare:
         old = {row["design"]: row for row in map(json.loads, open(a.compare))}
         for row in rows:

@@ -157,8 +157,8 @@ dea_status dea_file_write(struct dea_context *ctx, const char *path, const char 
   return status;
 }
 
-static dea_status write_into(struct dea_context *ctx, const char *directory, const char *name,
-                             const char *bytes, size_t length)
+dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, const char *name,
+                               const char *bytes, size_t length)
 {
   char *path = dea_path_join(ctx, directory, name);
   if (path == NULL) {
@@ -173,13 +173,13 @@ dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
                           const char *directory, const char *name)
 {
   return text->failed ? DEA_E_MEMORY
-                      : write_into(ctx, directory, name, dea_text_get(text), text->length);
+                      : dea_file_write_into(ctx, directory, name, dea_text_get(text), text->length);
 }
 
 dea_status dea_text_file_write(struct dea_context *ctx, const char *directory, const char *name,
                                const char *text)
 {
-  return write_into(ctx, directory, name, text, strlen(text));
+  return dea_file_write_into(ctx, directory, name, text, strlen(text));
 }
 
 void *dea_c_locale_enter(void)

@@ -21,6 +21,9 @@ dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, con
  * that no interruption leaves half a file. Replaces an existing file. */
 dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
                           size_t length);
+/* The same as file directory/name. */
+dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, const char *name,
+                               const char *bytes, size_t length);
 /* The two halves of that, for files that another library writes: name of the hidden file for `path`
  * ("dir/.name.PID.part"; owned by the caller, NULL on failure), and giving the finished one its
  * name, or removing it when that fails. */

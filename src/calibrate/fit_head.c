@@ -1,6 +1,7 @@
 #include "calibrate/fit_head.h"
 
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "result/provenance.h"
 
 #include <string.h>
@@ -44,6 +45,7 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   dea_sha256_hex(bytes, length, head->sha256);
   DEA_TRY(ctx, dea_yaml_parse(ctx, head->file, bytes, length, &head->document));
   struct dea_reader reader = {ctx, head->document, NULL};
+  DEA_TRY(ctx, dea_file_kind_check(ctx, head->document, record->fields[0].key));
   DEA_TRY(ctx, dea_schema_read(&reader, record, dea_yaml_root(head->document), "", head));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) {
     DEA_TRY(ctx, check(ctx, head));

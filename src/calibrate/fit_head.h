@@ -68,7 +68,8 @@ struct dea_fit_parameter_text {
 extern const char *const dea_fit_no_yes[];
 
 /* Whether a file has a key, by which the kinds of fit files are told apart: `design` of a device,
- * `breakdown` of breakdown tests, neither of a material. Status as of reading. */
+ * `breakdown` of breakdown tests, `life` of life tests, none of a material. Status as of reading.
+ */
 dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out);
 
 /* Reads a file into a new struct of `size` bytes that begins with its head; check: what the table

@@ -337,3 +337,12 @@ double dea_weibull_z(const struct dea_weibull_fit *fit, double field_V_per_m, do
   *std = sqrt(fmax(0, variance));
   return b * over;
 }
+
+double dea_weibull_quantile(const struct dea_weibull_fit *fit, double share, double *log_std)
+{
+  const double b = fit->value[DEA_WEIBULL_SHAPE];
+  const double field = fit->value[DEA_WEIBULL_FIELD] * pow(-log1p(-share), 1 / b);
+  dea_weibull_z(fit, field, log_std);
+  *log_std /= b;
+  return field;
+}

@@ -13,7 +13,8 @@
  * With z = b ln E - b ln E_0 - b n ln s - b p ln(h/h_0) + ln(A/A_0) the logarithm of the
  * likelihood, sum over those that broke of (ln b + z) minus sum over all of exp z, is concave in b,
  * b ln E_0, b n, b p: Newton's method with shorter steps finds its one maximum. Derivation:
- * docs/theory/fit.md.
+ * docs/theory/fit.md. A life takes the place of the field where specimens are cycled (life.h):
+ * then s, h and A are the same of all and n, p held at 0.
  */
 #ifndef DEA_CALIBRATE_WEIBULL_H
 #define DEA_CALIBRATE_WEIBULL_H
@@ -56,5 +57,9 @@ dea_status dea_weibull_solve(struct dea_context *ctx, const struct dea_weibull_d
 /* z of a field on the reference film (s = 1, h_0, A_0), and its standard uncertainty; the chance is
  * 1 - exp(-exp z). */
 double dea_weibull_z(const struct dea_weibull_fit *fit, double field_V_per_m, double *std);
+
+/* Field by which that share of reference films breaks, and the standard uncertainty of its
+ * logarithm. */
+double dea_weibull_quantile(const struct dea_weibull_fit *fit, double share, double *log_std);
 
 #endif

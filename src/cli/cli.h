@@ -224,9 +224,10 @@ int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, cons
 dea_status cli_build_device(struct dea_cli *cli, const char *file,
                             const struct cli_overrides *overrides, struct dea_design **design,
                             struct dea_device **device);
-/* Folder for the results of a design: its file name without ending, plus ".ENDING", in the current
- * folder. */
-void cli_folder_name(const char *design, const char *ending, struct dea_text *out);
+/* Where the results of a file go: `given`, or where that is NULL the file's name without ending,
+ * plus ".ENDING", in the current folder, which `made` holds. NULL: no memory. */
+const char *cli_output_name(const char *given, const char *file, const char *ending,
+                            struct dea_text *made);
 /* All findings so far as an array; owned by the caller. */
 json_t *cli_findings_json(const struct dea_context *ctx);
 /* Prints JSON to stdout; takes it. */

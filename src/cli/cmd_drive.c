@@ -370,9 +370,8 @@ static int run(struct dea_cli *cli, void *user)
     print_plan(protocol, &plan);
     fflush(stdout);
   }
-  cli_folder_name(request->protocol, "h5", &name);
-  const char *file = request->output != NULL ? request->output : dea_text_get(&name);
-  if (status == DEA_OK && name.failed) {
+  const char *file = cli_output_name(request->output, request->protocol, "h5", &name);
+  if (status == DEA_OK && file == NULL) {
     status = DEA_E_MEMORY;
   }
   if (status == DEA_OK && (request->arm || request->simulate)) {

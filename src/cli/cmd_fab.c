@@ -72,13 +72,10 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
 {
   struct dea_text name = {.ctx = cli->ctx};
   const struct dea_workshop_options options = {request->force, request->drawing};
-  const char *directory = request->output;
-  if (directory == NULL) {
-    cli_folder_name(request->design, "fab", &name);
-    directory = dea_text_get(&name);
-  }
-  dea_status status =
-      name.failed ? DEA_E_MEMORY : dea_workshop_prepare(cli->ctx, workshop, directory, &options);
+  const char *directory = cli_output_name(request->output, request->design, "fab", &name);
+  dea_status status = directory == NULL
+                          ? DEA_E_MEMORY
+                          : dea_workshop_prepare(cli->ctx, workshop, directory, &options);
   if (status == DEA_OK) {
     status = dea_workshop_write(cli->ctx, workshop, directory, &options);
   }

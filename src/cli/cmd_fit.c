@@ -4,6 +4,7 @@
 #include "output/breakdown_fit.h"
 #include "output/device_fit_files.h"
 #include "output/fit_files.h"
+#include "output/life_fit.h"
 
 struct request {
   const char *file, *output;
@@ -107,24 +108,56 @@ static int fit_breakdown(struct dea_cli *cli, const struct request *request)
   return code;
 }
 
+static dea_status fit_life_file(struct dea_cli *cli, const struct request *request,
+                                struct dea_life_file **file, struct dea_life_fit **fit)
+{
+  struct dea_context *ctx = cli->ctx;
+  DEA_TRY(ctx, dea_life_file_read(ctx, request->file, file));
+  DEA_TRY(ctx, dea_life_fit_run(ctx, *file, fit));
+  DEA_TRY(ctx, dea_life_fit_folder(ctx, *file, request->output, request->force));
+  return dea_life_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
+}
+
+static int fit_life(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_life_file *file = NULL;
+  struct dea_life_fit *fit = NULL;
+  dea_status status = fit_life_file(cli, request, &file, &fit);
+  if (fit != NULL && request->json) {
+    cli_print_json(dea_life_fit_json(fit, cli->command_line));
+  } else if (fit != NULL) {
+    cli_print_life_fit(fit);
+    if (status == DEA_OK) {
+      printf("\nwritten to %s\n", request->output);
+    }
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_life_fit_destroy(cli->ctx, fit);
+  dea_life_file_destroy(cli->ctx, file);
+  return code;
+}
+
+/* Kinds of fit files other than that of a material, by the key that tells them. */
+static const struct {
+  const char *key;
+  int (*fit)(struct dea_cli *cli, const struct request *request);
+} kinds[] = {{"design", fit_device}, {"breakdown", fit_breakdown}, {"life", fit_life}};
+
 static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
-  bool of_device = false, of_breakdown = false;
-  if (request->output == NULL) {
-    cli_folder_name(request->file, "fit", &folder);
-    request->output = dea_text_get(&folder);
-  }
-  dea_status status = folder.failed
-                          ? DEA_E_MEMORY
-                          : dea_fit_file_has(cli->ctx, request->file, "design", &of_device);
-  if (status == DEA_OK) {
-    status = dea_fit_file_has(cli->ctx, request->file, "breakdown", &of_breakdown);
+  request->output = cli_output_name(request->output, request->file, "fit", &folder);
+  dea_status status = request->output == NULL ? DEA_E_MEMORY : DEA_OK;
+  int (*fit)(struct dea_cli *, const struct request *) = NULL;
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && fit == NULL && status == DEA_OK; k++) {
+    bool has = false;
+    status = dea_fit_file_has(cli->ctx, request->file, kinds[k].key, &has);
+    fit = has ? kinds[k].fit : NULL;
   }
   int code = status != DEA_OK ? cli_report(cli, status)
-             : of_device      ? fit_device(cli, request)
-             : of_breakdown   ? fit_breakdown(cli, request)
+             : fit != NULL    ? fit(cli, request)
                               : fit_material(cli, request);
   dea_text_free(&folder);
   return code;
@@ -152,7 +185,7 @@ const struct dea_command cmd_fit = {
              "fit.csv (measurements, model, band), fit.json and figures. What a fit file holds "
              "says 'dea schema --fit', that of a device (with the key design) 'dea schema "
              "--fit-device', of breakdown tests (with the key breakdown) 'dea schema "
-             "--fit-breakdown'.",
+             "--fit-breakdown', of life tests (with the key life) 'dea schema --fit-life'.",
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,

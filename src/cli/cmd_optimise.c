@@ -28,6 +28,24 @@ static void print_optimum(const struct dea_question *question, const struct dea_
   }
 }
 
+/* Where gradients came from, of a search that goes by them. */
+static void print_gradients(const struct dea_question *question,
+                            const struct dea_optimise_report *report)
+{
+  const int method = question->file->method.value;
+  if (method != DEA_SLSQP && method != DEA_MMA) {
+    return;
+  }
+  printf("gradients: %s", report->gradients ? "of the model" : "by differences");
+  for (size_t j = 0, told = 0; j < question->variable_count && report->gradients; j++) {
+    if (report->replaced[j] > 0) {
+      printf("%s %s (%zu designs)", told++ > 0 ? "," : ", by differences of",
+             question->params[j].param.name, report->replaced[j]);
+    }
+  }
+  printf("\n");
+}
+
 static void print_report(const struct dea_question *question,
                          const struct dea_optimise_report *report, const char *folder)
 {
@@ -37,6 +55,10 @@ static void print_report(const struct dea_question *question,
     }
     print_optimum(question, &report->optima[i]);
   }
+  if (report->scattered > 1) {
+    printf("each stands for %zu that scatter\n", report->scattered);
+  }
+  print_gradients(question, report);
   printf("designs: %zu, %zu of them computed before", report->evaluations, report->before);
   if (report->failed > 0) {
     printf(", %zu without all values", report->failed);
@@ -47,20 +69,16 @@ static void print_report(const struct dea_question *question,
 
 static dea_status optimise(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_explore_file *file;
   struct dea_question *question;
-  DEA_TRY(cli->ctx, dea_explore_file_read(cli->ctx, request->file, &file));
-  dea_status status = dea_question_make(cli->ctx, file, &question);
-  if (status == DEA_OK) {
-    struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
-    status = report != NULL ? dea_optimise_run(question, &request->options, report) : DEA_E_MEMORY;
-    if (report != NULL && report->evaluations > 0) {
-      print_report(question, report, request->options.folder);
-    }
-    dea_free(cli->ctx, report);
-    dea_question_destroy(question);
+  DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
+  struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
+  dea_status status =
+      report != NULL ? dea_optimise_run(question, &request->options, report) : DEA_E_MEMORY;
+  if (report != NULL && report->evaluations > 0) {
+    print_report(question, report, request->options.folder);
   }
-  dea_explore_file_destroy(cli->ctx, file);
+  dea_free(cli->ctx, report);
+  dea_question_destroy(question);
   return status;
 }
 
@@ -69,11 +87,10 @@ static int run(struct dea_cli *cli, void *user)
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
   request->options.processes = cli_processes(request->processes);
-  if (request->options.folder == NULL) {
-    cli_folder_name(request->file, "optimise", &folder);
-    request->options.folder = dea_text_get(&folder);
-  }
-  int code = cli_report(cli, folder.failed ? DEA_E_MEMORY : optimise(cli, request));
+  request->options.folder =
+      cli_output_name(request->options.folder, request->file, "optimise", &folder);
+  int code =
+      cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : optimise(cli, request));
   dea_text_free(&folder);
   return code;
 }

@@ -212,11 +212,9 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_recording *recording = NULL;
   struct dea_reduction *reduction = NULL;
   struct dea_text folder = {.ctx = cli->ctx};
-  if (request->output == NULL) {
-    cli_folder_name(request->file, "reduced", &folder);
-    request->output = dea_text_get(&folder);
-  }
-  dea_status status = folder.failed ? DEA_E_MEMORY : reduce(cli, request, &recording, &reduction);
+  request->output = cli_output_name(request->output, request->file, "reduced", &folder);
+  dea_status status =
+      request->output == NULL ? DEA_E_MEMORY : reduce(cli, request, &recording, &reduction);
   if (reduction != NULL && request->json) {
     cli_print_json(dea_reduction_json(cli->ctx, recording, reduction, cli->command_line));
   } else if (reduction != NULL) {

@@ -53,20 +53,6 @@ static int take_model(struct dea_cli *cli, const struct dea_command *command,
   return 0;
 }
 
-/* Run folder: the one given, or the design's file name without ending, plus ".run", in the current
- * folder; empty when the summary goes to stdout alone. */
-static void choose_directory(const struct request *request, struct dea_text *out)
-{
-  if (request->output != NULL) {
-    dea_text_add(out, "%s", request->output);
-    return;
-  }
-  if (request->json) {
-    return;
-  }
-  cli_folder_name(request->designs.at[0], "run", out);
-}
-
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
  * ones. */
 static dea_status choose_models(struct dea_cli *cli, const struct request *request,
@@ -315,10 +301,14 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   char message[1024];
   DEA_TRY(ctx, prepare(cli, request, run));
   run->directory.ctx = ctx;
-  choose_directory(request, &run->directory);
+  const char *folder = NULL; // the summary goes to stdout alone
+  if (request->output != NULL || !request->json) {
+    folder = cli_output_name(request->output, request->designs.at[0], "run", &run->directory);
+    DEA_TRY(ctx, folder != NULL ? DEA_OK : DEA_E_MEMORY);
+  }
   run->job = (struct dea_job){.studies = given ? request->studies.at : NULL,
                               .study_count = request->studies.count,
-                              .folder = dea_text_get(&run->directory),
+                              .folder = folder,
                               .force = request->force,
                               .resume = request->resume,
                               .no_figures = request->no_figures};

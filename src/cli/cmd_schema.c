@@ -2,6 +2,7 @@
 
 #include "calibrate/breakdown_file.h"
 #include "calibrate/device_file.h"
+#include "calibrate/life_file.h"
 #include "explore/explore_file.h"
 #include "lab/import/import.h"
 #include "lab/instrument/instrument.h"
@@ -9,7 +10,7 @@
 
 struct request {
   bool json, markdown, general, material, protocol, mapping, fit, fit_device, fit_breakdown,
-      explore;
+      fit_life, explore;
 };
 
 static int run(struct dea_cli *cli, void *user)
@@ -25,6 +26,7 @@ static int run(struct dea_cli *cli, void *user)
                                     : request->fit           ? &dea_fit_record
                                     : request->fit_device    ? &dea_device_file_record
                                     : request->fit_breakdown ? &dea_breakdown_file_record
+                                    : request->fit_life      ? &dea_life_file_record
                                     : request->explore       ? &dea_explore_record
                                     : request->general       ? &design.general.record
                                                              : &design.disc.record;
@@ -59,6 +61,8 @@ static const struct cli_option options[] = {
      CLI_AT(fit_device), .or_before = true},
     {"fit-breakdown", 0, CLI_FLAG, NULL, "the keys of a fit file of breakdown tests instead",
      CLI_AT(fit_breakdown), .or_before = true},
+    {"fit-life", 0, CLI_FLAG, NULL, "the keys of a fit file of life tests instead",
+     CLI_AT(fit_life), .or_before = true},
     {"explore", 0, CLI_FLAG, NULL, "the keys of a file for `dea sweep` and `dea optimise` instead",
      CLI_AT(explore), .or_before = true},
     {0}};

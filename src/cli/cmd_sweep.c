@@ -14,6 +14,7 @@ struct request {
   double processes; // 0: not given
   double slurm;     // parts of an array of jobs; 0: none
   struct dea_sweep_options options;
+  struct dea_plot_format format; // of the figures
 };
 
 static int take_shard(struct dea_cli *cli, const struct dea_command *command,
@@ -42,10 +43,11 @@ static void print_report(const struct dea_sweep_report *report, const struct req
   if (report->failed > 0) {
     printf("without all values: %zu (for example: %s)\n", report->failed, report->why);
   }
-  printf("written to %s%s\n", request->options.folder,
-         request->options.shard.parts > 1 && !request->options.merge
-             ? ": one part; --merge writes the tables"
-             : " (cases.csv, cases.h5)");
+  const bool part = request->options.shard.parts > 1 && !request->options.merge;
+  if (part || report->written) {
+    printf("written to %s%s\n", request->options.folder,
+           part ? ": one part; --merge writes the tables" : " (cases.csv, cases.h5)");
+  }
   fflush(stdout);
 }
 
@@ -71,20 +73,15 @@ static dea_status submit(struct dea_cli *cli, const struct request *request)
 
 static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_explore_file *file;
   struct dea_question *question;
   struct dea_sweep_report report = {0};
-  DEA_TRY(cli->ctx, dea_explore_file_read(cli->ctx, request->file, &file));
-  dea_status status = dea_question_make(cli->ctx, file, &question);
-  if (status == DEA_OK) {
-    status = request->slurm > 0 ? submit(cli, request)
-                                : dea_sweep_run(question, &request->options, &report);
-    if (report.planned > 0) {
-      print_report(&report, request);
-    }
-    dea_question_destroy(question);
+  DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
+  dea_status status = request->slurm > 0 ? submit(cli, request)
+                                         : dea_sweep_run(question, &request->options, &report);
+  if (report.planned > 0) {
+    print_report(&report, request);
   }
-  dea_explore_file_destroy(cli->ctx, file);
+  dea_question_destroy(question);
   return status;
 }
 
@@ -92,17 +89,17 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
+  request->options.format = request->format;
   request->options.processes = cli_processes(request->processes);
-  if (request->options.folder == NULL) {
-    cli_folder_name(request->file, "sweep", &folder);
-    request->options.folder = dea_text_get(&folder);
-  }
-  int code = cli_report(cli, folder.failed ? DEA_E_MEMORY : sweep(cli, request));
+  request->options.folder =
+      cli_output_name(request->options.folder, request->file, "sweep", &folder);
+  int code = cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : sweep(cli, request));
   dea_text_free(&folder);
   return code;
 }
 
-static const struct request defaults = {.options = {.shard = {1, 1}}};
+static const struct request defaults = {.options = {.shard = {1, 1}},
+                                        .format = {.svg = true, .width_m = 85e-3}};
 
 static const struct cli_option options[] = {
     CLI_ONE(CLI_DESIGN, "FILE", "file of a sweep", file, "a file is needed", "one file at a time"),
@@ -121,6 +118,8 @@ static const struct cli_option options[] = {
     {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",
      CLI_AT(options.merge)},
     {"force", 'f', CLI_FLAG, NULL, "throw away the cases that are there", CLI_AT(options.force)},
+    CLI_FORMAT_ROW("formats of the figures of samples with commas between, svg if not given"),
+    CLI_WIDTH_ROW("width of the figures (default 85)"),
     {0}};
 
 const struct dea_command cmd_sweep = {

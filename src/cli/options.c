@@ -270,11 +270,16 @@ bool cli_read_share(const char *text, double *share)
   return *end == '\0';
 }
 
-void cli_folder_name(const char *design, const char *ending, struct dea_text *out)
+const char *cli_output_name(const char *given, const char *file, const char *ending,
+                            struct dea_text *made)
 {
   size_t length;
-  const char *name = dea_path_stem(design, &length);
-  dea_text_add(out, "%.*s.%s", (int)length, name, ending);
+  const char *name = dea_path_stem(file, &length);
+  if (given != NULL) {
+    return given;
+  }
+  dea_text_add(made, "%.*s.%s", (int)length, name, ending);
+  return made->failed ? NULL : dea_text_get(made);
 }
 
 dea_status cli_build_device(struct dea_cli *cli, const char *file,

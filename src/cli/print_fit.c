@@ -310,3 +310,79 @@ void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit)
            1e-6 * field, 1e-6 * field * exp(-std), 1e-6 * field * exp(std));
   }
 }
+
+// Lives -------------------------------------------------------------------------------------------
+
+static void print_lives(const struct dea_life_fit *fit)
+{
+  printf("  %-20s %-10s", "specimen", "");
+  for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+    char title[32];
+    snprintf(title, sizeof title, k == DEA_LIFE_CYCLES ? "%s" : "%s (%s)",
+             k == DEA_LIFE_UNDER_VOLTAGE ? "under voltage" : dea_life_clock_names[k],
+             dea_life_clock_units[k]);
+    printf(" %*s", k == DEA_LIFE_UNDER_VOLTAGE ? 17 : 12, title);
+  }
+  printf(" %10s\n", "stroke");
+  for (size_t i = 0; i < fit->rows; i++) {
+    const struct dea_life *life = &fit->lives[i];
+    printf("  %-20.20s %-10s", fit->file->specimens[i].name.text, dea_life_end_names[life->end]);
+    for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+      const int width = k == DEA_LIFE_UNDER_VOLTAGE ? 17 : 12;
+      if (isnan(life->clock[k])) {
+        printf(" %*s", width, "-");
+      } else {
+        printf(" %*.6g", width, dea_life_clock_factors[k] * life->clock[k]);
+      }
+    }
+    if (isnan(life->last_stroke) || isnan(life->first_stroke)) {
+      printf(" %10s\n", "-");
+    } else {
+      printf(" %8.1f %%\n", 100 * fabs(life->last_stroke) / life->first_stroke);
+    }
+  }
+}
+
+static void print_life_law(const struct dea_life_fit *fit)
+{
+  static const char *const names[2] = {"scale", "shape"};
+  const int clock = fit->file->clock.value;
+  const struct shown shown[2] = {{dea_life_clock_units[clock], dea_life_clock_factors[clock]},
+                                 {"", 1}};
+  printf("\nWeibull's law of the life in %s; scale: by when 63.2 %% have failed\n\n",
+         dea_life_clock_units[clock]);
+  for (size_t k = 0; k < 2; k++) {
+    const struct dea_fit_value value = {.value = fit->fit.value[k],
+                                        .std = fit->fit.std[k],
+                                        .low = fit->fit.low[k],
+                                        .high = fit->fit.high[k]};
+    printf("  %-20s %10.6g", names[k], shown[k].factor * value.value);
+    print_known(&value, &shown[k], 3, "", false);
+  }
+  static const double shares[] = {0.01, 0.1, 0.5};
+  putchar('\n');
+  for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++) {
+    double std;
+    const double life = shown[0].factor * dea_weibull_quantile(&fit->fit, shares[k], &std);
+    printf("%4.0f %% fail by %.4g %s (68 %%: %.4g to %.4g)\n", 100 * shares[k], life, shown[0].unit,
+           life * exp(-std), life * exp(std));
+  }
+}
+
+void cli_print_life_fit(const struct dea_life_fit *fit)
+{
+  printf("Life tests: %zu specimens, of which %zu failed\n\n", fit->rows, fit->failed);
+  print_lives(fit);
+  if (fit->has_law) {
+    print_life_law(fit);
+    return;
+  }
+  double life;
+  const double bound = dea_life_fit_bound(fit, &life);
+  const int clock = fit->file->clock.value;
+  printf("\nno law: two failures at different lives are needed\n");
+  if (!isnan(bound)) {
+    printf("with 95 %% certainty less than %.3g %% fail by %.6g %s\n", 100 * bound,
+           dea_life_clock_factors[clock] * life, dea_life_clock_units[clock]);
+  }
+}

@@ -1,6 +1,7 @@
 #include "cli/print_layout.h"
 
-#include <math.h>
+#include "base/rounded.h"
+
 #include <stdio.h>
 
 static const double degree = 57.29577951308232;
@@ -10,25 +11,20 @@ static const char *plural(size_t count)
   return count == 1 ? "" : "s";
 }
 
-/* A number without what rounding left of 0. */
-static double clean(double value)
-{
-  return 1e-6 * round(1e6 * value) + 0.0;
-}
-
 static void print_symmetry(const struct dea_symmetry *s)
 {
-  printf("\nSymmetry about (%.4g, %.4g) mm\n  ", clean(1e3 * s->centre_m[0]),
-         clean(1e3 * s->centre_m[1]));
+  printf("\nSymmetry about (%.4g, %.4g) mm\n  ", dea_rounded(1e3 * s->centre_m[0]),
+         dea_rounded(1e3 * s->centre_m[1]));
   if (s->order == 0) {
     puts("every turn and every mirror");
   } else if (s->order == 1 && s->mirrors == 0) {
     puts("none");
   } else if (s->order == 1) {
-    printf("one mirror, at %.4g degree\n", clean(degree * s->mirror_rad));
+    printf("one mirror, at %.4g degree\n", dea_rounded(degree * s->mirror_rad));
   } else {
     printf("%zu turns, %zu mirror%s", s->order, s->mirrors, plural(s->mirrors));
-    printf(s->mirrors > 0 ? ", the first at %.4g degree\n" : "\n", clean(degree * s->mirror_rad));
+    printf(s->mirrors > 0 ? ", the first at %.4g degree\n" : "\n",
+           dea_rounded(degree * s->mirror_rad));
   }
 }
 

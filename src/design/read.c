@@ -1,5 +1,6 @@
 #include "design/read.h"
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "design/schema.h"
 
 #include <math.h>
@@ -241,29 +242,6 @@ static dea_status parse(struct dea_context *ctx, const struct dea_design_source 
   return DEA_OK;
 }
 
-/* Files of another kind, told by their first key. */
-static dea_status refuse_others(struct dea_context *ctx, const struct dea_design *design)
-{
-  static const struct {
-    const char *key, *words;
-  } others[] = {{"dea-protocol", "this is a protocol, not a design: it is for 'dea drive', and its "
-                                 "key 'design' names the design"},
-                {"dea_fit", "this is a fit, not a design: it is for 'dea fit'"},
-                {"dea_explore", "this is a file of many designs, not a design: it is for 'dea "
-                                "sweep' or 'dea optimise', and its key 'design' names the design"},
-                {"dea_material",
-                 "this is a material, not a design: a design names it as its film's "
-                 "material, and 'dea materials' shows it"}};
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-    const struct dea_node *node = dea_node_find(dea_yaml_root(design->document), others[i].key);
-    if (node != NULL) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, node->key_place, "%s", others[i].words));
-      return dea_fail(ctx, DEA_E_DESIGN, "'%s' is no design", design->file);
-    }
-  }
-  return DEA_OK;
-}
-
 /* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
 static dea_status read_raw(struct dea_context *ctx, const struct dea_design_source *source,
                            const struct dea_node *changes, struct dea_design_raw *raw)
@@ -276,7 +254,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
   }
   DEA_TRY(ctx, parse(ctx, source, changes, &design->document));
   struct dea_reader reader = {ctx, design->document, &design->values};
-  DEA_TRY(ctx, refuse_others(ctx, design));
+  DEA_TRY(ctx, dea_file_kind_check(ctx, design->document, "dea"));
   struct dea_design_schema schema;
   dea_design_schema_fill(source->sections, &schema);
   const struct dea_node *root = dea_yaml_root(design->document);

@@ -1,5 +1,6 @@
 #include "device/layout_check.h"
 
+#include "base/rounded.h"
 #include "geometry/boolean.h"
 
 #include <math.h>
@@ -192,7 +193,8 @@ static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l
         "electrodes of the channels '%s' and '%s' lie on each other on one face of '%s', about "
         "(%.4g, %.4g) mm: %.4g mm2 (the other one is in line %zu)",
         l->channels[a->channel].name, l->channels[b->channel].name, l->plies[b->ply].name,
-        1e3 * at[0], 1e3 * at[1], 1e6 * dea_region_area_m2(&common), a->location.line);
+        dea_rounded(1e3 * at[0]), dea_rounded(1e3 * at[1]), 1e6 * dea_region_area_m2(&common),
+        a->location.line);
   }
   dea_region_free(&common);
   return status;
@@ -409,7 +411,8 @@ static dea_status check_held(struct dea_context *ctx, const struct dea_layout *l
       status = dea_finding_add(ctx, DEA_ERROR, l->plies[0].location,
                                "nothing holds the part of the device at (%.4g, %.4g) mm: it has "
                                "neither a support nor a body",
-                               1e3 * outline.vertex[0].x_m, 1e3 * outline.vertex[0].y_m);
+                               dea_rounded(1e3 * outline.vertex[0].x_m),
+                               dea_rounded(1e3 * outline.vertex[0].y_m));
       c = all.contour_count - 1; // one is enough
     }
     dea_region_free(&part);

@@ -3,6 +3,8 @@
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
+#include "explore/plan.h"
+#include "explore/slopes.h"
 #include "explore/sweep.h"
 #include "plot/gnuplot.h"
 #include "result/columns.h"
@@ -18,6 +20,9 @@ struct work {
   const struct dea_optimise_options *options;
   struct dea_optimise_report *report;
   struct dea_store *store;
+  struct dea_evaluator evaluator;
+  struct dea_search search;
+  double *scatter; // [scattered][params]; NULL: none
 };
 
 // What is sought ----------------------------------------------------------------------------------
@@ -62,24 +67,66 @@ static double margin(const void *user, size_t side, const double *q)
   return side_of(user, side, &limit) ? dea_limit_margin(user, &limit, q) : NAN;
 }
 
-static void fill_search(struct work *w, struct dea_search *search)
+/* Shifts of scattered designs, the first of them none. */
+static dea_status make_scatter(struct work *w)
+{
+  const struct dea_question *question = w->question;
+  const size_t n = question->variable_count;
+  size_t scattering = 0;
+  for (size_t j = 0; j < n; j++) {
+    scattering += question->variables[j].scatter > 0 ? 1U : 0U;
+  }
+  w->report->scattered = scattering > 0 ? (size_t)question->file->robust.samples.si : 1;
+  if (scattering == 0) {
+    return DEA_OK;
+  }
+  const size_t count = w->report->scattered;
+  w->scatter = dea_alloc(w->ctx, count * n, sizeof *w->scatter);
+  double *u = dea_alloc(w->ctx, count * scattering, sizeof *u);
+  if (w->scatter == NULL || u == NULL) {
+    dea_free(w->ctx, u);
+    return DEA_E_MEMORY;
+  }
+  dea_sample_sobol(scattering, count - 1, (unsigned long long)question->file->seed.si, u);
+  for (size_t s = 0; s < count; s++) {
+    for (size_t j = 0, d = 0; j < n; j++) {
+      const struct dea_variable *variable = &question->variables[j];
+      const double at = s > 0 && variable->scatter > 0 ? u[(s - 1) * scattering + d] : 0.5;
+      const bool normal = variable->text->distribution.value == DEA_NORMAL;
+      w->scatter[s * n + j] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
+      d += variable->scatter > 0 ? 1U : 0U;
+    }
+  }
+  dea_free(w->ctx, u);
+  return DEA_OK;
+}
+
+static void fill_search(struct work *w)
 {
   const struct dea_question *question = w->question;
   const struct dea_explore_file *file = question->file;
+  const struct dea_explore_robust *robust = &file->robust;
   struct dea_limit limit;
-  *search = (struct dea_search){.ctx = w->ctx,
-                                .evaluator = &question->evaluator,
-                                .store = w->store,
-                                .processes = w->options->processes,
-                                .objective = objective,
-                                .margin = margin,
-                                .user = question,
-                                .objective_count = file->objective_count,
-                                .method = (enum dea_method)file->method.value,
-                                .starts = (size_t)file->starts.si,
-                                .evaluations = (size_t)file->evaluations.si,
-                                .front = (size_t)file->front.si,
-                                .tolerance = file->tolerance.si};
+  struct dea_search *search = &w->search;
+  *search = (struct dea_search){
+      .ctx = w->ctx,
+      .evaluator = &w->evaluator,
+      .store = w->store,
+      .processes = w->options->processes,
+      .objective = objective,
+      .margin = margin,
+      .user = question,
+      .objective_count = file->objective_count,
+      .method = (enum dea_method)file->method.value,
+      .starts = (size_t)file->starts.si,
+      .evaluations = (size_t)file->evaluations.si,
+      .front = (size_t)file->front.si,
+      .tolerance = file->tolerance.si,
+      .scatter = w->scatter,
+      .scatter_count = w->report->scattered,
+      .quantile = robust->quantile.origin != DEA_ABSENT ? robust->quantile.si : NAN,
+      .spread = robust->spread.si,
+      .replaced = w->report->replaced};
   while (side_of(question, search->limit_count, &limit)) {
     search->limit_count++;
   }
@@ -106,7 +153,8 @@ static dea_status check(const struct work *w)
     const struct dea_variable *variable = &question->variables[j];
     const struct dea_label *name = &variable->text->text.name;
     combinations *= variable->value_count > 0 ? (double)variable->value_count : 1;
-    if (variable->text->distribution.value != DEA_UNIFORM) {
+    if (variable->text->distribution.value == DEA_LOGNORMAL ||
+        (variable->text->distribution.value != DEA_UNIFORM && variable->scatter == 0)) {
       DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, name->location,
                                       "%s: a search needs low and high, or values", name->text));
     } else if (variable->value_count == 0 && !(variable->high > variable->low)) {
@@ -138,7 +186,8 @@ static dea_status write_cases(const struct work *w)
   for (size_t i = 0; i < count; i++) {
     memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
   }
-  dea_status status = dea_sweep_write(w->question, &plan, w->store, w->options->folder);
+  dea_status status =
+      dea_sweep_write(w->question, &plan, w->store, &w->options->format, w->options->folder);
   dea_free(w->ctx, plan.p);
   return status;
 }
@@ -208,10 +257,11 @@ static dea_status write_front(const struct work *w)
 
 // Figures -----------------------------------------------------------------------------------------
 
-static bool is_within(const struct dea_question *question, const double *q)
+/* Whether limits hold, of what dea_search_look says. */
+static bool is_within(const struct dea_search *search, const double *looked)
 {
-  for (size_t l = 0; l < question->limit_count; l++) {
-    if (!(dea_limit_margin(question, &question->limits[l], q) >= -1e-6)) {
+  for (size_t l = 0; l < search->limit_count; l++) {
+    if (!(looked[search->objective_count + l] <= 1e-6)) {
       return false;
     }
   }
@@ -251,15 +301,15 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
     dea_figure_label(x, panel->x_label, sizeof panel->x_label);
   }
   for (size_t i = 0; i < count; i++) {
-    const struct dea_case *done = dea_store_get(w->store, i);
-    const bool good = is_within(question, done->q);
+    double looked[DEA_SEARCH_VALUES_MAX];
+    const bool is_there = dea_search_look(&w->search, dea_store_get(w->store, i)->p, looked);
+    const bool good = is_there && is_within(&w->search, looked);
     struct dea_series *to = good ? within : beyond;
-    const double value = last_value(question, question->objectives[of_y], done->q);
-    to->values[i] = x == NULL
-                        ? (double)(i + 1)
-                        : x->factor * last_value(question, question->objectives[of_x], done->q);
-    to->values[count + i] = y->factor * value;
-    const double f = sign_of(question, (size_t)of_y) * value;
+    const double f = is_there ? looked[of_y] : NAN; // a scattered one of another stands for none
+    to->values[i] = x == NULL  ? (double)(i + 1)
+                    : is_there ? x->factor * sign_of(question, (size_t)of_x) * looked[of_x]
+                               : NAN;
+    to->values[count + i] = y->factor * sign_of(question, (size_t)of_y) * f;
     best = good && f < best ? f : best;
     if (x == NULL && isfinite(best)) {
       line->values[i] = (double)(i + 1);
@@ -322,17 +372,21 @@ static dea_status write_all(struct work *w)
 
 static dea_status run(struct work *w)
 {
-  struct dea_search search;
   const struct dea_shard whole = {1, 1};
   DEA_TRY(w->ctx, check(w));
+  DEA_TRY(w->ctx, make_scatter(w));
+  w->evaluator = dea_question_with_slopes(w->question);
+  w->report->gradients = w->evaluator.gradients;
   if (w->options->force) {
     DEA_TRY(w->ctx, dea_store_remove(w->ctx, w->options->folder));
   }
-  DEA_TRY(w->ctx, dea_store_open(w->ctx, w->options->folder, w->question->hash,
-                                 &w->question->evaluator, &whole, &w->store));
+  DEA_TRY(w->ctx,
+          dea_store_open(w->ctx, w->options->folder,
+                         w->evaluator.gradients ? w->question->hash_slopes : w->question->hash,
+                         &w->evaluator, &whole, &w->store));
   w->report->before = dea_store_count(w->store);
-  fill_search(w, &search);
-  dea_status status = dea_search_run(&search, w->report->optima, &w->report->count);
+  fill_search(w);
+  dea_status status = dea_search_run(&w->search, w->report->optima, &w->report->count);
   char message[512];
   snprintf(message, sizeof message, "%.511s", dea_context_message(w->ctx));
   w->report->evaluations = dea_store_count(w->store);
@@ -354,9 +408,11 @@ dea_status dea_optimise_run(const struct dea_question *question,
                             const struct dea_optimise_options *options,
                             struct dea_optimise_report *report)
 {
-  struct work w = {question->ctx, question, options, report, NULL};
+  struct work w = {
+      .ctx = question->ctx, .question = question, .options = options, .report = report};
   *report = (struct dea_optimise_report){0};
   dea_status status = run(&w);
   dea_store_close(w.store);
+  dea_free(w.ctx, w.scatter);
   return status;
 }

@@ -16,7 +16,10 @@ struct dea_optimise_options {
 struct dea_optimise_report {
   struct dea_optimum optima[DEA_FRONT_MAX]; // one, or the front
   size_t count;
-  size_t before, evaluations, failed; // kept before, and now in all; without all values
+  size_t before, evaluations, failed;   // kept before, and now in all; without all values
+  size_t scattered;                     // designs that stand for one; 1: without scatter
+  bool gradients;                       // the model's own, and at so many designs differences
+  size_t replaced[DEA_CASE_PARAMS_MAX]; // in their place, by each variable
 };
 
 /* Searches and writes cases.csv and cases.h5 of all evaluations, the figure progress, best.yaml (of

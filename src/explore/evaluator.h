@@ -19,6 +19,10 @@ struct dea_case {
   double wall_s;
   char why[DEA_CASE_WHY_SIZE]; // why a value is missing; "": all are there
   double p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_VALUES_MAX];
+  /* From here on only on the way to an evaluation. */
+  size_t process; // that evaluates it, from 0
+  bool has_near;
+  double near[DEA_CASE_PARAMS_MAX]; // a design whose solution this one's may begin from
 };
 
 struct dea_evaluator {

@@ -6,6 +6,7 @@
 #define LIMIT_AT(member) offsetof(struct dea_explore_limit, member)
 
 static const char *const distributions[] = {"uniform", "normal", "lognormal", NULL};
+static const char *const begins[] = {"nearest", "rest", NULL};
 static const char *const plans[] = {"grid", "latin-hypercube", "sobol", "random", "indices", NULL};
 
 static const struct dea_field variable_fields[] = {
@@ -42,6 +43,11 @@ static const struct dea_field variable_fields[] = {
                   .absent_text = "the material's"),
     DEA_LABEL_ROW("start", VARIABLE_AT(text.start), "100 um", "where an optimisation begins",
                   .absent_text = "the design's"),
+    DEA_LABEL_ROW("scatter", VARIABLE_AT(scatter), "0.2 mm",
+                  "of an optimisation: what the workshop misses the value by, to either side; of a "
+                  "normal distribution its standard deviation. Without low, high and values the "
+                  "design's own value is meant",
+                  .absent_text = "none"),
 };
 static const struct dea_record variable_record = {"variable", "a number of the design that changes",
                                                   variable_fields, COUNT(variable_fields)};
@@ -59,6 +65,7 @@ static const struct dea_record limit_record = {"limit",
                                                limit_fields, COUNT(limit_fields)};
 
 static const char *const goals[] = {"most", "least", NULL};
+static const char *const gradients[] = {"model", "differences", NULL};
 static const char *const methods[] = {"slsqp", "mma", "cobyla", "random", NULL};
 static const struct dea_field objective_fields[] = {
     DEA_LABEL_ROW("quantity", offsetof(struct dea_explore_objective, quantity),
@@ -70,6 +77,23 @@ static const struct dea_field objective_fields[] = {
 };
 static const struct dea_record objective_record = {"objective", "what is wanted", objective_fields,
                                                    COUNT(objective_fields)};
+
+static const struct dea_field robust_fields[] = {
+    DEA_INTEGER_ROW("samples", offsetof(struct dea_explore_robust, samples), "32",
+                    "scattered designs that stand for one, the design itself among them", .min = 2,
+                    .max = DEA_EXPLORE_SCATTERED_MAX, .default_text = "16"),
+    DEA_NUMBER_ROW("spread", offsetof(struct dea_explore_robust, spread), "1", "2",
+                   "objectives and limits are taken so many standard deviations to the worse side "
+                   "of the mean",
+                   .max = 10, .default_text = "1"),
+    DEA_NUMBER_ROW("quantile", offsetof(struct dea_explore_robust, quantile), "1", "0.9",
+                   "in place of that: as good as this share of the scattered designs is at least, "
+                   "each objective and limit by itself; 1: the worst of them",
+                   .max = 1, .absent_text = "mean and spread"),
+};
+static const struct dea_record robust_record = {
+    "robust", "an optimisation of designs as the workshop makes them", robust_fields,
+    COUNT(robust_fields)};
 
 static const struct dea_field file_fields[] = {
     {.key = "dea_explore",
@@ -126,6 +150,10 @@ static const struct dea_field file_fields[] = {
                     .max = DEA_EXPLORE_CASES_MAX, .default_text = "100"),
     DEA_INTEGER_ROW("seed", AT(seed), "7", "of the samples: another one gives others",
                     .max = 1000000000, .default_text = "1"),
+    DEA_CHOICE_ROW("begin", AT(begin), begins, "rest",
+                   "what model 3d solves a design of a sweep from: a solved design near it, which "
+                   "takes a third of the time, or the film at rest",
+                   .default_text = "nearest"),
     {.key = "limits",
      .kind = DEA_FIELD_RECORD,
      .offset = AT(limits),
@@ -152,6 +180,10 @@ static const struct dea_field file_fields[] = {
                    "slsqp and mma go by gradients; cobyla does without; random: the best of random "
                    "designs",
                    .default_text = "slsqp"),
+    DEA_CHOICE_ROW("gradients", AT(gradients), gradients, "differences",
+                   "of slsqp and mma: those of the model where it has some of its own, or "
+                   "differences of designs",
+                   .default_text = "model"),
     DEA_INTEGER_ROW("starts", AT(starts), "5",
                     "places from which the search begins: the start of the variables, then others",
                     .min = 1, .max = 1000, .default_text = "3"),
@@ -162,6 +194,12 @@ static const struct dea_field file_fields[] = {
                    .min = 1e-12, .max = 0.1, .default_text = "1e-5"),
     DEA_INTEGER_ROW("front", AT(front), "11", "points of the front of two objectives", .min = 2,
                     .max = 100, .default_text = "7"),
+    {.key = "robust",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(robust),
+     .record = &robust_record,
+     .doc =
+         "of dea optimise, where variables have a scatter: what counts of the scattered designs"},
 };
 const struct dea_record dea_explore_record = {
     "file", "designs that differ in some values, and what is asked of them", file_fields,

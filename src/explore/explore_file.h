@@ -12,6 +12,7 @@ enum {
   DEA_EXPLORE_QUANTITIES_MAX = 8,
   DEA_EXPLORE_LIMITS_MAX = 8,
   DEA_EXPLORE_OBJECTIVES_MAX = 2,
+  DEA_EXPLORE_SCATTERED_MAX = 256,
   DEA_EXPLORE_CASES_MAX = 10000000,
 };
 
@@ -24,7 +25,9 @@ enum dea_plan_kind {
   DEA_PLAN_INDICES,
 };
 
+enum dea_begin { DEA_BEGIN_NEAREST, DEA_BEGIN_REST };
 enum dea_goal { DEA_MOST, DEA_LEAST };
+enum dea_slopes { DEA_SLOPES_MODEL, DEA_SLOPES_DIFFERENCES };
 enum dea_method { DEA_SLSQP, DEA_MMA, DEA_COBYLA, DEA_RANDOM };
 
 /* A variable as written. The prior of `text` is the mean of its distribution. */
@@ -34,6 +37,7 @@ struct dea_explore_variable {
   size_t value_count;
   struct dea_quantity steps;
   struct dea_choice distribution; // enum dea_distribution
+  struct dea_label scatter;       // of a search: what the workshop misses it by
 };
 
 /* What a quantity may not cross. */
@@ -44,6 +48,11 @@ struct dea_explore_limit {
 struct dea_explore_objective {
   struct dea_label quantity;
   struct dea_choice goal; // enum dea_goal
+};
+
+/* How a search looks at designs that scatter. */
+struct dea_explore_robust {
+  struct dea_quantity samples, spread, quantile; // spread or quantile
 };
 
 struct dea_explore_file {
@@ -57,12 +66,15 @@ struct dea_explore_file {
   size_t variable_count;
   struct dea_choice plan; // enum dea_plan_kind
   struct dea_quantity samples, seed;
+  struct dea_choice begin; // enum dea_begin
   struct dea_explore_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;
   struct dea_explore_objective objectives[DEA_EXPLORE_OBJECTIVES_MAX];
   size_t objective_count;
-  struct dea_choice method; // enum dea_method
+  struct dea_choice method;    // enum dea_method
+  struct dea_choice gradients; // enum dea_slopes
   struct dea_quantity starts, evaluations, tolerance, front;
+  struct dea_explore_robust robust;
 };
 
 extern const struct dea_record dea_explore_record;

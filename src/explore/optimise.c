@@ -8,6 +8,113 @@
 #include <math.h>
 #include <string.h>
 
+// Objectives and limits ---------------------------------------------------------------------------
+
+/* Scattered designs of one, or it alone. */
+static size_t scattered(const struct dea_search *search)
+{
+  return search->scatter != NULL ? search->scatter_count : 1;
+}
+
+static void scatter(const struct dea_search *search, const double *p, size_t s, double *out)
+{
+  const size_t n = search->evaluator->param_count;
+  for (size_t j = 0; j < n; j++) {
+    out[j] = p[j] + (search->scatter != NULL ? search->scatter[s * n + j] : 0);
+  }
+}
+
+/* Value r of a case: an objective, or what a limit is crossed by. */
+static double value_of(const struct dea_search *search, size_t r, const double *q)
+{
+  return r < search->objective_count
+             ? search->objective(search->user, r, q)
+             : -search->margin(search->user, r - search->objective_count, q);
+}
+
+/* Values of scattered designs and what becomes of them: places in rising order for quantiles. */
+struct spread {
+  double value[DEA_EXPLORE_SCATTERED_MAX], mean, std;
+  size_t order[DEA_EXPLORE_SCATTERED_MAX], count;
+};
+
+static void sort(struct spread *all)
+{
+  for (size_t i = 0; i < all->count; i++) { // few: by insertion, missing values last
+    size_t k = i;
+    for (; k > 0 && !(all->value[all->order[k - 1]] <= all->value[i]); k--) {
+      all->order[k] = all->order[k - 1];
+    }
+    all->order[k] = i;
+  }
+}
+
+/* Statistic of one value over all scattered designs. */
+static double statistic_of(const struct dea_search *search, struct spread *all)
+{
+  if (!isnan(search->quantile) && all->count > 1) {
+    for (size_t i = 0; i < all->count; i++) {
+      all->value[i] = isnan(all->value[i]) ? INFINITY : all->value[i];
+    }
+    sort(all);
+    const double at = search->quantile * (double)(all->count - 1);
+    const size_t below = (size_t)at, above = below + 1 < all->count ? below + 1 : below;
+    const double low = all->value[all->order[below]], high = all->value[all->order[above]];
+    const double share = at - (double)below;
+    const double out = share > 0 ? low + share * (high - low) : low;
+    return isfinite(out) ? out : NAN;
+  }
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < all->count; i++) {
+    sum += all->value[i];
+  }
+  all->mean = sum / (double)all->count;
+  for (size_t i = 0; i < all->count; i++) {
+    squares += pow(all->value[i] - all->mean, 2);
+  }
+  all->std = all->count > 1 ? sqrt(squares / (double)(all->count - 1)) : 0;
+  return all->mean + (all->count > 1 ? search->spread * all->std : 0);
+}
+
+/* Slope of that by one variable, of the slopes of all values. */
+static double statistic_slope(const struct dea_search *search, const struct spread *all,
+                              const double *slopes)
+{
+  if (!isnan(search->quantile) && all->count > 1) {
+    const double at = search->quantile * (double)(all->count - 1);
+    const size_t below = (size_t)at, above = below + 1 < all->count ? below + 1 : below;
+    const double low = slopes[all->order[below]], high = slopes[all->order[above]];
+    const double share = at - (double)below;
+    return share > 0 ? low + share * (high - low) : low;
+  }
+  double mean = 0, product = 0;
+  for (size_t i = 0; i < all->count; i++) {
+    mean += slopes[i] / (double)all->count;
+    product += (all->value[i] - all->mean) * slopes[i];
+  }
+  return all->std > 0 ? mean + search->spread * product / ((double)(all->count - 1) * all->std)
+                      : mean;
+}
+
+bool dea_search_look(const struct dea_search *search, const double *p, double *out)
+{
+  const size_t count = scattered(search), values = search->objective_count + search->limit_count;
+  struct spread all = {.count = count};
+  for (size_t r = 0; r < values; r++) {
+    for (size_t s = 0; s < count; s++) {
+      double at[DEA_CASE_PARAMS_MAX];
+      scatter(search, p, s, at);
+      const struct dea_case *done = dea_store_find(search->store, at);
+      if (done == NULL) {
+        return false;
+      }
+      all.value[s] = value_of(search, r, done->q);
+    }
+    out[r] = statistic_of(search, &all);
+  }
+  return true;
+}
+
 #ifdef DEA_HAVE_NLOPT
 #include <nlopt.h>
 
@@ -27,6 +134,7 @@ struct work {
   nlopt_opt opt;
   struct dea_optimum best;
   double best_f;
+  double *around; // room for the points of one step, [2 searched or 1][scattered][params]
 };
 
 // Evaluations -------------------------------------------------------------------------------------
@@ -85,7 +193,7 @@ static void point_of(const struct work *w, const double *x, double *p)
   }
 }
 
-// Objective and limits ----------------------------------------------------------------------------
+// Functions of a search ---------------------------------------------------------------------------
 
 /* Number of functions: the objective, the limits, and the bound of the other objective. */
 static size_t functions(const struct work *w)
@@ -93,118 +201,184 @@ static size_t functions(const struct work *w)
   return 1 + w->search->limit_count + (isfinite(w->bound) ? 1U : 0U);
 }
 
-/* Function k of a case, at most 0 where a limit holds; NAN where a value is missing. */
-static double function_of(const struct work *w, size_t k, const double *q)
+/* The value that function k is of, what is taken off it and what it is divided by. */
+static size_t source_of(const struct work *w, size_t k, double *shift, double *scale)
 {
-  const struct dea_search *search = w->search;
-  if (k == 0) {
-    return search->objective(search->user, w->wanted, q) / w->scale[w->wanted];
+  *shift = 0;
+  *scale = 1;
+  if (k > 0 && k <= w->search->limit_count) {
+    return w->search->objective_count + k - 1;
   }
-  if (k <= search->limit_count) {
-    return -search->margin(search->user, k - 1, q);
-  }
-  const size_t other = 1 - w->wanted;
-  return (search->objective(search->user, other, q) - w->bound) / w->scale[other];
+  const size_t objective = k == 0 ? w->wanted : 1 - w->wanted;
+  *shift = k == 0 ? 0 : w->bound;
+  *scale = w->scale[objective];
+  return objective;
 }
 
 /* Notes a design that is within all limits and better than the best. Within the solver's tolerance
  * of a limit it pays for what it is beyond, so that it gains nothing by that. */
-static void note(struct work *w, const struct dea_case *at)
+static void note(struct work *w, const double *p, const double *functions_of,
+                 const double *objectives)
 {
   double off = 0;
   for (size_t k = 1; k < functions(w); k++) {
-    const double g = function_of(w, k, at->q);
-    off = g <= 1e-6 ? fmax(off, g) : INFINITY; // NAN too
+    off = functions_of[k] <= 1e-6 ? fmax(off, functions_of[k]) : INFINITY; // NAN too
   }
-  const double f = function_of(w, 0, at->q) + 100 * off;
+  const double f = functions_of[0] + 100 * off;
   if (f < w->best_f) {
     w->best_f = f;
     w->best.found = true;
-    memcpy(w->best.p, at->p, sizeof w->best.p);
-    for (size_t k = 0; k < w->search->objective_count; k++) {
-      w->best.f[k] = w->search->objective(w->search->user, k, at->q);
-    }
+    memcpy(w->best.p, p, w->search->evaluator->param_count * sizeof *p);
+    memcpy(w->best.f, objectives, w->search->objective_count * sizeof *objectives);
     w->best.evaluations = dea_store_count(w->search->store);
   }
 }
 
-/* Gradient of function k by central differences, or one-sided where one of the two designs has no
- * value or would lie outside of the range. around: cases x -+ h of each variable. */
-static void difference_of(const struct work *w, size_t k, double f, const double *x,
-                          const double *around, double *gradient)
-{
-  const size_t params = w->search->evaluator->param_count;
-  for (size_t i = 0; i < w->n; i++) {
-    double value[3] = {NAN, f, NAN},
-           at[3] = {fmax(x[i] - difference, 0), x[i], fmin(x[i] + difference, 1)};
-    for (size_t s = 0; s < 3; s += 2) {
-      const struct dea_case *done =
-          dea_store_find(w->search->store, around + (2 * i + s / 2) * params);
-      value[s] = done != NULL ? function_of(w, k, done->q) : NAN;
-    }
-    const size_t low = isnan(value[0]) ? 1U : 0U, high = isnan(value[2]) ? 1U : 2U;
-    gradient[i] = at[high] > at[low] ? (value[high] - value[low]) / (at[high] - at[low]) : 0;
-  }
-}
+// Gradients ---------------------------------------------------------------------------------------
 
-/* The same from the gradients that the evaluator gives: functions are linear in the values, so that
+/* Slope of value r of a case by a searched variable in units of its range, from the gradients that
+ * the evaluator gives, NAN where it gives none: values are linear in those of the case, so that
  * their change over a step along the gradients is their derivative. */
-static void chain(const struct work *w, size_t k, const struct dea_case *at, double *gradient)
+static double slope_at(const struct work *w, size_t r, const struct dea_case *at, size_t i)
 {
   const struct dea_evaluator *evaluator = w->search->evaluator;
-  const double *slopes = at->q + evaluator->value_count, f = function_of(w, k, at->q);
+  const size_t j = w->free[i];
+  const double *slopes = at->q + evaluator->value_count,
+               range = w->search->high[j] - w->search->low[j];
   double moved[DEA_CASE_VALUES_MAX];
-  for (size_t i = 0; i < w->n; i++) {
-    const size_t j = w->free[i];
-    const double range = w->search->high[j] - w->search->low[j];
-    for (size_t v = 0; v < evaluator->value_count; v++) {
-      moved[v] = at->q[v] + range * slopes[v * evaluator->param_count + j];
-    }
-    gradient[i] = function_of(w, k, moved) - f;
+  if (!evaluator->gradients) {
+    return NAN;
   }
+  for (size_t v = 0; v < evaluator->value_count; v++) {
+    moved[v] = at->q[v] + range * slopes[v * evaluator->param_count + j];
+  }
+  return value_of(w->search, r, moved) - value_of(w->search, r, at->q);
+}
+
+/* The same by central differences, or one-sided where one of the two designs has no value or would
+ * lie outside of the range; 0 where both are missing. */
+static double difference_at(const struct work *w, size_t r, const double *x, size_t s, size_t i)
+{
+  const struct dea_search *search = w->search;
+  double value[3], at[3] = {fmax(x[i] - difference, 0), x[i], fmin(x[i] + difference, 1)};
+  for (size_t k = 0; k < 3; k++) {
+    double y[DEA_CASE_PARAMS_MAX], p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_PARAMS_MAX];
+    memcpy(y, x, w->n * sizeof *y);
+    y[i] = at[k];
+    point_of(w, y, p);
+    scatter(search, p, s, q);
+    const struct dea_case *done = dea_store_find(search->store, q);
+    value[k] = done != NULL ? value_of(search, r, done->q) : NAN;
+  }
+  const size_t low = isnan(value[0]) ? 1U : 0U, high = isnan(value[2]) ? 1U : 2U;
+  return at[high] > at[low] ? (value[high] - value[low]) / (at[high] - at[low]) : 0;
+}
+
+/* The case of a scattered design at x; it is there. */
+static const struct dea_case *case_at(const struct work *w, const double *x, size_t s)
+{
+  double p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_PARAMS_MAX];
+  point_of(w, x, p);
+  scatter(w->search, p, s, q);
+  return dea_store_find(w->search->store, q);
+}
+
+/* Whether the evaluator lacks a slope by a variable at x, of a value that is there. */
+static bool is_lacking(const struct work *w, const double *x, size_t i)
+{
+  for (size_t s = 0; s < scattered(w->search); s++) {
+    const struct dea_case *at = case_at(w, x, s);
+    for (size_t k = 0; k < functions(w); k++) {
+      double shift, scale;
+      const size_t r = source_of(w, k, &shift, &scale);
+      if (!isnan(value_of(w->search, r, at->q)) && isnan(slope_at(w, r, at, i))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* Has the designs x -+ h evaluated, for variables whose slopes the evaluator lacks. */
+static bool evaluate_around(struct work *w, const double *x)
+{
+  const struct dea_search *search = w->search;
+  const size_t params = search->evaluator->param_count;
+  size_t count = 0;
+  for (size_t i = 0; i < w->n; i++) {
+    if (!is_lacking(w, x, i)) {
+      continue;
+    }
+    for (size_t k = 0; k < 2; k++) {
+      double y[DEA_CASE_PARAMS_MAX], p[DEA_CASE_PARAMS_MAX];
+      memcpy(y, x, w->n * sizeof *y);
+      y[i] = k == 0 ? fmax(x[i] - difference, 0) : fmin(x[i] + difference, 1);
+      point_of(w, y, p);
+      for (size_t s = 0; s < scattered(search); s++) {
+        scatter(search, p, s, w->around + count++ * params);
+      }
+    }
+    if (search->replaced != NULL) {
+      search->replaced[w->free[i]]++;
+    }
+  }
+  return count == 0 || evaluate(w, w->around, count);
+}
+
+/* Slope of function k by variable i. all: its values, as the statistic left them. */
+static double function_slope(const struct work *w, size_t k, const struct spread *all,
+                             const double *x, size_t i)
+{
+  double slopes[DEA_EXPLORE_SCATTERED_MAX], shift, scale;
+  const size_t r = source_of(w, k, &shift, &scale);
+  for (size_t s = 0; s < all->count; s++) {
+    slopes[s] = slope_at(w, r, case_at(w, x, s), i);
+    slopes[s] = isnan(slopes[s]) ? difference_at(w, r, x, s, i) : slopes[s];
+  }
+  const double slope = statistic_slope(w->search, all, slopes) / scale;
+  return isfinite(slope) ? slope : 0;
 }
 
 /* All functions at x, and their gradients [functions][n] (NULL: not wanted). */
 static void functions_at(struct work *w, const double *x, double *values, double *gradients)
 {
-  const size_t params = w->search->evaluator->param_count, count = functions(w);
-  const bool differences = gradients != NULL && !w->search->evaluator->gradients;
-  double p[(1 + 2 * DEA_CASE_PARAMS_MAX) * DEA_CASE_PARAMS_MAX], y[DEA_CASE_PARAMS_MAX];
-  point_of(w, x, p);
-  for (size_t i = 0; i < 2 * w->n && differences; i++) {
-    memcpy(y, x, w->n * sizeof *y);
-    y[i / 2] = i % 2 == 0 ? fmax(x[i / 2] - difference, 0) : fmin(x[i / 2] + difference, 1);
-    point_of(w, y, p + (1 + i) * params);
+  const struct dea_search *search = w->search;
+  const size_t count = functions(w), samples = scattered(search);
+  double p[DEA_CASE_PARAMS_MAX], looked[DEA_SEARCH_VALUES_MAX];
+  memset(values, 0, count * sizeof *values);
+  if (gradients != NULL) {
+    memset(gradients, 0, count * w->n * sizeof *gradients);
   }
-  if (!evaluate(w, p, differences ? 1 + 2 * w->n : 1)) {
-    for (size_t k = 0; k < count; k++) {
-      values[k] = 0;
-    }
-    if (gradients != NULL) {
-      memset(gradients, 0, count * w->n * sizeof *gradients);
-    }
+  point_of(w, x, p);
+  for (size_t s = 0; s < samples; s++) {
+    scatter(search, p, s, w->around + s * search->evaluator->param_count);
+  }
+  if (!evaluate(w, w->around, samples) || (gradients != NULL && !evaluate_around(w, x))) {
     return;
   }
-  const struct dea_case *at = dea_store_find(w->search->store, p);
-  note(w, at);
+  dea_search_look(search, p, looked);
   for (size_t k = 0; k < count; k++) {
-    values[k] = function_of(w, k, at->q);
-    if (gradients != NULL && isfinite(values[k])) {
-      w->search->evaluator->gradients
-          ? chain(w, k, at, gradients + k * w->n)
-          : difference_of(w, k, values[k], x, p + params, gradients + k * w->n);
-    } else if (gradients != NULL) {
-      memset(gradients + k * w->n, 0, w->n * sizeof *gradients);
+    double shift, scale;
+    const size_t r = source_of(w, k, &shift, &scale);
+    struct spread all = {.count = samples};
+    for (size_t s = 0; s < samples; s++) {
+      all.value[s] = value_of(search, r, case_at(w, x, s)->q);
     }
-    if (k == 0 && isfinite(values[k])) {
-      w->worst = fmax(w->worst, values[k]);
-    } else if (!isfinite(values[k])) {
+    values[k] = (statistic_of(search, &all) - shift) / scale;
+    for (size_t i = 0; i < w->n && gradients != NULL && isfinite(values[k]); i++) {
+      gradients[k * w->n + i] = function_slope(w, k, &all, x, i);
+    }
+  }
+  note(w, p, values, looked);
+  w->worst = isfinite(values[0]) ? fmax(w->worst, values[0]) : w->worst;
+  for (size_t k = 0; k < count; k++) {
+    if (!isfinite(values[k])) {
       values[k] = k == 0 ? w->worst + 1 : 1;
     }
   }
 }
 
-enum { FUNCTIONS_MAX = 2 + DEA_EXPLORE_LIMITS_MAX };
+enum { FUNCTIONS_MAX = DEA_SEARCH_VALUES_MAX };
 
 static double objective(unsigned n, const double *x, double *gradient, void *user)
 {
@@ -327,14 +501,14 @@ static dea_status search_all(struct work *w, const double *extra)
 static dea_status find_scale(struct work *w)
 {
   const struct dea_search *search = w->search;
-  double p[DEA_CASE_PARAMS_MAX] = {0};
-  memcpy(p, search->start, search->evaluator->param_count * sizeof *p);
-  evaluate(w, p, 1);
-  const struct dea_case *at = w->status == DEA_OK ? dea_store_find(search->store, p) : NULL;
+  double looked[DEA_SEARCH_VALUES_MAX];
+  for (size_t s = 0; s < scattered(search); s++) {
+    scatter(search, search->start, s, w->around + s * search->evaluator->param_count);
+  }
+  const bool done =
+      evaluate(w, w->around, scattered(search)) && dea_search_look(search, search->start, looked);
   for (size_t k = 0; k < DEA_EXPLORE_OBJECTIVES_MAX; k++) {
-    const double f = at != NULL && k < search->objective_count
-                         ? fabs(search->objective(search->user, k, at->q))
-                         : NAN;
+    const double f = done && k < search->objective_count ? fabs(looked[k]) : NAN;
     w->scale[k] = f > 0 ? f : 1;
   }
   return w->status;
@@ -374,7 +548,12 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
   w->search = search;
   w->bound = INFINITY;
   w->worst = -INFINITY;
-  w->status = dea_pool_create(search->ctx, search->evaluator, search->processes, &w->pool);
+  w->around = dea_alloc(
+      search->ctx, 2 * DEA_CASE_PARAMS_MAX * scattered(search) * search->evaluator->param_count,
+      sizeof *w->around);
+  w->status = w->around != NULL
+                  ? dea_pool_create(search->ctx, search->evaluator, search->processes, &w->pool)
+                  : DEA_E_MEMORY;
   dea_status status = w->status == DEA_OK ? find_scale(w) : w->status;
   w->worst = 1;
   status = status == DEA_OK ? search_all(w, NULL) : status;
@@ -384,6 +563,7 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
     status = search->objective_count > 1 ? find_front(w, out, count) : DEA_OK;
   }
   dea_pool_destroy(w->pool);
+  dea_free(search->ctx, w->around);
   dea_free(search->ctx, w);
   return status;
 }

@@ -24,9 +24,18 @@ struct dea_search {
   enum dea_method method;
   size_t starts, evaluations, front;
   double tolerance;
+  /* What a design is looked at with, [scatter_count][params], added to its numbers: its functions
+   * are then a statistic over all of these, of each function by itself. NULL: the design alone. */
+  const double *scatter;
+  size_t scatter_count;
+  double quantile; // the value that this share of them keeps below; NAN: the mean and
+  double spread;   // so many standard deviations
+  /* Designs at which differences stood in for a gradient that the evaluator did not give, by each
+   * variable, [param_count]; NULL: not wanted. */
+  size_t *replaced;
 };
 
-/* A point that a search came to. */
+/* A point that a search came to. f: objectives, of scattered designs their statistics. */
 struct dea_optimum {
   double p[DEA_CASE_PARAMS_MAX], f[DEA_EXPLORE_OBJECTIVES_MAX];
   bool found;         // a design within all limits
@@ -40,6 +49,11 @@ enum { DEA_FRONT_MAX = 100 };
  * DEA_E_INTERRUPTED, all evaluations kept. DEA_E_UNSUPPORTED where the program was built without
  * NLopt. */
 dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count);
+/* Objectives [objective_count], then what limits are crossed by [limit_count] (at most 0: within),
+ * of the design p by what the store has; NAN where a value is missing. false: it was not looked at.
+ */
+enum { DEA_SEARCH_VALUES_MAX = DEA_EXPLORE_OBJECTIVES_MAX + 2 * DEA_EXPLORE_LIMITS_MAX };
+bool dea_search_look(const struct dea_search *search, const double *p, double *out);
 /* Whether it was built with NLopt. */
 bool dea_search_is_built(void);
 

@@ -219,6 +219,7 @@ dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_
       struct worker *worker = &pool->workers[k];
       if (!worker->busy && more) {
         memset(&worker->now, 0, sizeof worker->now);
+        worker->now.process = k;
         more = source(user, &worker->now);
         status = more ? give(pool, worker) : DEA_OK;
       }

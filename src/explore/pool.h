@@ -9,7 +9,8 @@ struct dea_pool;
 
 /* Takes a case that is done; anything but DEA_OK ends the work. */
 typedef dea_status (*dea_case_sink)(void *user, const struct dea_case *done);
-/* The next case into *out (number and p); false: there is none. */
+/* The next case into *out (number, p, near), whose `process` is set; false: there is none for
+ * anybody. */
 typedef bool (*dea_case_source)(void *user, struct dea_case *out);
 
 /* evaluator: lent. processes: at least 1; they start with the first case that they get. out: owned

@@ -88,6 +88,8 @@ static dea_status take_hash(struct dea_question *question)
     dea_text_add(&text, "quantity %s\n", dea_point_columns[question->quantities[i]].key);
   }
   dea_sha256_hex(dea_text_get(&text), text.length, question->hash);
+  dea_text_add(&text, "gradients\n");
+  dea_sha256_hex(dea_text_get(&text), text.length, question->hash_slopes);
   const bool failed = text.failed;
   dea_text_free(&text);
   return failed ? DEA_E_MEMORY : DEA_OK;
@@ -123,7 +125,10 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   const size_t count = question->quantity_count;
   question->id[0] = question->model.why[0] = '\0';
   question->model.ctx = ctx;
-  dea_status status = dea_device_model_sweep(&question->model, io->p, question->points);
+  dea_status status =
+      io->has_near
+          ? dea_device_model_sweep_from(&question->model, io->near, io->p, question->points)
+          : dea_device_model_sweep(&question->model, io->p, question->points);
   snprintf(io->id, sizeof io->id, "%s", question->id);
   snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, question->model.why);
   if (status == DEA_E_UNSUPPORTED || status == DEA_E_ARGUMENT) { // of this design: a mesh
@@ -132,18 +137,17 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
     return DEA_OK;
   }
   if (status == DEA_E_DOMAIN) {
+    io->id[0] = '\0'; // not that of the design to begin from
     tell_design(question, ctx, io);
     return DEA_OK;
   }
   DEA_TRY(ctx, status);
   for (size_t k = 0; k < question->voltage_count; k++) {
     for (size_t i = 0; i < count; i++) {
-      const bool held = dea_point_columns[question->quantities[i]].key[0] == 'f' &&
-                        strcmp(dea_point_columns[question->quantities[i]].key, "force_N") == 0;
       const struct dea_load_point *point =
-          &question->points[held && question->model.group_count > 1
-                                ? question->model.groups[1].first + k
-                                : question->model.groups[0].first + k];
+          &question
+               ->points[question->model.groups[dea_question_is_held(question, i) ? 1 : 0].first +
+                        k];
       double *q = &io->q[k * count + i];
       *q = dea_point_get(point, question->quantities[i]);
       if (isnan(*q) && io->why[0] == '\0') {
@@ -273,7 +277,7 @@ static dea_status check_variable(struct dea_question *question, const struct dea
   const struct dea_label *name = &text->text.name;
   const char *wrong = NULL;
   const bool range = !isnan(variable->low) && !isnan(variable->high);
-  const bool spread = text->distribution.value != DEA_UNIFORM;
+  const bool spread = text->distribution.value != DEA_UNIFORM && variable->scatter == 0;
   if (variable->value_count > 0 && (range || spread || text->steps.origin != DEA_ABSENT)) {
     wrong = "give values, or low and high, or a distribution";
   } else if (spread &&
@@ -293,6 +297,36 @@ static dea_status check_variable(struct dea_question *question, const struct dea
   return wrong == NULL ? DEA_OK
                        : dea_finding_add(question->ctx, DEA_ERROR, name->location, "%s: %s",
                                          name->text, wrong);
+}
+
+/* What a search misses a variable by, and the one value of one that only scatters. */
+static dea_status take_scatter(struct dea_question *question, struct dea_variable *variable)
+{
+  struct dea_context *ctx = question->ctx;
+  const struct dea_explore_variable *text = variable->text;
+  const struct dea_label *name = &text->text.name;
+  if (text->scatter.text[0] == '\0') {
+    return DEA_OK;
+  }
+  if (variable->param.whole) {
+    return dea_finding_add(ctx, DEA_ERROR, text->scatter.location,
+                           "%s: a whole number does not scatter", name->text);
+  }
+  DEA_TRY(ctx, dea_device_param_number(ctx, &variable->param, &text->scatter, &variable->scatter));
+  if (!(variable->scatter > 0)) {
+    return isnan(variable->scatter) ? DEA_OK // said
+                                    : dea_finding_add(ctx, DEA_ERROR, text->scatter.location,
+                                                      "%s: a scatter is more than 0", name->text);
+  }
+  const bool alone = variable->value_count == 0 && isnan(variable->low) && isnan(variable->high);
+  if (alone && isnan(variable->param.designed)) {
+    return dea_finding_add(ctx, DEA_ERROR, name->location,
+                           "%s: the design has no value that could scatter", name->text);
+  }
+  if (alone) {
+    variable->values[variable->value_count++] = variable->param.designed;
+  }
+  return DEA_OK;
 }
 
 static dea_status take_variable(struct dea_question *question,
@@ -324,6 +358,7 @@ static dea_status take_variable(struct dea_question *question,
             dea_device_param_number(ctx, &variable->param, &text->values[i], &variable->values[i]));
   }
   variable->value_count = text->value_count;
+  DEA_TRY(ctx, take_scatter(question, variable));
   const size_t steps = text->steps.origin != DEA_ABSENT ? (size_t)text->steps.si : 0;
   const double span = variable->high - variable->low;
   if (steps > DEA_EXPLORE_VALUES_MAX || (variable->param.whole && span >= DEA_EXPLORE_VALUES_MAX)) {
@@ -418,8 +453,7 @@ static dea_status resolve_file(struct dea_question *question)
   return prepare_model(question);
 }
 
-dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_file *file,
-                             struct dea_question **out)
+dea_status dea_question_read(struct dea_context *ctx, const char *file, struct dea_question **out)
 {
   *out = NULL;
   struct dea_question *question = dea_alloc(ctx, 1, sizeof *question);
@@ -427,10 +461,12 @@ dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_f
     return DEA_E_MEMORY;
   }
   question->ctx = ctx;
-  question->file = file;
-  void *before = dea_c_locale_enter();
-  dea_status status = resolve_file(question);
-  dea_c_locale_leave(before);
+  dea_status status = dea_explore_file_read(ctx, file, &question->file);
+  if (status == DEA_OK) {
+    void *before = dea_c_locale_enter();
+    status = resolve_file(question);
+    dea_c_locale_leave(before);
+  }
   if (status != DEA_OK) {
     dea_question_destroy(question);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -442,13 +478,21 @@ dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_f
 void dea_question_destroy(struct dea_question *question)
 {
   if (question != NULL) {
+    question->model.ctx = question->ctx;
+    dea_device_model_end(&question->model);
     dea_arena_free(&question->memory);
     dea_device_destroy(question->ctx, question->device);
     dea_design_destroy(question->ctx, question->design);
     dea_free(question->ctx, question->bytes);
     dea_free(question->ctx, question->path);
+    dea_explore_file_destroy(question->ctx, question->file);
     dea_free(question->ctx, question);
   }
+}
+
+bool dea_question_warms(const struct dea_question *question)
+{
+  return question->model.type->load != NULL && question->file->begin.value == DEA_BEGIN_NEAREST;
 }
 
 bool dea_variable_range(const struct dea_variable *variable, double *low, double *high)
@@ -470,6 +514,12 @@ int dea_question_quantity(const struct dea_question *question, const char *key)
     }
   }
   return -1;
+}
+
+bool dea_question_is_held(const struct dea_question *question, size_t quantity)
+{
+  return question->model.group_count > 1 &&
+         strcmp(dea_point_columns[question->quantities[quantity]].key, "force_N") == 0;
 }
 
 void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size)

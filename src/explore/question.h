@@ -15,6 +15,7 @@ struct dea_variable {
   double values[DEA_EXPLORE_VALUES_MAX];   // SI
   size_t value_count;
   double low, high; // of the file; NAN: not given
+  double scatter;   // SI; half a width or a standard deviation; 0: none
 };
 
 struct dea_limit {
@@ -24,7 +25,7 @@ struct dea_limit {
 
 struct dea_question {
   struct dea_context *ctx;
-  const struct dea_explore_file *file; // lent
+  struct dea_explore_file *file;
   struct dea_design *design;
   struct dea_device *device;
   char *path, *bytes; // of the design file
@@ -40,23 +41,28 @@ struct dea_question {
   int objectives[DEA_EXPLORE_OBJECTIVES_MAX]; // columns, as of a limit
   struct dea_evaluator evaluator; // value of quantity i at voltage k: k * quantity_count + i
   char hash[65];                  // of all that a case's numbers mean
+  char hash_slopes[65];           // the same with gradients
   /* of the evaluator */
   struct dea_device_param params[DEA_CASE_PARAMS_MAX];
   struct dea_device_model model;
   struct dea_load_point *points;
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
+  struct dea_case *now; // what is evaluated, while slopes are taken too
 };
 
-/* Resolves a file. All that is wrong becomes findings, at its place, before anything is computed;
- * DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
-dea_status dea_question_make(struct dea_context *ctx, const struct dea_explore_file *file,
-                             struct dea_question **out);
+/* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
+ * is computed; DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
+dea_status dea_question_read(struct dea_context *ctx, const char *file, struct dea_question **out);
 void dea_question_destroy(struct dea_question *question);
+/* Whether a design is solved faster from one nearby. */
+bool dea_question_warms(const struct dea_question *question);
 /* Values that a variable can take lie from *low to *high; false: it has no bounds. */
 bool dea_variable_range(const struct dea_variable *variable, double *low, double *high);
 /* Number of a quantity of the question by its key, or -1. */
 int dea_question_quantity(const struct dea_question *question, const char *key);
+/* Whether a quantity is taken with the tip of compute.force held at its first depth. */
+bool dea_question_is_held(const struct dea_question *question, size_t quantity);
 /* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
 void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.

@@ -110,7 +110,7 @@ static void add_number(struct dea_text *out, double value)
 static void add_line(struct dea_text *out, const struct dea_evaluator *evaluator,
                      const struct dea_case *done)
 {
-  dea_text_add(out, "%zu,%s,%.6g,", done->number, done->id, done->wall_s);
+  dea_text_add(out, "%zu,%s,%.4g,", done->number, done->id, done->wall_s); // as in tables
   for (const char *c = done->why; *c != '\0'; c++) {
     dea_text_add(out, "%c", *c == ',' ? ';' : (unsigned char)*c < 0x20 ? ' ' : *c);
   }
@@ -295,22 +295,23 @@ static dea_status open_part(struct dea_store *store, const char *folder,
   return DEA_OK;
 }
 
-/* Has the own part begin with its head and end with a whole line. */
+/* Has the own part begin with its head and end with a whole line: without what a program that was
+ * killed left, or the zeros of a computer that failed, behind which nothing would be read. */
 static dea_status mend_part(struct dea_store *store)
 {
   char *bytes;
   size_t length;
   struct dea_text text = {.ctx = store->ctx};
   DEA_TRY(store->ctx, dea_file_read(store->ctx, store->path, FILE_MAX_BYTES, &bytes, &length));
-  if (strchr(bytes, '\n') == NULL) {
-    add_head(&text, store);
-    if (length > 0 && ftruncate(store->file, 0) != 0) {
-      text.failed = true;
-    }
-  } else if (bytes[length - 1] != '\n') {
-    dea_text_add(&text, "\n");
-  }
+  const char *last = strrchr(bytes, '\n');
+  const size_t whole = last != NULL ? (size_t)(last - bytes) + 1 : 0;
   dea_free(store->ctx, bytes);
+  if (whole < length && ftruncate(store->file, (off_t)whole) != 0) {
+    return dea_fail(store->ctx, DEA_E_IO, "cannot write '%s': %s", store->path, strerror(errno));
+  }
+  if (whole == 0) {
+    add_head(&text, store);
+  }
   dea_status status =
       text.failed ? DEA_E_MEMORY : write_all(store, dea_text_get(&text), text.length);
   dea_text_free(&text);

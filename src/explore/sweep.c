@@ -1,17 +1,28 @@
 #include "explore/sweep.h"
 
+#include "explore/order.h"
 #include "explore/pool.h"
 
 #include <stdio.h>
 #include <string.h>
+
+enum { SHARES = 8 }; // blocks of a shard, at least, where there are so many cases
+
+/* Places [next, end) of the order that a process works at. */
+struct stretch {
+  size_t next, end;
+};
 
 struct work {
   const struct dea_question *question;
   const struct dea_sweep_options *options;
   struct dea_sweep_report *report;
   const struct dea_plan *plan;
+  struct dea_order order;
   struct dea_store *store;
-  size_t next; // case
+  struct stretch *stretches; // [processes]
+  size_t next;               // place that nobody has got
+  size_t block;              // places of a shard between those of others
 };
 
 static const double *numbers(const struct work *w, size_t i)
@@ -19,26 +30,77 @@ static const double *numbers(const struct work *w, size_t i)
   return w->plan->p + i * w->question->variable_count;
 }
 
-static bool is_mine(const struct work *w, size_t i)
+/* Whether a place of the order is of this shard: blocks of it go round. */
+static bool is_mine(const struct work *w, size_t place)
 {
   const struct dea_shard *shard = &w->options->shard;
-  return i % shard->parts == shard->part - 1;
+  return place / w->block % shard->parts == shard->part - 1;
 }
 
-/* The next case of this shard that is not done. */
+static bool is_open(const struct work *w, size_t place)
+{
+  return is_mine(w, place) && dea_store_find(w->store, numbers(w, w->order.cases[place])) == NULL;
+}
+
+/* The longest stretch gives its second half away. */
+static void share(struct work *w, struct stretch *own)
+{
+  struct stretch *longest = own;
+  for (size_t k = 0; k < w->options->processes; k++) {
+    struct stretch *other = &w->stretches[k];
+    longest = other->end - other->next > longest->end - longest->next ? other : longest;
+  }
+  *own = (struct stretch){longest->end - (longest->end - longest->next + 1) / 2, longest->end};
+  longest->end = own->next;
+}
+
+/* Moves a process to its next place that is open: on its stretch, else on one that nobody has got,
+ * else on a share of another's. false: there is none. */
+static bool move_on(struct work *w, struct stretch *own)
+{
+  for (;;) {
+    while (own->next < own->end && !is_open(w, own->next)) {
+      own->next++;
+    }
+    if (own->next < own->end) {
+      return true;
+    }
+    while (w->next < w->plan->count && !is_open(w, w->next)) {
+      w->next++;
+    }
+    if (w->next < w->plan->count) {
+      *own = (struct stretch){w->next, w->next + 1};
+      while (own->end < w->plan->count &&
+             w->order.first[own->end] == w->order.first[own->next]) { // the group
+        own->end++;
+      }
+      w->next = own->end;
+    } else {
+      share(w, own);
+      if (own->next == own->end) {
+        return false;
+      }
+    }
+  }
+}
+
+/* The next case of this shard that is not done: neighbours to the same process. */
 static bool next_case(void *user, struct dea_case *out)
 {
   struct work *w = user;
-  while (w->next < w->plan->count &&
-         (!is_mine(w, w->next) || dea_store_find(w->store, numbers(w, w->next)) != NULL)) {
-    w->next++;
-  }
-  if (w->next == w->plan->count) {
+  struct stretch *own = &w->stretches[out->process];
+  if (!move_on(w, own)) {
     return false;
   }
-  out->number = w->next;
-  memcpy(out->p, numbers(w, w->next), w->question->variable_count * sizeof *out->p);
-  w->next++;
+  const size_t i = w->order.cases[own->next], size = w->question->variable_count * sizeof *out->p;
+  const double *near = numbers(w, w->order.first[own->next]);
+  const struct dea_case *done = dea_store_find(w->store, near);
+  out->number = i;
+  memcpy(out->p, numbers(w, i), size);
+  memcpy(out->near, near, size);
+  // nobody begins where one has failed, perhaps with its process
+  out->has_near = w->order.group > 1 && (done == NULL || done->why[0] == '\0');
+  own->next++;
   return true;
 }
 
@@ -52,17 +114,33 @@ static dea_status keep(void *user, const struct dea_case *done)
   return DEA_OK;
 }
 
-static dea_status evaluate(struct work *w)
+static dea_status evaluate_all(struct work *w)
 {
   struct dea_pool *pool;
   for (size_t i = 0; i < w->plan->count; i++) {
-    w->report->of_shard += is_mine(w, i) ? 1U : 0U;
-    w->report->before += is_mine(w, i) && dea_store_find(w->store, numbers(w, i)) != NULL ? 1U : 0U;
+    if (is_mine(w, i)) {
+      w->report->of_shard++;
+      w->report->before += is_open(w, i) ? 0U : 1U;
+    }
   }
   DEA_TRY(w->question->ctx,
           dea_pool_create(w->question->ctx, &w->question->evaluator, w->options->processes, &pool));
   dea_status status = dea_pool_run(pool, next_case, keep, w);
   dea_pool_destroy(pool);
+  return status;
+}
+
+/* Evaluates what is open, groups after each other. */
+static dea_status evaluate(struct work *w)
+{
+  struct dea_context *ctx = w->question->ctx;
+  DEA_TRY(ctx, dea_order_make(w->question, w->plan, &w->order));
+  w->block = w->plan->count / (SHARES * w->options->shard.parts);
+  w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
+  w->stretches = dea_alloc(ctx, w->options->processes, sizeof *w->stretches);
+  dea_status status = w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
+  dea_free(ctx, w->stretches);
+  dea_order_free(ctx, &w->order);
   return status;
 }
 
@@ -102,7 +180,9 @@ static dea_status run(struct work *w)
   snprintf(message, sizeof message, "%.511s", dea_context_message(ctx));
   count(w);
   if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
-    DEA_TRY(ctx, dea_sweep_write(w->question, w->plan, w->store, options->folder));
+    DEA_TRY(ctx,
+            dea_sweep_write(w->question, w->plan, w->store, &options->format, options->folder));
+    w->report->written = true;
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
@@ -113,7 +193,7 @@ dea_status dea_sweep_run(const struct dea_question *question,
   struct dea_plan plan;
   *report = (struct dea_sweep_report){0};
   DEA_TRY(question->ctx, dea_plan_make(question, &plan));
-  struct work w = {question, options, report, &plan, NULL, 0};
+  struct work w = {.question = question, .options = options, .report = report, .plan = &plan};
   dea_status status = run(&w);
   dea_store_close(w.store);
   dea_free(question->ctx, plan.p);

@@ -4,6 +4,7 @@
 
 #include "explore/plan.h"
 #include "explore/store.h"
+#include "plot/plot.h"
 
 struct dea_sweep_options {
   const char *folder;
@@ -11,6 +12,7 @@ struct dea_sweep_options {
   struct dea_shard shard; // which cases; {1, 1}: all
   bool force;             // throw away what is there
   bool merge;             // only write the tables of what is there
+  struct dea_plot_format format;
 };
 
 /* What a sweep comes to. */
@@ -18,6 +20,7 @@ struct dea_sweep_report {
   size_t planned, of_shard, before, now; // cases; done before and now
   size_t there, failed;                  // of the plan: done, and of these with a reason
   size_t torn;                           // lines that were not whole
+  bool written;                          // the tables
   char why[DEA_CASE_WHY_SIZE];           // the most frequent reason, "" without any
   size_t why_count;
 };
@@ -30,9 +33,11 @@ dea_status dea_sweep_run(const struct dea_question *question,
 /* Figures band_KEY of spreads [voltages][quantities] of samples, into a folder. */
 struct dea_spread;
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
-                          const char *folder);
-/* The tables of a plan's cases as far as they are done, into a folder. */
+                          const struct dea_plot_format *format, const char *folder);
+/* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
+ */
 dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
-                           const struct dea_store *store, const char *folder);
+                           const struct dea_store *store, const struct dea_plot_format *format,
+                           const char *folder);
 
 #endif

@@ -52,9 +52,8 @@ static dea_status fill_panel(const struct dea_question *question, const struct d
 }
 
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
-                          const char *folder)
+                          const struct dea_plot_format *format, const char *folder)
 {
-  static const struct dea_plot_format format = {.svg = true, .width_m = 85e-3};
   char names[DEA_EXPLORE_QUANTITIES_MAX][64];
   const char *list[DEA_EXPLORE_QUANTITIES_MAX];
   for (size_t i = 0; i < question->quantity_count; i++) {
@@ -68,7 +67,7 @@ dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_
                                            &plot));
     dea_status status = fill_panel(question, spreads, i, &plot->panels[0]);
     if (status == DEA_OK) {
-      status = dea_plot_write(question->ctx, plot, &format, folder);
+      status = dea_plot_write(question->ctx, plot, format, folder);
     }
     dea_plot_destroy(question->ctx, plot);
     DEA_TRY(question->ctx, status);

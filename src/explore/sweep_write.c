@@ -13,6 +13,7 @@ struct work {
   const struct dea_question *question;
   const struct dea_plan *plan;
   const struct dea_store *store;
+  const struct dea_plot_format *format;
   const char *folder;
   struct dea_context *ctx;
   size_t params, values;
@@ -267,7 +268,7 @@ static dea_status write_all(const struct work *w)
     status = write_indices(w, values);
   }
   if (status == DEA_OK && w->question->voltage_count > 1) {
-    status = dea_sweep_draw(w->question, spreads, w->folder);
+    status = dea_sweep_draw(w->question, spreads, w->format, w->folder);
   }
   dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);
@@ -275,11 +276,13 @@ static dea_status write_all(const struct work *w)
 }
 
 dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
-                           const struct dea_store *store, const char *folder)
+                           const struct dea_store *store, const struct dea_plot_format *format,
+                           const char *folder)
 {
   const struct work w = {question,
                          plan,
                          store,
+                         format,
                          folder,
                          question->ctx,
                          question->variable_count,

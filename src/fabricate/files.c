@@ -188,18 +188,6 @@ static dea_status write_sheet(struct dea_context *ctx, const struct dea_workshop
   return status;
 }
 
-static dea_status write_bytes(struct dea_context *ctx, const char *directory, const char *name,
-                              const char *bytes, size_t length)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = dea_file_write(ctx, path, bytes, length);
-  dea_free(ctx, path);
-  return status;
-}
-
 /* Draws a page or pages and gives the file; canvas: to be destroyed, NULL after a failure. */
 static dea_status draw(struct dea_context *ctx, const struct dea_canvas_type *type,
                        const struct dea_workshop *workshop, const struct drawing *drawing,
@@ -224,7 +212,7 @@ static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas
   size_t length;
   dea_status status = draw(ctx, type, workshop, drawing, &canvas, &bytes, &length);
   if (status == DEA_OK) {
-    status = write_bytes(ctx, directory, drawing->name, bytes, length);
+    status = dea_file_write_into(ctx, directory, drawing->name, bytes, length);
   }
   type->destroy(canvas);
   return status;
@@ -241,7 +229,7 @@ static dea_status write_process_pdf(struct dea_context *ctx, const struct dea_ca
   dea_document_pages(&paper, document);
   dea_status status = type->finish(paper.canvas, &bytes, &length);
   if (status == DEA_OK) {
-    status = write_bytes(ctx, directory, PROCESS_PDF, bytes, length);
+    status = dea_file_write_into(ctx, directory, PROCESS_PDF, bytes, length);
   }
   type->destroy(paper.canvas);
   return status;

@@ -1,17 +1,21 @@
 /* What is wrong with contours, and where. */
+#include "base/rounded.h"
 #include "geometry/pieces.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
+static const char crosses_itself[] = "the contour crosses or touches itself";
 
 dea_status dea_region_fault(struct dea_context *ctx, struct dea_location location, double x_m,
                             double y_m, const char *what)
 {
   char place[80] = "";
   if (isfinite(x_m) && isfinite(y_m)) {
-    snprintf(place, sizeof place, " at (%.6g, %.6g) mm", 1e3 * x_m, 1e3 * y_m);
+    snprintf(place, sizeof place, " at (%.6g, %.6g) mm", dea_rounded(1e3 * x_m),
+             dea_rounded(1e3 * y_m));
   }
   if (location.file == NULL) {
     location.file = "";
@@ -164,7 +168,7 @@ static const char *look_at(struct pair *p, const double **where)
   }
   if (p->all->contour[p->i] == p->all->contour[p->j]) {
     *where = find_own_crossing(p);
-    return *where != NULL ? "the contour crosses or touches itself" : NULL;
+    return *where != NULL ? crosses_itself : NULL;
   }
   *where = p->meet[0];
   if (share_an_edge(p)) {
@@ -177,6 +181,31 @@ static const char *look_at(struct pair *p, const double **where)
     }
   }
   return NULL;
+}
+
+/* The first two pieces that cross, not at an end of either, with that place as meet[0]; count is 0
+ * where there are none. */
+static struct pair find_crossing(const struct dea_pieces *all)
+{
+  for (size_t i = 0; i < all->count; i++) {
+    double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    dea_piece_grow_box(&all->piece[i], box);
+    size_t cursor = 0, j;
+    while (dea_pieces_next(all, box, &cursor, &j)) {
+      struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};
+      pair.snap = all->snap_m;
+      if (j > i) {
+        find_meetings(&pair);
+      }
+      for (int k = 0; k < pair.count; k++) {
+        if (pair.inner[k]) {
+          memcpy(pair.meet[0], pair.meet[k], sizeof pair.meet[0]);
+          return pair;
+        }
+      }
+    }
+  }
+  return (struct pair){.count = 0};
 }
 
 static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *all, bool apart_too)
@@ -205,6 +234,32 @@ static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *
   return DEA_OK;
 }
 
+/* What to say of a contour without an area: one that goes as far around one side of its crossing as
+ * around the other has none either. */
+static dea_status say_no_area(struct dea_context *ctx, const struct dea_contour *contour)
+{
+  const struct dea_vertex *first = &contour->vertex[0];
+  struct dea_region alone = {.ctx = ctx};
+  const struct dea_region *of = &alone;
+  struct dea_pieces all;
+  dea_region_add(&alone, contour->vertex, contour->count);
+  dea_status status = dea_region_status(&alone);
+  if (status == DEA_OK) {
+    status = dea_pieces_build(ctx, &of, 1, &all);
+  }
+  if (status == DEA_OK) {
+    const struct pair crossing = find_crossing(&all);
+    status = crossing.count > 0
+                 ? dea_region_fault(ctx, all.start[crossing.i].location, crossing.meet[0][0],
+                                    crossing.meet[0][1], crosses_itself)
+                 : dea_region_fault(ctx, first->location, first->x_m, first->y_m,
+                                    "a contour encloses no area");
+    dea_pieces_free(&all);
+  }
+  dea_region_free(&alone);
+  return status;
+}
+
 dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *region,
                             bool apart_too)
 {
@@ -224,7 +279,7 @@ dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *re
     }
     if (contour.count < 2 ||
         fabs(dea_contour_area_m2(&contour)) <= snap * dea_contour_length_m(&contour)) {
-      return dea_region_fault(ctx, v[0].location, v[0].x_m, v[0].y_m, "a contour encloses no area");
+      return say_no_area(ctx, &contour);
     }
   }
   struct dea_pieces all;

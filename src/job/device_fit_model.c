@@ -19,6 +19,10 @@ static bool is_fatal(dea_status status)
          status == DEA_E_UNSUPPORTED;
 }
 
+/* More area than this, or less than its inverse, beside a design nearby: another branch, as beyond
+ * pull-in. */
+static const double leap = 1.5;
+
 /* Copies the state of the last point, for the next evaluation to start from. */
 static dea_status keep_state(struct dea_device_model *model, struct dea_model *m, size_t stop)
 {
@@ -30,12 +34,47 @@ static dea_status keep_state(struct dea_device_model *model, struct dea_model *m
   return DEA_OK;
 }
 
+static void drop_state(struct dea_device_model *model, struct dea_state *state)
+{
+  dea_state_free_values(model->ctx, state);
+  *state = (struct dea_state){0};
+}
+
+/* Largest area stretch of the film at a point. */
+static double area_of(const struct dea_load_point *point)
+{
+  return point->true_field_V_per_m / point->nominal_field_V_per_m;
+}
+
+/* One point from the state of another design at that voltage, if it has one. */
+static dea_status solve_from_start(struct dea_device_model *model, struct dea_model *m, size_t stop,
+                                   struct dea_load_point *out)
+{
+  struct dea_context *ctx = model->ctx;
+  const struct dea_state *state = &model->start.states[stop];
+  bool near = state->array_count > 0;
+  if (near && dea_model_load(ctx, model->type, m, state) != DEA_OK) {
+    dea_context_clear(ctx); // another mesh
+    near = false;
+  }
+  DEA_TRY(ctx, model->type->solve(ctx, m, model->voltage_V[stop], out));
+  if (near) {
+    const double grown = area_of(out) / area_of(&model->start.points[stop]);
+    model->doubtful = model->doubtful || out->min_tension_N_per_m <= 0 || !out->stable ||
+                      grown > leap || grown < 1 / leap;
+  }
+  return DEA_OK;
+}
+
 /* One point: near the one that the last evaluation found there, else on the way from the last
  * voltage. A slack film has more than one state, and is gone to on that way only. */
 static dea_status solve(struct dea_device_model *model, struct dea_model *m, size_t stop,
                         struct dea_load_point *out)
 {
   struct dea_context *ctx = model->ctx;
+  if (model->from_start) {
+    return solve_from_start(model, m, stop, out);
+  }
   if (model->states != NULL && model->states[stop].array_count > 0 &&
       dea_model_load(ctx, model->type, m, &model->states[stop]) != DEA_OK) {
     dea_context_clear(ctx); // another mesh
@@ -45,8 +84,7 @@ static dea_status solve(struct dea_device_model *model, struct dea_model *m, siz
     return DEA_OK;
   }
   if (out->min_tension_N_per_m <= 0) {
-    dea_state_free_values(ctx, &model->states[stop]);
-    model->states[stop] = (struct dea_state){0};
+    drop_state(model, &model->states[stop]);
     return DEA_OK;
   }
   return keep_state(model, m, stop);
@@ -64,6 +102,7 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
   }
   DEA_TRY(ctx, dea_model_create(ctx, model->type, design, device, &m));
   dea_status status = DEA_OK;
+  bool left = false; // the branch that begins at 0 V
   if (group->held) {
     struct dea_probe tip = dea_force_indenter(design);
     struct dea_load_point touched;
@@ -79,6 +118,13 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
     status = solve(model, m, group->first + k, &point);
     if (status == DEA_OK) {
       points[group->first + k] = point;
+      left = left || (model->type->passed != NULL && model->type->passed(m) != NULL);
+      if (left && model->states != NULL) { // it has come here by a leap
+        drop_state(model, &model->states[group->first + k]);
+      }
+      model->doubtful = model->doubtful || left;
+      status = model->stood != NULL ? model->stood(model->user, m, design, device, group->first + k)
+                                    : DEA_OK;
     }
   }
   model->type->destroy(ctx, m);
@@ -170,6 +216,13 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
 
 /* ---- evaluations that are kept ---- */
 
+static void drop_states(struct dea_device_model *model, struct dea_state *states)
+{
+  for (size_t k = 0; states != NULL && k < model->stop_count; k++) {
+    drop_state(model, &states[k]);
+  }
+}
+
 dea_status dea_device_model_begin(struct dea_device_model *model)
 {
   for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
@@ -189,11 +242,13 @@ void dea_device_model_end(struct dea_device_model *model)
     dea_free(model->ctx, model->memo[k].points);
     model->memo[k].points = NULL;
   }
-  for (size_t k = 0; model->states != NULL && k < model->stop_count; k++) {
-    dea_state_free_values(model->ctx, &model->states[k]);
-  }
+  drop_states(model, model->states);
   dea_free(model->ctx, model->states);
   model->states = NULL;
+  drop_states(model, model->start.states);
+  dea_free(model->ctx, model->start.states);
+  dea_free(model->ctx, model->start.points);
+  model->start = (struct dea_device_start){0};
 }
 
 dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
@@ -204,6 +259,90 @@ dea_status dea_device_model_sweep(struct dea_device_model *model, const double *
   model->states = NULL;
   model->wanted = NULL;
   dea_status status = evaluate(model, p, points);
+  model->states = states;
+  model->wanted = wanted;
+  return status;
+}
+
+/* The design of numbers p becomes the one to begin from; where it fails at a voltage nobody does.
+ */
+static dea_status take_start(struct dea_device_model *model, const double *p)
+{
+  struct dea_device_start *start = &model->start;
+  struct dea_context *ctx = model->ctx;
+  start->there = false;
+  if (start->states == NULL) {
+    start->states = dea_alloc(ctx, model->stop_count, sizeof *start->states);
+  }
+  if (start->points == NULL) {
+    start->points = dea_alloc(ctx, model->stop_count, sizeof *start->points);
+  }
+  if (start->states == NULL || start->points == NULL) {
+    return DEA_E_MEMORY;
+  }
+  drop_states(model, start->states);
+  model->states = start->states;
+  dea_status status = evaluate(model, p, start->points);
+  model->states = NULL;
+  DEA_TRY(ctx, status);
+  if (model->why[0] != '\0') {
+    drop_states(model, start->states);
+  }
+  memcpy(start->p, p, model->param_count * sizeof *p);
+  start->there = true;
+  return DEA_OK;
+}
+
+/* Whether the design to begin from has states. */
+static bool has_states(const struct dea_device_model *model)
+{
+  bool any = false;
+  for (size_t k = 0; k < model->stop_count; k++) {
+    any = any || model->start.states[k].array_count > 0;
+  }
+  return any;
+}
+
+/* dea_device_model_sweep_from; model->states is NULL. */
+static dea_status sweep_from(struct dea_device_model *model, const double *from, const double *p,
+                             struct dea_load_point *points)
+{
+  const size_t size = model->param_count * sizeof *p;
+  const bool own = memcmp(from, p, size) == 0;
+  if (own || !model->start.there || memcmp(model->start.p, from, size) != 0) {
+    dea_status status = take_start(model, from);
+    if (own && status == DEA_OK) {
+      memcpy(points, model->start.points, model->stop_count * sizeof *points);
+    }
+    const bool ends = status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
+    if (own || ends) {
+      return status;
+    }
+    dea_context_clear(model->ctx);
+    model->why[0] = '\0'; // that of the other design
+  }
+  if (model->start.there && has_states(model)) {
+    model->from_start = true;
+    model->doubtful = false;
+    dea_status status = evaluate(model, p, points);
+    model->from_start = false;
+    if (status != DEA_OK || (!model->doubtful && model->why[0] == '\0')) {
+      return status;
+    }
+    model->why[0] = '\0';
+  }
+  return evaluate(model, p, points);
+}
+
+dea_status dea_device_model_sweep_from(struct dea_device_model *model, const double *from,
+                                       const double *p, struct dea_load_point *points)
+{
+  struct dea_state *states = model->states;
+  bool *wanted = model->wanted;
+  model->states = NULL;
+  model->wanted = NULL;
+  dea_status status =
+      model->type->load != NULL ? sweep_from(model, from, p, points) : evaluate(model, p, points);
   model->states = states;
   model->wanted = wanted;
   return status;

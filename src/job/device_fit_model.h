@@ -22,6 +22,14 @@ struct dea_device_memo {
   struct dea_load_point *points; // [stop_count]; NULL: empty
 };
 
+/* A design whose states others begin from. */
+struct dea_device_start {
+  bool there;
+  double p[DEA_DEVICE_PARAMS_MAX];
+  struct dea_state *states;      // [stop_count], owned; without values where none may begin from it
+  struct dea_load_point *points; // [stop_count], owned
+};
+
 struct dea_device_model {
   struct dea_context *ctx;
   const char *name, *bytes; // the design file; lent
@@ -38,9 +46,15 @@ struct dea_device_model {
   struct dea_device_memo memo[DEA_DEVICE_MEMO];
   size_t memo_next;
   struct dea_state *states; // [stop_count] of the last evaluation, owned; NULL: no warm starts
+  struct dea_device_start start;
+  bool from_start; // this evaluation begins from the states of start, which stay
+  bool doubtful;   // it has gone another way than start
   size_t evaluations;
   /* Told of each design that is built, with its device; NULL: nobody. */
   dea_status (*built)(void *user, const struct dea_design *design, const struct dea_device *device);
+  /* Told of each stop with the model that stands there, but of groups in time; NULL: nobody. */
+  dea_status (*stood)(void *user, struct dea_model *model, const struct dea_design *design,
+                      const struct dea_device *device, size_t stop);
   void *user;
   char why[200]; // of the last point that could not be had
 };
@@ -57,6 +71,11 @@ dea_status dea_device_model_points(struct dea_device_model *model, const double 
  * [stop_count], written to. */
 dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
                                   struct dea_load_point *points);
+/* The same, begun from the states of the design of numbers `from`, which are kept for the next call
+ * (dea_device_model_end). Where one of the two is slack, unstable or leaps, and where none is found
+ * so, as above. The answer depends on `from` and p alone. */
+dea_status dea_device_model_sweep_from(struct dea_device_model *model, const double *from,
+                                       const double *p, struct dea_load_point *points);
 /* A parameter, a text of a fit file, with what the design says of it: unit, limits, value; where it
  * starts, which with whole numbers may be 0. Errors are findings, the status DEA_OK also then. */
 dea_status dea_device_param_make(struct dea_context *ctx, const struct dea_fit_parameter_text *text,

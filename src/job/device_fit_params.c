@@ -81,11 +81,12 @@ static dea_status settle(struct work *w, const struct dea_fit_parameter_text *te
   struct dea_fit_param *param = &out->param;
   char shown[80];
   if (!(param->start >= param->low && param->start <= param->high)) {
+    const bool one = strcmp(param->unit, "1") == 0;
     dea_device_param_text(out, param->start, 6, shown);
-    return dea_finding_add(w->ctx, DEA_ERROR,
-                           start_given ? text->start.location : text->name.location,
-                           "%s starts at %.40s, outside of its bounds %.6g and %.6g %s",
-                           param->name, shown, param->low, param->high, param->unit);
+    return dea_finding_add(
+        w->ctx, DEA_ERROR, start_given ? text->start.location : text->name.location,
+        "%s starts at %.40s, outside of its bounds %.6g and %.6g%s%s", param->name, shown,
+        param->low, param->high, one ? "" : " ", one ? "" : param->unit);
   }
   const bool bounded = text->low.text[0] != '\0' && text->high.text[0] != '\0';
   param->scale = fabs(param->start);

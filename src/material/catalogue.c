@@ -2,6 +2,7 @@
 #include "material/catalogue.h"
 
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "material/plane.h"
 
 #include <dirent.h>
@@ -164,6 +165,7 @@ static dea_status read_entry(struct dea_context *ctx, const char *name, const ch
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   DEA_TRY(ctx, dea_yaml_parse(ctx, entry->file, bytes, length, &entry->yaml));
   struct dea_reader reader = {ctx, entry->yaml, &entry->listing};
+  DEA_TRY(ctx, dea_file_kind_check(ctx, entry->yaml, "dea_material"));
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_material_file_record, dea_yaml_root(entry->yaml), "",
                                &entry->data));
   DEA_TRY(ctx, dea_material_data_finish(&reader, "", &entry->data));

@@ -190,6 +190,14 @@ dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *
                             : lacks(ctx, type, "states beside one");
 }
 
+dea_status dea_model_carry(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_model *model, const struct dea_model *from,
+                           struct dea_load_point *out, bool *found)
+{
+  return type->carry != NULL ? type->carry(ctx, model, from, out, found)
+                             : lacks(ctx, type, "states of another mesh");
+}
+
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
                           const struct dea_model *model, double voltage_V, double height_m,
                           double *force_N)

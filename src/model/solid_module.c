@@ -183,6 +183,13 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   return DEA_OK;
 }
 
+static dea_status carry(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_model *from, struct dea_load_point *out, bool *found)
+{
+  DEA_TRY(ctx, dea_model_carry(ctx, model->type, model->inner, from->inner, out, found));
+  return DEA_OK;
+}
+
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_gradient_ask *ask, double *out)
 {
@@ -328,6 +335,7 @@ const struct dea_model_type dea_model_3d = {
     .long_path = long_path,
     .soften = soften,
     .push = push,
+    .carry = carry,
     .modes = modes,
     .respond = respond,
     .profile = profile,

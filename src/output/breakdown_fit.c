@@ -7,7 +7,7 @@
 #include "material/catalogue.h"
 #include "output/csv_columns.h"
 #include "output/fit_common.h"
-#include "plot/gnuplot.h"
+#include "output/weibull_picture.h"
 #include "result/provenance.h"
 
 #include <math.h>
@@ -215,11 +215,7 @@ void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit
 double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,
                                   double *log_std)
 {
-  const double b = fit->fit.value[DEA_WEIBULL_SHAPE];
-  const double field = fit->fit.value[DEA_WEIBULL_FIELD] * pow(-log1p(-share), 1 / b);
-  dea_weibull_z(&fit->fit, field, log_std);
-  *log_std /= b;
-  return field;
+  return dea_weibull_quantile(&fit->fit, share, log_std);
 }
 
 double dea_breakdown_fit_reference_field(const struct dea_breakdown_fit *fit, size_t i)
@@ -358,101 +354,31 @@ json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *
 
 /* ---- the figure ---- */
 
-struct film {
-  double field;
-  bool survived;
-};
-
-static int by_field(const void *a, const void *b)
-{
-  const struct film *x = a, *y = b;
-  return x->field < y->field ? -1 : x->field > y->field ? 1 : (int)x->survived - (int)y->survived;
-}
-
-/* Share of films that have broken, by Kaplan and Meier, in the middle of each step. */
-static dea_status add_films(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
-                            struct dea_panel *panel)
-{
-  struct dea_series *series;
-  struct film *films = dea_alloc(ctx, fit->rows, sizeof *films);
-  if (films == NULL) {
-    return DEA_E_MEMORY;
-  }
-  for (size_t i = 0; i < fit->rows; i++) {
-    films[i] = (struct film){dea_breakdown_fit_reference_field(fit, i), fit->survived[i]};
-  }
-  qsort(films, fit->rows, sizeof *films, by_field);
-  dea_status status = dea_panel_add(ctx, panel, fit->fit.broken, &series);
-  double left = 1;
-  size_t at = 0;
-  for (size_t i = 0; status == DEA_OK && i < fit->rows; i++) {
-    if (!films[i].survived) {
-      const double after = left * (1 - 1 / (double)(fit->rows - i));
-      series->values[at] = 1e-6 * films[i].field;
-      series->values[series->count + at++] = 100 * (1 - 0.5 * (left + after));
-      left = after;
-    }
-  }
-  if (status == DEA_OK) {
-    series->style = DEA_MARKERS;
-    series->colour = DEA_BLACK;
-    snprintf(series->title, sizeof series->title, "films");
-  }
-  dea_free(ctx, films);
-  return status;
-}
-
-/* From the field at which 0.1 % have broken to that of 99.9 %. */
-static dea_status add_curve(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
-                            struct dea_panel *panel)
-{
-  enum { POINTS = 200 };
-  struct dea_series *band, *law;
-  double std;
-  const double from = dea_breakdown_fit_quantile(fit, 0.001, &std);
-  const double to = dea_breakdown_fit_quantile(fit, 0.999, &std);
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, &band));
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, &law));
-  band = &panel->series[panel->series_count - 2];
-  band->style = DEA_BAND;
-  band->colour = DEA_GREY;
-  law->style = DEA_LINE;
-  law->colour = DEA_BLUE;
-  snprintf(band->title, sizeof band->title, "\302\261 2 std of the law");
-  snprintf(law->title, sizeof law->title, "Weibull's law");
-  for (size_t i = 0; i < POINTS; i++) {
-    const double field = from + (to - from) * (double)i / (POINTS - 1);
-    const double z = dea_weibull_z(&fit->fit, field, &std);
-    band->values[i] = law->values[i] = 1e-6 * field;
-    law->values[POINTS + i] = -100 * expm1(-exp(z));
-    band->values[POINTS + i] = -100 * expm1(-exp(z - 2 * std));
-    band->values[2 * POINTS + i] = -100 * expm1(-exp(z + 2 * std));
-  }
-  return DEA_OK;
-}
-
 static dea_status draw(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
                        const struct dea_plot_format *format, const char *directory)
 {
-  static const char *const name = "fit";
-  struct dea_plot *plot;
-  DEA_TRY(ctx, dea_plot_create(ctx, name,
-                               "share of films that have broken over the true field on the "
-                               "reference film, and Weibull's law of it",
-                               &plot));
-  struct dea_panel *panel = &plot->panels[0];
-  plot->panel_count = 1;
-  dea_status status = add_curve(ctx, fit, panel);
-  status = status == DEA_OK ? add_films(ctx, fit, panel) : status;
-  snprintf(panel->x_label, sizeof panel->x_label, "Field on the reference film (V/\302\265m)");
-  snprintf(panel->y_label, sizeof panel->y_label, "Films broken (%%)");
-  panel->key = "top left";
-  dea_panel_even_tics(panel, 7);
-  status = status == DEA_OK ? dea_plot_write(ctx, plot, format, directory) : status;
-  dea_plot_destroy(ctx, plot);
-  DEA_TRY(ctx, status);
-  return format->svg || format->pdf || format->png ? dea_gnuplot_draw(ctx, directory, &name, 1)
-                                                   : DEA_OK;
+  double *field = dea_alloc(ctx, fit->rows, sizeof *field);
+  if (field == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < fit->rows; i++) {
+    field[i] = dea_breakdown_fit_reference_field(fit, i);
+  }
+  const struct dea_weibull_picture picture = {
+      .caption = "share of films that have broken over the true field on the reference film, and "
+                 "Weibull's law of it",
+      .x_label = "Field on the reference film (V/\302\265m)",
+      .y_label = "Films broken (%)",
+      .points = "films",
+      .factor = 1e-6,
+      .rows = fit->rows,
+      .values = field,
+      .survived = fit->survived,
+      .fit = &fit->fit,
+  };
+  dea_status status = dea_weibull_draw(ctx, &picture, format, directory);
+  dea_free(ctx, field);
+  return status;
 }
 
 dea_status dea_breakdown_fit_folder(struct dea_context *ctx, const struct dea_breakdown_file *file,

@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 
-enum { DEA_CSV_COLUMNS_MAX = 8 };
+enum { DEA_CSV_COLUMNS_MAX = 10 };
 
 /* A column that a file may have. */
 struct dea_csv_wanted {

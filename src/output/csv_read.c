@@ -208,7 +208,11 @@ static void read_title(struct reader *r, const char *title, size_t column,
       unknown_title(r, title, name, column);
       return;
     }
-    read_unit(r, title, unit, by_key, column, field);
+    if (is_std && name[0] == '\0' && unit[0] == '\0') { // of the column before it in all
+      field->factor = r->fields[r->field_count - 1].factor;
+    } else {
+      read_unit(r, title, unit, by_key, column, field);
+    }
   }
   for (size_t i = 0; i < r->field_count; i++) {
     if (r->fields[i].role == field->role && r->fields[i].column == field->column &&

@@ -30,6 +30,7 @@ static dea_status add_breakdown(struct dea_context *ctx, struct dea_panel *panel
   DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &line));
   band->style = DEA_BAND;
   band->colour = DEA_VERMILLION;
+  band->to_top = true;
   line->style = DEA_DOTTED;
   line->colour = DEA_BLACK;
   snprintf(line->title, sizeof line->title, "breakdown field");

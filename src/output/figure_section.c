@@ -26,20 +26,23 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   DEA_TRY(ctx, status);
   series->style = look->style;
   series->colour = look->colour;
+  series->aside = look->aside;
   snprintf(series->title, sizeof series->title, "%s", look->title);
   return DEA_OK;
 }
 
 static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
                              const struct dea_result *result,
-                             const struct dea_surface_record *record, size_t shown)
+                             const struct dea_surface_record *record, size_t shown,
+                             bool all_doubtful)
 {
   static const enum dea_colour order[SHOWN_MAX] = {DEA_SKY, DEA_VERMILLION, DEA_BLACK};
   struct dea_series look = {.style = DEA_LINE, .colour = order[shown]};
   struct dea_surface_lattice drawing;
   char words[DEA_FLAGS_SIZE];
   unsigned doubts = dea_result_doubts(result, record->model, record->voltage_V);
-  look.colour = doubts != 0 ? DEA_GREY : look.colour;
+  look.colour = doubts != 0 && !all_doubtful ? DEA_GREY : look.colour;
+  look.aside = doubts != 0;
   snprintf(look.title, sizeof look.title, "%.4g kV%s%s", 1e-3 * record->voltage_V,
            doubts != 0 ? ": " : "", dea_flags_text(doubts, words));
   dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
@@ -65,8 +68,13 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   size_t count = dea_surface_spread(result, SHOWN_MAX + 1, records);
   size_t first =
       count > SHOWN_MAX ? 1 : 0; // at the first voltage, mostly 0, there is nothing to see
+  bool all_doubtful = true;      // then grey would tell them apart from nothing
   for (size_t i = first; i < count; i++) {
-    DEA_TRY(ctx, add_record(ctx, panel, result, records[i], SHOWN_MAX - count + i));
+    all_doubtful =
+        all_doubtful && dea_result_doubts(result, records[i]->model, records[i]->voltage_V) != 0;
+  }
+  for (size_t i = first; i < count; i++) {
+    DEA_TRY(ctx, add_record(ctx, panel, result, records[i], SHOWN_MAX - count + i, all_doubtful));
   }
   if (count == 0) {
     return DEA_OK;
@@ -77,6 +85,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Place across the film (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");
+  dea_panel_limit(panel); // a slack shape of 200 um would hide a taut one of 10
   dea_panel_even_tics(panel, 7);
   panel->key = "above horizontal maxrows 3 samplen 1.5 width key_width";
   return DEA_OK;
@@ -86,6 +95,6 @@ const struct dea_figure dea_figure_section = {
     .name = "section",
     .caption =
         "displacement out of the plane along diameters (full: along fibres, dashed: between; "
-        "grey: not to be trusted)",
+        "grey, or with words: not to be trusted)",
     .build = build,
 };

@@ -80,7 +80,7 @@ static void replace_at(struct copy *copy, const char *at, const char *caption)
     dea_text_add(&copy->out, "font-family=\"" DEA_SCRIPT_FONT ", Verdana, sans-serif\"");
   } else if (between(at, facets, "", &length, &end) != NULL) {
     replace(copy, at, end);
-    dea_text_add(&copy->out, "<g stroke='none' stroke-width='0.4' stroke-linejoin='round'>");
+    dea_text_add(&copy->out, "<g stroke='none' stroke-width='0.8' stroke-linejoin='round'>");
   } else {
     replace_facet(copy, at);
   }

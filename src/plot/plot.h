@@ -44,6 +44,7 @@ struct dea_series {
   int marker;
   bool right;   // on the right axis
   bool aside;   // what is not to be trusted, or only a bound: does not set the axis
+  bool to_top;  // a band up to the top of the panel, wherever its upper edge lies
   double width; // of the line over that of its style; 0: 1
   size_t count;
   double *values; // [3][count]: x, y, error; owned

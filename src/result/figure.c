@@ -89,6 +89,24 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* About ten markers with the name of a curve that has no point to be trusted: what is dashed has
+ * neither. */
+static dea_status add_doubtful_markers(struct dea_context *ctx, struct dea_panel *panel,
+                                       const struct dea_curve *curve, int column, double factor,
+                                       double shift, const struct dea_series *look)
+{
+  struct dea_series *series;
+  size_t every = curve->count / 10 > 1 ? curve->count / 10 : 1;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
+  series->aside = true;
+  series->style = DEA_MARKERS;
+  for (size_t i = 0; i < curve->count; i += every) {
+    series->values[i] = 1e-3 * curve->points[i].voltage_V;
+    series->values[curve->count + i] = factor * (dea_point_get(&curve->points[i], column) + shift);
+  }
+  return DEA_OK;
+}
+
 /* Band of the estimated error of a column, where it has one, below the curve. */
 static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
                             const struct dea_curve *curve, int column, double factor, double shift,
@@ -185,13 +203,18 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
   DEA_TRY(ctx, add_std(ctx, panel, curve, column, factor, shift, &shown));
   DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
+  size_t doubtful = 0;
   for (size_t i = 0; i < curve->count; i++) {
-    if (!dea_load_point_trusted(&curve->points[i])) {
-      panel->dashed = dashed_words(curve, panel->dashed);
-      return add_part(ctx, panel, curve, column, factor, shift, &shown, false);
-    }
+    doubtful += dea_load_point_trusted(&curve->points[i]) ? 0 : 1;
   }
-  return DEA_OK;
+  if (doubtful == 0) {
+    return DEA_OK;
+  }
+  panel->dashed = dashed_words(curve, panel->dashed);
+  DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, false));
+  return doubtful < curve->count
+             ? DEA_OK
+             : add_doubtful_markers(ctx, panel, curve, column, factor, shift, &shown);
 }
 
 bool dea_figure_is_bound(const struct dea_curve *curve, int column)

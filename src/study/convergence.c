@@ -28,19 +28,9 @@ struct settings {
 #define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field fields[] = {
-    {.key = "refinement",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(refinements),
-     .unit = "1",
-     .min = 1,
-     .max = 6,
-     .default_text = "[1, 1.5, 2]",
-     .list_min = 2,
-     .list_max = MESHES_MAX,
-     .element_size = sizeof(struct dea_quantity),
-     .count_offset = AT(refinement_count),
-     .doc = "meshes, as in compute.solid.refinement, rising; an order needs three",
-     .example = "[1, 2, 3]"},
+    DEA_STUDY_REFINEMENT_FIELD(
+        "meshes, as in compute.solid.refinement, rising; an order needs three", "[1, 2, 3]",
+        .default_text = "[1, 1.5, 2]", .list_min = 2),
     DEA_STUDY_STOPS_FIELD("quarters of the highest",
                           "voltages at which the meshes are compared, in the order to be computed",
                           "[2 kV, 4 kV, 6 kV]"),
@@ -61,23 +51,12 @@ static const struct dea_record record = {
     "finer meshes (3d)",
     fields, COUNT(fields)};
 
-/* Meshes become finer. */
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
 {
   (void)design;
   const struct settings *settings = given->values;
-  const struct dea_quantity *n = settings->refinements;
-  for (size_t i = 1; i < settings->refinement_count; i++) {
-    if (n[i].si <= n[i - 1].si) {
-      DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_ERROR, n[i].location,
-                              "refinement: %g after %g, but each mesh has to be finer than the "
-                              "one before",
-                              n[i].si, n[i - 1].si));
-    }
-  }
-  return DEA_OK;
+  return dea_study_rising(ctx, 0, settings->refinements, settings->refinement_count);
 }
 
 static const struct dea_design_section section = {

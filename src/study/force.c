@@ -312,22 +312,25 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
 
 enum { SHOWN_MAX = 6 };
 
-/* Force over depth at the k-th voltage of each stop that came so far. */
+/* Force over depth at the k-th voltage of each stop that came so far; a line with a point that is
+ * not to be trusted says so. */
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct stops *stops, size_t k, size_t number)
 {
   const struct dea_series look = stop_style(number);
   struct dea_series *series;
+  bool trusted = true;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
-  snprintf(series->title, sizeof series->title, "%.4g kV",
-           1e-3 * stops->curve->points[k].voltage_V);
   for (size_t i = 0; i < stops->count; i++) {
     size_t at = stops->first[stops->by_depth[i]] + k;
     if (at < stops->first[stops->by_depth[i] + 1]) {
       series->values[i] = 1e3 * stops->curve->points[at].tip_depth_m;
       series->values[stops->count + i] = 1e3 * stops->curve->points[at].force_N;
+      trusted = trusted && dea_load_point_trusted(&stops->curve->points[at]);
     }
   }
+  snprintf(series->title, sizeof series->title, "%.4g kV%s",
+           1e-3 * stops->curve->points[k].voltage_V, trusted ? "" : " (?)");
   return DEA_OK;
 }
 
@@ -362,7 +365,9 @@ static const struct dea_figure figures[] = {
     {
         .name = "load_line",
         .study = study_name,
-        .caption = "force on the tip against the depth that it is held at, for some voltages",
+        .caption = "force on the tip against the depth that it is held at, for some voltages (?: "
+                   "not to be "
+                   "trusted at one of the depths)",
         .build = build_load_line,
     },
 };

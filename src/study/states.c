@@ -16,13 +16,14 @@ static const char study_name[] = "states";
 
 // Keys -------------------------------------------------------------------------------------------
 
-enum { PUSHES_MAX = 6 };
+enum { PUSHES_MAX = 6, MESHES_MAX = 6 };
 
 /* Settings of compute.states. */
 struct settings {
   struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: quarters of the highest
   struct dea_quantity pushes_m[PUSHES_MAX];             // rising
-  size_t voltage_count, push_count;
+  struct dea_quantity refinements[MESHES_MAX];          // rising; none: states stay on their mesh
+  size_t voltage_count, push_count, refinement_count;
   struct dea_quantity modes, most, apart_m;
 };
 
@@ -73,6 +74,9 @@ static const struct dea_field fields[] = {
      .default_text = "8",
      .doc = "states at a voltage from which on no more are looked for there",
      .example = "8"},
+    DEA_STUDY_REFINEMENT_FIELD(
+        "finer meshes that each state is carried to, as in compute.solid.refinement, rising",
+        "[1.5, 2, 3]", .absent_text = "none", .list_min = 1),
 };
 
 static const struct dea_record record = {
@@ -81,8 +85,17 @@ static const struct dea_record record = {
     "of a slack film at voltages (3d)",
     fields, COUNT(fields)};
 
+/* Each mesh is finer than the one before, the first one than the design's. */
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_settings *given)
+{
+  const struct settings *settings = given->values;
+  return dea_study_rising(ctx, fmax(1, design->compute.solid.refinement.si), settings->refinements,
+                          settings->refinement_count);
+}
+
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
 
 // States -----------------------------------------------------------------------------------------
 
@@ -405,6 +418,174 @@ static dea_status search_all(struct search *s)
   return DEA_OK;
 }
 
+// Finer meshes -----------------------------------------------------------------------------------
+
+/* A state carried to a mesh. */
+struct carried {
+  struct dea_load_point point;
+  int is;    // the state that it is on this mesh, in the order of the search; NONE: it was lost
+  double *u; // as of struct state, of the last mesh only; owned
+  size_t point_count;
+  struct dea_state saved; // the same
+};
+
+/* A mesh and what came to it. */
+struct finer {
+  struct dea_model *model; // owned, of the last mesh only
+  struct dea_model_size size;
+  double refinement;
+  struct carried *carried; // [count of states], owned
+};
+
+static void forget_mesh(struct search *s, struct finer *mesh)
+{
+  for (size_t i = 0; mesh->carried != NULL && i < s->count; i++) {
+    dea_state_free_values(s->ctx, &mesh->carried[i].saved);
+    dea_free(s->ctx, mesh->carried[i].u);
+    mesh->carried[i].saved = (struct dea_state){0};
+    mesh->carried[i].u = NULL;
+  }
+  if (mesh->model != NULL) {
+    s->type->destroy(s->ctx, mesh->model);
+    mesh->model = NULL;
+  }
+}
+
+/* Which of the states of its level, of those that came to the mesh before it, the i-th one is. */
+static int same_on_mesh(const struct search *s, const struct finer *mesh, size_t i)
+{
+  const struct carried *one = &mesh->carried[i];
+  for (size_t k = 0; k < i; k++) {
+    const struct carried *other = &mesh->carried[k];
+    if (s->states[k].level == s->states[i].level && other->is == (int)k &&
+        distance_m(other->u, one->u, one->point_count) < s->settings->apart_m.si) {
+      return (int)k;
+    }
+  }
+  return (int)i;
+}
+
+/* The i-th state is where the mesh's model is. */
+static dea_status keep_carried(struct search *s, struct finer *mesh, size_t i,
+                               const struct dea_load_point *point)
+{
+  struct carried *one = &mesh->carried[i];
+  struct search on_mesh = {.ctx = s->ctx, .type = s->type, .model = mesh->model};
+  one->point = *point;
+  one->is = (int)i;
+  DEA_TRY(s->ctx, take_film(&on_mesh, &one->u, &one->point_count));
+  DEA_TRY(s->ctx, keep_model(&on_mesh, &one->saved));
+  return DEA_OK;
+}
+
+/* The i-th state from a model of the mesh before, which has its state there. */
+static dea_status carry_one(struct search *s, struct dea_model *from, const struct dea_state *saved,
+                            struct finer *mesh, size_t i)
+{
+  struct dea_load_point point;
+  bool found = false;
+  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
+  dea_status status = dea_model_carry(s->ctx, s->type, mesh->model, from, &point, &found);
+  if (status == DEA_OK && found) {
+    DEA_TRY(s->ctx, keep_carried(s, mesh, i, &point));
+  }
+  DEA_TRY(s->ctx, forgive(s->ctx, status));
+  return DEA_OK;
+}
+
+/* A state that was lost, along its branch from the level above or below, on this mesh. */
+static dea_status follow_one(struct search *s, struct finer *mesh, size_t i)
+{
+  for (int way = UP; way <= DOWN && mesh->carried[i].is == NONE; way++) {
+    int near = s->states[i].leads[way];
+    struct dea_load_point point;
+    if (near == NONE || s->states[near].leads[way == UP ? DOWN : UP] != (int)i ||
+        mesh->carried[near].is != near) {
+      continue;
+    }
+    DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, mesh->model, &mesh->carried[near].saved));
+    dea_status status = s->type->solve(s->ctx, mesh->model, s->states[i].point.voltage_V, &point);
+    if (status == DEA_OK && point.stable) {
+      DEA_TRY(s->ctx, keep_carried(s, mesh, i, &point));
+    }
+    DEA_TRY(s->ctx, forgive(s->ctx, status));
+  }
+  return DEA_OK;
+}
+
+/* All states from the mesh before (NULL: of the search) to this one: each by itself, what is lost
+ * along its branch, up and then down. */
+static dea_status carry_all(struct search *s, struct finer *before, struct finer *mesh)
+{
+  enum { BY_ITSELF, FOLLOWED_UP, FOLLOWED_DOWN, PASSES };
+  char what[DEA_NAME_SIZE + 48];
+  snprintf(what, sizeof what, "%s states at refinement %.4g", s->type->name, mesh->refinement);
+  for (size_t k = 0; k < PASSES * s->count; k++) {
+    size_t pass = k / s->count, at = k % s->count,
+           i = pass == FOLLOWED_DOWN ? s->count - 1 - at : at;
+    const struct dea_state *saved =
+        before != NULL ? &before->carried[i].saved : &s->states[i].saved;
+    if (dea_interrupted(s->ctx)) {
+      return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
+    }
+    if (pass == BY_ITSELF && (before == NULL || before->carried[i].is == (int)i)) {
+      DEA_TRY(s->ctx, carry_one(s, before != NULL ? before->model : s->model, saved, mesh, i));
+    } else if (pass != BY_ITSELF && mesh->carried[i].is == NONE) {
+      DEA_TRY(s->ctx, follow_one(s, mesh, i));
+    }
+    dea_progress(s->ctx, what, k + 1, PASSES * s->count);
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    int was = before != NULL ? before->carried[i].is : (int)i;
+    if (was != NONE && was != (int)i) { // one with another since an earlier mesh
+      mesh->carried[i].point = mesh->carried[was].point;
+      mesh->carried[i].is = mesh->carried[was].is;
+    } else if (mesh->carried[i].is != NONE) {
+      mesh->carried[i].is = same_on_mesh(s, mesh, i);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status make_mesh(struct search *s, double refinement, struct finer *mesh)
+{
+  struct dea_model_settings settings = dea_model_settings_of(s->result->design);
+  settings.refinement = mesh->refinement = refinement;
+  mesh->carried = dea_alloc(s->ctx, s->count, sizeof *mesh->carried);
+  if (mesh->carried == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    mesh->carried[i].is = NONE;
+  }
+  DEA_TRY(s->ctx, s->type->create(s->ctx, s->result->device, &settings, &mesh->model));
+  if (s->type->size != NULL) {
+    s->type->size(mesh->model, &mesh->size);
+  }
+  return DEA_OK;
+}
+
+/* meshes [refinement_count], zeroed; *count: of those that all states have gone to, or been lost on
+ * the way to. */
+static dea_status carry_states(struct search *s, struct finer *meshes, size_t *count)
+{
+  const struct settings *settings = s->settings;
+  dea_status status = DEA_OK;
+  for (*count = 0; *count < settings->refinement_count && status == DEA_OK;) {
+    struct finer *before = *count > 0 ? &meshes[*count - 1] : NULL;
+    struct finer *mesh = &meshes[*count];
+    status = make_mesh(s, settings->refinements[*count].si, mesh);
+    if (status == DEA_OK) {
+      status = carry_all(s, before, mesh);
+    }
+    if (before != NULL) {
+      forget_mesh(s, before);
+    }
+    *count += status == DEA_OK;
+  }
+  return status;
+}
+
 // Result -----------------------------------------------------------------------------------------
 
 /* Whether two states at neighbouring levels are of one branch: each leads to the other. */
@@ -413,14 +594,21 @@ static bool is_continued(const struct search *s, size_t below, size_t above)
   return s->states[below].leads[UP] == (int)above && s->states[above].leads[DOWN] == (int)below;
 }
 
-/* Lowest energy first, level by level: the order in which states are shown. */
-static size_t next_state(const struct search *s, size_t level, double above_J)
+/* Lowest energy first; mirror images of each other, of one energy, as they were found. */
+static bool comes_before(const struct search *s, size_t a, size_t b)
+{
+  double one_J = s->states[a].point.energy_J, other_J = s->states[b].point.energy_J;
+  return one_J < other_J || (one_J == other_J && a < b);
+}
+
+/* The state at a level that is shown after that one, or first of all where that is s->count;
+ * s->count: none. */
+static size_t next_state(const struct search *s, size_t level, size_t after)
 {
   size_t next = s->count;
   for (size_t i = 0; i < s->count; i++) {
-    const struct state *state = &s->states[i];
-    if (state->level == level && state->point.energy_J > above_J &&
-        (next == s->count || state->point.energy_J < s->states[next].point.energy_J)) {
+    if (s->states[i].level == level && (after == s->count || comes_before(s, after, i)) &&
+        (next == s->count || comes_before(s, i, next))) {
       next = i;
     }
   }
@@ -482,6 +670,18 @@ enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
 #define UM(name, head, what) DEA_NUMBER_COLUMN(name, "m", "um", 1e6, head, what)
 #define KV(name, head, what) DEA_NUMBER_COLUMN(name, "V", "kV", 1e-3, head, what)
 #define UJ(name, head, what) DEA_NUMBER_COLUMN(name, "J", "uJ", 1e6, head, what)
+/* Columns of a state on whatever mesh. */
+#define SHAPE                                                                                      \
+  UM("centre_z_m", "centre", "displacement of the centre"),                                        \
+      UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),                           \
+      UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),             \
+      UM("highest_z_m", "highest", "largest displacement out of the plane"),                       \
+      UM("lowest_z_m", "lowest", "smallest displacement out of the plane")
+#define FLAGS                                                                                      \
+  {                                                                                                \
+    .key = "flags", .kind = DEA_CELL_TEXT, .title = "flags",                                       \
+    .meaning = "how far the numbers are to be trusted"                                             \
+  }
 
 static const struct dea_result_column state_columns[] = {
     KV("voltage_V", "V", "voltage"),
@@ -491,21 +691,14 @@ static const struct dea_result_column state_columns[] = {
      .meaning = "its branch: of the same letter where each leads to the other"},
     UJ("energy_J", "energy", "potential energy, 0 at rest"),
     UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
-    UM("centre_z_m", "centre", "displacement of the centre"),
-    UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),
-    UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),
-    UM("highest_z_m", "highest", "largest displacement out of the plane"),
-    UM("lowest_z_m", "lowest", "smallest displacement out of the plane"),
+    SHAPE,
     {.key = "unstable_modes",
      .kind = DEA_CELL_COUNT,
      .title = "unstable modes",
      .meaning = "negative modes of the tangent"},
     DEA_NUMBER_COLUMN("stiffness_N_per_m4", "N/m^4", "N/m^4", 1, "softest",
                       "stiffness of the softest motion by volume; none: not searched"),
-    {.key = "flags",
-     .kind = DEA_CELL_TEXT,
-     .title = "flags",
-     .meaning = "how far the numbers are to be trusted"},
+    FLAGS,
     {.key = "copies",
      .kind = DEA_CELL_COUNT,
      .title = "copies",
@@ -561,6 +754,30 @@ static const struct dea_result_table_type band_table = {.study = study_name,
                                                         .where = ALL,
                                                         .columns = band_columns,
                                                         .column_count = COUNT(band_columns)};
+
+static const struct dea_result_column mesh_columns[] = {
+    KV("voltage_V", "V", "voltage"),
+    {.key = "state",
+     .kind = DEA_CELL_TEXT,
+     .title = "state",
+     .meaning = "branch of the design's mesh that it was carried from"},
+    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
+    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
+    {.key = "is",
+     .kind = DEA_CELL_TEXT,
+     .title = "is",
+     .meaning = "the state that it is on this mesh; -: none was found from there"},
+    UJ("energy_J", "energy", "potential energy, 0 at rest"),
+    UJ("above_J", "above the lowest", "energy above that of the lowest state on this mesh"),
+    SHAPE,
+    FLAGS,
+};
+static const struct dea_result_table_type mesh_table = {.study = study_name,
+                                                        .name = "meshes",
+                                                        .title = "states on finer meshes",
+                                                        .where = ALL,
+                                                        .columns = mesh_columns,
+                                                        .column_count = COUNT(mesh_columns)};
 
 /* Name of the state that one leads to; "" at the end of the voltages. */
 static void name_lead(const struct search *s, const struct state *state, int way,
@@ -640,6 +857,98 @@ static dea_status put_band_row(const struct search *s, size_t level, const struc
   return dea_result_table_add_row(s->ctx, table, row);
 }
 
+/* The i-th state on a mesh; NULL: on the design's. */
+static dea_status put_mesh_row(const struct search *s, size_t i, const struct finer *mesh,
+                               double lowest_J, struct dea_result_table *table)
+{
+  const struct dea_load_point unknown = dea_load_point_empty();
+  const struct state *state = &s->states[i];
+  struct dea_model_size size = {0};
+  int is = mesh != NULL ? mesh->carried[i].is : (int)i;
+  const struct dea_load_point *p = is == NONE     ? &unknown
+                                   : mesh != NULL ? &mesh->carried[i].point
+                                                  : &state->point;
+  char name[NAME_SIZE], same[NAME_SIZE] = "-", flags[DEA_FLAGS_SIZE] = "";
+  name_branch(state->variant, name);
+  if (is != NONE) {
+    name_branch(s->states[is].variant, same);
+    dea_flags_text(dea_load_point_flags(p), flags);
+  }
+  if (mesh != NULL) {
+    size = mesh->size;
+  } else if (s->type->size != NULL) {
+    s->type->size(s->model, &size);
+  }
+  const struct dea_result_table_value row[] = {
+      {.number = state->point.voltage_V},
+      {.text = name},
+      {.number = mesh != NULL ? mesh->refinement
+                              : fmax(1, dea_model_settings_of(s->result->design).refinement)},
+      {.number = (double)size.unknowns},
+      {.text = same},
+      {.number = p->energy_J},
+      {.number = p->energy_J - lowest_J},
+      {.number = p->centre_z_m},
+      {.number = p->fibre_tip_z_m},
+      {.number = p->electrode_edge_u_m},
+      {.number = p->highest_z_m},
+      {.number = p->lowest_z_m},
+      {.text = flags}};
+  return dea_result_table_add_row(s->ctx, table, row);
+}
+
+/* Lowest energy of those at a level that came to a mesh (NULL: of the search). */
+static double lowest_on(const struct search *s, size_t level, const struct finer *mesh)
+{
+  double lowest_J = INFINITY;
+  for (size_t i = 0; i < s->count; i++) {
+    bool there = mesh == NULL || mesh->carried[i].is != NONE;
+    if (s->states[i].level == level && there) {
+      lowest_J = fmin(lowest_J,
+                      mesh != NULL ? mesh->carried[i].point.energy_J : s->states[i].point.energy_J);
+    }
+  }
+  return lowest_J;
+}
+
+/* State by state from mesh to mesh. */
+static dea_status put_meshes(struct search *s, const struct finer *meshes, size_t count)
+{
+  struct dea_result_table *table;
+  DEA_TRY(s->ctx, dea_result_add_table(s->ctx, s->result, &mesh_table, s->type->name, 0, &table));
+  for (size_t level = 0; level < s->level_count; level++) {
+    for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
+      for (size_t m = 0; m <= count; m++) {
+        const struct finer *mesh = m > 0 ? &meshes[m - 1] : NULL;
+        DEA_TRY(s->ctx, put_mesh_row(s, i, mesh, lowest_on(s, level, mesh), table));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+/* What is there also where the way to a finer mesh fails. */
+static dea_status refine(struct search *s)
+{
+  struct finer meshes[MESHES_MAX] = {0};
+  size_t count = 0;
+  if (s->settings->refinement_count == 0) {
+    return DEA_OK;
+  }
+  if (s->type->carry == NULL) {
+    return dea_finding_add(s->ctx, DEA_NOTE, (struct dea_location){0},
+                           "model %s cannot carry states to finer meshes of this device",
+                           s->type->name);
+  }
+  dea_status status = carry_states(s, meshes, &count);
+  dea_status put = status != DEA_E_MEMORY ? put_meshes(s, meshes, count) : DEA_OK;
+  for (size_t m = 0; m < MESHES_MAX; m++) {
+    forget_mesh(s, &meshes[m]);
+    dea_free(s->ctx, meshes[m].carried);
+  }
+  return status == DEA_OK ? put : status;
+}
+
 /* Branches are lettered as they come, level by level, and then all rows can be written. */
 static dea_status put_result(struct search *s)
 {
@@ -648,22 +957,21 @@ static dea_status put_result(struct search *s)
   size_t branches = 0;
   for (size_t level = 0; level < s->level_count; level++) {
     bool several = states_at(s, level) > 1;
-    for (size_t i = next_state(s, level, -INFINITY); i < s->count;
-         i = next_state(s, level, s->states[i].point.energy_J)) {
+    for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
       s->states[i].point.told |= (unsigned)several << DEA_FLAG_STATES;
       DEA_TRY(ctx, put_state(s, i, &branches));
     }
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &state_table, s->type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
-    size_t lowest = next_state(s, level, -INFINITY);
-    for (size_t i = lowest; i < s->count; i = next_state(s, level, s->states[i].point.energy_J)) {
+    size_t lowest = next_state(s, level, s->count);
+    for (size_t i = lowest; i < s->count; i = next_state(s, level, i)) {
       DEA_TRY(ctx, put_state_row(s, &s->states[i], s->states[lowest].point.energy_J, table));
     }
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &band_table, s->type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
-    DEA_TRY(ctx, put_band_row(s, level, &s->states[next_state(s, level, -INFINITY)], table));
+    DEA_TRY(ctx, put_band_row(s, level, &s->states[next_state(s, level, s->count)], table));
   }
   return DEA_OK;
 }
@@ -699,6 +1007,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (s.level_count > 0 && status != DEA_E_MEMORY) {
     dea_status put = put_result(&s);
     status = status == DEA_OK ? put : status;
+    status = status == DEA_OK ? refine(&s) : status;
   }
   free_search(&s);
   return status == DEA_OK && swept != DEA_OK

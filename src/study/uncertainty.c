@@ -12,6 +12,7 @@
  * one side where the other has no answer. */
 #include "base/schema.h"
 #include "base/yaml_write.h"
+#include "calibrate/fit_head.h"
 #include "study/rerun.h"
 
 #include <math.h>
@@ -35,7 +36,7 @@ enum {
 };
 
 struct given {
-  struct dea_label name, std;
+  struct dea_label name, std; // the name first: dea_fit_names_check
 };
 
 /* Settings of compute.uncertainty. */
@@ -107,6 +108,8 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   (void)design;
   const struct settings *settings = given->values;
   const size_t n = settings->parameter_count, wanted = n > 0 ? n * (n - 1) / 2 : 0;
+  DEA_TRY(ctx, dea_fit_names_check(ctx, settings->parameters, n, sizeof settings->parameters[0],
+                                   "parameter"));
   if (settings->correlation_count == 0 || settings->correlation_count == wanted) {
     return DEA_OK;
   }

@@ -10,7 +10,7 @@
 
 static const double sync_s = 0.2; // between two waits for the disk, while there is more to write
 
-enum { ITEMS = 16384, MESSAGE_SIZE = 512 };
+enum { ITEMS = 16384, MESSAGE_SIZE = 512, HELD_MAX = 256 };
 enum kind { SAMPLES, READING, FRAME, CYCLE };
 
 /* Numbers of the queue, one after the other. */
@@ -24,6 +24,10 @@ struct dea_writer {
   struct dea_context *own; // of the recorder
   pthread_t thread;
   bool waits;
+  // of the thread: cycles whose samples are not yet on the disk
+  struct dea_recorded_cycle held[HELD_MAX];
+  size_t held_count;
+  double synced_s; // when the disk was last waited for
   // under the lock
   pthread_mutex_t lock;
   pthread_cond_t came, went;
@@ -38,54 +42,78 @@ struct dea_writer {
 
 // The thread -------------------------------------------------------------------------------------
 
-static dea_status write_item(struct dea_recorder *recorder, const struct item *item,
-                             const double *numbers)
+static dea_status write_item(struct dea_writer *w, const struct item *item, const double *numbers)
 {
   switch (item->kind) {
   case SAMPLES:
-    return dea_recorder_add(recorder, item->channel, numbers, item->count);
+    return dea_recorder_add(w->recorder, item->channel, numbers, item->count);
   case READING:
-    return dea_recorder_add_timed(recorder, item->channel, &numbers[0], &numbers[1], 1);
+    return dea_recorder_add_timed(w->recorder, item->channel, &numbers[0], &numbers[1], 1);
   case FRAME:
-    return dea_recorder_add_profile(recorder, numbers[0], numbers + 1);
+    return dea_recorder_add_profile(w->recorder, numbers[0], numbers + 1);
   default:
-    return dea_recorder_add_cycle(recorder,
-                                  &(struct dea_recorded_cycle){.step = (size_t)numbers[0],
-                                                               .number = (size_t)numbers[1],
-                                                               .start_s = numbers[2],
-                                                               .end_s = numbers[3],
-                                                               .level_V = numbers[4]});
+    w->held[w->held_count++] = (struct dea_recorded_cycle){.step = (size_t)numbers[0],
+                                                           .number = (size_t)numbers[1],
+                                                           .start_s = numbers[2],
+                                                           .end_s = numbers[3],
+                                                           .level_V = numbers[4]};
+    return DEA_OK;
+  }
+}
+
+/* Samples to the disk, then the cycles that say that these are there: a failing computer must not
+ * leave the second without the first. */
+static dea_status write_held(struct dea_writer *w)
+{
+  dea_status status = dea_recorder_sync(w->recorder);
+  for (size_t i = 0; i < w->held_count && status == DEA_OK; i++) {
+    status = dea_recorder_add_cycle(w->recorder, &w->held[i]);
+  }
+  status = status == DEA_OK ? dea_recorder_sync(w->recorder) : status;
+  w->held_count = 0;
+  w->synced_s = dea_clock_s();
+  return status;
+}
+
+/* The first failure is kept; called with the lock held. */
+static void take_status(struct dea_writer *w, dea_status status)
+{
+  if (status != DEA_OK && w->status == DEA_OK) {
+    w->status = status;
+    snprintf(w->message, sizeof w->message, "%s", dea_context_message(w->own));
   }
 }
 
 static void *write_all(void *user)
 {
   struct dea_writer *w = user;
-  double synced_s = dea_clock_s();
-  bool dirty = false; // a cycle was written since
+  w->synced_s = dea_clock_s();
   pthread_mutex_lock(&w->lock);
   for (;;) {
     while (w->waiting == 0 && !w->ended) {
       pthread_cond_wait(&w->came, &w->lock);
     }
-    if (w->waiting == 0) {
+    if (w->waiting == 0 && w->held_count == 0) {
       break;
+    }
+    if (w->waiting == 0) {
+      pthread_mutex_unlock(&w->lock);
+      dea_status last = write_held(w);
+      pthread_mutex_lock(&w->lock);
+      take_status(w, last);
+      continue;
     }
     struct item item = w->items[w->first];
     bool more = w->waiting > 1;
     pthread_mutex_unlock(&w->lock);
-    dea_status status = write_item(w->recorder, &item, w->numbers + item.at);
-    dirty = dirty || item.kind == CYCLE;
-    if (status == DEA_OK && dirty && (!more || dea_clock_s() - synced_s > sync_s)) {
-      status = dea_recorder_sync(w->recorder);
-      synced_s = dea_clock_s();
-      dirty = false;
+    dea_status status = write_item(w, &item, w->numbers + item.at);
+    more = more || w->waits; // what is simulated comes faster than a disk turns
+    if (status == DEA_OK && w->held_count > 0 &&
+        (!more || w->held_count == HELD_MAX || dea_clock_s() - w->synced_s > sync_s)) {
+      status = write_held(w);
     }
     pthread_mutex_lock(&w->lock);
-    if (status != DEA_OK && w->status == DEA_OK) {
-      w->status = status;
-      snprintf(w->message, sizeof w->message, "%s", dea_context_message(w->own));
-    }
+    take_status(w, status);
     w->first = (w->first + 1) % ITEMS;
     w->waiting--;
     w->tail = w->waiting > 0 ? w->items[w->first].at : 0;

@@ -3,6 +3,7 @@
  * unknown one by "Err". It plays as a voltage of its converter, connected through (mode 1, DC).
  * Source: the public description of its commands (EPFL, LMTS).
  */
+#include "base/clock.h"
 #include "base/schema_value.h"
 #include "base/text.h"
 #include "lab/instrument/line_supply.h"
@@ -52,10 +53,13 @@ static bool is_synced(const char *answer)
   return !is_error(answer) && !is_number(answer, &value);
 }
 
+static const double marks = 397, marks_from_Hz = 2.25; // how many marks there are
+
 static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
 {
   const struct raw *raw = s->raw_all;
   const char *name = s->link.socket.name, *answer;
+  char command[DEA_LINE_SUPPLY_COMMAND_SIZE];
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QName", &answer));
   if (raw->name.origin != DEA_ABSENT && strstr(answer, raw->name.text) == NULL) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.60s', not a '%.60s'; look at its device",
@@ -66,8 +70,10 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.40s' to 'QVmax', which is no voltage",
                     name, answer);
   }
-  // A frequency that nothing plays with: one that begins anew has another.
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "SF7.125", NULL));
+  // A frequency that nothing plays with: one that begins anew has another, and so has another's.
+  snprintf(command, sizeof command, "SF%.2f",
+           marks_from_Hz + 0.25 * floor(fmod(1e3 * dea_clock_s(), marks)));
+  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, command, NULL));
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QF", &answer));
   snprintf(s->mark, sizeof s->mark, "%.*s", (int)sizeof s->mark - 1, answer);
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "SSwSrc0", NULL));
@@ -105,15 +111,8 @@ const struct dea_instrument_type dea_instrument_shvps = {
     .name = "shvps",
     .record = &dea_instrument_shvps_record,
     .raw_size = sizeof(struct raw),
-    .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS,
     .check = dea_line_supply_check,
     .open = open_it,
-    .start = dea_line_supply_start,
-    .put = dea_line_supply_put,
-    .get = dea_line_supply_get,
-    .hold = dea_line_supply_hold,
-    .stop = dea_line_supply_stop,
-    .address = dea_line_supply_address,
     .zero = zero,
-    .close = dea_line_supply_close,
+    DEA_LINE_SUPPLY_MEMBERS,
 };

@@ -19,7 +19,7 @@ enum {
 struct raw {
   struct dea_label kind, model;
   struct dea_choice pace;
-  struct dea_quantity seed, series_resistance_ohm, breakdown_V;
+  struct dea_quantity seed, series_resistance_ohm, breakdown_V, breakdown_s, fatigue_s;
   struct dea_quantity discharge_Hz, discharge_V, discharge_C;
   struct dea_quantity voltage_V, current_A, displacement_m, force_N, profile_m; // noise
   struct dea_quantity displacement_drift_m_per_s, force_drift_N_per_s, force_offset_N;
@@ -51,6 +51,12 @@ static const struct dea_field fields[] = {
     DEA_NUMBER_ROW("breakdown_voltage", AT(breakdown_V), "V", "7.5 kV",
                    "voltage on the film at which it becomes a short circuit", .above_min = true,
                    .max = 1e6, .absent_text = "never"),
+    DEA_NUMBER_ROW("breakdown_time", AT(breakdown_s), "s", "36000 s",
+                   "seconds under voltage after which it becomes one", .above_min = true,
+                   .max = 1e12, .absent_text = "never"),
+    DEA_NUMBER_ROW("fatigue_time", AT(fatigue_s), "s", "500000 s",
+                   "seconds under voltage in which displacement and force fall to 1/e",
+                   .above_min = true, .max = 1e12, .absent_text = "never"),
     NUMBER("discharge_rate", discharge_Hz, "Hz", 1e6, "0 Hz", "partial discharges a second"),
     NUMBER("discharge_voltage", discharge_V, "V", 1e6, "0 kV", "voltage above which there are any"),
     NUMBER("discharge_charge", discharge_C, "C", 1, "50 nC", "charge of each"),
@@ -141,7 +147,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
 static struct dea_sim_settings settings_of(const struct raw *raw)
 {
   return (struct dea_sim_settings){raw->model.text, raw->series_resistance_ohm.si,
-                                   raw->breakdown_V.si};
+                                   raw->breakdown_V.si, raw->breakdown_s.si, raw->fatigue_s.si};
 }
 
 static void take_noise(const struct raw *raw, struct dea_sim_noise *out)

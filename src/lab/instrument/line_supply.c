@@ -354,8 +354,9 @@ static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const
 }
 
 /* Plays until then, or until an answer has come. */
-static dea_status serve(struct dea_context *ctx, struct dea_line_supply *s, double until_s)
+static dea_status serve(struct dea_context *ctx, void *supply, double until_s)
 {
+  struct dea_line_supply *s = supply;
   const char *answer;
   size_t dropped = s->link.lines.dropped;
   double next_s;
@@ -371,18 +372,9 @@ dea_status dea_line_supply_put(struct dea_context *ctx, struct dea_instrument *i
                                const double *volts, size_t count)
 {
   struct dea_line_supply *s = (struct dea_line_supply *)instrument;
-  struct dea_timed_output *o = &s->output;
   double next_s;
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
-  for (size_t i = 0; i < count; i++) {
-    while (o->count == o->room) {
-      if (isnan(o->clock_s)) {
-        return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->room);
-      }
-      DEA_TRY(ctx, serve(ctx, s, dea_timed_due(o)));
-    }
-    dea_timed_add(o, volts[i]);
-  }
+  DEA_TRY(ctx, dea_timed_put(ctx, &s->output, volts, count, serve, s));
   return play(ctx, s, &next_s);
 }
 

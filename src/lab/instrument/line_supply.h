@@ -114,6 +114,12 @@ struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const void *raw, const struct dea_protocol *protocol);
 void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instrument);
 
+/* The members of a kind's type that all of them share. */
+#define DEA_LINE_SUPPLY_MEMBERS                                                                    \
+  .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS, .start = dea_line_supply_start,                  \
+  .put = dea_line_supply_put, .get = dea_line_supply_get, .hold = dea_line_supply_hold,            \
+  .stop = dea_line_supply_stop, .address = dea_line_supply_address, .close = dea_line_supply_close
+
 /* What a line supply does in common; by line_supply_zero.c too. */
 /* Waits for a line, byte by byte, so that none behind it is lost; NULL: none in time. */
 dea_status dea_line_supply_wait(struct dea_context *ctx, struct dea_line_link *link, double until_s,

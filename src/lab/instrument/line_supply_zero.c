@@ -3,13 +3,16 @@
  * 0 V is set and the output switched off, each command behind the answer to the one before, or
  * without one where none comes; then its voltage is read back until it has been at 0 V for
  * `behind`. Nothing that it says is believed but behind a new answer to `sync`. Where that does not
- * come all begins anew on another connection, until the time is over. */
+ * come all begins anew on another connection, until the time is over. Where the line itself has
+ * gone, what answers at its name may be another supply: only one with the mark of this one is
+ * believed. */
 #include "base/clock.h"
 #include "lab/instrument/line_supply.h"
 #include "lab/instrument/serial.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double poll_s = 0.05, again_s = 0.1;
 /* Of the time left: how long an answer is waited for, so that there is time for another try. */
@@ -21,6 +24,8 @@ struct zeroing {
   const struct dea_line_supply_raw *raw;
   const struct dea_protocol *protocol;
   double until_s;
+  bool lost;        // the line went while it was used: another supply may have its name now
+  const char *mark; // what the supply answers that was used; "": nothing that tells it from others
 };
 
 static double wait_until(const struct zeroing *z)
@@ -91,6 +96,16 @@ static bool read_back(struct dea_context *ctx, const struct zeroing *z, struct d
   return true;
 }
 
+/* Whether it is the supply that was used. Of one whose line has never gone that is so. */
+static bool is_same(struct dea_context *ctx, const struct zeroing *z)
+{
+  const char *answer;
+  return !z->lost || (z->language->mark != NULL && z->mark[0] != '\0' &&
+                      dea_line_supply_send(ctx, z->link, poll_s, z->language->mark) == DEA_OK &&
+                      dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) == DEA_OK &&
+                      answer != NULL && strcmp(answer, z->mark) == 0);
+}
+
 /* On connections of its own, until one has said something or the time is over. */
 static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
 {
@@ -101,7 +116,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
     z->link = &link;
     if (dea_serial_open(ctx, z->language->what, z->raw->device.text, (int)z->raw->baud.si, 0,
                         &link.socket) == DEA_OK) {
-      told = command_zero(ctx, z) && read_back(ctx, z, &zero);
+      told = command_zero(ctx, z) && is_same(ctx, z) && read_back(ctx, z, &zero);
       dea_socket_close(&link.socket);
     }
     if (!told) {
@@ -115,27 +130,34 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
 {
   struct dea_line_supply *s = (struct dea_line_supply *)instrument;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
-  struct zeroing z = {&s->link, s->language, &s->raw, s->protocol,
-                      dea_clock_s() + s->protocol->safety.zero_time_s.si};
+  struct zeroing z = {.link = &s->link,
+                      .language = s->language,
+                      .raw = &s->raw,
+                      .protocol = s->protocol,
+                      .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
+                      .mark = s->mark};
+  bool told = false;
   if (s->link.socket.descriptor >= 0) {
     const char *answer;
     if (s->asked != DEA_LINE_SUPPLY_NOTHING) { // the answer to what was asked before
       dea_line_supply_wait(ctx, z.link, wait_until(&z), &answer);
     }
-    bool told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
+    told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
+    z.lost = dea_socket_is_lost(&s->link.socket);
     dea_socket_close(&s->link.socket);
-    if (told) {
-      return zero;
-    }
   }
-  return zero_anew(ctx, &z);
+  zero = told ? zero : zero_anew(ctx, &z);
+  zero.state = dea_timed_contradicted(&s->output) ? DEA_ZERO_UNKNOWN : zero.state;
+  return zero;
 }
 
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const struct dea_line_supply_language *language,
                                      const void *data, const struct dea_protocol *protocol)
 {
-  struct zeroing z = {NULL, language, data, protocol,
-                      dea_clock_s() + protocol->safety.zero_time_s.si};
+  struct zeroing z = {.language = language,
+                      .raw = data,
+                      .protocol = protocol,
+                      .until_s = dea_clock_s() + protocol->safety.zero_time_s.si};
   return zero_anew(ctx, &z);
 }

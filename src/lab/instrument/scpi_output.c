@@ -161,8 +161,9 @@ dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, dou
 }
 
 /* Plays, and takes the responses that belong to it, until there is something else to do. */
-static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double until_s)
+static dea_status serve(struct dea_context *ctx, void *supply, double until_s)
 {
+  struct dea_scpi *s = supply;
   const char *response;
   double next_s;
   DEA_TRY(ctx, dea_scpi_output_play(ctx, s, &next_s));
@@ -178,18 +179,9 @@ static dea_status serve(struct dea_context *ctx, struct dea_scpi *s, double unti
 dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
                                size_t count)
 {
-  struct dea_timed_output *o = &s->output;
   double next_s;
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
-  for (size_t i = 0; i < count; i++) {
-    while (o->count == o->room) {
-      if (isnan(o->clock_s)) {
-        return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->room);
-      }
-      DEA_TRY(ctx, serve(ctx, s, dea_timed_due(o)));
-    }
-    dea_timed_add(o, volts[i]);
-  }
+  DEA_TRY(ctx, dea_timed_put(ctx, &s->output, volts, count, serve, s));
   return dea_scpi_output_play(ctx, s, &next_s);
 }
 

@@ -147,11 +147,12 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
     told = !failed && find_out(ctx, &s->link, &s->raw, s->protocol, until_s, &zero);
     command_end(&s->link, &s->raw, zero.state != DEA_ZERO_UNKNOWN);
   }
-  if (told) {
-    return zero;
+  if (!told) {
+    dea_socket_close(&s->link.socket); // some supplies have one connection only
+    zero = zero_anew(ctx, &s->raw, s->protocol, until_s);
   }
-  dea_socket_close(&s->link.socket); // some supplies have one connection only
-  return zero_anew(ctx, &s->raw, s->protocol, until_s);
+  zero.state = dea_timed_contradicted(&s->output) ? DEA_ZERO_UNKNOWN : zero.state;
+  return zero;
 }
 
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,

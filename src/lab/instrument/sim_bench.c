@@ -4,6 +4,7 @@
 
 static const double tolerance = 1e-6; // of a step, over the largest motion: below what 16 bits see
 static const double short_circuit_ohm = 1e4;
+static const double least_V = 10; // that counts as under voltage
 
 struct dea_sim_bench {
   struct dea_context *ctx;
@@ -17,6 +18,7 @@ struct dea_sim_bench {
   double next_s;             // length of the next step
   double charge_C;           // that the film took since the last sample, with what leaked
   size_t samples;
+  double under_voltage_s;
   struct dea_profile profile; // of the model, at sample number `profile_at`; count 0: it has none
   size_t profile_at;
 };
@@ -133,7 +135,10 @@ static void report(struct dea_sim_bench *b, double interval_s)
   const struct dea_quantity *limit = &b->protocol->amplifier.current_A;
   s->current_A = b->charge_C / interval_s;
   s->film_V = b->point.voltage_V;
-  if (!s->broken && fabs(s->film_V) >= b->settings.breakdown_V) {
+  b->under_voltage_s += fabs(s->film_V) > least_V ? interval_s : 0;
+  if (!s->broken &&
+      (fabs(s->film_V) >= b->settings.breakdown_V ||
+       (fabs(s->film_V) > least_V && b->under_voltage_s >= b->settings.breakdown_s))) {
     break_down(b);
   }
   if (s->broken) {
@@ -149,6 +154,12 @@ static void report(struct dea_sim_bench *b, double interval_s)
   s->fibre_tip_z_m = or_zero(b->point.fibre_tip_z_m);
   s->centre_z_m = isfinite(b->point.centre_z_m) ? b->point.centre_z_m : s->fibre_tip_z_m;
   s->force_N = or_zero(b->point.force_N);
+  if (!isnan(b->settings.fatigue_s)) {
+    double left = exp(-b->under_voltage_s / b->settings.fatigue_s);
+    s->fibre_tip_z_m *= left;
+    s->centre_z_m *= left;
+    s->force_N *= left;
+  }
 }
 
 dea_status dea_sim_bench_sample(struct dea_sim_bench *bench, double control_V,

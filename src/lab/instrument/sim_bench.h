@@ -13,6 +13,8 @@ struct dea_sim_settings {
   const char *model;
   double series_resistance_ohm;
   double breakdown_V; // on the film; NAN: none
+  double breakdown_s; // under voltage until it breaks down; NAN: never
+  double fatigue_s;   // under voltage in which what it moves and presses falls to 1/e; NAN: never
 };
 
 /* Truth at one sample. */

@@ -146,6 +146,13 @@ void dea_socket_write_if_possible(const struct dea_socket *connection, const voi
   }
 }
 
+bool dea_socket_is_lost(const struct dea_socket *connection)
+{
+  struct pollfd entry = {.fd = connection->descriptor};
+  return connection->descriptor < 0 ||
+         (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0);
+}
+
 void dea_socket_close(struct dea_socket *connection)
 {
   if (connection->descriptor >= 0) {

@@ -28,6 +28,8 @@ dea_status dea_socket_write(struct dea_context *ctx, const struct dea_socket *co
 /* Sends what goes without waiting; for the way out, where nothing may fail. */
 void dea_socket_write_if_possible(const struct dea_socket *connection, const void *bytes,
                                   size_t length);
+/* Whether the other end has gone, as far as is known without sending; a closed one has. */
+bool dea_socket_is_lost(const struct dea_socket *connection);
 /* A closed one is fine. */
 void dea_socket_close(struct dea_socket *connection);
 

@@ -28,19 +28,32 @@ bool dea_timed_plays(const struct dea_timed_output *o)
   return o->queue != NULL && !isnan(o->clock_s);
 }
 
-double dea_timed_due(const struct dea_timed_output *o)
+/* When the next sample of the queue is due. */
+static double due(const struct dea_timed_output *o)
 {
   return o->clock_s + (double)o->played / o->rate_Hz;
 }
 
-void dea_timed_add(struct dea_timed_output *o, double volts)
+dea_status dea_timed_put(struct dea_context *ctx, struct dea_timed_output *o, const double *volts,
+                         size_t count,
+                         dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s),
+                         void *supply)
 {
-  o->queue[(o->first + o->count++) % o->room] = volts;
+  for (size_t i = 0; i < count; i++) {
+    while (o->count == o->room) {
+      if (isnan(o->clock_s)) {
+        return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->room);
+      }
+      DEA_TRY(ctx, serve(ctx, supply, due(o)));
+    }
+    o->queue[(o->first + o->count++) % o->room] = volts[i];
+  }
+  return DEA_OK;
 }
 
 static dea_status check_stall(struct dea_context *ctx, struct dea_timed_output *o, double now_s)
 {
-  double due_s = o->count > 0 ? dea_timed_due(o) : now_s;
+  double due_s = o->count > 0 ? due(o) : now_s;
   double away_s = fmax(now_s - due_s, now_s - o->turned_s);
   bool idle = o->count == 0 && o->sent_V == 0 && o->wanted_V == 0;
   o->turned_s = now_s;
@@ -55,7 +68,7 @@ static dea_status check_stall(struct dea_context *ctx, struct dea_timed_output *
 dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *o, double now_s)
 {
   DEA_TRY(ctx, check_stall(ctx, o, now_s));
-  while (o->count > 0 && dea_timed_due(o) <= now_s) {
+  while (o->count > 0 && due(o) <= now_s) {
     o->wanted_V = o->queue[o->first];
     o->first = (o->first + 1) % o->room;
     o->count--;
@@ -73,7 +86,7 @@ enum dea_timed_action dea_timed_next(struct dea_timed_output *o, double now_s, d
                                      double *next_s)
 {
   double measure_s = o->measured_s + o->measure_interval_s;
-  *next_s = o->count > 0 ? dea_timed_due(o) : INFINITY;
+  *next_s = o->count > 0 ? due(o) : INFINITY;
   if (now_s > late_s) {
     return DEA_TIMED_LATE;
   }
@@ -130,4 +143,9 @@ bool dea_timed_measured(struct dea_timed_output *o, double volts, double error_V
   bool wrong = volts < lowest_V - error_V || volts > highest_V + error_V;
   o->deviations = wrong ? o->deviations + 1 : 0;
   return o->deviations < DEVIATIONS_MAX;
+}
+
+bool dea_timed_contradicted(const struct dea_timed_output *o)
+{
+  return o->deviations > 0;
 }

@@ -43,10 +43,12 @@ void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *output);
 void dea_timed_start(struct dea_timed_output *output, double now_s);
 /* Whether there is something to play. */
 bool dea_timed_plays(const struct dea_timed_output *output);
-/* When the next sample of the queue is due. */
-double dea_timed_due(const struct dea_timed_output *output);
-/* Adds a sample to a queue that is not full. */
-void dea_timed_add(struct dea_timed_output *output, double volts);
+/* Adds samples to the queue; while it is full, serve(ctx, supply, until_s) plays until the next of
+ * them is due, or less long. More than it holds before the start is DEA_E_ARGUMENT. */
+dea_status dea_timed_put(struct dea_context *ctx, struct dea_timed_output *output,
+                         const double *volts, size_t count,
+                         dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s),
+                         void *supply);
 /* Takes what is due out of the queue. DEA_E_INTERLOCK when the computer was away for longer than
  * the queue: neither a loop that is late, nor a jump to where the waveform has got to meanwhile. */
 dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *output, double now_s);
@@ -60,5 +62,8 @@ double dea_timed_hold(struct dea_timed_output *output, double now_s);
 /* False once two measured voltages in a row were more than error_V from all that was sent within
  * `behind`: one may be taken while it moves. */
 bool dea_timed_measured(struct dea_timed_output *output, double volts, double error_V);
+/* Whether the last measured voltage was one of these: either the output or what measures it is
+ * wrong, and nobody knows which. What it measures then says nothing of 0 V. */
+bool dea_timed_contradicted(const struct dea_timed_output *output);
 
 #endif

@@ -1,5 +1,6 @@
 /* Reading protocols. */
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "base/schema_value.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -358,14 +359,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_
   DEA_TRY(ctx, complete_sim(ctx, protocol->document));
   const struct dea_node *root = dea_yaml_root(protocol->document);
   const struct dea_reader reader = {ctx, protocol->document, &protocol->values};
-  const struct dea_node *other = dea_node_find(root, "dea");
-  if (other != NULL) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_ERROR, other->key_place,
-                            "this is a design, not a protocol: it is for 'dea run'; a protocol "
-                            "begins with 'dea-protocol: 1' ('dea examples bench/cyclic')"));
-    return dea_fail(ctx, DEA_E_DESIGN, "'%s' is no protocol", protocol->file);
-  }
+  DEA_TRY(ctx, dea_file_kind_check(ctx, protocol->document, "dea-protocol"));
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_protocol_record, root, "", raw));
   if (root->kind == DEA_NODE_SECTION) {
     DEA_TRY(ctx, take_sequence(&reader, raw, errors));

@@ -31,6 +31,24 @@ static bool lock_file(int file)
   return fcntl(file, F_OFD_SETLK, &all) == 0;
 }
 
+/* A new file's name is in its folder, which has to reach the disk too. Some file systems cannot. */
+static void sync_folder(const char *name)
+{
+  char folder[4096];
+  const char *slash = strrchr(name, '/');
+  size_t length = slash == NULL ? 0 : slash == name ? 1 : (size_t)(slash - name);
+  if (length >= sizeof folder) {
+    return;
+  }
+  memcpy(folder, name, length);
+  folder[length] = '\0';
+  int file = open(length > 0 ? folder : ".", O_RDONLY | O_CLOEXEC | O_DIRECTORY);
+  if (file >= 0) {
+    (void)fsync(file);
+    close(file);
+  }
+}
+
 static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t most)
 {
   (void)most;
@@ -60,12 +78,18 @@ static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t
   opened->device = info.st_dev;
   opened->inode = info.st_ino;
   opened->disk->file = opened->file;
+  if (writes && opened->disk->lasting) {
+    sync_folder(name);
+  }
   return &opened->common;
 }
 
 static herr_t disk_close(H5FD_t *file)
 {
   struct disk_file *own = (struct disk_file *)file;
+  if (own->disk->lasting) {
+    dea_disk_sync(own->disk);
+  }
   if (close(own->file) != 0 && own->disk->error == 0) {
     own->disk->error = errno;
   }

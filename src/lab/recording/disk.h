@@ -10,8 +10,9 @@
 #include "base/h5.h"
 
 struct dea_disk {
-  int error; // errno of the write that failed; 0: none has
-  int file;  // descriptor, locked against other writers; -1: closed
+  int error;    // errno of the write that failed; 0: none has
+  int file;     // descriptor, locked against other writers; -1: closed
+  bool lasting; // waits for the disk when the file is made and when it is closed
 };
 
 /* Sets the driver in a list of file access properties; false: HDF5 failed. disk: lent, outlives the

@@ -167,6 +167,19 @@ static bool is_count(double value)
   return value >= 0 && value < 9007199254740992.0 && value == floor(value); // 2^53
 }
 
+static bool makes_sense(const double row[DEA_CYCLE_WIDTH])
+{
+  return is_count(row[0]) && is_count(row[1]) && isfinite(row[2]) && isfinite(row[3]) &&
+         row[3] >= row[2] && isfinite(row[4]);
+}
+
+/* A row that is counted, but was never written: the computer's power failed in between. */
+static bool is_empty(const double row[DEA_CYCLE_WIDTH])
+{
+  static const double none[DEA_CYCLE_WIDTH];
+  return memcmp(row, none, sizeof none) == 0;
+}
+
 static void get_cycles(struct h5 *h, hid_t file, struct dea_recording *recording, bool *cut)
 {
   double *rows;
@@ -178,8 +191,11 @@ static void get_cycles(struct h5 *h, hid_t file, struct dea_recording *recording
   }
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     const double *row = rows + i * DEA_CYCLE_WIDTH;
-    if (!is_count(row[0]) || !is_count(row[1]) || !isfinite(row[2]) || !isfinite(row[3]) ||
-        row[3] < row[2] || !isfinite(row[4])) {
+    if (!recording->complete && (is_empty(row) || !makes_sense(row))) {
+      *cut = true; // those before it are whole
+      break;
+    }
+    if (!makes_sense(row)) {
       wrong(h, "a cycle in it makes no sense");
       break;
     }

@@ -304,7 +304,8 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   if (recorder == NULL) {
     return DEA_E_MEMORY;
   }
-  *recorder = (struct dea_recorder){.ctx = ctx, .file = H5I_INVALID_HID, .disk = {.file = -1}};
+  *recorder = (struct dea_recorder){
+      .ctx = ctx, .file = H5I_INVALID_HID, .disk = {.file = -1, .lasting = !options->plain}};
   for (size_t c = 0; c < DEA_CHANNELS_MAX; c++) {
     recorder->channels[c] = (struct recorded_channel){.values = none, .time = none};
   }
@@ -461,6 +462,7 @@ dea_status dea_recorder_sync(struct dea_recorder *recorder)
 {
   struct h5 h;
   begin(recorder, &h);
+  flush_samples(&h, recorder);
   if (h.status == DEA_OK) {
     dea_disk_sync(&recorder->disk);
   }

@@ -50,7 +50,9 @@ dea_status dea_recorder_add_profile(struct dea_recorder *recorder, double time_s
 /* Appends a completed cycle and flushes everything: from here on it survives. */
 dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
                                   const struct dea_recorded_cycle *cycle);
-/* Waits until what was flushed is on the disk, so that it survives the computer too. */
+/* Flushes the samples and waits until all that was flushed is on the disk, so that it survives the
+ * computer too. A cycle is to be added after its samples were waited for: of what nobody has waited
+ * for, a failing computer may keep any part. */
 dea_status dea_recorder_sync(struct dea_recorder *recorder);
 /* What is known of the output at the end ("at 0 V (2 V read back)"); for dea_recorder_finish. */
 void dea_recorder_set_output(struct dea_recorder *recorder, const char *text);

@@ -75,9 +75,10 @@ static void begin_at_zero(struct dea_panel *panel)
   }
 }
 
+/* A few volts are the noise and offset of a monitor of kilovolts: that level is 0. */
 static void title_of(double voltage_V, char out[32])
 {
-  snprintf(out, 32, "%.3g kV", fabs(voltage_V) < 0.5 ? 0.0 : 1e-3 * voltage_V);
+  snprintf(out, 32, "%.3g kV", fabs(voltage_V) < 5.0 ? 0.0 : 1e-3 * voltage_V);
 }
 
 static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)

@@ -51,8 +51,8 @@ dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_rec
                                    struct dea_reduced_series *out);
 void dea_reduced_series_free(struct dea_context *ctx, struct dea_reduced_series *table);
 
-/* Writes measurement.csv, levels.csv, cycles.csv, discharges.csv, profiles.csv and history.csv;
- * those that would hold nothing are left out. */
+/* Writes measurement.csv, levels.csv, cycles.csv, life.csv, discharges.csv, profiles.csv,
+ * history.csv; those that would hold nothing are left out. */
 dea_status dea_reduction_write_tables(struct dea_context *ctx,
                                       const struct dea_recording *recording,
                                       const struct dea_reduction *reduction, const char *directory);

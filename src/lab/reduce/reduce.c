@@ -63,7 +63,7 @@ static dea_status set_voltages(struct job *job)
     double measured = u != NULL ? dea_window_mean(&smooth, span, INFINITY, scratch).mean : NAN;
     cycle->cycle = part->cycle;
     cycle->voltage_V = isnan(measured) ? part->cycle.level_V : measured;
-    cycle->shape = NAN;
+    cycle->shape = cycle->capacitance_F = cycle->leakage_A = cycle->charge_C = NAN;
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
       struct dea_cycle_value *v = &cycle->values[kind];
       v->rest = v->active = v->amplitude = v->uncertainty = NAN;
@@ -375,6 +375,21 @@ static dea_status reduce_cycles(struct job *job)
                                    job->level_of, job->offsets, r);
 }
 
+/* Into the cycles that they began in; both are in time. */
+static void count_discharges(struct dea_reduction *r)
+{
+  for (size_t d = 0, k = 0; d < r->discharge_count; d++) {
+    const struct dea_discharge *own = &r->discharges[d];
+    while (k < r->cycle_count && r->cycles[k].cycle.end_s <= own->time_s) {
+      k++;
+    }
+    if (k < r->cycle_count && r->cycles[k].cycle.start_s <= own->time_s) {
+      r->cycles[k].discharges += own->kind == DEA_DISCHARGE;
+      r->cycles[k].breakdowns += own->kind == DEA_BREAKDOWN;
+    }
+  }
+}
+
 static dea_status reduce_current(struct job *job)
 {
   const struct dea_channel *current = dea_recording_kind(job->recording, DEA_CHANNEL_CURRENT);
@@ -382,9 +397,17 @@ static dea_status reduce_current(struct job *job)
   if (current == NULL || current->count < 8) {
     return DEA_OK;
   }
-  return dea_discharges_find(job->ctx, current, job->asked != NULL ? job->asked : job->measured,
-                             job->asked != NULL ? job->measured : NULL, &job->scale, &r->discharges,
-                             &r->discharge_count, &r->current);
+  DEA_TRY(job->ctx,
+          dea_discharges_find(job->ctx, current, job->asked != NULL ? job->asked : job->measured,
+                              job->asked != NULL ? job->measured : NULL, &job->scale,
+                              &r->discharges, &r->discharge_count, &r->current));
+  count_discharges(r);
+  const struct dea_charge_limits limits = {job->scale.active_V, 2 * r->current.blind_s};
+  DEA_TRY(job->ctx,
+          dea_charge_find(job->ctx, current, job->measured != NULL ? job->measured : job->asked,
+                          job->list.parts, r->cycle_count, r->settle, &limits, r->cycles));
+  dea_charge_levels(job->level_of, r);
+  return DEA_OK;
 }
 
 // The whole --------------------------------------------------------------------------------------

@@ -35,6 +35,11 @@ struct dea_reduced_cycle {
   double under_voltage_s; // that the film was under voltage from the recording's begin to its end
   struct dea_cycle_value values[DEA_REDUCED_KINDS]; // NAN: not measured
   double shape; // of the profile: 0 flat over the electrode, 1 a cone; NAN
+  // of the current; NAN where that cannot be told
+  double capacitance_F; // by the charge of its two edges
+  double leakage_A;     // that flows while the voltage is held, against rest
+  double charge_C;      // brought to the film by its edges, from the recording's begin to its end
+  size_t discharges, breakdowns; // that began in it
 };
 
 /* All cycles of one voltage and step, and their statistics: mean, standard deviation from cycle to
@@ -49,6 +54,8 @@ struct dea_voltage_level {
   double drift[DEA_REDUCED_KINDS]; // of the rest, a cycle, by a straight line
   double drift_uncertainty[DEA_REDUCED_KINDS];
   double shape, shape_uncertainty;
+  double capacitance_F, capacitance_std_F; // mean and scatter from cycle to cycle; NAN
+  double sensed_stretch; // of the electrode by it, against the lowest voltage that has one; NAN
   double *z_m, *z_std_m; // [points] mean profile against rest, and scatter; owned; NULL without
 };
 

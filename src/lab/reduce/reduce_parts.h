@@ -200,6 +200,22 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
                                const struct dea_voltage_scale *scale, struct dea_discharge **out,
                                size_t *count, struct dea_current_limits *limits);
 
+// charge.c ---------------------------------------------------------------------------------------
+
+struct dea_charge_limits {
+  double least_V;   // a step of the voltage that is more than its noise
+  double settled_s; // behind a step the current that charges has gone
+};
+
+/* What the current says of each cycle: capacitance, leakage, charge; parts, cycles: [count].
+ * voltage: measured, or asked where it was not. */
+dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *current,
+                           const struct dea_channel *voltage, const struct dea_cycle_parts *parts,
+                           size_t count, double settle, const struct dea_charge_limits *limits,
+                           struct dea_reduced_cycle *cycles);
+/* Mean capacitances of the levels, and the stretch that they tell of. level_of: [cycle_count]. */
+void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction);
+
 // profiles.c -------------------------------------------------------------------------------------
 
 /* Series of centre and tips from the frames and their levelling, into the reduction. offsets: of

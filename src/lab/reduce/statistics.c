@@ -295,6 +295,7 @@ static void level_fill(const struct gathered *g, struct dea_voltage_level *level
     level->voltage_V += g->cycles[i]->voltage_V / (double)g->count;
   }
   level->shape = level->shape_uncertainty = NAN;
+  level->capacitance_F = level->capacitance_std_F = level->sensed_stretch = NAN;
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     level->mean[kind] = level->std[kind] = level->noise[kind] = level->uncertainty[kind] = NAN;
     amplitude_of(g, kind, level);

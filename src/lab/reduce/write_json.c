@@ -5,7 +5,6 @@
 #include "plot/gnuplot.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* "NAME_UNIT", the number under it. */
 static void put_kind(json_t *object, const char *name, enum dea_reduced_kind kind, double value)
@@ -63,6 +62,9 @@ static json_t *level_json(const struct dea_voltage_level *level)
   dea_json_put_count(object, "cycles", level->cycles);
   dea_json_put(object, "shape", level->shape);
   dea_json_put(object, "shape_uncertainty", level->shape_uncertainty);
+  dea_json_put(object, "capacitance_F", level->capacitance_F);
+  dea_json_put(object, "capacitance_std_F", level->capacitance_std_F);
+  dea_json_put(object, "sensed_stretch", level->sensed_stretch);
   for (int k = 0; k < DEA_REDUCED_KINDS; k++) {
     enum dea_reduced_kind kind = (enum dea_reduced_kind)k;
     if (isnan(level->mean[k])) {
@@ -94,6 +96,11 @@ static json_t *cycle_json(const struct dea_reduced_cycle *cycle)
   dea_json_put(object, "asked_V", cycle->cycle.level_V);
   dea_json_put(object, "voltage_V", cycle->voltage_V);
   dea_json_put(object, "shape", cycle->shape);
+  dea_json_put(object, "capacitance_F", cycle->capacitance_F);
+  dea_json_put(object, "leakage_A", cycle->leakage_A);
+  dea_json_put(object, "charge_C", cycle->charge_C);
+  dea_json_put_count(object, "discharges", cycle->discharges);
+  dea_json_put_count(object, "breakdowns", cycle->breakdowns);
   for (int k = 0; k < DEA_REDUCED_KINDS; k++) {
     const struct dea_cycle_value *v = &cycle->values[k];
     enum dea_reduced_kind kind = (enum dea_reduced_kind)k;
@@ -188,9 +195,9 @@ json_t *dea_reduction_json(struct dea_context *ctx, const struct dea_recording *
 dea_status dea_reduction_folder(struct dea_context *ctx, const char *directory, bool force)
 {
   static const char *const names[] = {
-      "reduction.json", "measurement.csv", "means.csv",   "levels.csv", "cycles.csv",
-      "discharges.csv", "profiles.csv",    "history.csv", "profiles",   "history",
-      "history_force",  "amplitude",       "cycles"};
+      "reduction.json", "measurement.csv", "means.csv",    "levels.csv",  "cycles.csv",
+      "life.csv",       "discharges.csv",  "profiles.csv", "history.csv", "profiles",
+      "history",        "history_force",   "amplitude",    "cycles"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, names[i], force));
   }
@@ -204,9 +211,7 @@ dea_status dea_reduction_write(struct dea_context *ctx, const struct dea_recordi
   char *text;
   DEA_TRY(ctx, dea_reduction_write_tables(ctx, recording, reduction, directory));
   DEA_TRY(ctx, dea_json_text(ctx, dea_reduction_json(ctx, recording, reduction, command), &text));
-  char *path = dea_path_join(ctx, directory, "reduction.json");
-  dea_status status = path != NULL ? dea_file_write(ctx, path, text, strlen(text)) : DEA_E_MEMORY;
-  dea_free(ctx, path);
+  dea_status status = dea_text_file_write(ctx, directory, "reduction.json", text);
   dea_free(ctx, text);
   DEA_TRY(ctx, status);
   return dea_reduction_draw(ctx, recording, reduction, format, directory);

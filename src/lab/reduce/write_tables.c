@@ -229,7 +229,11 @@ static dea_status write_levels(struct dea_context *ctx, const struct dea_reducti
 {
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
+  const bool current = r->current.samples > 0;
   dea_text_add(&text, "V (kV),step,cycles,shape,shape uncertainty");
+  if (current) {
+    dea_text_add(&text, ",capacitance (pF),capacitance std (pF),sensed stretch");
+  }
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     const struct dea_reduced_meaning *m = &dea_reduced_meanings[kind];
     if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
@@ -251,6 +255,11 @@ static dea_status write_levels(struct dea_context *ctx, const struct dea_reducti
     dea_text_add(&text, "\n%.10g,%zu,%zu", 1e-3 * level->voltage_V, level->step, level->cycles);
     add(&text, level->shape);
     add(&text, level->shape_uncertainty);
+    if (current) {
+      add(&text, 1e12 * level->capacitance_F);
+      add(&text, 1e12 * level->capacitance_std_F);
+      add(&text, level->sensed_stretch);
+    }
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
       if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
         double f = dea_reduced_meanings[kind].factor;
@@ -275,7 +284,11 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
 {
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
+  const bool current = r->current.samples > 0;
   dea_text_add(&text, "step,cycle,start (s),end (s),under voltage (s),asked V (kV),V (kV),shape");
+  if (current) {
+    dea_text_add(&text, ",capacitance (pF),leakage (nA),charge (uC),discharges,breakdowns");
+  }
   for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
     const struct dea_reduced_meaning *m = &dea_reduced_meanings[kind];
     if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
@@ -297,6 +310,12 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
     add(&text, 1e-3 * c->cycle.level_V);
     add(&text, 1e-3 * c->voltage_V);
     add(&text, c->shape);
+    if (current) {
+      add(&text, 1e12 * c->capacitance_F);
+      add(&text, 1e9 * c->leakage_A);
+      add(&text, 1e6 * c->charge_C);
+      dea_text_add(&text, ",%zu,%zu", c->discharges, c->breakdowns);
+    }
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
       const struct dea_cycle_value *v = &c->values[kind];
       double f = dea_reduced_meanings[kind].factor;
@@ -309,6 +328,40 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
   }
   dea_text_add(&text, "\n");
   return write(ctx, &text, before, directory, "cycles.csv");
+}
+
+/* A row a cycle of what `dea fit` judges lives by: the main displacement, or the force. */
+static dea_status write_life(struct dea_context *ctx, const struct dea_recording *recording,
+                             const struct dea_reduction *r, const char *directory)
+{
+  const enum dea_reduced_kind kind = dea_reduced_main(r);
+  const bool current = r->current.samples > 0, stroke = kind != DEA_REDUCED_KINDS;
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  add_source(&text, recording);
+  dea_text_add(&text, "end (s),under voltage (s),asked V (kV)");
+  if (stroke) {
+    dea_text_add(&text, ",%s (%s)", kind == DEA_REDUCED_FORCE ? "force" : "displacement",
+                 dea_reduced_meanings[kind].unit);
+  }
+  dea_text_add(&text,
+               current ? ",charge (uC),leakage (nA),breakdowns,ended early\n" : ",ended early\n");
+  for (size_t k = 0; k < r->cycle_count; k++) {
+    const struct dea_reduced_cycle *c = &r->cycles[k];
+    dea_text_add(&text, "%.12g", c->cycle.end_s - r->cycles[0].cycle.start_s);
+    add(&text, c->under_voltage_s);
+    add(&text, 1e-3 * c->cycle.level_V);
+    if (stroke) {
+      add(&text, dea_reduced_meanings[kind].factor * c->values[kind].amplitude);
+    }
+    if (current) {
+      add(&text, 1e6 * c->charge_C);
+      add(&text, 1e9 * c->leakage_A);
+      dea_text_add(&text, ",%zu", c->breakdowns);
+    }
+    dea_text_add(&text, ",%d\n", k + 1 == r->cycle_count && !recording->complete);
+  }
+  return write(ctx, &text, before, directory, "life.csv");
 }
 
 static dea_status write_discharges(struct dea_context *ctx, const struct dea_reduction *r,
@@ -400,6 +453,7 @@ dea_status dea_reduction_write_tables(struct dea_context *ctx,
     DEA_TRY(ctx, write_measurement(ctx, recording, reduction, true, directory));
     DEA_TRY(ctx, write_levels(ctx, reduction, directory));
     DEA_TRY(ctx, write_cycles(ctx, reduction, directory));
+    DEA_TRY(ctx, write_life(ctx, recording, reduction, directory));
   }
   if (reduction->level_count > 0 && reduction->points > 0) {
     DEA_TRY(ctx, write_profiles(ctx, reduction, directory));

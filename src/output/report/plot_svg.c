@@ -37,7 +37,7 @@ static void widen(struct range *range, double value, bool logarithmic)
   }
 }
 
-/* Ranges of x and of the two axes upwards; a band's upper edge is only filling. */
+/* Ranges of x and of the two axes upwards; a band counts by its lower edge. */
 static void find_ranges(const struct dea_panel *panel, struct range *x, struct range y[2])
 {
   *x = y[0] = y[1] = (struct range){INFINITY, -INFINITY};
@@ -175,9 +175,7 @@ static void add_band(struct dea_text *out, const struct view *v, const struct de
   for (size_t k = 0; k < 2; k++) {
     for (size_t j = 0; j < series->count; j++) {
       if (place(v, series, k == 0 ? j : series->count - 1 - j, 1 + k, at)) {
-        if (k == 1 && at[1] < v->top + 0.1 * (v->bottom - v->top)) {
-          at[1] = v->top; // what reaches beyond the data goes to the edge of the panel
-        }
+        at[1] = k == 1 && series->to_top ? v->top : at[1];
         dea_text_add(out, "%s%.1f %.1f", first ? "M" : "L", at[0], at[1]);
         first = false;
       }

@@ -42,6 +42,7 @@ static dea_status add_region(struct dea_context *ctx, struct dea_panel *panel,
   DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &band));
   DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &line));
   band->style = DEA_BAND;
+  band->to_top = true;
   band->colour = line->colour = colour;
   snprintf(line->title, sizeof line->title, "%s", title);
   for (size_t i = 0; i < rows; i++) {

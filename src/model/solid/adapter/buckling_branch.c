@@ -77,9 +77,8 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
   if (side == DEA_BRANCH_ANY || on_side(&wanted, dea_solid_displacement(solid))) {
     return DEA_OK;
   }
-  double *push = dea_alloc(ctx, 3 * grid->node_count, sizeof *push);
-  if (dea_solid_any(push == NULL)) {
-    dea_free(ctx, push);
+  double *push = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *push);
+  if (push == NULL) {
     return DEA_E_MEMORY;
   }
   set_push(&wanted, dea_solid_displacement(solid), push);

@@ -106,10 +106,9 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_dri
                                    const struct dea_time_options *time,
                                    struct dea_circuit_step **out)
 {
-  struct dea_circuit_step *d = dea_alloc(ctx, 1, sizeof *d);
+  struct dea_circuit_step *d = dea_solid_alloc(ctx, 1, sizeof *d);
   *out = NULL;
-  if (dea_solid_any(d == NULL)) {
-    dea_free(ctx, d);
+  if (d == NULL) {
     return DEA_E_MEMORY;
   }
   d->driven = *driven;

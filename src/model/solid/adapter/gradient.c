@@ -11,25 +11,19 @@ struct work {
   const struct dea_gradient_owner *owner;
   const struct dea_gradient_ask *ask;
   struct dea_adjoint *adjoint;
-  bool *known;   // [column_count] there is an answer
-  double *slope; // [dofs] then [pressures]
-  double *side;  // [2][column_count]
+  bool *known;  // [column_count] there is an answer
+  double *side; // [2][column_count]
 };
 
 /* The answers of all columns. */
 static dea_status answer(struct dea_context *ctx, struct work *w)
 {
-  struct dea_solid *s = w->owner->solid;
-  size_t dofs = s->problem.dofs;
-  double *pressures = w->slope + dofs;
   for (size_t i = 0; i < w->ask->column_count; i++) {
-    memset(w->slope, 0, (dofs + dea_solid_pressure_count(s)) * sizeof *w->slope);
-    DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], w->slope, pressures,
-                                 &w->known[i]));
-    if (w->known[i]) {
-      DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, i, w->slope, pressures));
-    }
+    DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i],
+                                 dea_adjoint_slope(w->adjoint, i),
+                                 dea_adjoint_pressure_slope(w->adjoint, i), &w->known[i]));
   }
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, w->known));
   return DEA_OK;
 }
 
@@ -100,8 +94,6 @@ dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_
   struct work w = {.owner = owner, .ask = ask};
   double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
   w.known = dea_arena_alloc(&memory, ask->column_count, sizeof *w.known);
-  w.slope =
-      dea_arena_alloc(&memory, s->problem.dofs + dea_solid_pressure_count(s), sizeof *w.slope);
   w.side = dea_arena_alloc(&memory, 2 * ask->column_count, sizeof *w.side);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK) {
@@ -110,9 +102,9 @@ dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_
   if (status == DEA_OK) {
     status = find(ctx, &w, out);
   }
-  if (status == DEA_OK) { // reactions and scales are those of the equilibrium again
-    s->found.force_largest_N = force_N;
-    s->found.energy_largest_J = all_J;
+  s->found.force_largest_N = force_N; // scales and reactions are those of the equilibrium again
+  s->found.energy_largest_J = all_J;
+  if (status == DEA_OK) {
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
   }
   dea_adjoint_destroy(ctx, w.adjoint);

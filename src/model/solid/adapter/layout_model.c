@@ -28,6 +28,7 @@ struct marks {
 };
 
 struct dea_model {
+  struct dea_standing at; // first (standing.h)
   const struct dea_layout *layout;
   struct dea_model_settings settings;
   struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
@@ -45,19 +46,18 @@ struct dea_model {
   struct dea_surface **surfaces;        // [pressure_count]
   struct dea_solid *solid;
   struct dea_observer *observer;
-  int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
-  int *on_side;           // [nodes of the mesh] components that the sides of a sector hold
-  double near_m;          // of a place on such a side
-  double copies;          // of the sector in the device
-  bool *on;               // [nodes of the plane mesh] for who marks them
-  size_t mesh_node_count; // without those of bodies
-  size_t film;            // the first dielectric ply, or the first of all
-  double thinnest_m;      // least unstretched thickness of dielectric plies over their voltage
-  double flat_m;          // the same as they are in the flat state
-  double pressure_factor; // on all pressures
-  double *rest;           // [3 node_count] displacement where it was released
-  bool rest_is_one_of;    // several states there
-  struct dea_standing at;
+  int *follows;             // [nodes] body that a node moves with, counted from 1; 0: none
+  int *on_side;             // [nodes of the mesh] components that the sides of a sector hold
+  double near_m;            // of a place on such a side
+  double copies;            // of the sector in the device
+  bool *on;                 // [nodes of the plane mesh] for who marks them
+  size_t mesh_node_count;   // without those of bodies
+  size_t film;              // the first dielectric ply, or the first of all
+  double thinnest_m;        // least unstretched thickness of dielectric plies over their voltage
+  double flat_m;            // the same as they are in the flat state
+  double pressure_factor;   // on all pressures
+  double *rest;             // [3 node_count] displacement where it was released
+  bool rest_is_one_of;      // several states there
   struct dea_control moved; // of the last move
   double *answers;          // of the last response, as in model/model.h
   double *answer;           // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
@@ -629,14 +629,23 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_free(ctx, model);
 }
 
+/* Of the middle between the lowest and the highest face of each place: the faces of a flat film
+ * move as it thins, which is no bending. Nodes above each other have consecutive numbers. */
 static void find_heights(const struct dea_model *model, struct dea_load_point *out)
 {
-  const double *u = dea_solid_displacement(model->solid);
+  const double *u = dea_solid_displacement(model->solid), *X = model->mesh.grid->X;
+  const int *column = model->mesh.grid->column;
   out->highest_z_m = -INFINITY;
   out->lowest_z_m = INFINITY;
-  for (size_t n = 0; n < model->mesh_node_count; n++) {
-    out->highest_z_m = fmax(out->highest_z_m, u[3 * n + 2]);
-    out->lowest_z_m = fmin(out->lowest_z_m, u[3 * n + 2]);
+  for (size_t n = 0; n < model->mesh_node_count;) {
+    size_t low = n, high = n, of = n;
+    for (; n < model->mesh_node_count && column[n] == column[of]; n++) {
+      low = X[3 * n + 2] < X[3 * low + 2] ? n : low;
+      high = X[3 * n + 2] > X[3 * high + 2] ? n : high;
+    }
+    double z_m = 0.5 * (u[3 * low + 2] + u[3 * high + 2]);
+    out->highest_z_m = fmax(out->highest_z_m, z_m);
+    out->lowest_z_m = fmin(out->lowest_z_m, z_m);
   }
 }
 
@@ -697,23 +706,6 @@ static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
   (void)ctx;
   model->at.voltage_V = voltage_V;
   note_states(model, model->at.report.snapped || model->at.ending.leapt);
-  return DEA_OK;
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return dea_standing_limit(&model->at);
-}
-
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return dea_standing_passed(&model->at);
-}
-
-static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                        struct dea_load_point *out)
-{
-  DEA_TRY(ctx, dea_standing_solve(ctx, &model->at, voltage_V, out));
   return DEA_OK;
 }
 
@@ -868,19 +860,6 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status advance(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_time_step *step, struct dea_load_point *out,
-                          double *error)
-{
-  DEA_TRY(ctx, dea_standing_advance(ctx, &model->at, step, out, error));
-  return DEA_OK;
-}
-
-static void accept(struct dea_model *model)
-{
-  dea_standing_accept(&model->at);
-}
-
 // Saved states -----------------------------------------------------------------------------------
 
 static void mark(struct marks *marks, const double *values, size_t count)
@@ -929,13 +908,6 @@ static void mark_layout(const struct dea_layout *l, struct marks *marks)
   }
 }
 
-static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
-                         double *stiffness_N_per_m4)
-{
-  DEA_TRY(ctx, dea_standing_soften(ctx, &model->at, count, stiffness_N_per_m4));
-  return DEA_OK;
-}
-
 static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
                        struct dea_load_point *out, bool *found)
 {
@@ -955,13 +927,6 @@ static dea_status save(struct dea_context *ctx, struct dea_model *model, struct 
   }
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "loads", model->marks.out,
                                   model->marks.count * sizeof *model->marks.out));
-  return DEA_OK;
-}
-
-static dea_status load(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_state *state)
-{
-  DEA_TRY(ctx, dea_standing_load(ctx, &model->at, state));
   return DEA_OK;
 }
 
@@ -1135,8 +1100,8 @@ static dea_status errors(struct dea_context *ctx, struct dea_model *model, doubl
   if (!has_error(&point)) {
     return DEA_OK;
   }
-  double *weight = dea_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
-  dea_status status = dea_solid_any(weight == NULL) ? DEA_E_MEMORY : DEA_OK;
+  double *weight = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
+  dea_status status = weight == NULL ? DEA_E_MEMORY : DEA_OK;
   for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
     status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
   }
@@ -1185,7 +1150,7 @@ static dea_status look_at_mesh(struct dea_context *ctx, struct adaptation *a,
   struct dea_load_point point;
   struct dea_observation seen;
   const struct dea_grid *grid = model->mesh.grid;
-  DEA_TRY(ctx, solve(ctx, model, a->settings.adapt.voltage_V, &point));
+  DEA_TRY(ctx, dea_standing_solve(ctx, model, a->settings.adapt.voltage_V, &point));
   DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
   const double *values = seen.monitor[a->monitor];
   enum dea_observed motion = dea_observed_main(values);
@@ -1258,8 +1223,8 @@ static dea_status make_anew(struct dea_context *ctx, const struct adaptation *a,
 static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct dea_model **model)
 {
   size_t most = (size_t)a->settings.adapt.passes;
-  a->pass = dea_alloc(ctx, most, sizeof *a->pass);
-  if (dea_solid_any(a->pass == NULL)) {
+  a->pass = dea_solid_alloc(ctx, most, sizeof *a->pass);
+  if (a->pass == NULL) {
     return DEA_E_MEMORY;
   }
   for (bool on = true; on;) {
@@ -1316,23 +1281,23 @@ const struct dea_model_type dea_solid_layout_module = {
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
-    .solve = solve,
-    .limit = limit,
-    .passed = passed,
+    .solve = dea_standing_solve,
+    .limit = dea_standing_limit,
+    .passed = dea_standing_passed,
     .observe = observe,
     .errors = errors,
     .passes = passes,
     .move = move,
-    .soften = soften,
+    .soften = dea_standing_soften,
     .push = push,
     .modes = modes,
     .respond = respond,
     .answers = answers,
     .fields = fields,
     .save = save,
-    .load = load,
+    .load = dea_standing_load,
     .begin = begin,
-    .advance = advance,
-    .accept = accept,
+    .advance = dea_standing_advance,
+    .accept = dea_standing_accept,
     .size = size,
 };

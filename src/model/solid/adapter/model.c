@@ -25,14 +25,14 @@ static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
 
 struct dea_model {
+  struct dea_standing at; // first (standing.h)
   const struct dea_device *device;
   struct dea_actuator actuator;
   struct dea_grid *grid;
   struct dea_solid *solid;
   size_t tip, centre, between; // nodes that are reported
   size_t centre_twin,
-      between_twin; // on the other side of the film's middle plane, or the same ones
-  struct dea_standing at;
+      between_twin;          // on the other side of the film's middle plane, or the same ones
   double *profile;           // what the last one lends from
   struct dea_indent *indent; // NULL: no probe
   struct dea_solid_film_data films[DEA_CONSTITUENT_COUNT];
@@ -105,9 +105,8 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
 static dea_status find_weight(struct dea_context *ctx, const struct dea_model *model, double *out)
 {
   enum dea_gravity gravity = model->device->gravity;
-  double *fall = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fall);
-  if (dea_solid_any(fall == NULL)) {
-    dea_free(ctx, fall);
+  double *fall = dea_solid_alloc(ctx, 3 * model->grid->node_count, sizeof *fall);
+  if (fall == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t n = 0; n < model->grid->node_count; n++) {
@@ -161,8 +160,8 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_solid *s = model->solid;
   size_t dofs = s->problem.dofs, pressures = dea_solid_pressure_count(s);
-  model->rest = dea_alloc(ctx, dofs + pressures, sizeof *model->rest);
-  if (dea_solid_any(model->rest == NULL)) {
+  model->rest = dea_solid_alloc(ctx, dofs + pressures, sizeof *model->rest);
+  if (model->rest == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(model->rest, s->state.u, dofs * sizeof *model->rest);
@@ -261,9 +260,8 @@ static dea_status report_errors(struct dea_context *ctx, struct dea_model *model
   if (!dea_load_point_trusted(out) || out->voltage_V == 0) {
     return DEA_OK;
   }
-  weights = dea_alloc(ctx, COUNT * dofs, sizeof *weights);
-  if (dea_solid_any(weights == NULL)) {
-    dea_free(ctx, weights);
+  weights = dea_solid_alloc(ctx, COUNT * dofs, sizeof *weights);
+  if (weights == NULL) {
     return DEA_E_MEMORY;
   }
   for (int k = 0; k < COUNT; k++) {
@@ -369,16 +367,6 @@ static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
                                              model->at.ending.leapt);
   DEA_TRY(ctx, take_side(ctx, model));
   return DEA_OK;
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return dea_standing_limit(&model->at);
-}
-
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return dea_standing_passed(&model->at);
 }
 
 /* ---- slopes (docs/theory/gradients.md) ---- */
@@ -630,27 +618,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status advance(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_time_step *step, struct dea_load_point *out,
-                          double *error)
-{
-  DEA_TRY(ctx, dea_standing_advance(ctx, &model->at, step, out, error));
-  return DEA_OK;
-}
-
-static void accept(struct dea_model *model)
-{
-  dea_standing_accept(&model->at);
-}
-
 /* ---- equilibria ---- */
-
-static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                        struct dea_load_point *out)
-{
-  DEA_TRY(ctx, dea_standing_solve(ctx, &model->at, voltage_V, out));
-  return DEA_OK;
-}
 
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
@@ -763,19 +731,11 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
-                         double *stiffness_N_per_m4)
-{
-  DEA_TRY(ctx, dea_standing_soften(ctx, &model->at, count, stiffness_N_per_m4));
-  return DEA_OK;
-}
-
 static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
                        struct dea_load_point *out, bool *found)
 {
-  double *fold = dea_alloc(ctx, 3 * model->grid->node_count, sizeof *fold);
-  if (dea_solid_any(fold == NULL)) {
-    dea_free(ctx, fold);
+  double *fold = dea_solid_alloc(ctx, 3 * model->grid->node_count, sizeof *fold);
+  if (fold == NULL) {
     return DEA_E_MEMORY;
   }
   dea_buckling_branch_fold(model->solid, model->grid, &model->actuator.plate, way->side, fold);
@@ -784,16 +744,16 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
+static dea_status carry(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
+  DEA_TRY(ctx, dea_standing_carry(ctx, &model->at, &from->at, out, found));
   return DEA_OK;
 }
 
-static dea_status load(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_state *state)
+static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, dea_standing_load(ctx, &model->at, state));
+  DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
   return DEA_OK;
 }
 
@@ -831,22 +791,23 @@ const struct dea_model_type dea_solid_module = {
     .long_name = "3D solid",
     .create = create,
     .destroy = destroy,
-    .solve = solve,
+    .solve = dea_standing_solve,
     .gradient = gradient,
-    .limit = limit,
-    .passed = passed,
+    .limit = dea_standing_limit,
+    .passed = dea_standing_passed,
     .indent = indent,
     .long_path = long_path,
-    .soften = soften,
+    .soften = dea_standing_soften,
     .push = push,
+    .carry = carry,
     .modes = modes,
     .respond = respond,
     .profile = profile,
     .fields = fields,
     .save = save,
-    .load = load,
+    .load = dea_standing_load,
     .begin = begin,
-    .advance = advance,
-    .accept = accept,
+    .advance = dea_standing_advance,
+    .accept = dea_standing_accept,
     .size = size,
 };

@@ -62,10 +62,9 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
 {
   static const double little = 1e-9; // of the size of the mesh
   size_t dofs = 3 * m->grid->node_count;
-  double *u = dea_solid_displacement(m->solid), *keep = dea_alloc(ctx, dofs, sizeof *keep);
+  double *u = dea_solid_displacement(m->solid), *keep = dea_solid_alloc(ctx, dofs, sizeof *keep);
   double scale = little * largest(m->grid->X, dofs) / largest(v, dofs);
-  if (dea_solid_any(keep == NULL)) {
-    dea_free(ctx, keep);
+  if (keep == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(keep, u, dofs * sizeof *u);
@@ -123,10 +122,9 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
                              struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
   size_t dofs = 3 * m->grid->node_count;
-  double *memory = dea_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
+  double *memory = dea_solid_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
   *shapes = NULL;
-  if (dea_solid_any(memory == NULL)) {
-    dea_free(ctx, memory);
+  if (memory == NULL) {
     return DEA_E_MEMORY;
   }
   dea_status status = take_modes(ctx, m, ply, at, count, memory, points, shapes);
@@ -157,8 +155,8 @@ static dea_status take_whole(struct dea_context *ctx, const struct dea_motions *
                              size_t count)
 {
   size_t nodes = m->grid->node_count;
-  double *real = dea_alloc(ctx, 6 * nodes, sizeof *real), *imaginary = real + 3 * nodes;
-  dea_status status = dea_solid_any(real == NULL) ? DEA_E_MEMORY : DEA_OK;
+  double *real = dea_solid_alloc(ctx, 6 * nodes, sizeof *real), *imaginary = real + 3 * nodes;
+  dea_status status = real == NULL ? DEA_E_MEMORY : DEA_OK;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     for (size_t n = 0; n < nodes; n++) {
       dea_solid_response_at(response, n, rad_per_s[i], damping, real + 3 * n, imaginary + 3 * n);

@@ -419,10 +419,9 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
   static const double little = 1e-5; // of the size of the mesh
   const struct dea_grid *grid = o->mesh->grid;
   size_t count = 3 * grid->node_count;
-  double *u = dea_solid_displacement(solid), *keep = dea_alloc(ctx, count, sizeof *keep);
+  double *u = dea_solid_displacement(solid), *keep = dea_solid_alloc(ctx, count, sizeof *keep);
   double most = 0, size = 0;
-  if (dea_solid_any(keep == NULL)) {
-    dea_free(ctx, keep);
+  if (keep == NULL) {
     return DEA_E_MEMORY;
   }
   memcpy(keep, u, count * sizeof *keep);

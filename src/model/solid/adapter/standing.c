@@ -5,6 +5,7 @@
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
+#include "model/solid/mesh/transfer.h"
 
 #include <math.h>
 
@@ -32,9 +33,10 @@ void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing)
 
 // Equilibria -------------------------------------------------------------------------------------
 
-dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *standing,
-                              double voltage_V, struct dea_load_point *out)
+dea_status dea_standing_solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                              struct dea_load_point *out)
 {
+  struct dea_standing *standing = (struct dea_standing *)model;
   const struct dea_ending_owner *owner = &standing->ending.owner;
   dea_standing_end_history(ctx, standing);
   DEA_TRY(ctx,
@@ -43,14 +45,14 @@ dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *stan
   return DEA_OK;
 }
 
-const struct dea_event *dea_standing_limit(const struct dea_standing *standing)
+const struct dea_event *dea_standing_limit(const struct dea_model *model)
 {
-  return dea_ending_limit(&standing->ending);
+  return dea_ending_limit(&((const struct dea_standing *)model)->ending);
 }
 
-const struct dea_event *dea_standing_passed(const struct dea_standing *standing)
+const struct dea_event *dea_standing_passed(const struct dea_model *model)
 {
-  return dea_ending_passed(&standing->ending);
+  return dea_ending_passed(&((const struct dea_standing *)model)->ending);
 }
 
 // Path -------------------------------------------------------------------------------------------
@@ -160,9 +162,10 @@ dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *stand
 
 // Other states -----------------------------------------------------------------------------------
 
-dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *standing, size_t count,
+dea_status dea_standing_soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                                double *stiffness_N_per_m4)
 {
+  struct dea_standing *standing = (struct dea_standing *)model;
   struct dea_solid *solid = standing->ending.owner.solid;
   size_t moves = 3 * solid->problem.grid->node_count;
   dea_standing_end_history(ctx, standing);
@@ -170,9 +173,8 @@ dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *sta
   if (count == 0 || count > DEA_SOFT_MODES_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d soft modes can be asked for", DEA_SOFT_MODES_MAX);
   }
-  standing->soft = dea_alloc(ctx, count * moves, sizeof *standing->soft);
-  if (dea_solid_any(standing->soft == NULL)) {
-    dea_standing_free(ctx, standing);
+  standing->soft = dea_solid_alloc(ctx, count * moves, sizeof *standing->soft);
+  if (standing->soft == NULL) {
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, count, stiffness_N_per_m4,
@@ -233,9 +235,8 @@ dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *stand
     return dea_fail(ctx, DEA_E_ARGUMENT, "a push along mode %zu of %zu soft ones, in %d parts",
                     push->mode + 1, standing->soft_count, push->parts);
   }
-  double *way = dea_alloc(ctx, moves, sizeof *way);
-  if (dea_solid_any(way == NULL)) {
-    dea_free(ctx, way);
+  double *way = dea_solid_alloc(ctx, moves, sizeof *way);
+  if (way == NULL) {
     return DEA_E_MEMORY;
   }
   set_push(grid, push, folds ? NULL : standing->soft + push->mode * moves, fold, way);
@@ -243,6 +244,33 @@ dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *stand
   dea_free(ctx, way);
   DEA_TRY(ctx, status);
   return *found ? owner->point(ctx, owner->model, standing->voltage_V, out) : DEA_OK;
+}
+
+dea_status dea_standing_carry(struct dea_context *ctx, struct dea_standing *standing,
+                              const struct dea_standing *from, struct dea_load_point *out,
+                              bool *found)
+{
+  const struct dea_ending_owner *owner = &standing->ending.owner;
+  const struct dea_solid *other = from->ending.owner.solid;
+  const struct dea_grid *grid = owner->solid->problem.grid;
+  dea_standing_end_history(ctx, standing);
+  *found = false;
+  double *u = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *u);
+  if (u == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_grid_transfer(ctx, other->problem.grid, other->state.u, grid, u);
+  if (status == DEA_OK) {
+    status = dea_solid_push_to(ctx, owner->solid, from->voltage_V, u, &standing->report, found);
+  }
+  dea_free(ctx, u);
+  DEA_TRY(ctx, status);
+  if (*found) {
+    standing->voltage_V = from->voltage_V;
+    standing->left_a_state = false;
+    DEA_TRY(ctx, owner->point(ctx, owner->model, standing->voltage_V, out));
+  }
+  return DEA_OK;
 }
 
 // In time ----------------------------------------------------------------------------------------
@@ -280,10 +308,11 @@ dea_status dea_standing_begin(struct dea_context *ctx, struct dea_standing *stan
   return DEA_OK;
 }
 
-dea_status dea_standing_advance(struct dea_context *ctx, struct dea_standing *standing,
+dea_status dea_standing_advance(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_time_step *step, struct dea_load_point *out,
                                 double *error)
 {
+  struct dea_standing *standing = (struct dea_standing *)model;
   if (standing->driven == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
   }
@@ -295,9 +324,9 @@ dea_status dea_standing_advance(struct dea_context *ctx, struct dea_standing *st
   return DEA_OK;
 }
 
-void dea_standing_accept(struct dea_standing *standing)
+void dea_standing_accept(struct dea_model *model)
 {
-  dea_circuit_step_accept(standing->driven);
+  dea_circuit_step_accept(((struct dea_standing *)model)->driven);
 }
 
 // Saved states -----------------------------------------------------------------------------------
@@ -313,9 +342,10 @@ dea_status dea_standing_save(struct dea_context *ctx, const struct dea_standing 
   return DEA_OK;
 }
 
-dea_status dea_standing_load(struct dea_context *ctx, struct dea_standing *standing,
+dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_state *state)
 {
+  struct dea_standing *standing = (struct dea_standing *)model;
   const double *own = dea_state_find(state, own_name, NUMBERS);
   if (own == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");

@@ -1,5 +1,6 @@
 /* Where a model of a solid stands, whatever device the solid is of: its last equilibrium, and the
- * way to the next one. What model/model.h asks of all such models is done here. */
+ * way to the next one. What model/model.h asks of all such models is done here: their struct
+ * dea_model begins with a struct dea_standing, which the functions of a type see. */
 #ifndef DEA_MODEL_SOLID_ADAPTER_STANDING_H
 #define DEA_MODEL_SOLID_ADAPTER_STANDING_H
 
@@ -22,42 +23,48 @@ struct dea_standing {
 /* Ends a history in time and forgets soft modes. */
 void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing);
 
-/* `solve`, `limit` and `passed` of struct dea_model_type. */
-dea_status dea_standing_solve(struct dea_context *ctx, struct dea_standing *standing,
-                              double voltage_V, struct dea_load_point *out);
-const struct dea_event *dea_standing_limit(const struct dea_standing *standing);
-const struct dea_event *dea_standing_passed(const struct dea_standing *standing);
+// Of a model's type ------------------------------------------------------------------------------
 
-/* `long_path` of it, from where the solid is. */
+dea_status dea_standing_solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                              struct dea_load_point *out);
+const struct dea_event *dea_standing_limit(const struct dea_model *model);
+const struct dea_event *dea_standing_passed(const struct dea_model *model);
+dea_status dea_standing_soften(struct dea_context *ctx, struct dea_model *model, size_t count,
+                               double *stiffness_N_per_m4);
+dea_status dea_standing_advance(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_time_step *step, struct dea_load_point *out,
+                                double *error);
+void dea_standing_accept(struct dea_model *model);
+dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_state *state);
+
+// For functions of a model's type ----------------------------------------------------------------
+
+/* `long_path`, from where the solid is. */
 dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *standing,
                              const struct dea_path_options *options, dea_point_sink points,
                              dea_event_sink events, void *user);
 
-/* `soften` and `push` of it. fold: [node_count][3] what a push of that kind does; NULL: none is
- * known. */
-dea_status dea_standing_soften(struct dea_context *ctx, struct dea_standing *standing, size_t count,
-                               double *stiffness_N_per_m4);
+/* `push`. fold: [node_count][3] what a push of that kind does; NULL: none is known. */
 dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *standing,
                              const struct dea_push *push, const double *fold,
                              struct dea_load_point *out, bool *found);
 
-/* `begin`, `advance` and `accept`. driven: lent until the history ends; its solid is the owner's.
- */
+/* `carry`, from a model of the same device. */
+dea_status dea_standing_carry(struct dea_context *ctx, struct dea_standing *standing,
+                              const struct dea_standing *from, struct dea_load_point *out,
+                              bool *found);
+
+/* `begin`. driven: lent until the history ends; its solid is the owner's. */
 dea_status dea_standing_begin(struct dea_context *ctx, struct dea_standing *standing,
                               const struct dea_driven_solid *driven,
                               const struct dea_time_options *time, struct dea_load_point *out);
-dea_status dea_standing_advance(struct dea_context *ctx, struct dea_standing *standing,
-                                const struct dea_time_step *step, struct dea_load_point *out,
-                                double *error);
-void dea_standing_accept(struct dea_standing *standing);
 /* Equilibria are looked for from where a history in time has come to: before other ways than
  * dea_standing_solve. */
 void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing);
 
-/* Where the solid stands as a saved state, and back; as dea_solid_save and dea_solid_load. */
+/* `save`: where the solid stands as a saved state, as dea_solid_save. */
 dea_status dea_standing_save(struct dea_context *ctx, const struct dea_standing *standing,
                              struct dea_state *out);
-dea_status dea_standing_load(struct dea_context *ctx, struct dea_standing *standing,
-                             const struct dea_state *state);
 
 #endif

@@ -100,11 +100,40 @@ static dea_status refuse_coupled(struct dea_context *ctx, const struct dea_solid
                                              "one");
 }
 
-/* Adds those of this rank's elements; one of both is NULL. */
-static dea_status add_own(struct dea_solid *s, double *charge_C, double *capacitance_F)
+/* What is summed over elements; NULL: not that. */
+struct sums {
+  double *charge_C;      // [channels]
+  double *capacitance_F; // [channels][channels]
+  const double *per_s;   // [constituents] conductance over capacitance
+  double *conductance_S;
+};
+
+static void add_element(const struct dea_solid *s, size_t e, double C, const struct sums *sums)
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t count = p->channel_count + 1;
+  size_t top = (size_t)p->between[e][0], bottom = (size_t)p->between[e][1];
+  if (sums->charge_C != NULL) {
+    double charge = C * dea_solid_voltage_across(s, e, s->state.voltage_V);
+    sums->charge_C[top] += charge;
+    sums->charge_C[bottom] -= charge;
+  }
+  if (sums->capacitance_F != NULL) {
+    sums->capacitance_F[top * count + top] += C;
+    sums->capacitance_F[bottom * count + bottom] += C;
+    sums->capacitance_F[top * count + bottom] -= C;
+    sums->capacitance_F[bottom * count + top] -= C;
+  }
+  if (sums->conductance_S != NULL) {
+    double share = p->share[top] - p->share[bottom];
+    *sums->conductance_S += share * share * sums->per_s[p->constituent_of[e]] * C;
+  }
+}
+
+/* Adds those of this rank's elements. */
+static dea_status add_own(struct dea_solid *s, const struct sums *sums)
+{
+  const struct dea_solid_problem *p = &s->problem;
   for (size_t i = 0; i < p->own_count; i++) {
     size_t e = p->own[i];
     double C;
@@ -115,17 +144,7 @@ static dea_status add_own(struct dea_solid *s, double *charge_C, double *capacit
     if (status != DEA_OK) {
       return status;
     }
-    size_t top = (size_t)p->between[e][0], bottom = (size_t)p->between[e][1];
-    if (charge_C != NULL) {
-      double charge = C * dea_solid_voltage_across(s, e, s->state.voltage_V);
-      charge_C[top] += charge;
-      charge_C[bottom] -= charge;
-    } else {
-      capacitance_F[top * count + top] += C;
-      capacitance_F[bottom * count + bottom] += C;
-      capacitance_F[top * count + bottom] -= C;
-      capacitance_F[bottom * count + top] -= C;
-    }
+    add_element(s, e, C, sums);
   }
   return DEA_OK;
 }
@@ -135,27 +154,8 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, doubl
   size_t count = s->problem.channel_count + 1;
   memset(charge_C, 0, count * sizeof *charge_C);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, charge_C, NULL)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &(struct sums){.charge_C = charge_C})));
   dea_solid_sum(charge_C, count);
-  return DEA_OK;
-}
-
-static dea_status add_conductances(struct dea_solid *s, const double *per_s, double *conductance_S)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  for (size_t i = 0; i < p->own_count; i++) {
-    size_t e = p->own[i];
-    double C;
-    if (!p->active[e]) {
-      continue;
-    }
-    dea_status status = capacitance_of(s, e, &C);
-    if (status != DEA_OK) {
-      return status;
-    }
-    double share = p->share[p->between[e][0]] - p->share[p->between[e][1]];
-    *conductance_S += share * share * per_s[p->constituent_of[e]] * C;
-  }
   return DEA_OK;
 }
 
@@ -164,7 +164,8 @@ dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, c
 {
   *conductance_S = 0;
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_conductances(s, per_s, conductance_S)));
+  const struct sums sums = {.per_s = per_s, .conductance_S = conductance_S};
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
   dea_solid_sum(conductance_S, 1);
   return DEA_OK;
 }
@@ -244,13 +245,13 @@ dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *s, 
   size_t count = s->problem.channel_count + 1;
   memset(capacitance_F, 0, count * count * sizeof *capacitance_F);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, NULL, capacitance_F)));
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &(struct sums){.capacitance_F = capacitance_F})));
   dea_solid_sum(capacitance_F, count * count);
   if (held) {
     return DEA_OK;
   }
-  double *forces = dea_alloc(ctx, s->problem.channel_count * s->problem.dofs, sizeof *forces);
-  dea_status status = dea_solid_agree(ctx, forces != NULL ? DEA_OK : DEA_E_MEMORY);
+  double *forces = dea_solid_alloc(ctx, s->problem.channel_count * s->problem.dofs, sizeof *forces);
+  dea_status status = forces != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = add_motion(ctx, s, forces, capacitance_F);
   }

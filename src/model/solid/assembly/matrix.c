@@ -419,17 +419,84 @@ dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *
   return DEA_OK;
 }
 
+/* What is on followers of a body goes to the body. */
+static void collect(struct dea_solid *s, double *right)
+{
+  if (s->problem.body_count > 0) {
+    dea_solid_bodies_prepare(s);
+    dea_solid_bodies_collect(s, right);
+    dea_solid_release_held(s, right);
+  }
+}
+
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
   memmove(out, right, s->problem.dofs * sizeof(double));
-  if (s->problem.body_count > 0) {
-    dea_solid_bodies_prepare(s);
-    dea_solid_bodies_collect(s, out);
-    dea_solid_release_held(s, out);
-  }
+  collect(s, out);
   DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
   DEA_PETSC(ctx, MatSolve(s->work.factor, s->work.right, s->work.solution));
   DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
   return DEA_OK;
+}
+
+/* Columns of right into those of a dense matrix, or its columns into those of out. */
+static dea_status put_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                              double *right, Mat columns)
+{
+  for (size_t k = 0; k < count; k++) {
+    Vec column;
+    collect(s, right + k * s->problem.dofs);
+    DEA_PETSC(ctx, MatDenseGetColumnVecWrite(columns, (PetscInt)k, &column));
+    dea_status status = dea_solid_to_vector(ctx, s, right + k * s->problem.dofs, column);
+    DEA_PETSC(ctx, MatDenseRestoreColumnVecWrite(columns, (PetscInt)k, &column));
+    DEA_TRY(ctx, status);
+  }
+  return DEA_OK;
+}
+
+static dea_status take_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                               Mat columns, double *out)
+{
+  for (size_t k = 0; k < count; k++) {
+    Vec column;
+    DEA_PETSC(ctx, MatDenseGetColumnVecRead(columns, (PetscInt)k, &column));
+    dea_status status = dea_solid_from_vector(ctx, s, column, out + k * s->problem.dofs);
+    DEA_PETSC(ctx, MatDenseRestoreColumnVecRead(columns, (PetscInt)k, &column));
+    DEA_TRY(ctx, status);
+  }
+  return DEA_OK;
+}
+
+static dea_status solve_block(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                              double *right, double *out, Mat sides[2])
+{
+  PetscInt rows;
+  DEA_PETSC(ctx, VecGetSize(s->work.right, &rows));
+  for (int k = 0; k < 2; k++) {
+    DEA_PETSC(ctx, MatCreateSeqDense(PETSC_COMM_SELF, rows, (PetscInt)count, NULL, &sides[k]));
+  }
+  DEA_TRY(ctx, put_columns(ctx, s, count, right, sides[0]));
+  DEA_PETSC(ctx, MatMatSolve(s->work.factor, sides[0], sides[1]));
+  DEA_TRY(ctx, take_columns(ctx, s, count, sides[1], out));
+  return DEA_OK;
+}
+
+dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                                double *right, double *out)
+{
+  const size_t dofs = s->problem.dofs;
+  Mat sides[2] = {NULL, NULL};
+  PetscMPIInt ranks;
+  DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
+  if (count < 2 || ranks > 1) {
+    for (size_t k = 0; k < count; k++) {
+      DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, right + k * dofs, out + k * dofs));
+    }
+    return DEA_OK;
+  }
+  dea_status status = solve_block(ctx, s, count, right, out, sides);
+  MatDestroy(&sides[0]);
+  MatDestroy(&sides[1]);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

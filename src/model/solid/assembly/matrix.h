@@ -54,6 +54,10 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
  * of a body goes to the body, and they move with it. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
+/* The same of several, right and out [count][dofs], with the factor read once; right: free to be
+ * written over. */
+dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                                double *right, double *out);
 /* Unknowns of the whole [dofs] in global components into a vector of K's rows; they are in local
  * ones after that. */
 dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,

@@ -91,6 +91,16 @@ bool dea_solid_any(bool here)
   return flag != 0;
 }
 
+void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
+{
+  void *here = dea_alloc(ctx, count, size);
+  if (dea_solid_any(here == NULL)) {
+    dea_free(ctx, here);
+    return NULL;
+  }
+  return here;
+}
+
 dea_status dea_solid_heed_interruption(struct dea_context *ctx)
 {
   return dea_solid_any(dea_interrupted(ctx))

@@ -17,6 +17,8 @@ void dea_solid_stop(void);
 int dea_solid_rank(void);
 /* Whether it is so on any rank. */
 bool dea_solid_any(bool here);
+/* Zeroed memory as of dea_alloc on all ranks, or NULL on all of them. */
+void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size);
 /* The status and message of the first rank with a failure. ctx: NULL where no message is wanted. */
 dea_status dea_solid_agree(struct dea_context *ctx, dea_status status);
 /* values[count] become their sums over the ranks, the same bits on each. */

@@ -106,9 +106,8 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
                             const struct dea_solid_options *options, struct dea_solid **out)
 {
   *out = NULL;
-  struct dea_solid *s = dea_alloc(ctx, 1, sizeof *s);
-  if (dea_solid_any(s == NULL)) {
-    dea_free(ctx, s);
+  struct dea_solid *s = dea_solid_alloc(ctx, 1, sizeof *s);
+  if (s == NULL) {
     return DEA_E_MEMORY;
   }
   struct dea_solid_problem *p = &s->problem;

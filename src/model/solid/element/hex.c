@@ -775,16 +775,6 @@ dea_status dea_hex_check(const struct dea_constituent *constituent)
 const struct dea_element_type dea_element_hexahedron = {
     .name = "hexahedron",
     .per_node = 3,
-    .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON,
-    .basis_size = sizeof(struct dea_hex_shape),
-    .create = dea_hex_create,
-    .check = dea_hex_check,
     .evaluate = dea_hex_evaluate,
-    .predict = dea_hex_predict,
-    .constraint = dea_hex_constraint,
-    .mass = dea_hex_mass,
-    .metric = dea_hex_metric,
-    .strains = dea_hex_strains,
-    .membrane_state = dea_hex_membrane_state,
-    .recover = dea_hex_recover,
+    DEA_HEX_MEMBERS,
 };

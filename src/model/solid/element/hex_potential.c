@@ -220,17 +220,7 @@ static dea_status capacity(const struct dea_element *element, const struct dea_e
 const struct dea_element_type dea_element_potential_hexahedron = {
     .name = "hexahedron with a potential",
     .per_node = 4,
-    .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON,
-    .basis_size = sizeof(struct dea_hex_shape),
-    .create = dea_hex_create,
-    .check = dea_hex_check,
     .evaluate = evaluate,
-    .predict = dea_hex_predict,
-    .constraint = dea_hex_constraint,
-    .mass = dea_hex_mass,
-    .metric = dea_hex_metric,
-    .strains = dea_hex_strains,
-    .membrane_state = dea_hex_membrane_state,
-    .recover = dea_hex_recover,
+    DEA_HEX_MEMBERS,
     .capacity = capacity,
 };

@@ -18,7 +18,7 @@
  * and nu is found by conjugate gradients on b K^-1 b^T, which kappa makes nearly the unit matrix
  * over kappa: few steps, each a solution with the factor. */
 
-static const double settled = 1e-9; // change of nu that is left, of the largest nu
+static const double settled = 1e-7; // change of nu that is left, of the largest nu
 enum { STEPS = 40 };
 
 struct dea_adjoint {
@@ -28,11 +28,16 @@ struct dea_adjoint {
   double *b, *L;                 // of each own element, see dea_element_type.constraint
   double *lambda;                // [count][dofs]
   double *nu;                    // [count][pressures]
-  double *right, *way;           // [dofs] of an answer, way: K^-1 b^T towards
+  /* of each answer, [count] times; right and way of those that are not there yet, one by one */
+  double *right, *way;           // [dofs] of the slopes at first, way: K^-1 b^T towards
+  double *pull;                  // [pressures] Q_p
   double *left, *towards, *gain; // [pressures] of b lambda, direction of a step, b way
+  double *before, *largest;      // size of the last left, largest nu
+  size_t *open;                  // numbers of those that are not there yet
   double *theta;                 // [pressures] L^T theta of the last assembly
   double stiff;                  // kappa of the factor over that of the solid
   int solutions;
+  bool factorised;
 };
 
 static size_t most_of(const struct dea_adjoint *a)
@@ -70,15 +75,22 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   a->L = dea_arena_alloc(&a->memory, own * most * most, sizeof(double));
   a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
   a->nu = dea_arena_alloc(&a->memory, a->count * a->pressures, sizeof(double));
-  a->right = dea_arena_alloc(&a->memory, a->dofs, sizeof(double));
-  a->way = dea_arena_alloc(&a->memory, a->dofs, sizeof(double));
-  double **const pressures[] = {&a->left, &a->towards, &a->gain, &a->theta};
+  a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
+  a->way = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
+  double **const pressures[] = {&a->pull, &a->left, &a->towards, &a->gain};
   for (size_t i = 0; i < sizeof pressures / sizeof pressures[0]; i++) {
-    *pressures[i] = dea_arena_alloc(&a->memory, a->pressures, sizeof(double));
+    *pressures[i] = dea_arena_alloc(&a->memory, a->count * a->pressures, sizeof(double));
   }
+  a->theta = dea_arena_alloc(&a->memory, a->pressures, sizeof(double));
+  a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
+  a->largest = dea_arena_alloc(&a->memory, a->count, sizeof(double));
+  a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&a->memory)));
-  // the factor at hand may be of the state before; K at a finite kappa may have a negative pivot
-  DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
+  // of the state before the last step, which was a 1e-8 of the way, or of this one
+  a->factorised = !(s->found.factor_fits || s->found.stiff_factor_fits);
+  if (a->factorised) { // K at a finite kappa may have a negative pivot
+    DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
+  }
   a->stiff = s->found.factor_fits ? 1 : s->settings.bulk_stiff;
   DEA_TRY(ctx, find_constraints(ctx, a));
   return DEA_OK;
@@ -87,10 +99,9 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
                               struct dea_adjoint **out)
 {
-  struct dea_adjoint *a = dea_alloc(ctx, 1, sizeof *a);
+  struct dea_adjoint *a = dea_solid_alloc(ctx, 1, sizeof *a);
   *out = NULL;
-  if (dea_solid_any(a == NULL)) {
-    dea_free(ctx, a);
+  if (a == NULL) {
     return DEA_E_MEMORY;
   }
   *a = (struct dea_adjoint){.memory = {.ctx = ctx}, .s = solid, .count = count};
@@ -153,67 +164,50 @@ static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
   dea_solid_sum(out, a->pressures);
 }
 
-/* K^-1 right, without what is held. */
-static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, double *right, double *out)
-{
-  dea_solid_release_held(a->s, right);
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, a->s, right, out));
-  a->solutions++;
-  return DEA_OK;
-}
-
 static double kappa_of(const struct dea_adjoint *a, size_t pressure)
 {
   return a->stiff * dea_solid_bulk_modulus(a->s, pressure / most_of(a));
 }
 
-/* left . kappa left, what is left of the second equation; *change: the largest kappa left. */
-static double size_of(const struct dea_adjoint *a, double *change)
+/* out [count][dofs] = K^-1 right, without what is held. */
+static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, size_t count, double *out)
 {
+  for (size_t k = 0; k < count; k++) {
+    dea_solid_release_held(a->s, a->right + k * a->dofs);
+  }
+  DEA_TRY(ctx, dea_solid_solve_many(ctx, a->s, count, a->right, out));
+  a->solutions += (int)count;
+  return DEA_OK;
+}
+
+/* left . kappa left, what is left of the second equation of an answer; *change: the largest kappa
+ * left. */
+static double size_of(const struct dea_adjoint *a, size_t number, double *change)
+{
+  const double *left = a->left + number * a->pressures;
   double sum = 0;
   *change = 0;
   for (size_t i = 0; i < a->pressures; i++) {
-    double z = kappa_of(a, i) * a->left[i];
-    sum += a->left[i] * z;
+    double z = kappa_of(a, i) * left[i];
+    sum += left[i] * z;
     *change = fmax(*change, fabs(z));
   }
   return sum;
 }
 
-/* One step of conjugate gradients along `towards`; size: of left before. */
-static dea_status step(struct dea_context *ctx, struct dea_adjoint *a, double size, double *lambda,
-                       double *nu)
-{
-  double product = 0;
-  push(a, a->towards, a->right);
-  DEA_TRY(ctx, solve(ctx, a, a->right, a->way));
-  squeeze(a, a->way, a->gain);
-  for (size_t i = 0; i < a->pressures; i++) {
-    product += a->towards[i] * a->gain[i];
-  }
-  double length = product != 0 ? size / product : 0;
-  for (size_t i = 0; i < a->pressures; i++) {
-    nu[i] += length * a->towards[i];
-    a->left[i] -= length * a->gain[i];
-  }
-  for (size_t i = 0; i < a->dofs; i++) {
-    lambda[i] -= length * a->way[i];
-  }
-  return DEA_OK;
-}
-
 /* left -= L^-1 Q_p. */
-static void take_pressures(struct dea_adjoint *a, const double *pressure_slope)
+static void take_pressures(struct dea_adjoint *a, size_t number)
 {
   const struct dea_solid_problem *p = &a->s->problem;
+  const double *pull = a->pull + number * a->pressures;
   size_t most = most_of(a);
-  double *sum = a->gain;
+  double *sum = a->gain, *left = a->left + number * a->pressures;
   memset(sum, 0, a->pressures * sizeof *sum);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
     const double *L = a->L + k * most * most;
     for (size_t m = 0; m < count && L[0] > 0; m++) {
-      sum[e * most + m] = pressure_slope[e * most + m];
+      sum[e * most + m] = pull[e * most + m];
       for (size_t c = 0; c < m; c++) {
         sum[e * most + m] -= L[m * count + c] * sum[e * most + c];
       }
@@ -222,41 +216,110 @@ static void take_pressures(struct dea_adjoint *a, const double *pressure_slope)
   }
   dea_solid_sum(sum, a->pressures);
   for (size_t i = 0; i < a->pressures; i++) {
-    a->left[i] -= sum[i];
+    left[i] -= sum[i];
   }
 }
 
-dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, size_t number,
-                             const double *slope, const double *pressure_slope)
+/* The first lambda of all that is wanted, with what it leaves. */
+static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t count)
 {
-  double *lambda = a->lambda + number * a->dofs, *nu = a->nu + number * a->pressures;
-  double before = 0, change, largest = 0;
-  memset(nu, 0, a->pressures * sizeof *nu);
-  memset(a->towards, 0, a->pressures * sizeof *a->towards);
-  memcpy(a->right, slope, a->dofs * sizeof *slope);
-  DEA_TRY(ctx, solve(ctx, a, a->right, lambda));
-  squeeze(a, lambda, a->left);
-  take_pressures(a, pressure_slope);
-  for (int i = 0; i < STEPS; i++) {
-    double size = size_of(a, &change);
-    if (!(change > settled * largest)) {
-      squeeze(a, lambda, a->gain); // A takes its share of nu from K
-      for (size_t k = 0; k < a->pressures; k++) {
-        nu[k] += kappa_of(a, k) * a->gain[k];
-      }
-      return DEA_OK;
+  for (size_t k = 0; k < count; k++) {
+    memmove(a->right + k * a->dofs, dea_adjoint_slope(a, a->open[k]), a->dofs * sizeof(double));
+  }
+  DEA_TRY(ctx, solve(ctx, a, count, a->way));
+  for (size_t k = 0; k < count; k++) {
+    const size_t n = a->open[k];
+    memcpy(a->lambda + n * a->dofs, a->way + k * a->dofs, a->dofs * sizeof(double));
+    squeeze(a, a->lambda + n * a->dofs, a->left + n * a->pressures);
+    take_pressures(a, n);
+  }
+  return DEA_OK;
+}
+
+/* A takes its share of nu from K. */
+static void end(struct dea_adjoint *a, size_t number)
+{
+  double *nu = a->nu + number * a->pressures, *gain = a->gain;
+  squeeze(a, a->lambda + number * a->dofs, gain);
+  for (size_t i = 0; i < a->pressures; i++) {
+    nu[i] += kappa_of(a, i) * gain[i];
+  }
+}
+
+/* The next directions; returns how many answers are not there yet. */
+static size_t aim(struct dea_adjoint *a, size_t count)
+{
+  size_t open = 0;
+  for (size_t k = 0; k < count; k++) {
+    const size_t n = a->open[k];
+    double *towards = a->towards + n * a->pressures, change;
+    const double *left = a->left + n * a->pressures;
+    const double size = size_of(a, n, &change);
+    if (!(change > settled * a->largest[n])) {
+      end(a, n);
+      continue;
     }
-    for (size_t k = 0; k < a->pressures; k++) {
-      a->towards[k] =
-          kappa_of(a, k) * a->left[k] + (before != 0 ? size / before : 0) * a->towards[k];
+    for (size_t i = 0; i < a->pressures; i++) {
+      towards[i] =
+          kappa_of(a, i) * left[i] + (a->before[n] != 0 ? size / a->before[n] : 0) * towards[i];
     }
-    DEA_TRY(ctx, step(ctx, a, size, lambda, nu));
-    before = size;
-    for (size_t k = 0; k < a->pressures; k++) {
-      largest = fmax(largest, fabs(nu[k]));
+    a->before[n] = size;
+    push(a, towards, a->right + open * a->dofs);
+    a->open[open++] = n;
+  }
+  return open;
+}
+
+/* One step of conjugate gradients of an answer along its direction, of which way is K^-1 b^T. */
+static void step(struct dea_adjoint *a, size_t number, const double *way)
+{
+  double *towards = a->towards + number * a->pressures, *left = a->left + number * a->pressures,
+         *nu = a->nu + number * a->pressures, *lambda = a->lambda + number * a->dofs;
+  double product = 0;
+  squeeze(a, way, a->gain);
+  for (size_t i = 0; i < a->pressures; i++) {
+    product += towards[i] * a->gain[i];
+  }
+  const double length = product != 0 ? a->before[number] / product : 0;
+  for (size_t i = 0; i < a->pressures; i++) {
+    nu[i] += length * towards[i];
+    left[i] -= length * a->gain[i];
+    a->largest[number] = fmax(a->largest[number], fabs(nu[i]));
+  }
+  for (size_t i = 0; i < a->dofs; i++) {
+    lambda[i] -= length * way[i];
+  }
+}
+
+double *dea_adjoint_slope(struct dea_adjoint *a, size_t number)
+{
+  return a->right + number * a->dofs;
+}
+
+double *dea_adjoint_pressure_slope(struct dea_adjoint *a, size_t number)
+{
+  return a->pull + number * a->pressures;
+}
+
+dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, const bool *wanted)
+{
+  size_t open = 0;
+  for (size_t n = 0; n < a->count; n++) {
+    if (wanted[n]) {
+      a->open[open++] = n;
     }
   }
-  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
+  DEA_TRY(ctx, begin(ctx, a, open));
+  for (int i = 0; i < STEPS && open > 0; i++) {
+    open = aim(a, open);
+    DEA_TRY(ctx, solve(ctx, a, open, a->way));
+    for (size_t k = 0; k < open; k++) {
+      step(a, a->open[k], a->way + k * a->dofs);
+    }
+  }
+  return open == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
 }
 
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, double voltage_V,
@@ -297,4 +360,9 @@ double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
 int dea_adjoint_solutions(const struct dea_adjoint *a)
 {
   return a->solutions;
+}
+
+bool dea_adjoint_factorised(const struct dea_adjoint *a)
+{
+  return a->factorised;
 }

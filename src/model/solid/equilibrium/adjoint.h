@@ -12,24 +12,29 @@
 
 struct dea_adjoint;
 
-/* Room for `count` answers; factorises the tangent at the state, of which the solid then has the
- * factor. solid: lent, outlives the answers, and where it is when one is solved. out: owned by the
- * caller, NULL on failure. */
+/* Room for `count` answers. The factor is that of the solid's last equilibrium where there is one,
+ * else the tangent is factorised at its state. solid: lent, outlives the answers, and where it is
+ * when they are solved. out: owned by the caller, NULL on failure. */
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
                               struct dea_adjoint **out);
 void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *adjoint);
 
-/* The answer of that number to the slopes by u [dofs] and by the multipliers [elements][pressures].
- * DEA_E_NOT_CONVERGED where the constraints do not settle. */
-dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint, size_t number,
-                             const double *slope, const double *pressure_slope);
+/* Where slopes of a quantity go before dea_adjoint_solve, 0 at first: by u [dofs] and by the
+ * multipliers [elements][pressures]. */
+double *dea_adjoint_slope(struct dea_adjoint *adjoint, size_t number);
+double *dea_adjoint_pressure_slope(struct dea_adjoint *adjoint, size_t number);
+/* The answers to all of them, [count] wanted, each once. DEA_E_NOT_CONVERGED where the constraints
+ * do not settle. */
+dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint,
+                             const bool *wanted);
 /* Residuals and energy of the solid at its state, of another problem than the answers are of, for
  * dea_adjoint_product. */
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adjoint,
                                 double voltage_V, double *energy_J);
 /* lambda . R + mu . C of the last assembly. */
 double dea_adjoint_product(const struct dea_adjoint *adjoint, size_t number);
-/* Solutions with the factor that all answers took. */
+/* Solutions with the factor that all answers took, and whether it is a new one. */
 int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
+bool dea_adjoint_factorised(const struct dea_adjoint *adjoint);
 
 #endif

@@ -1,6 +1,7 @@
 /* What can be said of a solid before anything is solved: elements, laws, supports. */
 #include "model/solid/equilibrium/check.h"
 
+#include "base/rounded.h"
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/problem.h"
 
@@ -204,10 +205,10 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
     if (parent[n] == (int)n && !is_held(s, parent, (int)n)) {
       const double *X = p->grid->X + 3 * n;
       status = dea_fail(ctx, DEA_E_ARGUMENT,
-                        "the body at (%.4g, %.4g, %.4g) mm is not held: it can move or turn as a "
+                        "what lies at (%.4g, %.4g, %.4g) mm is not held: it can move or turn as a "
                         "whole, so there is no one equilibrium; hold more of its nodes, or give it "
                         "springs",
-                        1e3 * X[0], 1e3 * X[1], 1e3 * X[2]);
+                        dea_rounded(1e3 * X[0]), dea_rounded(1e3 * X[1]), dea_rounded(1e3 * X[2]));
     }
   }
   dea_free(ctx, parent);

@@ -504,9 +504,8 @@ dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_continuation **out)
 {
   *out = NULL;
-  struct dea_solid_continuation *t = dea_alloc(ctx, 1, sizeof *t);
-  if (dea_solid_any(t == NULL)) {
-    dea_free(ctx, t);
+  struct dea_solid_continuation *t = dea_solid_alloc(ctx, 1, sizeof *t);
+  if (t == NULL) {
     return DEA_E_MEMORY;
   }
   t->s = s;
@@ -535,8 +534,10 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
   }
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  DEA_TRY(ctx, dea_solid_agree(ctx, goal != NULL ? DEA_OK : DEA_E_MEMORY));
+  double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
+  if (goal == NULL) {
+    return DEA_E_MEMORY;
+  }
   dea_solid_controls_goal(s, voltage_V, goal);
   dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
   dea_free(ctx, goal);
@@ -573,8 +574,10 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   }
   size_t count = b->mode + 1, dofs = 3 * s->problem.grid->node_count;
   double values[DEA_MODES_MAX];
-  double *vectors = dea_alloc(ctx, count * dofs, sizeof *vectors);
-  DEA_TRY(ctx, dea_solid_agree(ctx, vectors != NULL ? DEA_OK : DEA_E_MEMORY));
+  double *vectors = dea_solid_alloc(ctx, count * dofs, sizeof *vectors);
+  if (vectors == NULL) {
+    return DEA_E_MEMORY;
+  }
   dea_status status = dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_VOLUME, count, values, vectors);
   *value = values[b->mode];
   memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);
@@ -685,8 +688,8 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   if (t->event == DEA_CONTINUATION_NOTHING) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
-  b.way = dea_alloc(ctx, t->s->work.load_steps.state_count, sizeof *b.way);
-  dea_status status = dea_solid_agree(ctx, b.way != NULL ? DEA_OK : DEA_E_MEMORY);
+  b.way = dea_solid_alloc(ctx, t->s->work.load_steps.state_count, sizeof *b.way);
+  dea_status status = b.way != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = locate_between(ctx, t, &b);
   }

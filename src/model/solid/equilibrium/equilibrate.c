@@ -6,18 +6,6 @@
 
 #include <math.h>
 
-/* Multipliers of loads from those of a minimum on, with its factor. *there: they have followed. */
-static dea_status follow_loads(struct dea_context *ctx, struct dea_solid *s,
-                               struct dea_solid_report *report, bool *there)
-{
-  DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
-  if (*there) {
-    report->load_error = dea_solid_update_loads(s);
-    *there = report->load_error <= 1;
-  }
-  return DEA_OK;
-}
-
 /* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
  * more minima at given multipliers may go on, but violate the constraints more and more. */
 dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
@@ -31,7 +19,7 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
     double error = fmax(report->theta_max / o->theta, report->load_error);
     bool there = report->theta_max < o->theta && report->load_error <= 1;
     if (!there && report->theta_max < o->theta) {
-      DEA_TRY(ctx, follow_loads(ctx, s, report, &there));
+      DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, &there));
     }
     if (there) {
       return DEA_OK;

@@ -430,7 +430,8 @@ static dea_status take_last_step(struct dea_context *ctx, struct follow *w)
   return status;
 }
 
-/* Unstable modes where the solid has come to; it goes back where there are some. */
+/* Unstable modes where the solid has come to, and the loads' multipliers for it; it goes back where
+ * there are some, or where these do not follow. */
 static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
 {
   struct dea_solid *s = w->s;
@@ -439,6 +440,10 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
     status = take_last_step(ctx, w);
   }
   *there = status == DEA_OK && w->report->unstable_modes == 0;
+  if (*there) {
+    w->report->load_error = dea_solid_update_loads(s);
+    *there = w->report->load_error <= 1 || !w->equilibrium;
+  }
   if (!*there) {
     dea_solid_state_set(s, w->keep);
     s->found.factor_fits = s->found.stiff_factor_fits = false;

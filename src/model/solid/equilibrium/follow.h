@@ -6,10 +6,11 @@
 #include "model/solid/assembly/problem.h"
 
 /* With the factor of the last equilibrium, which the solid is at, to that at the controls as they
- * are, and its unstable modes: where there is none *there is true, and the new factor is there for
- * the next step. Otherwise the solid is where it was: the way is too long, or the field is coupled.
- * on_the_way: near the equilibrium is enough, for one further on. Fails only where no shorter way
- * would help. */
+ * are, its unstable modes, and multipliers of loads: where there is no such mode and these follow
+ * *there is true, and the new factor is there for the next step. Otherwise the solid is where it
+ * was: the way is too long, or the field is coupled. on_the_way: near the equilibrium is enough,
+ * for one further on, and multipliers need not follow. Fails only where no shorter way would help.
+ */
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
                             struct dea_solid_report *report, bool *there);
 

@@ -24,8 +24,10 @@ static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid 
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t moves = 3 * p->grid->node_count;
-  double volume = 0, *mass = dea_alloc(ctx, p->dofs, sizeof *mass);
-  DEA_TRY(ctx, dea_solid_agree(ctx, mass != NULL ? DEA_OK : DEA_E_MEMORY));
+  double volume = 0, *mass = dea_solid_alloc(ctx, p->dofs, sizeof *mass);
+  if (mass == NULL) {
+    return DEA_E_MEMORY;
+  }
   dea_solid_lump_volume(s, mass);
   for (size_t i = 0; i < moves; i++) {
     volume += mass[i] / 3;
@@ -260,8 +262,10 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   struct dea_solid_report before = *report;
   *found = false;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  DEA_TRY(ctx, dea_solid_agree(ctx, state != NULL ? DEA_OK : DEA_E_MEMORY));
+  double *state = dea_solid_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
+  if (state == NULL) {
+    return DEA_E_MEMORY;
+  }
   dea_solid_state_get(s, state);
   dea_status status = solve_pushed(ctx, s, push_m, report);
   if (status == DEA_OK && report->unstable_modes > 0 && accept == NULL) {
@@ -279,6 +283,34 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
     status = DEA_OK;
   }
   dea_free(ctx, state);
+  return status;
+}
+
+dea_status dea_solid_push_to(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                             const double *displacement_m, struct dea_solid_report *report,
+                             bool *found)
+{
+  struct dea_load_steps *path = &s->work.load_steps;
+  size_t moves = 3 * s->problem.grid->node_count;
+  *found = false;
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  double *push = dea_alloc(ctx, moves, sizeof *push);
+  double *before = dea_alloc(ctx, path->control_count, sizeof *before);
+  dea_status status = dea_solid_agree(ctx, push != NULL && before != NULL ? DEA_OK : DEA_E_MEMORY);
+  if (status == DEA_OK) {
+    for (size_t i = 0; i < moves; i++) {
+      push[i] = displacement_m[i] - s->state.u[i];
+    }
+    dea_solid_controls_get(s, before);
+    dea_solid_controls_goal(s, voltage_V, path->controls_goal);
+    dea_solid_controls_set(s, path->controls_goal);
+    status = dea_solid_push(ctx, s, push, NULL, NULL, report, found);
+    if (!*found) {
+      dea_solid_controls_set(s, before);
+    }
+  }
+  dea_free(ctx, push);
+  dea_free(ctx, before);
   return status;
 }
 
@@ -328,28 +360,6 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
-/* dea_solid_follow, again and again with loads that have new multipliers, until these follow. On
- * the way to a point that is asked for they need not. */
-static dea_status follow_loads(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
-                               struct dea_solid_report *report, bool *there)
-{
-  *there = true;
-  for (int i = 0; i < s->settings.rounds && *there; i++) {
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, on_the_way, report, there));
-    if (*there) {
-      report->load_error = dea_solid_update_loads(s);
-      if (report->load_error <= 1 || on_the_way) {
-        return DEA_OK;
-      }
-    }
-    if (!*there && i > 0) { // the multipliers have moved: there is no way back from here
-      s->found.factor_fits = s->found.stiff_factor_fits = false;
-    }
-  }
-  *there = false;
-  return DEA_OK;
-}
-
 /* With the factors of points on the way, report->way, in steps that are halved where one is too
  * long. *there: at the last of them is an equilibrium. */
 static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
@@ -360,7 +370,7 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   while (report->way < 1 && part >= s->settings.follow_part) {
     double way = fmin(report->way + part, 1);
     set_share(s, way);
-    DEA_TRY(ctx, follow_loads(ctx, s, way < 1, report, there));
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, there));
     if (*there) {
       report->way = way;
     } else if (s->found.factor_fits || s->found.stiff_factor_fits) {
@@ -372,7 +382,7 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   set_share(s, report->way);
   *there = report->way == 0 || report->way >= 1;
   if (!*there) { // it is only near one
-    DEA_TRY(ctx, follow_loads(ctx, s, false, report, there));
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
   }
   return DEA_OK;
 }

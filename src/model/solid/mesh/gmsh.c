@@ -278,22 +278,27 @@ static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
 
 // The program -------------------------------------------------------------------------------------
 
+static const char *last_words(const char *said)
+{
+  return said[strspn(said, " \n")] != '\0' ? "it said last:\n" : "it said nothing";
+}
+
 static dea_status explain(struct dea_context *ctx, enum dea_program_end end, int number,
                           double limit_s, const char *said)
 {
-  const char *last = dea_last_lines(said, LINES_SAID);
+  const char *last = dea_last_lines(said, LINES_SAID), *words = last_words(last);
   switch (end) {
   case DEA_PROGRAM_DONE:
     return DEA_OK;
   case DEA_PROGRAM_FAILED:
-    return dea_fail(ctx, DEA_E_TOOL, "gmsh failed (exit code %d); it said last:\n%s", number, last);
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh failed (exit code %d); %s%s", number, words, last);
   case DEA_PROGRAM_CRASHED:
-    return dea_fail(ctx, DEA_E_TOOL, "gmsh crashed (signal %d); it said last:\n%s", number, last);
+    return dea_fail(ctx, DEA_E_TOOL, "gmsh crashed (signal %d); %s%s", number, words, last);
   case DEA_PROGRAM_TOO_LONG:
     return dea_fail(ctx, DEA_E_TOOL,
                     "gmsh took more than %g s of processor time (or ten times that by the clock) "
-                    "and was ended; it said last:\n%s",
-                    limit_s, last);
+                    "and was ended; %s%s",
+                    limit_s, words, last);
   default:
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while gmsh made a mesh");
   }
@@ -348,8 +353,9 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   char *text = NULL;
   size_t length;
   if (!dea_path_exists(mesh)) {
-    status = dea_fail(ctx, DEA_E_TOOL, "gmsh wrote no mesh; it said last:\n%s",
-                      dea_last_lines(said, LINES_SAID));
+    status =
+        dea_fail(ctx, DEA_E_TOOL, "gmsh wrote no mesh; %s%s",
+                 last_words(dea_last_lines(said, LINES_SAID)), dea_last_lines(said, LINES_SAID));
   } else {
     status = dea_file_read(ctx, mesh, DEA_MSH_FILE_MAX, &text, &length);
   }

@@ -156,9 +156,8 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   if (!(options->spectral_radius >= 0 && options->spectral_radius <= 1)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a spectral radius lies between 0 and 1");
   }
-  struct dea_solid_time *t = dea_alloc(ctx, 1, sizeof *t);
-  if (dea_solid_any(t == NULL)) {
-    dea_free(ctx, t);
+  struct dea_solid_time *t = dea_solid_alloc(ctx, 1, sizeof *t);
+  if (t == NULL) {
     return DEA_E_MEMORY;
   }
   t->memory.ctx = ctx;

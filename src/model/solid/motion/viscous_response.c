@@ -170,8 +170,8 @@ static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, doub
   PetscInt from, end, longest = 0;
   DEA_PETSC(ctx, MatGetOwnershipRange(y->part[0], &from, &end));
   size_t rows = (size_t)(end - from);
-  PetscInt *lengths = dea_alloc(ctx, 2 * rows + 1, sizeof *lengths);
-  dea_status status = dea_solid_any(lengths == NULL) ? DEA_E_MEMORY : DEA_OK;
+  PetscInt *lengths = dea_solid_alloc(ctx, 2 * rows + 1, sizeof *lengths);
+  dea_status status = lengths == NULL ? DEA_E_MEMORY : DEA_OK;
   if (status == DEA_OK) {
     status = dea_solid_petsc(ctx, count_rows(y, from, end, lengths, lengths + rows, &longest),
                              "MatGetRow");
@@ -182,8 +182,8 @@ static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, doub
   }
   dea_free(ctx, lengths);
   DEA_TRY(ctx, status);
-  *sum = dea_alloc(ctx, (size_t)longest + 1, sizeof **sum);
-  return dea_solid_any(*sum == NULL) ? DEA_E_MEMORY : DEA_OK;
+  *sum = dea_solid_alloc(ctx, (size_t)longest + 1, sizeof **sum);
+  return *sum == NULL ? DEA_E_MEMORY : DEA_OK;
 }
 
 static PetscErrorCode fill_matrix(const struct system *y, const double complex *factor,

@@ -1,0 +1,148 @@
+#include "calibrate/life_file.h"
+
+#define AT(member) offsetof(struct dea_life_file, member)
+#define OF(member) offsetof(struct dea_life_specimen, member)
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+const char *const dea_life_clock_names[] = {"cycles", "time", "under_voltage", "charge", NULL};
+const char *const dea_life_clock_units[] = {"cycles", "h", "h", "mC"};
+const double dea_life_clock_factors[] = {1, 1 / 3600.0, 1 / 3600.0, 1e3};
+
+static const struct dea_field specimen_fields[] = {
+    {.key = "name",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(name),
+     .required = true,
+     .doc = "name of the specimen",
+     .example = "F12"},
+    {.key = "reduced",
+     .kind = DEA_FIELD_LABEL,
+     .offset = OF(reduced),
+     .list_min = 1,
+     .list_max = DEA_LIFE_PARTS_MAX,
+     .element_size = sizeof(struct dea_label),
+     .count_offset = OF(reduced_count),
+     .lone = true,
+     .absent_text = "its life is given",
+     .doc = "folders that dea reduce wrote of its recordings, in time, counted from the folder of "
+            "this file",
+     .example = "[F12-week1.reduced, F12-week2.reduced]"},
+    {.key = "life",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = OF(life),
+     .unit = "1",
+     .above_min = true,
+     .max = 1e15,
+     .absent_text = "from its recordings",
+     .doc = "its life in the unit of the clock (cycles, h, h, mC), where it is known already",
+     .example = "120000"},
+    {.key = "failed",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = OF(failed),
+     .choices = dea_fit_no_yes,
+     .default_text = "no",
+     .doc = "of a given life whether it ended by a failure; of recordings whether the specimen "
+            "failed at their end where no criterion says so",
+     .example = "yes"},
+};
+static const struct dea_record specimen_record = {"specimen", "a specimen that was cycled",
+                                                  specimen_fields, COUNT(specimen_fields)};
+
+static const struct dea_field fields[] = {
+    DEA_FIT_HEAD_FIELDS("name of what is fitted", "batch-7", "none", "what was cycled",
+                        "discs of batch 7 at 3 kV, 10 Hz"),
+    {.key = "life",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(specimens),
+     .record = &specimen_record,
+     .required = true,
+     .list_min = 1,
+     .list_max = DEA_LIFE_SPECIMENS_MAX,
+     .element_size = sizeof(struct dea_life_specimen),
+     .count_offset = AT(specimen_count),
+     .doc = "the specimens, those that survived too",
+     .example = "[{name: F12, reduced: F12.reduced}, {name: F13, life: 120000, failed: yes}]"},
+    {.key = "clock",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(clock),
+     .choices = dea_life_clock_names,
+     .default_text = "cycles",
+     .doc = "what a life is counted in: cycles, time (h), time under voltage (h), charge brought "
+            "to the film (mC)",
+     .example = "under_voltage"},
+    {.key = "stroke_loss",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(stroke_loss),
+     .unit = "1",
+     .above_min = true,
+     .max = 1,
+     .absent_text = "no failure",
+     .doc = "share of its first stroke that a specimen may lose",
+     .example = "20 %"},
+    {.key = "largest_leakage",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(leakage_A),
+     .unit = "A",
+     .above_min = true,
+     .max = 1,
+     .absent_text = "no failure",
+     .doc = "current at the held voltage beyond which a specimen has failed",
+     .example = "2 uA"},
+    {.key = "at_breakdown",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(breakdown),
+     .choices = dea_fit_no_yes,
+     .default_text = "yes",
+     .doc = "whether a breakdown is a failure",
+     .example = "no"},
+    {.key = "reference_cycles",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(reference_cycles),
+     .unit = "1",
+     .min = 1,
+     .max = 1e6,
+     .default_text = "10",
+     .doc = "cycles whose mean is the first stroke",
+     .example = "100"},
+    {.key = "lasting",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(lasting),
+     .unit = "1",
+     .min = 1,
+     .max = 1e6,
+     .default_text = "3",
+     .doc = "cycles in a row that a lost stroke or a leakage has to last; the first of them is the "
+            "failure",
+     .example = "10"},
+};
+const struct dea_record dea_life_file_record = {"fit file", "life tests, for Weibull's law of them",
+                                                fields, COUNT(fields)};
+
+static dea_status check(struct dea_context *ctx, const void *file)
+{
+  const struct dea_life_file *fit = file;
+  for (size_t i = 0; i < fit->specimen_count; i++) {
+    const struct dea_life_specimen *own = &fit->specimens[i];
+    if ((own->reduced_count > 0) == (own->life.origin != DEA_ABSENT)) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, own->name.location,
+                                   "'%.60s' needs %s: its recordings, or its life", own->name.text,
+                                   own->reduced_count > 0 ? "one" : "something"));
+    }
+  }
+  return dea_fit_names_check(ctx, fit->specimens, fit->specimen_count, sizeof fit->specimens[0],
+                             "specimen");
+}
+
+dea_status dea_life_file_read(struct dea_context *ctx, const char *file, struct dea_life_file **out)
+{
+  void *fit;
+  dea_status status =
+      dea_fit_head_read(ctx, file, &dea_life_file_record, sizeof **out, check, &fit);
+  *out = fit;
+  return status;
+}
+
+void dea_life_file_destroy(struct dea_context *ctx, struct dea_life_file *fit)
+{
+  dea_fit_head_destroy(ctx, fit);
+}

@@ -1,0 +1,162 @@
+#include "explore/slopes.h"
+
+#include "result/columns.h"
+
+#include <math.h>
+
+static const double step = 1e-5; // of a number or of its range, to either side
+
+/* Devices with numbers a little to either side. */
+struct sides {
+  struct dea_design *design[2 * DEA_CASE_PARAMS_MAX];
+  struct dea_device *device[2 * DEA_CASE_PARAMS_MAX];
+  struct dea_design_change changes[DEA_CASE_PARAMS_MAX];
+  size_t variable[DEA_CASE_PARAMS_MAX]; // of each change
+  size_t count;                         // of changes
+};
+
+/* What an objective or a limit is of, at one stop. */
+static size_t wanted_columns(const struct dea_question *question, bool held, size_t *quantity,
+                             int *columns)
+{
+  size_t count = 0;
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    bool wanted = false;
+    for (size_t k = 0; k < question->file->objective_count; k++) {
+      wanted = wanted || question->objectives[k] == (int)i;
+    }
+    for (size_t l = 0; l < question->limit_count; l++) {
+      wanted = wanted || question->limits[l].column == (int)i;
+    }
+    if (wanted && dea_question_is_held(question, i) == held) {
+      quantity[count] = i;
+      columns[count++] = question->quantities[i];
+    }
+  }
+  return count;
+}
+
+/* The device with variable j moved by `by`. *device: NULL where it cannot be. */
+static dea_status build(struct dea_context *ctx, const struct dea_question *question, size_t j,
+                        double by, struct dea_design **design, struct dea_device **device)
+{
+  double p[DEA_CASE_PARAMS_MAX];
+  const struct dea_design_bytes file = {question->path, question->bytes, question->length};
+  for (size_t i = 0; i < question->variable_count; i++) {
+    p[i] = question->now->p[i];
+  }
+  p[j] += by;
+  const dea_status status = dea_device_params_build(ctx, &file, question->params,
+                                                    question->variable_count, p, design, device);
+  if (status == DEA_E_DESIGN) { // beyond what the key takes
+    dea_context_clear(ctx);
+    dea_device_destroy(ctx, *device);
+    *device = NULL;
+    return DEA_OK;
+  }
+  return status;
+}
+
+/* Adds the change of a variable: to both sides, or to the one where there is a device. */
+static dea_status add_change(struct dea_context *ctx, const struct dea_question *question, size_t j,
+                             const struct dea_device *device, double voltage_V, struct sides *sides)
+{
+  const struct dea_variable *variable = &question->variables[j];
+  const double size = fmax(fabs(question->now->p[j]), variable->high - variable->low);
+  struct dea_design_change *change = &sides->changes[sides->count];
+  *change = (struct dea_design_change){.voltage_V = {voltage_V, voltage_V}};
+  for (size_t k = 0; k < 2; k++) {
+    const size_t n = 2 * j + k;
+    DEA_TRY(ctx, build(ctx, question, j, (k == 0 ? -step : step) * size, &sides->design[n],
+                       &sides->device[n]));
+    change->device[k] = sides->device[n] != NULL ? sides->device[n] : device;
+    change->width += sides->device[n] != NULL ? step * size : 0;
+  }
+  if (change->width > 0) {
+    sides->variable[sides->count++] = j;
+  }
+  return DEA_OK;
+}
+
+static dea_status find(struct dea_context *ctx, const struct dea_question *question,
+                       struct dea_model *model, const struct sides *sides, bool held)
+{
+  size_t quantity[DEA_EXPLORE_QUANTITIES_MAX];
+  int columns[DEA_EXPLORE_QUANTITIES_MAX];
+  double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
+  const size_t count = wanted_columns(question, held, quantity, columns);
+  const struct dea_gradient_ask ask = {sides->changes, sides->count, columns, count};
+  if (count == 0) {
+    return DEA_OK;
+  }
+  const dea_status status = question->model.type->gradient(ctx, model, &ask, slopes);
+  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    return status;
+  }
+  if (status != DEA_OK) { // none at this design
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  const size_t n = question->variable_count;
+  for (size_t c = 0; c < sides->count; c++) {
+    for (size_t i = 0; i < count; i++) {
+      const size_t value = (question->voltage_count - 1) * question->quantity_count + quantity[i];
+      question->now->q[question->evaluator.value_count + value * n + sides->variable[c]] =
+          slopes[c * count + i];
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status take(void *user, struct dea_model *model, const struct dea_design *design,
+                       const struct dea_device *device, size_t stop)
+{
+  struct dea_question *question = user;
+  struct dea_context *ctx = question->model.ctx;
+  const size_t last = question->voltage_count - 1;
+  struct sides sides = {.count = 0};
+  dea_status status = DEA_OK;
+  (void)design;
+  if (stop != last && stop != question->voltage_count + last) {
+    return DEA_OK;
+  }
+  for (size_t j = 0; j < question->variable_count && status == DEA_OK; j++) {
+    if (question->variables[j].value_count == 0) {
+      status = add_change(ctx, question, j, device, question->voltages_V[last], &sides);
+    }
+  }
+  if (status == DEA_OK && sides.count > 0) {
+    status = find(ctx, question, model, &sides, stop != last);
+  }
+  for (size_t n = 0; n < 2 * question->variable_count; n++) {
+    dea_device_destroy(ctx, sides.device[n]);
+    dea_design_destroy(ctx, sides.design[n]);
+  }
+  return status;
+}
+
+static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case *io)
+{
+  struct dea_question *question = user;
+  question->now = io;
+  question->model.stood = take;
+  const dea_status status = question->evaluator.evaluate(question, ctx, io);
+  question->model.stood = NULL;
+  question->now = NULL;
+  return status;
+}
+
+struct dea_evaluator dea_question_with_slopes(const struct dea_question *question)
+{
+  struct dea_evaluator out = question->evaluator;
+  const int method = question->file->method.value;
+  out.gradients = question->model.type->gradient != NULL && !question->device->general &&
+                  (method == DEA_SLSQP || method == DEA_MMA) &&
+                  question->file->gradients.value == DEA_SLOPES_MODEL;
+  if (out.gradients && dea_evaluator_values(&out) <= DEA_CASE_VALUES_MAX) {
+    out.evaluate = evaluate;
+  } else {
+    out.gradients = false;
+  }
+  return out;
+}
