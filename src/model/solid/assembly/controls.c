@@ -147,6 +147,14 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls)
   }
 }
 
+/* How far the node of a component has moved: where its frame is turned, what the component is off
+ * by rounding is of that. */
+static double moved(const struct dea_solid *s, size_t component)
+{
+  const double *u = s->state.u + 3 * (component / 3);
+  return hypot(hypot(u[0], u[1]), u[2]);
+}
+
 bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
 {
   const struct dea_solid_problem *p = &s->problem;
@@ -155,10 +163,13 @@ bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
   memcpy(s->work.increment, s->state.u, p->dofs * sizeof(double));
   dea_solid_frame_vector(s, false, s->work.increment);
   for (size_t i = 0; i < p->dofs; i++) {
-    bool moves = i < move_count(s) && p->held[i] && p->held[i] != DEA_FOLLOWS;
-    double way = moves ? place[i] - s->work.increment[i] : 0;
-    s->work.increment[i] = moves && fabs(way) > rounding * fabs(place[i]) ? way : 0;
-    any = any || s->work.increment[i] != 0;
+    double way = 0;
+    if (i < move_count(s) && p->held[i] && p->held[i] != DEA_FOLLOWS) {
+      way = place[i] - s->work.increment[i];
+      way = fabs(way) > rounding * fmax(fabs(place[i]), moved(s, i)) ? way : 0;
+    }
+    s->work.increment[i] = way;
+    any = any || way != 0;
   }
   dea_solid_frame_vector(s, true, s->work.increment);
   dea_solid_bodies_prepare(s);
