@@ -44,12 +44,13 @@ struct supply {
   // set before the start
   double slew_V_per_s, delay_s;
   bool one_client; // others wait until it has gone
+  int serial;      // of what it says of itself
+  int port;        // 0: any
   // of the test
   pthread_t thread;
   pthread_mutex_t lock;
   atomic_bool ended;
   atomic_int fault;
-  int port;
   // of the thread, under the lock
   int listener, clients[SUPPLY_CLIENTS];
   char partial[SUPPLY_CLIENTS][SUPPLY_LINE];
@@ -103,7 +104,8 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   if (strcmp(line->text, "OUTP ON") == 0 || strcmp(line->text, "OUTP OFF") == 0) {
     s->on = line->text[6] == 'N';
   } else if (strcmp(line->text, "*IDN?") == 0) {
-    supply_answer(s, line->client, "ACME,Supply,1,1");
+    snprintf(text, sizeof text, "ACME,Supply,%d,1", s->serial);
+    supply_answer(s, line->client, text);
   } else if (strcmp(line->text, "*OPC?") == 0) {
     supply_answer(s, line->client, "1");
   } else if (strcmp(line->text, "OUTP?") == 0) {
@@ -229,20 +231,27 @@ static inline void *supply_run(void *user)
   return NULL;
 }
 
-/* s: zero but for what is set before the start. */
+/* s: zero but for what is set before the start, or one that was stopped, which has its voltage
+ * still. */
 static inline void supply_start(struct supply *s)
 {
-  struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+  int on = 1;
+  struct sockaddr_in address = {.sin_family = AF_INET,
+                                .sin_port = htons((uint16_t)s->port),
+                                .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   socklen_t size = sizeof address;
   s->slew_V_per_s = s->slew_V_per_s > 0 ? s->slew_V_per_s : 100e3;
   s->turned_s = dea_clock_s();
   s->fed_s = (double)NAN;
   s->noise = 1;
+  s->count = 0;
+  atomic_store(&s->ended, false);
   for (int i = 0; i < SUPPLY_CLIENTS; i++) {
     s->clients[i] = -1;
   }
   s->listener = socket(AF_INET, SOCK_STREAM, 0);
   assert_true(s->listener >= 0);
+  setsockopt(s->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   fcntl(s->listener, F_SETFL, O_NONBLOCK);
   fcntl(s->listener, F_SETFD, FD_CLOEXEC);
   assert_int_equal(bind(s->listener, (struct sockaddr *)&address, sizeof address), 0);

@@ -216,8 +216,8 @@ static void *make_runs(void *user)
 static bool is_wrong(const struct run *r)
 {
   bool at_zero = r->end_V <= zero_V && r->later_V <= zero_V;
-  if (r->code == 0 && !r->ended) {
-    return true; // it never ended
+  if ((r->code == 0 && !r->ended) || r->code == 98) {
+    return true; // it never ended, or never began: such a run shows nothing
   }
   if (r->said_zero && (!at_zero || !r->measures)) {
     return true;

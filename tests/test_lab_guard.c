@@ -188,12 +188,58 @@ static void test_watchdog_of_the_supply(void **state)
   supply_stop(&s);
 }
 
+/* Another supply in the place of the first, at its address; `there` keeps its voltage. */
+static void swap(struct supply *there, struct supply *next)
+{
+  supply_stop(there);
+  next->port = there->port;
+  supply_start(next);
+}
+
+static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
+
+/* The address is another supply's all at once, which is at 0 V: that says nothing of this one, not
+ * to the program, nor to `--zero`, nor to the guard of one that was killed. */
+static void test_neighbour(void **state)
+{
+  (void)state;
+  static struct supply s, neighbour;
+  for (int killed = 0; killed < 2; killed++) {
+    s = (struct supply){.serial = 1};
+    neighbour = (struct supply){.serial = 2};
+    supply_start(&s);
+    supply_protocol(&s, 20, SUPPLY_MEASURES);
+    static const char *const arm[] = {"drive", "p.yaml", "--arm", "--checked",
+                                      "-f",    "-o",     "n.h5",  NULL};
+    pid_t child = supply_begin(arm);
+    assert_true(supply_reaches(&s, 1000, 10));
+    assert_int_equal(killed ? kill(child, SIGSTOP) : 0, 0);
+    swap(&s, &neighbour);
+    assert_int_equal(killed ? kill(child, SIGKILL) : 0, 0);
+    int code = supply_wait(child, 20);
+    print_message("%s: exit code %d, %.0f V\n", killed ? "killed" : "left", code, s.volts);
+    assert_int_equal(code, killed ? -SIGKILL : 6);
+    assert_false(supply_said_zero());
+    code = supply_run_dea(zero, 20);
+    assert_true(code == 6 && !supply_said_zero() && s.volts > 500 && neighbour.commands > 0);
+    assert_contains(command_err, "which the one that is meant would not");
+    swap(&neighbour, &s); // and back
+    if (killed) {
+      assert_true(isfinite(comes_down(&s, 20))); // by the guard, which has gone on
+    }
+    code = supply_run_dea(zero, 20);
+    assert_true(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+    supply_stop(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_killed),           cmocka_unit_test(test_one_supply_one_program),
       cmocka_unit_test(test_interrupted),      cmocka_unit_test(test_stopped),
       cmocka_unit_test(test_stall_is_no_jump), cmocka_unit_test(test_watchdog_of_the_supply),
+      cmocka_unit_test(test_neighbour),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

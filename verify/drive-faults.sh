@@ -4,5 +4,5 @@
 # tests in build/. COUNT=100 makes fewer runs.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-[ -x "$root/build/tests/test_lab_faults" ] || exit 77
+[ -x "$root/build/tests/test_lab_faults" ] && [ -x "$root/build/src/dea" ] || exit 77
 exec python3 "$root/verify/drive_faults.py" "$root" "${COUNT:-1000}"

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 /* Besides slewing and charging: filters of amplifier and inputs. */
@@ -42,6 +43,7 @@ struct armed {
   const struct dea_protocol_instrument *section; // that plays; NULL: none
   struct dea_supply supply;
   struct dea_guard *guard;
+  char left[DEA_SUPPLY_LEFT_SIZE]; // what it leaves behind should it end now
 };
 
 /* Finds and locks the supply. */
@@ -64,7 +66,6 @@ static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol
 static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protocol,
                       const struct dea_drive_options *options, struct armed *armed)
 {
-  char text[DEA_SUPPLY_LEFT_SIZE];
   DEA_TRY(ctx, find_supply(ctx, protocol, options->state_folder, armed));
   if (armed->section == NULL) {
     return DEA_OK;
@@ -75,12 +76,27 @@ static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protoc
                     "%s; look at supply and specimen, then 'dea drive --zero %s', or --checked",
                     armed->supply.left, protocol->file);
   }
-  snprintf(text, sizeof text, "armed by process %ld with %.100s, which did not end", (long)getpid(),
-           dea_path_name(protocol->file));
-  DEA_TRY(ctx, dea_supply_leave(ctx, &armed->supply, text));
+  armed->supply.mark[0] = '\0'; // that of what was left before
+  snprintf(armed->left, sizeof armed->left, "armed by process %ld with %.100s, which did not end",
+           (long)getpid(), dea_path_name(protocol->file));
+  DEA_TRY(ctx, dea_supply_leave(ctx, &armed->supply, armed->left));
   return options->guard
              ? dea_guard_begin(ctx, protocol, armed->section, &armed->supply, &armed->guard)
              : DEA_OK;
+}
+
+/* Keeps what tells the supply from another one, now that it is open. */
+static dea_status know(struct dea_context *ctx, const struct opened *opened, struct armed *armed)
+{
+  for (size_t i = 0; armed->section != NULL && i < opened->count; i++) {
+    const struct dea_instrument *instrument = opened->instruments[i];
+    if ((instrument->roles & DEA_PLAYS_OUTPUT) != 0 && instrument->mark[0] != '\0') {
+      memcpy(armed->supply.mark, instrument->mark, sizeof armed->supply.mark);
+      dea_guard_know(armed->guard, instrument->mark);
+      return dea_supply_leave(ctx, &armed->supply, armed->left);
+    }
+  }
+  return DEA_OK;
 }
 
 static dea_status disarm(struct dea_context *ctx, struct armed *armed, struct dea_zero zero)
@@ -98,16 +114,17 @@ static dea_status disarm(struct dea_context *ctx, struct armed *armed, struct de
 
 static dea_status run(struct dea_context *ctx, const struct dea_protocol *protocol,
                       const struct dea_protocol_plan *plan, const struct dea_drive_options *options,
-                      struct dea_guard *guard, struct dea_drive_report *out)
+                      struct armed *armed, struct dea_drive_report *out)
 {
   struct opened opened = {.count = 0};
   dea_status status = open_all(ctx, protocol, options->simulate, &opened);
+  status = status == DEA_OK ? know(ctx, &opened, armed) : status;
   if (status == DEA_OK) {
     struct dea_drive_bench bench = {opened.instruments,
                                     opened.count,
                                     settle_s + (isfinite(plan->rise_s) ? 2 * plan->rise_s : 0),
                                     stall_s,
-                                    guard,
+                                    armed->guard,
                                     plan->capacitance_F};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
   } else {
@@ -135,7 +152,7 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
     dea_supply_close(&armed.supply);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  status = run(ctx, protocol, &plan, options, armed.guard, out);
+  status = run(ctx, protocol, &plan, options, &armed, out);
   dea_status disarmed = disarm(ctx, &armed, out->zero);
   status = status != DEA_OK ? status : disarmed;
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -153,7 +170,7 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
   }
   dea_status status =
       armed.section != NULL
-          ? dea_instrument_zero(ctx, armed.section, protocol, out)
+          ? dea_instrument_zero(ctx, armed.section, protocol, checked ? "" : armed.supply.mark, out)
           : dea_fail(ctx, DEA_E_INSTRUMENT, "%s names no instrument that plays", protocol->file);
   out->volts *= protocol->amplifier.gain.si;
   dea_zero_text(*out, known);

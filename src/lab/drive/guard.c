@@ -24,6 +24,8 @@ enum { poll_ms = 50 };
 struct signs {
   atomic_uint beats, limit_ms; // the second 0: none
   atomic_bool taken;           // the guard has begun to bring the output to 0 V
+  atomic_bool known;           // the mark is there
+  char mark[DEA_INSTRUMENT_MARK_SIZE];
 };
 
 struct dea_guard {
@@ -97,12 +99,15 @@ static void guard(const struct dea_protocol *protocol,
     return;
   }
   atomic_store(&signs->taken, true);
+  if (atomic_load(&signs->known)) {
+    memcpy(supply.mark, signs->mark, sizeof supply.mark);
+  }
   if (dea_context_create(NULL, &ctx) != DEA_OK) {
     return;
   }
   for (double until_s = dea_clock_s() + longest_s;
        zero.state == DEA_ZERO_UNKNOWN && dea_clock_s() < until_s;) {
-    if (dea_instrument_zero(ctx, section, protocol, &zero) != DEA_OK) {
+    if (dea_instrument_zero(ctx, section, protocol, supply.mark, &zero) != DEA_OK) {
       zero.state = DEA_ZERO_UNKNOWN;
     }
     zero.volts *= protocol->amplifier.gain.si;
@@ -152,6 +157,14 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
   }
   *out = made;
   return DEA_OK;
+}
+
+void dea_guard_know(struct dea_guard *guard, const char mark[DEA_INSTRUMENT_MARK_SIZE])
+{
+  if (guard != NULL) {
+    memcpy(guard->signs->mark, mark, DEA_INSTRUMENT_MARK_SIZE);
+    atomic_store(&guard->signs->known, true);
+  }
 }
 
 void dea_guard_limit(struct dea_guard *guard, double silence_s)

@@ -40,9 +40,13 @@ dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const ch
   if (file < 0) {
     return cannot(ctx, "open", out);
   }
-  ssize_t got = pread(file, out->left, sizeof out->left - 1, 0);
-  out->left[got > 0 ? got : 0] = '\0';
-  out->left[strcspn(out->left, "\n")] = '\0';
+  char text[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE];
+  ssize_t got = pread(file, text, sizeof text - 1, 0);
+  text[got > 0 ? got : 0] = '\0';
+  const char *second = text + strcspn(text, "\n");
+  snprintf(out->left, sizeof out->left, "%.*s", (int)(second - text), text);
+  second += *second != '\0';
+  snprintf(out->mark, sizeof out->mark, "%.*s", (int)strcspn(second, "\n"), second);
   if (flock(file, LOCK_EX | LOCK_NB) != 0) {
     close(file);
     return dea_fail(ctx, DEA_E_INTERLOCK, "another program drives this supply (%s): %s", address,
@@ -54,7 +58,7 @@ dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const ch
 
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text)
 {
-  char line[DEA_SUPPLY_LEFT_SIZE], stamp[32] = "";
+  char line[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE], stamp[32] = "";
   time_t now = time(NULL);
   struct tm utc;
   if (supply->file < 0) {
@@ -63,7 +67,8 @@ dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, 
   if (gmtime_r(&now, &utc) != NULL) {
     strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%SZ", &utc);
   }
-  int length = snprintf(line, sizeof line, "%.180s (%s)\n", text, stamp);
+  int length = snprintf(line, sizeof line, "%.180s (%s)\n%s%s", text, stamp, supply->mark,
+                        supply->mark[0] != '\0' ? "\n" : "");
   length = text[0] != '\0' ? length : 0;
   if (ftruncate(supply->file, 0) != 0 ||
       pwrite(supply->file, line, (size_t)length, 0) != (ssize_t)length ||

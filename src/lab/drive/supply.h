@@ -6,6 +6,7 @@
 #define DEA_LAB_DRIVE_SUPPLY_H
 
 #include "base/context.h"
+#include "lab/instrument/instrument.h"
 
 enum { DEA_SUPPLY_LEFT_SIZE = 256 };
 
@@ -13,6 +14,9 @@ struct dea_supply {
   int file; // -1: none is kept
   char path[512];
   char left[DEA_SUPPLY_LEFT_SIZE]; // what the last program left behind; "": nothing
+  /* Of the supply that it is about (struct dea_instrument); "": not known. Read with `left`, and
+   * written with what is left. */
+  char mark[DEA_INSTRUMENT_MARK_SIZE];
 };
 
 /* Opens the file of a supply, made with its folders where there is none, and locks it. folder: NULL
@@ -20,8 +24,8 @@ struct dea_supply {
  * it. */
 dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const char *address,
                            struct dea_supply *out);
-/* Puts down what is left behind should nothing follow, on the disk before it returns; "": nothing.
- */
+/* Puts down what is left behind should nothing follow, and the mark, on the disk before it returns;
+ * "": nothing. */
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text);
 /* Lets the next program have it. One that is closed is fine. */
 void dea_supply_close(struct dea_supply *supply);

@@ -36,6 +36,8 @@ struct dea_sink {
   dea_status (*reading)(void *user, size_t reading, double time_s, double value_SI);
 };
 
+enum { DEA_INSTRUMENT_MARK_SIZE = 128 };
+
 /* An opened one; a kind's own struct begins with it. */
 struct dea_instrument {
   const struct dea_instrument_type *type;
@@ -46,6 +48,8 @@ struct dea_instrument {
   const double *x_m;     // [profile_points], lent by the instrument
   bool patient;          // its clock stands still while nobody asks
   size_t lost;           // samples, frames or replies that did not arrive or made no sense
+  /* One line that tells the supply from another one that gets its address; "": nothing does. */
+  char mark[DEA_INSTRUMENT_MARK_SIZE];
 };
 
 struct dea_instrument_type {
@@ -86,9 +90,11 @@ struct dea_instrument_type {
   /* What it plays through, without the kind; NULL with `zero`. */
   void (*address)(const void *raw, char *out, size_t size);
   /* The same as stop for one that is not open, by a connection of its own over which nothing else
-   * is sent. NULL when it never plays. */
+   * is sent. mark: of the instrument while it was open; what has another one is told 0 V too, and
+   * not believed. "": whatever has its address and, where the section says one, its name. NULL when
+   * it never plays. */
   struct dea_zero (*zero)(struct dea_context *ctx, const void *raw,
-                          const struct dea_protocol *protocol);
+                          const struct dea_protocol *protocol, const char *mark);
   void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
 };
 
@@ -105,10 +111,12 @@ dea_status dea_instrument_open(struct dea_context *ctx,
 /* Stops it. What the context holds of a failure stays, and no interruption shortens it. */
 struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument);
 /* Brings the output of a section's instrument to 0 V, without opening the instrument otherwise.
+ * mark: as dea_instrument_type.zero. A warning says where another one answers at its address.
  * DEA_ZERO_NONE for one that plays nothing. */
 dea_status dea_instrument_zero(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
-                               const struct dea_protocol *protocol, struct dea_zero *out);
+                               const struct dea_protocol *protocol, const char *mark,
+                               struct dea_zero *out);
 /* Name of the supply or device that a section plays through, "scpi 192.168.1.20 5025"; "" for one
  * that plays nothing. */
 enum { DEA_INSTRUMENT_ADDRESS_SIZE = 200 };

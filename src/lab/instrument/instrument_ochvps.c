@@ -121,9 +121,9 @@ static dea_status open_it(struct dea_context *ctx, const void *raw,
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *raw,
-                            const struct dea_protocol *protocol)
+                            const struct dea_protocol *protocol, const char *mark)
 {
-  return dea_line_supply_zero(ctx, &language, raw, protocol);
+  return dea_line_supply_zero(ctx, &language, raw, protocol, mark);
 }
 
 const struct dea_instrument_type dea_instrument_ochvps = {

@@ -207,10 +207,11 @@ static dea_status identify(struct dea_context *ctx, struct dea_scpi *s)
   if (response == NULL) {
     return dea_scpi_no_response(ctx, s, "*IDN?", s->raw.timeout_s.si);
   }
-  if (strstr(response, wanted) == NULL) {
+  if (!dea_scpi_is_same(&s->raw, "", response)) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.120s', not a '%.60s'; look at its address",
                     s->name, response, wanted);
   }
+  snprintf(s->base.mark, sizeof s->base.mark, "%.*s", (int)sizeof s->base.mark - 1, response);
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0}, "%s is a '%.120s'", s->name,
                          response);
 }

@@ -53,6 +53,13 @@ static bool is_synced(const char *answer)
   return !is_error(answer) && !is_number(answer, &value);
 }
 
+/* Whether its name is what the section says. */
+static bool is_named(const void *data, const char *answer)
+{
+  const struct raw *raw = data;
+  return raw->name.origin == DEA_ABSENT || strstr(answer, raw->name.text) != NULL;
+}
+
 static const double marks = 397, marks_from_Hz = 2.25; // how many marks there are
 
 static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
@@ -61,7 +68,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
   const char *name = s->link.socket.name, *answer;
   char command[DEA_LINE_SUPPLY_COMMAND_SIZE];
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QName", &answer));
-  if (raw->name.origin != DEA_ABSENT && strstr(answer, raw->name.text) == NULL) {
+  if (!is_named(raw, answer)) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.60s', not a '%.60s'; look at its device",
                     name, answer, raw->name.text);
   }
@@ -75,7 +82,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
            marks_from_Hz + 0.25 * floor(fmod(1e3 * dea_clock_s(), marks)));
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, command, NULL));
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QF", &answer));
-  snprintf(s->mark, sizeof s->mark, "%.*s", (int)sizeof s->mark - 1, answer);
+  snprintf(s->base.mark, sizeof s->base.mark, "%.*s", (int)sizeof s->base.mark - 1, answer);
   DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "SSwSrc0", NULL));
   return dea_line_supply_ask(ctx, s, "SSwMode1", NULL);
 }
@@ -87,6 +94,7 @@ static const struct dea_line_supply_language language = {
     .is_set = is_set,
     .sync = "QName",
     .is_synced = is_synced,
+    .is_named = is_named,
     .measure = "QVnow",
     .voltage = is_number,
     .off = off,
@@ -102,9 +110,9 @@ static dea_status open_it(struct dea_context *ctx, const void *raw,
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *raw,
-                            const struct dea_protocol *protocol)
+                            const struct dea_protocol *protocol, const char *mark)
 {
-  return dea_line_supply_zero(ctx, &language, raw, protocol);
+  return dea_line_supply_zero(ctx, &language, raw, protocol, mark);
 }
 
 const struct dea_instrument_type dea_instrument_shvps = {

@@ -152,6 +152,9 @@ static dea_status set_up(struct dea_context *ctx, struct dea_line_supply *s)
                     s->link.socket.name, volts);
   }
   DEA_TRY(ctx, s->language->prepare(ctx, s));
+  if (s->language->mark == NULL) {
+    dea_serial_mark(&s->link.socket, s->base.mark, sizeof s->base.mark);
+  }
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                "%s gives up to %g V and plays by the computer's clock, at most "
                                "%.3g voltages a second",
@@ -345,10 +348,10 @@ static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const
     return no_sense(ctx, s, asked_command(s, command), answer);
   }
   s->asked = DEA_LINE_SUPPLY_NOTHING;
-  if (asked == DEA_LINE_SUPPLY_MARK && strcmp(answer, s->mark) != 0) {
+  if (asked == DEA_LINE_SUPPLY_MARK && strcmp(answer, s->base.mark) != 0) {
     return dea_fail(ctx, DEA_E_INSTRUMENT,
                     "%s answered '%.40s' to '%s' where it was set to '%s': it has begun anew",
-                    s->link.socket.name, answer, s->language->mark, s->mark);
+                    s->link.socket.name, answer, s->language->mark, s->base.mark);
   }
   return measured ? take_voltage(ctx, s, volts) : DEA_OK;
 }

@@ -49,18 +49,23 @@ struct dea_line_supply;
 
 /* Commands of a kind, without the line's end. */
 struct dea_line_supply_language {
-  const char *what;                                   // "the SHVPS", for messages
-  const char *set;                                    // before the whole volts: "SVset"
-  bool (*is_set)(const char *answer, long volts);     // whether it took that
-  const char *sync;                                   // asked before each voltage that matters
-  bool (*is_synced)(const char *answer);              // an answer to that, and to nothing else
+  const char *what;                               // "the SHVPS", for messages
+  const char *set;                                // before the whole volts: "SVset"
+  bool (*is_set)(const char *answer, long volts); // whether it took that
+  const char *sync;                               // asked before each voltage that matters
+  bool (*is_synced)(const char *answer);          // an answer to that, and to nothing else
+  /* Whether that answer is of the supply that the section names; raw: of the kind. NULL: it says
+   * nothing of that. */
+  bool (*is_named)(const void *raw, const char *answer);
   const char *measure;                                // "QVnow"
   bool (*voltage)(const char *answer, double *volts); // of an answer to that, [V] at its output
   const char *const *off;                             // what switches its output off, NULL at end
   bool (*is_error)(const char *answer);
   /* After its output was set to 0 V: finds its range (range_V), sets it up and switches it on. */
   dea_status (*prepare)(struct dea_context *ctx, struct dea_line_supply *s);
-  const char *mark; // question whose answer must stay what `prepare` left in s->mark; NULL: none
+  /* Question whose answer must stay what `prepare` left in base.mark. NULL: none, and the line
+   * itself, as the system knows it while it is plugged in, is its mark. */
+  const char *mark;
 };
 
 enum dea_line_supply_question {
@@ -78,8 +83,7 @@ struct dea_line_supply {
   const struct dea_protocol *protocol; // lent
   struct dea_line_link link;
   struct dea_timed_output output;
-  double range_V; // at its output
-  char mark[DEA_LINE_SUPPLY_COMMAND_SIZE];
+  double range_V;                            // at its output
   enum dea_line_supply_question asked, last; // what is waited for, and what was asked before
   double asked_s, start_s;
   long set_V; // that was sent last
@@ -111,7 +115,8 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
 void dea_line_supply_address(const void *raw, char *out, size_t size);
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const struct dea_line_supply_language *language,
-                                     const void *raw, const struct dea_protocol *protocol);
+                                     const void *raw, const struct dea_protocol *protocol,
+                                     const char *mark);
 void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instrument);
 
 /* The members of a kind's type that all of them share. */

@@ -4,8 +4,8 @@
  * without one where none comes; then its voltage is read back until it has been at 0 V for
  * `behind`. Nothing that it says is believed but behind a new answer to `sync`. Where that does not
  * come all begins anew on another connection, until the time is over. Where the line itself has
- * gone, what answers at its name may be another supply: only one with the mark of this one is
- * believed. */
+ * gone, or somebody else had opened it, what answers at its name may be another supply: it is told
+ * 0 V too, which hurts nobody, but only one with the mark of this one is believed. */
 #include "base/clock.h"
 #include "lab/instrument/line_supply.h"
 #include "lab/instrument/serial.h"
@@ -22,10 +22,12 @@ struct zeroing {
   struct dea_line_link *link;
   const struct dea_line_supply_language *language;
   const struct dea_line_supply_raw *raw;
+  const void *named; // of the kind, with the name that it must have; NULL: not looked at
   const struct dea_protocol *protocol;
   double until_s;
-  bool lost;        // the line went while it was used: another supply may have its name now
-  const char *mark; // what the supply answers that was used; "": nothing that tells it from others
+  bool doubted;     // another supply may have the line's name
+  bool told;        // that another one may be there
+  const char *mark; // of the supply that was used; "": nothing tells it from others
 };
 
 static double wait_until(const struct zeroing *z)
@@ -55,8 +57,20 @@ static bool command_zero(struct dea_context *ctx, const struct zeroing *z)
   return sent;
 }
 
+/* Says once that another supply may be there. */
+static void tell(struct dea_context *ctx, struct zeroing *z, const char *answer)
+{
+  if (!z->told) {
+    (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                          "%s answers '%.60s', which the supply that is meant would not: it may be "
+                          "another one; it was told 0 V too, and is not believed",
+                          z->link->socket.name, answer);
+  }
+  z->told = true;
+}
+
 /* Its voltage now. False: it does not answer, or nothing that can be believed. */
-static bool read_voltage(struct dea_context *ctx, const struct zeroing *z, double *volts)
+static bool read_voltage(struct dea_context *ctx, struct zeroing *z, double *volts)
 {
   const char *answer;
   double until_s = wait_until(z);
@@ -68,13 +82,18 @@ static bool read_voltage(struct dea_context *ctx, const struct zeroing *z, doubl
       return false;
     }
   } while (!z->language->is_synced(answer));
+  if (z->named != NULL && z->language->is_named != NULL &&
+      !z->language->is_named(z->named, answer)) {
+    tell(ctx, z, answer);
+    return false;
+  }
   return dea_line_supply_send(ctx, z->link, poll_s, z->language->measure) == DEA_OK &&
          dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) == DEA_OK && answer != NULL &&
          !z->language->is_error(answer) && z->language->voltage(answer, volts);
 }
 
 /* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
-static bool read_back(struct dea_context *ctx, const struct zeroing *z, struct dea_zero *zero)
+static bool read_back(struct dea_context *ctx, struct zeroing *z, struct dea_zero *zero)
 {
   double since_s = NAN;
   while (dea_clock_s() < z->until_s) {
@@ -97,13 +116,25 @@ static bool read_back(struct dea_context *ctx, const struct zeroing *z, struct d
 }
 
 /* Whether it is the supply that was used. Of one whose line has never gone that is so. */
-static bool is_same(struct dea_context *ctx, const struct zeroing *z)
+static bool is_same(struct dea_context *ctx, struct zeroing *z)
 {
-  const char *answer;
-  return !z->lost || (z->language->mark != NULL && z->mark[0] != '\0' &&
-                      dea_line_supply_send(ctx, z->link, poll_s, z->language->mark) == DEA_OK &&
-                      dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) == DEA_OK &&
-                      answer != NULL && strcmp(answer, z->mark) == 0);
+  char line[DEA_INSTRUMENT_MARK_SIZE];
+  const char *answer = line;
+  if (!z->doubted || z->mark[0] == '\0') {
+    return !z->doubted;
+  }
+  if (z->language->mark == NULL) {
+    dea_serial_mark(&z->link->socket, line, sizeof line);
+  } else if (dea_line_supply_send(ctx, z->link, poll_s, z->language->mark) != DEA_OK ||
+             dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) != DEA_OK ||
+             answer == NULL) {
+    return false;
+  }
+  bool same = strcmp(answer, z->mark) == 0;
+  if (!same) {
+    tell(ctx, z, answer);
+  }
+  return same;
 }
 
 /* On connections of its own, until one has said something or the time is over. */
@@ -135,7 +166,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
                       .raw = &s->raw,
                       .protocol = s->protocol,
                       .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
-                      .mark = s->mark};
+                      .mark = s->base.mark};
   bool told = false;
   if (s->link.socket.descriptor >= 0) {
     const char *answer;
@@ -143,7 +174,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
       dea_line_supply_wait(ctx, z.link, wait_until(&z), &answer);
     }
     told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
-    z.lost = dea_socket_is_lost(&s->link.socket);
+    z.doubted = dea_socket_is_lost(&s->link.socket);
     dea_socket_close(&s->link.socket);
   }
   zero = told ? zero : zero_anew(ctx, &z);
@@ -153,11 +184,15 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
 
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const struct dea_line_supply_language *language,
-                                     const void *data, const struct dea_protocol *protocol)
+                                     const void *data, const struct dea_protocol *protocol,
+                                     const char *mark)
 {
   struct zeroing z = {.language = language,
                       .raw = data,
+                      .named = data,
                       .protocol = protocol,
-                      .until_s = dea_clock_s() + protocol->safety.zero_time_s.si};
+                      .until_s = dea_clock_s() + protocol->safety.zero_time_s.si,
+                      .doubted = mark[0] != '\0',
+                      .mark = mark};
   return zero_anew(ctx, &z);
 }

@@ -61,6 +61,9 @@ dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_line_link *li
                          double timeout_s, const char *command);
 /* Sends what goes without waiting. */
 void dea_scpi_send_if_possible(const struct dea_line_link *link, const char *command);
+/* Whether a response to *IDN? is of the instrument that is meant: has `identity` in it, and is
+ * mark, where that is not "". */
+bool dea_scpi_is_same(const struct dea_scpi_raw *raw, const char *mark, const char *response);
 /* Sends a question and waits for its response. */
 dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                         const char *question, const char **out);
@@ -90,6 +93,6 @@ dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
 /* Of the instrument's type. */
 struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument);
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *raw,
-                              const struct dea_protocol *protocol);
+                              const struct dea_protocol *protocol, const char *mark);
 
 #endif

@@ -35,6 +35,12 @@ dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, dou
   return dea_line_wait(ctx, link, timeout_s, out);
 }
 
+bool dea_scpi_is_same(const struct dea_scpi_raw *raw, const char *mark, const char *response)
+{
+  return strstr(response, raw->identity.text) != NULL &&
+         (mark[0] == '\0' || strncmp(response, mark, DEA_INSTRUMENT_MARK_SIZE - 1) == 0);
+}
+
 dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,
                                 const char *question, double timeout_s)
 {

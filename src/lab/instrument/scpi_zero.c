@@ -3,13 +3,23 @@
  * Its output is switched off, then set to 0 V, then synchronised, and its voltage is read back
  * until it has been at 0 V for `behind`: what a supply may still have had to do is done then. An
  * answer that does not come or makes no sense leaves it open to which question the next one
- * belongs: nothing more is believed of that connection, and all begins anew on another one. */
+ * belongs: nothing more is believed of that connection, and all begins anew on another one. There
+ * another instrument may have the address: it is told 0 V too, which hurts nobody, but only what
+ * says of itself (*IDN?) what the one said that was used is believed. */
 #include "lab/instrument/scpi.h"
 
 #include "base/clock.h"
 
 #include <math.h>
 #include <string.h>
+
+/* What is meant. */
+struct meant {
+  const struct dea_scpi_raw *raw;
+  const struct dea_protocol *protocol;
+  const char *mark; // what it said of itself; "": it was not asked
+  bool told;        // that another one may be there
+};
 
 static const double poll_s = 0.05, again_s = 0.1;
 /* Of the time left: how long an answer is waited for, so that there is time for another try. */
@@ -84,36 +94,56 @@ static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
   }
 }
 
-/* After command_zero: what is known. False: this connection is good for nothing. */
-static bool find_out(struct dea_context *ctx, struct dea_line_link *link,
-                     const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
-                     double until_s, struct dea_zero *zero)
+/* Whether it is the instrument that was used, or the section's. False also without an answer. */
+static bool is_same(struct dea_context *ctx, struct dea_line_link *link, struct meant *m,
+                    double timeout_s)
 {
   const char *answer;
-  double left_s = until_s - dea_clock_s();
-  if (!(left_s > 0) ||
-      dea_scpi_ask(ctx, link, share * left_s, raw->confirm.text, &answer) != DEA_OK ||
-      answer == NULL || !dea_scpi_confirms(raw, answer)) {
+  if (dea_scpi_ask(ctx, link, timeout_s, "*IDN?", &answer) != DEA_OK || answer == NULL) {
+    return false;
+  }
+  bool same = dea_scpi_is_same(m->raw, m->mark, answer);
+  if (!same && !m->told) {
+    m->told = true;
+    (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                          "%s says that it is '%.100s', which the one that is meant would not: it "
+                          "may be another one; it was told 0 V too, and is not believed",
+                          link->socket.name, answer);
+  }
+  return same;
+}
+
+/* After command_zero: what is known. anew: another instrument may be there. False: this connection
+ * is good for nothing. */
+static bool find_out(struct dea_context *ctx, struct dea_line_link *link, struct meant *m,
+                     bool anew, double until_s, struct dea_zero *zero)
+{
+  const struct dea_scpi_raw *raw = m->raw;
+  const char *answer;
+  double wait_s = share * (until_s - dea_clock_s());
+  if (!(wait_s > 0) || dea_scpi_ask(ctx, link, wait_s, raw->confirm.text, &answer) != DEA_OK ||
+      answer == NULL || !dea_scpi_confirms(raw, answer) ||
+      (anew && !is_same(ctx, link, m, share * (until_s - dea_clock_s())))) {
     return false;
   }
   if (raw->measure.origin == DEA_ABSENT) {
     zero->state = DEA_ZERO_COMMANDED;
     return true;
   }
-  return read_back(ctx, link, raw, protocol, until_s, zero);
+  return read_back(ctx, link, raw, m->protocol, until_s, zero);
 }
 
 /* On connections of its own, until one has said something or the time is over. */
-static struct dea_zero zero_anew(struct dea_context *ctx, const struct dea_scpi_raw *raw,
-                                 const struct dea_protocol *protocol, double until_s)
+static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, double until_s)
 {
+  const struct dea_scpi_raw *raw = m->raw;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
   bool told = false;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
     struct dea_line_link link;
     if (dea_scpi_connect(ctx, raw, left_s, &link) == DEA_OK) {
       command_zero(&link, raw);
-      told = find_out(ctx, &link, raw, protocol, until_s, &zero);
+      told = find_out(ctx, &link, m, true, until_s, &zero);
       command_end(&link, raw, zero.state != DEA_ZERO_UNKNOWN);
       dea_socket_close(&link.socket);
     }
@@ -130,6 +160,7 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
   double now_s = dea_clock_s(), until_s = now_s + s->protocol->safety.zero_time_s.si;
+  struct meant m = {&s->raw, s->protocol, s->base.mark, false};
   bool told = false;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0) {
     command_end(&s->link, &s->raw, true);
@@ -144,22 +175,23 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
       failed = dea_line_wait(ctx, &s->link, share * (until_s - now_s), &answer) != DEA_OK ||
                answer == NULL;
     }
-    told = !failed && find_out(ctx, &s->link, &s->raw, s->protocol, until_s, &zero);
+    told = !failed && find_out(ctx, &s->link, &m, false, until_s, &zero);
     command_end(&s->link, &s->raw, zero.state != DEA_ZERO_UNKNOWN);
   }
   if (!told) {
     dea_socket_close(&s->link.socket); // some supplies have one connection only
-    zero = zero_anew(ctx, &s->raw, s->protocol, until_s);
+    zero = zero_anew(ctx, &m, until_s);
   }
   zero.state = dea_timed_contradicted(&s->output) ? DEA_ZERO_UNKNOWN : zero.state;
   return zero;
 }
 
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
-                              const struct dea_protocol *protocol)
+                              const struct dea_protocol *protocol, const char *mark)
 {
   const struct dea_scpi_raw *raw = data;
+  struct meant m = {raw, protocol, mark, false};
   return raw->output.origin == DEA_ABSENT
              ? (struct dea_zero){DEA_ZERO_NONE, NAN}
-             : zero_anew(ctx, raw, protocol, dea_clock_s() + protocol->safety.zero_time_s.si);
+             : zero_anew(ctx, &m, dea_clock_s() + protocol->safety.zero_time_s.si);
 }

@@ -3,8 +3,10 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -63,4 +65,14 @@ dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char
                   error == ENOTTY ? "it is no serial line" : strerror(error),
                   error == EACCES ? "be a member of the group that owns it (dialout)"
                                   : "look at its cable and at the device's name in /dev");
+}
+
+void dea_serial_mark(const struct dea_socket *line, char *out, size_t size)
+{
+  struct stat s;
+  out[0] = '\0';
+  if (line->descriptor >= 0 && fstat(line->descriptor, &s) == 0) {
+    snprintf(out, size, "line %ju %ju %ju %jd.%09ld", (uintmax_t)s.st_dev, (uintmax_t)s.st_ino,
+             (uintmax_t)s.st_rdev, (intmax_t)s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
+  }
 }

@@ -13,5 +13,8 @@ extern const char *const dea_serial_parities[];
  * closed on failure. DEA_E_INSTRUMENT with what to look at. */
 dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char *device, int baud,
                            int parity, struct dea_socket *out);
+/* What tells the line, from when it was plugged in until it is pulled out, from what gets its name
+ * later; "": it is closed. */
+void dea_serial_mark(const struct dea_socket *line, char *out, size_t size);
 
 #endif
