@@ -261,6 +261,41 @@ static void test_figures_of_little(void **state)
   dea_result_destroy(ctx, result);
 }
 
+/* What stays flat shows how far it moves in its plane. */
+static void test_figures_in_the_plane(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"map", "surface"};
+  const struct dea_figure_options options = {
+      .names = names, .name_count = 2, .format = {.svg = true, .width_m = 0.085}, .voltage_V = NAN};
+  struct dea_result *result;
+  design = fake_design();
+  assert_int_equal(dea_result_create(ctx, &design, NULL, &result), DEA_OK);
+  struct dea_field_mesh *mesh = fake_surface(ctx, 0);
+  const struct dea_mesh_field *moved = dea_field_mesh_find(mesh, "displacement_m");
+  double most_um = 0;
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    moved->values[3 * i] = 2e-3 * mesh->X[3 * i];
+    moved->values[3 * i + 1] = moved->values[3 * i + 2] = 0;
+    most_um = fmax(most_um, 1e6 * fabs(moved->values[3 * i]));
+  }
+  assert_int_equal(dea_result_add_surface(ctx, result, "fake", 1, 0, mesh), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("plane"), &options), DEA_OK);
+  for (size_t k = 0; k < 2; k++) {
+    char name[64], text[8192];
+    snprintf(name, sizeof name, "plane/%s.gp", names[k]);
+    FILE *script = fopen(in_folder(name), "rb");
+    assert_non_null(script);
+    text[fread(text, 1, sizeof text - 1, script)] = '\0';
+    fclose(script);
+    const char *range = strstr(text, "set cbrange [0:");
+    assert_non_null(range);
+    assert_close(strtod(range + strlen("set cbrange [0:"), NULL), most_um, 1e-5, 0);
+    assert_non_null(strstr(text, "Displacement in the plane"));
+  }
+  dea_result_destroy(ctx, result);
+}
+
 static void store_and_read(struct dea_context *failing)
 {
   struct dea_result *result = NULL;
@@ -309,6 +344,7 @@ int main(void)
       cmocka_unit_test(test_store),
       cmocka_unit_test(test_figures),
       cmocka_unit_test(test_figures_of_little),
+      cmocka_unit_test(test_figures_in_the_plane),
       cmocka_unit_test(test_each_allocation),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

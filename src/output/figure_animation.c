@@ -22,10 +22,10 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   double height_px = 0.78 * WIDTH_PX * dea_view3d_shape(space) + 2 * LABEL_PX;
   dea_view3d_add_margins(gp, LABEL_PX / height_px);
   dea_text_add(gp,
-               "set cblabel \"Displacement z (\302\265m)\" offset 1.5,0\n"
+               "set cblabel \"%s\" offset 1.5,0\n"
                "set label 2 \"%s, z \303\227 %g\" at screen 0.03, "
                "screen 0.06 front\n",
-               dea_view3d_size_words(space, size), space->times);
+               dea_view3d_colour_words(space), dea_view3d_size_words(space, size), space->times);
   dea_text_add(gp, "array words = [");
   for (size_t i = 0; i < space->count; i++) {
     dea_text_add(gp, "%s\"%s\"", i > 0 ? ", " : "", space->pictures[i].words);

@@ -1,11 +1,13 @@
-/* Displacement out of the plane over the whole disc, as colours. */
+/* Displacement of the whole film, as colours. */
 #include "output/view3d.h"
 #include "plot/script.h"
 
 enum { PIECES = 3000 };
 
 static const char name[] = "map";
-static const char caption[] = "displacement out of the plane, over the place in the stretched film";
+static const char caption[] =
+    "displacement out of the plane (in it where the film stays flat), over "
+    "the place in the stretched film";
 
 static void add_script(struct dea_text *gp, const struct dea_view3d *space,
                        const struct dea_plot_format *format)
@@ -32,12 +34,12 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   dea_text_add(gp,
                "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
                "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
-               "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
+               "  set cblabel \"%s\" offset 1.5,0\n"
                "  set label 1 \"%s\" at graph 0, graph 1.045 front\n"
                "  eval \"set pm3d \".facets\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
-               space->pictures[0].words);
+               dea_view3d_colour_words(space), space->pictures[0].words);
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }

@@ -24,14 +24,15 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
   dea_text_add(gp, "\n");
   dea_script_terminals(gp);
   dea_text_add(gp,
-               "  set cblabel \"Displacement {/:Italic z} (\302\265m)\" offset 1.5,0\n"
+               "  set cblabel \"%s\" offset 1.5,0\n"
                "  set label 1 \"%s, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
                "front\n"
                "  set label 2 \"%s\" at screen 0.03, screen 0.06 front\n"
                "  eval \"set pm3d \".facets\n"
                "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
                "  k = 0\n",
-               space->pictures[0].words, space->times, dea_view3d_size_words(space, size));
+               dea_view3d_colour_words(space), space->pictures[0].words, space->times,
+               dea_view3d_size_words(space, size));
   dea_view3d_add_command(gp, space);
   dea_text_add(gp, "  unset output\n}\n");
 }

@@ -11,8 +11,34 @@
  * picture, and x, y and z have the scales that the caption says. */
 enum { TILT = 52, TURN = 30 };
 
-static const double ribbon_share = 0.003; // half the width of a line, of the radius
-static const double lift_share = 0.06;    // how far it is moved towards the viewer
+static const double least_of_radius = 1e-6; // a displacement below it is none: rounding
+static const double ribbon_share = 0.003;   // half the width of a line, of the radius
+static const double lift_share = 0.06;      // how far it is moved towards the viewer
+
+static double in_plane_m(const double at[DEA_LATTICE_COLUMNS])
+{
+  return hypot(at[DEA_LATTICE_UX], at[DEA_LATTICE_UY]);
+}
+
+/* A film that stays flat shows how far its points move in its plane. */
+static void measure_in_plane(struct dea_view3d *out)
+{
+  double most_m = 0;
+  for (size_t i = 0; i < out->count; i++) {
+    const struct dea_surface_lattice *drawing = &out->pictures[i].drawing;
+    for (size_t p = 0; p < drawing->patch_count; p++) {
+      const struct dea_patch *patch = &drawing->patches[p];
+      for (int k = 0; k < (patch->n + 1) * (patch->m + 1); k++) {
+        most_m = fmax(most_m, in_plane_m(patch->at[k]));
+      }
+    }
+  }
+  out->in_plane = most_m > least_of_radius * out->radius_m;
+  if (out->in_plane) {
+    out->low_m = 0;
+    out->high_m = most_m;
+  }
+}
 
 void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, struct dea_view3d *out)
 {
@@ -26,12 +52,21 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, str
     out->high_m = fmax(out->high_m, drawing->z_max_m);
   }
   double span_m = out->high_m - out->low_m;
-  bool flat = !(span_m > 1e-6 * out->radius_m); // but for rounding
+  bool flat = !(span_m > least_of_radius * out->radius_m);
   out->times = flat ? 1 : fmax(1, dea_nice_below(0.3 * out->radius_m / span_m));
+  if (flat) {
+    measure_in_plane(out);
+  }
   out->lines = pictures[0].outline_count;
   for (size_t i = 0; i < out->lines; i++) {
     out->frame_lines += pictures[0].outlines[i].kind != DEA_OUTLINE_FIBRE;
   }
+}
+
+const char *dea_view3d_colour_words(const struct dea_view3d *space)
+{
+  return space->in_plane ? "Displacement in the plane (\302\265m)"
+                         : "Displacement {/:Italic z} (\302\265m)";
 }
 
 const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS])
@@ -53,6 +88,7 @@ static void picture_range(const struct dea_view3d *space, double *low, double *h
 {
   double tilt = TILT * acos(-1) / 180, scale = 1e3 * space->times * sin(tilt);
   *half = 1.02e3 * space->radius_m;
+  scale = space->in_plane ? 0 : scale;
   *low = -*half * cos(tilt) + scale * fmin(space->low_m, 0);
   *high = *half * cos(tilt) + scale * fmax(space->high_m, 0);
 }
@@ -78,7 +114,7 @@ void dea_view3d_add_settings(struct dea_text *gp, const struct dea_view3d *space
                "set view map\nset xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
                "unset border\nunset xtics\nunset ytics\nunset ztics\n"
                "set pm3d depthorder corners2color mean\n",
-               space->times, TILT, TURN, -half, half, low, high);
+               space->in_plane ? 0 : space->times, TILT, TURN, -half, half, low, high);
 }
 
 /* One part of the command: the data sets from..to (to < from: up to the last), and how they look.
@@ -157,6 +193,11 @@ static void ribbon_side(const struct dea_view3d *space, const struct dea_outline
   }
 }
 
+static double colour_um(const struct dea_view3d *space, const double at[DEA_LATTICE_COLUMNS])
+{
+  return 1e6 * (space->in_plane ? in_plane_m(at) : at[DEA_LATTICE_UZ]);
+}
+
 static void add_row(struct dea_text *dat, const double xy_mm[2], double above_mm)
 {
   dea_text_add(dat, "%.6g %.6g %.4g", xy_mm[0], xy_mm[1], above_mm);
@@ -177,7 +218,7 @@ static void add_ribbon(struct dea_text *dat, const struct dea_view3d *space, siz
       }
       add_row(dat, at, edge * side[2] + lift * view[2]);
       for (size_t f = 0; f < space->count; f++) {
-        dea_text_add(dat, " %.6g", 1e6 * space->pictures[f].outlines[number].at[k][DEA_LATTICE_UZ]);
+        dea_text_add(dat, " %.6g", colour_um(space, space->pictures[f].outlines[number].at[k]));
       }
       dea_text_add(dat, "\n");
     }
@@ -196,7 +237,7 @@ static void add_patch(struct dea_text *dat, const struct dea_view3d *space, size
     add_row(dat, at, 0);
     for (size_t f = 0; f < space->count; f++) {
       dea_text_add(dat, " %.6g",
-                   1e6 * space->pictures[f].drawing.patches[number].at[k][DEA_LATTICE_UZ]);
+                   colour_um(space, space->pictures[f].drawing.patches[number].at[k]));
     }
     dea_text_add(dat, "\n");
   }
@@ -207,8 +248,9 @@ void dea_view3d_add_data(struct dea_text *dat, const struct dea_view3d *space)
   double view[3];
   view_direction(space->flat, view);
   dea_text_add(dat,
-               "# x (mm) | y (mm) | above the film (mm of the drawing) | displacement z (um) of "
-               "each voltage\n# one index a line, then one a patch of the film\n");
+               "# x (mm) | y (mm) | above the film (mm of the drawing) | displacement %s (um) of "
+               "each voltage\n# one index a line, then one a patch of the film\n",
+               space->in_plane ? "in the plane" : "z");
   for (int fibres = 0; fibres <= 1; fibres++) {
     for (size_t i = 0; i < space->lines; i++) {
       if ((space->pictures[0].outlines[i].kind == DEA_OUTLINE_FIBRE) == (fibres == 1)) {

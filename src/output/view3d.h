@@ -8,11 +8,12 @@
 struct dea_view3d {
   const struct dea_colour_map *pictures; // lent
   size_t count;
-  bool moved;   // places with the displacement in the plane, of the first picture
-  bool flat;    // seen from above, without heights
-  double times; // dea_view3d_measure sets the rest
-  double radius_m, low_m, high_m;
-  size_t frame_lines, lines; // lines of frame and electrode, all lines
+  bool moved;                     // places with the displacement in the plane, of the first picture
+  bool flat;                      // seen from above, without heights
+  bool in_plane;                  // colours are displacements in the plane, since none is out of it
+  double times;                   // dea_view3d_measure sets the rest
+  double radius_m, low_m, high_m; // low, high: of the colours
+  size_t frame_lines, lines;      // lines of frame and electrode, all lines
 };
 /* pictures: of one mesh, at least one; lent. */
 void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count,
@@ -21,6 +22,8 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count,
  * middle. Returns out. */
 enum { DEA_VIEW3D_WORDS = 64 };
 const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS]);
+/* What the colours show: symbol and unit, "{/:Italic z} (um)" with the sign for micro. */
+const char *dea_view3d_colour_words(const struct dea_view3d *space);
 /* Height of a drawing in space over its width. */
 double dea_view3d_shape(const struct dea_view3d *space);
 /* Its settings: projection and ranges, with the variables tilt and turn of the view, and times. */
@@ -32,7 +35,7 @@ void dea_view3d_add_margins(struct dea_text *gp, double words);
  * come last, in space depth decides. */
 void dea_view3d_add_command(struct dea_text *gp, const struct dea_view3d *space);
 /* Data: one index a line, as a ribbon that faces the viewer, then one a patch. Columns: x y (mm),
- * what z is drawn above the surface (mm of the drawing), then z (um) of each picture. */
+ * what z is drawn above the surface (mm of the drawing), then the colour (um) of each picture. */
 void dea_view3d_add_data(struct dea_text *dat, const struct dea_view3d *space);
 
 /* A figure in space: its name and what adds its script. */

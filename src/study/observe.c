@@ -233,6 +233,9 @@ dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_t
 // Figures ----------------------------------------------------------------------------------------
 
 static const double least_drawn = 1e-9; // in display units: less is what rounding left of 0
+static const double least_turn = 1e-5;  // [rad] of a figure of turns
+static const double turn_share =
+    0.05; // of the largest: turns about other axes are drawn from it on
 
 /* A line of a figure: a column of a table, in the rows of one name. */
 struct line {
@@ -278,6 +281,18 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* The rows of the first point, which have every name once. */
+static size_t names_of(const struct dea_result_table *table)
+{
+  size_t count = 0;
+  while (count < table->row_count &&
+         (count == 0 || strcmp(dea_result_table_cell(table, count, 1)->text,
+                               dea_result_table_cell(table, 0, 1)->text) != 0)) {
+    count++;
+  }
+  return count;
+}
+
 /* Adds the column of that key for all names of a table of all models; of: the table's type. */
 static dea_status add_lines(struct dea_context *ctx, const struct dea_result *result,
                             const struct dea_result_table_type *of, const char *key,
@@ -294,13 +309,9 @@ static dea_status add_lines(struct dea_context *ctx, const struct dea_result *re
            strcmp(line.table->type.columns[line.column].key, key) != 0) {
       line.column++;
     }
-    const char *first = dea_result_table_cell(line.table, 0, 1)->text;
-    for (size_t i = 0; i < line.table->row_count && line.column < line.table->type.column_count;
-         i++) { // the rows of the first point have every name once
+    for (size_t i = 0; i < names_of(line.table) && line.column < line.table->type.column_count;
+         i++) {
       line.name = dea_result_table_cell(line.table, i, 1)->text;
-      if (i > 0 && strcmp(line.name, first) == 0) {
-        break;
-      }
       line.number = (int)i;
       DEA_TRY(ctx, add_line(ctx, panel, &line));
     }
@@ -326,36 +337,56 @@ static void finish(const struct tables *of, struct dea_panel *panel, const char 
   dea_panel_place_key(panel);
 }
 
-/* Component of the displacement, 0 to 2, that is largest anywhere; z where nothing moves. */
-static size_t main_component(const struct dea_result *result,
-                             const struct dea_result_table_type *of, const char *const keys[3])
+/* How far a quantity changes over the rows of one name of a table, the most of all names; where
+ * none changes (one voltage), its largest size. */
+static double most_change(const struct dea_result_table *table, size_t column)
 {
-  double most[3] = {0, 0, 0};
+  double change = 0, size = 0;
+  for (size_t first = 0; first < names_of(table); first++) {
+    const char *name = dea_result_table_cell(table, first, 1)->text;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = first; i < table->row_count; i++) {
+      if (strcmp(dea_result_table_cell(table, i, 1)->text, name) == 0) {
+        double here = dea_result_table_cell(table, i, column)->number;
+        low = fmin(low, here); // not of NAN
+        high = fmax(high, here);
+        size = fmax(size, fabs(here));
+      }
+    }
+    change = fmax(change, high - low);
+  }
+  return change > 0 ? change : size;
+}
+
+/* Fills how far each of three quantities changes, in any table of that type. */
+static void changes(const struct dea_result *result, const struct dea_result_table_type *of,
+                    const char *const keys[3], double most[3])
+{
+  memset(most, 0, 3 * sizeof *most);
   for (size_t t = 0; t < result->table_count; t++) {
     const struct dea_result_table *table = &result->tables[t];
     bool mine =
         strcmp(table->type.study, of->study) == 0 && strcmp(table->type.name, of->name) == 0;
     for (size_t c = 0; c < table->type.column_count && mine; c++) {
       for (size_t k = 0; k < 3; k++) {
-        bool is = strcmp(table->type.columns[c].key, keys[k]) == 0;
-        for (size_t i = 0; i < table->row_count && is; i++) {
-          most[k] = fmax(most[k], fabs(dea_result_table_cell(table, i, c)->number)); // not of NAN
+        if (strcmp(table->type.columns[c].key, keys[k]) == 0) {
+          most[k] = fmax(most[k], most_change(table, c));
         }
       }
     }
   }
-  size_t largest = 2;
-  for (size_t k = 0; k < 2; k++) {
-    largest = most[k] > most[largest] ? k : largest;
-  }
-  return largest;
 }
 
 static dea_status show_displacement(struct dea_context *ctx, const struct dea_result *result,
                                     const struct tables *of, struct dea_panel *panel)
 {
   static const char *const keys[] = {"x_m", "y_m", "z_m"};
-  size_t component = main_component(result, &of->monitors, keys);
+  double most[3];
+  changes(result, &of->monitors, keys, most);
+  size_t component = 2; // z where nothing moves
+  for (size_t k = 0; k < 2; k++) {
+    component = most[k] > most[component] ? k : component;
+  }
   char label[DEA_LABEL_SIZE];
   snprintf(label, sizeof label, "Displacement {/:Italic %c} (\302\265m)", "xyz"[component]);
   DEA_TRY(ctx, add_lines(ctx, result, &of->monitors, keys[component], "", DEA_LINE, panel));
@@ -371,6 +402,26 @@ static dea_status show_stretches(struct dea_context *ctx, const struct dea_resul
   DEA_TRY(ctx, add_lines(ctx, result, table, "stretch_x", ", along x", DEA_LINE, panel));
   DEA_TRY(ctx, add_lines(ctx, result, table, "stretch_y", ", along y", DEA_DASHED, panel));
   finish(of, panel, "Stretch from the flat film");
+  return DEA_OK;
+}
+
+/* Turns about the axes that bodies turn about. */
+static dea_status show_turns(struct dea_context *ctx, const struct dea_result *result,
+                             const struct tables *of, struct dea_panel *panel)
+{
+  static const char *const keys[] = {"turn_x_rad", "turn_y_rad", "turn_z_rad"};
+  static const char *const about[] = {", about x", ", about y", ", about z"};
+  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_DOTTED};
+  double most[3];
+  changes(result, &of->monitors, keys, most);
+  double largest = fmax(most[0], fmax(most[1], most[2]));
+  for (size_t k = 0, drawn = 0; k < 3; k++) {
+    if (most[k] > fmax(least_turn, turn_share * largest)) {
+      enum dea_series_style style = styles[drawn++];
+      DEA_TRY(ctx, add_lines(ctx, result, &of->monitors, keys[k], about[k], style, panel));
+    }
+  }
+  finish(of, panel, "Turn (deg)");
   return DEA_OK;
 }
 
@@ -394,6 +445,12 @@ static dea_status build_stretches(struct dea_context *ctx, const struct dea_resu
   return show_stretches(ctx, result, &of_sweep, &plot->panels[0]);
 }
 
+static dea_status build_turns(struct dea_context *ctx, const struct dea_result *result,
+                              struct dea_plot *plot)
+{
+  return show_turns(ctx, result, &of_sweep, &plot->panels[0]);
+}
+
 static dea_status build_charges(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
@@ -409,6 +466,10 @@ const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
      .study = "sweep",
      .caption = "stretch between the points of lines, and mean stretch of regions",
      .build = build_stretches},
+    {.name = "monitors_turn",
+     .study = "sweep",
+     .caption = "turns of rigid bodies",
+     .build = build_turns},
     {.name = "channels",
      .study = "sweep",
      .caption = "charge on the channels",
@@ -425,6 +486,12 @@ dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct d
                                          struct dea_plot *plot)
 {
   return show_stretches(ctx, result, &of_history, &plot->panels[0]);
+}
+
+dea_status dea_observe_turns_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                     struct dea_plot *plot)
+{
+  return show_turns(ctx, result, &of_history, &plot->panels[0]);
 }
 
 dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,

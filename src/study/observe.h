@@ -57,12 +57,14 @@ dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_t
                                struct dea_result *result);
 
 /* Figures of these tables, for the study sweep; and what builds those of histories. */
-enum { DEA_OBSERVE_FIGURES = 3 };
+enum { DEA_OBSERVE_FIGURES = 4 };
 extern const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES];
 dea_status dea_observe_displacement_in_time(struct dea_context *ctx,
                                             const struct dea_result *result, struct dea_plot *plot);
 dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,
                                          struct dea_plot *plot);
+dea_status dea_observe_turns_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                     struct dea_plot *plot);
 dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
                                        struct dea_plot *plot);
 

@@ -859,6 +859,12 @@ static const struct dea_figure figures[] = {
         .build = dea_observe_stretches_in_time,
     },
     {
+        .name = "history_monitors_turn",
+        .study = study_name,
+        .caption = "turns of rigid bodies against time",
+        .build = dea_observe_turns_in_time,
+    },
+    {
         .name = "history_channels",
         .study = study_name,
         .caption = "charge on the channels against time",
