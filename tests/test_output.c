@@ -4,6 +4,7 @@
 #include "base/write_file.h"
 #include "failing_allocator.h"
 #include "fake_result.h"
+#include "output/colour_map.h"
 #include "output/csv.h"
 #include "output/figure.h"
 #include "output/results_h5.h"
@@ -17,6 +18,7 @@
 #include <ftw.h>
 #include <jansson.h>
 #include <locale.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -488,6 +490,40 @@ static void test_every_allocation_may_fail(void **state)
   assert_int_equal(count_hidden(failing_folder), 0);
 }
 
+/* Lightness (CIE L*, by its luminance) of "#RRGGBB". */
+static double lightness(const char *colour)
+{
+  unsigned red, green, blue;
+  assert_int_equal(sscanf(colour, "#%2x%2x%2x", &red, &green, &blue), 3);
+  const unsigned parts[] = {red, green, blue};
+  const double share[] = {0.2126, 0.7152, 0.0722};
+  double luminance = 0;
+  for (int i = 0; i < 3; i++) {
+    double value = parts[i] / 255.0;
+    luminance += share[i] * (value > 0.04045 ? pow((value + 0.055) / 1.055, 2.4) : value / 12.92);
+  }
+  return luminance > 0.008856 ? 116 * cbrt(luminance) - 16 : 903.3 * luminance;
+}
+
+/* A map printed without colours says up from down: its lightness rises all the way. */
+static void test_colours_keep_the_sign_in_grey(void **state)
+{
+  (void)state;
+  const double low_m[] = {-1e-5, -1e-5, 0};
+  for (int k = 0; k < 3; k++) {
+    struct dea_text gp = {.ctx = ctx};
+    dea_colour_map_add_palette(&gp, low_m[k], k == 1 ? 0 : 1e-5);
+    double before = -1;
+    int count = 0;
+    for (const char *at = dea_text_get(&gp); (at = strchr(at, '#')) != NULL; at++, count++) {
+      assert_true(lightness(at) > before + 8);
+      before = lightness(at);
+    }
+    assert_true(count >= 6);
+    dea_text_free(&gp);
+  }
+}
+
 #define OUTPUT_TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
 int main(void)
@@ -503,6 +539,7 @@ int main(void)
       OUTPUT_TEST(test_figures_are_the_same_every_time),
       OUTPUT_TEST(test_script_runs_by_itself_in_its_folder),
       OUTPUT_TEST(test_figure_without_content_is_skipped),
+      OUTPUT_TEST(test_colours_keep_the_sign_in_grey),
       OUTPUT_TEST(test_without_gnuplot_the_scripts_stay),
       OUTPUT_TEST(test_gnuplot_that_fails_is_reported),
       OUTPUT_TEST(test_run_folder_is_not_overwritten),

@@ -65,6 +65,29 @@ static void assert_writes(writer write, const char *text, const char *wanted)
   dea_text_free(&out);
 }
 
+static void assert_estimate(double value, double error, int digits, const char *wanted)
+{
+  struct dea_text out = {.ctx = ctx};
+  dea_html_estimate(&out, value, error, digits);
+  assert_string_equal(dea_text_get(&out), wanted);
+  dea_text_free(&out);
+}
+
+/* No digit beyond the first of the error, and none that is not known. */
+static void test_digits_end_with_the_error(void **state)
+{
+  (void)state;
+  assert_estimate(-5.701, 0.09, 3, "\342\210\2225.70 \302\261 0.09");
+  assert_estimate(-43.75, 1.4, 3, "\342\210\22244 \302\261 1");
+  assert_estimate(0.3, 2, 3, "0 \302\261 2");
+  assert_estimate(1234.5, 23, 3, "1230 \302\261 20");
+  assert_estimate(5017, NAN, 3, "5020");
+  assert_estimate(-288.99, NAN, 2, "\342\210\222290");
+  assert_estimate(3.9, 0, 3, "3.90");
+  assert_estimate(0, NAN, 3, "0");
+  assert_estimate(NAN, NAN, 3, "\342\200\223");
+}
+
 static void test_escaping(void **state)
 {
   (void)state;
@@ -591,6 +614,7 @@ static void test_memory_of_all_sections(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_digits_end_with_the_error),
       cmocka_unit_test(test_escaping),
       cmocka_unit_test(test_base64),
       cmocka_unit_test(test_labels),

@@ -100,6 +100,16 @@ static void test_trust_ends_at_the_lowest_doubt(void **state)
   struct dea_text text = {.ctx = ctx};
   dea_trust_text(&trust, &text);
   assert_non_null(strstr(dea_text_get(&text), "to be trusted and safe up to 2 kV; at 3 kV one of"));
+  assert_null(strstr(dea_text_get(&text), "tension"));
+  dea_text_free(&text);
+  points[1].min_tension_N_per_m = -1; // 2 kV: a corner; 3 kV: with the doubt, which says enough
+  points[1].compression_ratio = 0.1;
+  points[2].min_tension_N_per_m = -3;
+  points[2].compression_ratio = 2;
+  trust = dea_curve_trust(&curve);
+  assert_true(trust.slack_V == 2e3 && trust.trusted_V == 2e3);
+  dea_trust_text(&trust, &text);
+  assert_non_null(strstr(dea_text_get(&text), "; from 2 kV on a part of the film has no tension"));
   dea_text_free(&text);
   dea_context_destroy(ctx);
 }

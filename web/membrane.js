@@ -29,8 +29,8 @@
       float light = 0.62 + 0.38 * abs(dot(n, normalize(vec3(-0.35, 0.45, 0.82))));
       colour = vec4(base * light * (tint > 1.5 ? 0.9 : 1.0), 1.0);
     }`;
-  const palettes = { // even steps in lightness, told apart by the colour-blind too
-    signed: ['#1b3f8b', '#3f74c0', '#86add9', '#c9dcee', '#f4f2ee', '#f4d3bd', '#e59b78', '#c75b45', '#8c1d2c'],
+  const palettes = { // even steps in lightness: there in grey, and for the colour-blind
+    signed: ['#06193a', '#093768', '#225a92', '#527da8', '#95989a', '#caa66d', '#e8bc5b', '#f8d870', '#fff7b8'],
     rising: dea.rising,
   };
 

@@ -334,10 +334,9 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_design 
   dea_status status = DEA_OK;
   for (size_t i = 0; i < design->compute.model_count; i++) {
     const struct dea_label *model = &design->compute.models[i];
-    const struct dea_model_type *type = dea_model_find(model->text);
+    const struct dea_model_type *type;
+    DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &type));
     if (type == NULL) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location, "there is no model '%.60s'",
-                                   model->text));
       status = dea_fail(ctx, DEA_E_DESIGN, "there is no model '%.60s'", model->text);
     } else if (design->parts != NULL && type->of_layouts == NULL) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location,

@@ -9,19 +9,8 @@
 const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *name,
                                             struct dea_location location)
 {
-  const struct dea_model_type *type = dea_model_find(name);
-  if (type == NULL) {
-    size_t count;
-    const struct dea_model_type *const *all = dea_model_all(&count);
-    struct dea_text known = {.ctx = cli->ctx};
-    for (size_t i = 0; i < count; i++) {
-      dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
-    }
-    dea_finding_add(cli->ctx, DEA_ERROR, location,
-                    "there is no model '%.60s' in this version; there are: %s", name,
-                    dea_text_get(&known));
-    dea_text_free(&known);
-  }
+  const struct dea_model_type *type;
+  dea_model_seek(cli->ctx, name, location, &type);
   return type;
 }
 

@@ -65,6 +65,8 @@ struct dea_design_section {
 struct dea_design_sections {
   const struct dea_design_section *const *items; // [count]
   size_t count;
+  /* Adds a finding where there is no model of that name; NULL: any name will do. */
+  dea_status (*check_model)(struct dea_context *ctx, const struct dea_label *name);
 };
 
 struct dea_settings {

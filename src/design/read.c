@@ -164,6 +164,19 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_design 
   return DEA_OK;
 }
 
+/* Names of models that there are not, beside the other errors of the file. Where it has none, who
+ * runs the design decides by which models. */
+static dea_status name_models(struct dea_context *ctx, const struct dea_design_sections *sections,
+                              const struct dea_design *design)
+{
+  for (size_t i = 0; sections->check_model != NULL && i < design->compute.model_count; i++) {
+    if (design->compute.models[i].text[0] != '\0') {
+      DEA_TRY(ctx, sections->check_model(ctx, &design->compute.models[i]));
+    }
+  }
+  return DEA_OK;
+}
+
 static void take_figures(struct dea_design_raw *raw)
 {
   for (size_t i = 0; i < raw->figure_count; i++) {
@@ -276,8 +289,9 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
     take_figures(raw);
     DEA_TRY(ctx, take_fields(ctx, raw));
   }
-  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
-  if (found > 0) {
+  if (dea_finding_count(ctx, DEA_ERROR) > errors) {
+    DEA_TRY(ctx, name_models(ctx, source->sections, design));
+    size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
     return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", source->name, found,
                     found > 1 ? "s" : "");
   }

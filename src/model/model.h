@@ -335,6 +335,9 @@ bool dea_solid_module_find(char *out, size_t size);
 
 /* Model of that name, or NULL. Static storage. */
 const struct dea_model_type *dea_model_find(const char *name);
+/* The same into *out; NULL after an error at that place, which names the models that there are. */
+dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_location place,
+                          const struct dea_model_type **out);
 const struct dea_model_type *const *dea_model_all(size_t *count);
 
 #endif

@@ -30,6 +30,24 @@ const struct dea_model_type *dea_model_find(const char *name)
   return NULL;
 }
 
+dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_location place,
+                          const struct dea_model_type **out)
+{
+  *out = dea_model_find(name);
+  if (*out != NULL) {
+    return DEA_OK;
+  }
+  struct dea_text known = {.ctx = ctx};
+  for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
+    dea_text_add(&known, "%s%s", i > 0 ? ", " : "", models[i]->name);
+  }
+  dea_status status = dea_finding_add(ctx, DEA_ERROR, place,
+                                      "there is no model '%.60s' in this version; there are: %s",
+                                      name, dea_text_get(&known));
+  dea_text_free(&known);
+  return status;
+}
+
 dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *design,
                             const struct dea_device *device)
 {

@@ -11,9 +11,27 @@ static bool of_first_model(const struct dea_result *result, size_t i)
   return strcmp(result->surfaces[i].model, result->surfaces[0].model) == 0;
 }
 
+/* The last surface that is to be trusted and moves; NULL for none. */
+static const struct dea_surface_record *last_trusted(const struct dea_result *result)
+{
+  const struct dea_surface_record *best = NULL;
+  for (size_t i = 0; i < result->surface_count; i++) {
+    const struct dea_surface_record *record = &result->surfaces[i];
+    if (of_first_model(result, i) && record->voltage_V > 0 &&
+        dea_result_doubts(result, record->model, record->voltage_V) == 0) {
+      best = record;
+    }
+  }
+  return best;
+}
+
 const struct dea_surface_record *dea_surface_choose(const struct dea_result *result,
                                                     double voltage_V)
 {
+  const struct dea_surface_record *trusted = isnan(voltage_V) ? last_trusted(result) : NULL;
+  if (trusted != NULL) {
+    return trusted;
+  }
   const struct dea_surface_record *best = NULL;
   for (size_t i = 0; i < result->surface_count; i++) {
     const struct dea_surface_record *record = &result->surfaces[i];
@@ -85,8 +103,8 @@ void dea_colour_map_add_palette(struct dea_text *gp, double low_m, double high_m
   }
   if (low_um < 0 && high_um > 0 && fmin(-low_um, high_um) > 0.2 * largest) {
     dea_text_add(gp,
-                 "set cbrange [%.6g:%.6g]\nset palette defined (0 \"#00304F\", 1 \"#0072B2\", "
-                 "2 \"#9CCBE8\", 3 \"#F7F7F7\", 4 \"#F3B98B\", 5 \"#D55E00\", 6 \"#5A2700\")\n",
+                 "set cbrange [%.6g:%.6g]\nset palette defined (0 \"#06193A\", 1 \"#0A4178\", "
+                 "2 \"#3B74AC\", 3 \"#95989A\", 4 \"#DBAA5E\", 5 \"#F6CE58\", 6 \"#FFF7B8\")\n",
                  -largest, largest);
   } else {
     dea_text_add(gp,

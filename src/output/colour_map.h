@@ -7,7 +7,8 @@
 #include "result/trust.h"
 
 /* The surface of the result's first model with surfaces at the voltage, or the nearest to it; the
- * last one for NAN. NULL when there is none; lent. */
+ * last one that is to be trusted for NAN, or the last where none is. NULL when there is none; lent.
+ */
 const struct dea_surface_record *dea_surface_choose(const struct dea_result *result,
                                                     double voltage_V);
 /* Up to `max` of them from first to last, evenly; returns their number. */
@@ -32,8 +33,9 @@ dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_resul
                                  struct dea_colour_map *out);
 void dea_colour_map_free(struct dea_context *ctx, struct dea_colour_map *picture);
 
-/* Range of colours for displacements between two values [m], and the palette: from blue over white
- * to red around 0 when both signs matter, else from dark to light. Unit of the colours: um. */
+/* Range of colours for displacements between two values [m], and the palette: from dark blue
+ * over grey to light yellow around 0 when both signs matter, else from dark to light: lightness
+ * rises all the way, so that the sign is there in grey too. Unit of the colours: um. */
 void dea_colour_map_add_palette(struct dea_text *gp, double low_m, double high_m);
 /* 1, 2 or 5 times a power of ten, at most `largest` > 0. */
 double dea_nice_below(double largest);

@@ -121,7 +121,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space, cons
   double width_mm = 1e3 * format->width_m, cell_mm = width_mm / ACROSS;
   double edge_mm = 1.03e3 * space->radius_m;
   char words[160];
-  snprintf(words, sizeof words, "%s, about %.4g kV; red up, blue down", caption,
+  snprintf(words, sizeof words, "%s, about %.4g kV; yellow, light: up; blue, dark: down", caption,
            1e-3 * maps->voltage_V);
   dea_script_head(gp, name, words, format, width_mm, 1.16 * cell_mm * (double)rows);
   dea_colour_map_add_palette(gp, -1e-6, 1e-6);

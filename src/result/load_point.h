@@ -86,8 +86,8 @@
  * X(NAME, word in files, kind, sentence) */
 #define DEA_FLAG_LIST(X)                                                                           \
   X(SLACK, "slack", DOUBT,                                                                         \
-    "the film has lost its tension and wrinkles: its shape depends on the mesh and is one of "     \
-    "several")                                                                                     \
+    "so much of the film has lost its tension that it wrinkles: its shape depends on the mesh "    \
+    "and is one of several")                                                                       \
   X(UNSTABLE, "unstable", DOUBT, "the state is unstable: a device does not stay in it")            \
   X(STATES, "states", DOUBT,                                                                       \
     "one of several stable states: the sweep has gone over from a state that ended or was left")   \

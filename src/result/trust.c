@@ -23,6 +23,18 @@ static double largest_below(const struct dea_curve *curve, double limit_V)
   return largest;
 }
 
+/* Lowest voltage below a limit with a part of the film out of tension; NAN for none. */
+static double slack_below(const struct dea_curve *curve, double limit_V)
+{
+  double lowest = NAN;
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    bool slack = p->min_tension_N_per_m < 0 && p->voltage_V < limit_V;
+    lowest = slack ? fmin(lowest, p->voltage_V) : lowest;
+  }
+  return lowest;
+}
+
 struct dea_trust dea_curve_trust(const struct dea_curve *curve)
 {
   struct dea_trust trust = {.doubt_V = INFINITY, .danger_V = INFINITY};
@@ -42,6 +54,7 @@ struct dea_trust dea_curve_trust(const struct dea_curve *curve)
   }
   trust.trusted_V = largest_below(curve, trust.doubt_V);
   trust.safe_V = largest_below(curve, trust.danger_V);
+  trust.slack_V = slack_below(curve, trust.doubt_V);
   trust.good_V = largest_below(curve, fmin(trust.doubt_V, trust.danger_V));
   return trust;
 }
@@ -72,6 +85,12 @@ void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
       dea_text_add(out, "; to be trusted up to %.4g kV, for a film that holds out",
                    1e-3 * trust->trusted_V);
     }
+  }
+  if (!isnan(trust->slack_V)) {
+    dea_text_add(out,
+                 "; from %.4g kV on a part of the film has no tension left, too small a part to "
+                 "wrinkle",
+                 1e-3 * trust->slack_V);
   }
   if (trust->doubts != 0) {
     dea_text_add(out, "; at %.4g kV ", 1e-3 * trust->doubt_V);

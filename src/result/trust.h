@@ -11,7 +11,8 @@
 struct dea_trust {
   double trusted_V, safe_V, good_V;
   double doubt_V, danger_V; // of the first point with one [V]; INFINITY: none
-  unsigned doubts, dangers; // flags of that point
+  double slack_V;           // first without tension somewhere, below doubt_V; NAN: none
+  unsigned doubts, dangers; // flags of the points with a doubt and a danger
   unsigned limits;          // of the model, at any point
 };
 /* curve: with points. */

@@ -1,12 +1,20 @@
 #include "study/design_file.h"
 
 #include "design/file.h"
+#include "model/model.h"
 #include "study/study.h"
 
-/* Sections of the studies that have one. items: room for DEA_DESIGN_SECTIONS_MAX. */
+static dea_status check_model(struct dea_context *ctx, const struct dea_label *name)
+{
+  const struct dea_model_type *type;
+  return dea_model_seek(ctx, name->text, name->location, &type);
+}
+
+/* Sections of the studies that have one, and the models. items: room for DEA_DESIGN_SECTIONS_MAX.
+ */
 static struct dea_design_sections sections_of(const struct dea_design_section **items)
 {
-  struct dea_design_sections out = {items, 0};
+  struct dea_design_sections out = {items, 0, check_model};
   size_t count;
   const struct dea_study *const *studies = dea_study_all(&count);
   for (size_t i = 0; i < count; i++) {

@@ -92,6 +92,29 @@ void dea_html_cell(struct dea_text *out, double value, int digits)
   dea_text_add(out, "</td>");
 }
 
+/* A number to a power of ten, with its zeros. */
+static void add_rounded(struct dea_text *out, double value, int power)
+{
+  double step = pow(10, power), rounded = step * round(value / step);
+  dea_text_add(out, "%s%.*f", rounded < 0 ? "\342\210\222" : "", power < 0 ? -power : 0,
+               fabs(rounded));
+}
+
+void dea_html_estimate(struct dea_text *out, double value, double error, int digits)
+{
+  const double least = 1e-3;
+  if (isfinite(value) && error > least) {
+    int power = (int)floor(log10(error));
+    add_rounded(out, value, power);
+    dea_text_add(out, " \302\261 ");
+    add_rounded(out, error, power);
+  } else if (isfinite(value) && fabs(value) > least) {
+    add_rounded(out, value, (int)floor(log10(fabs(value))) + 1 - digits);
+  } else {
+    dea_html_number(out, fabs(value) < 1e-9 ? 0 : value, digits);
+  }
+}
+
 void dea_html_json_number(struct dea_text *out, double value, int digits)
 {
   if (isfinite(value)) {

@@ -11,6 +11,9 @@ void dea_html_text(struct dea_text *out, const char *text);
 void dea_html_element(struct dea_text *out, const char *tag, const char *text);
 /* A number with so many significant digits and a minus sign; a dash when it is none. */
 void dea_html_number(struct dea_text *out, double value, int digits);
+/* A number with an error, to the first digit of it; NAN or below 1e-3: to `digits` digits, the rest
+ * zeros. */
+void dea_html_estimate(struct dea_text *out, double value, double error, int digits);
 /* The same as a cell of a table. */
 void dea_html_cell(struct dea_text *out, double value, int digits);
 /* Label in gnuplot's enhanced text (plot/plot.h): as the inside of an SVG text element with

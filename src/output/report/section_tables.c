@@ -7,20 +7,18 @@
 #include <stdio.h>
 #include <string.h>
 
+/* What a number at a glance is known by: its digits, or the error that says how many there are. */
+enum { DIGITS_FIRM = 3, DIGITS_DOUBTED = 2 };
+
 /* error: estimated one, NAN: none is. */
 static void add_card_with(struct dea_text *out, const char *what, double value, double error,
                           const char *unit, int digits)
 {
-  if (!isfinite(value)) {
-    return;
+  if (isfinite(value)) {
+    dea_text_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
+    dea_html_estimate(out, value, error, digits);
+    dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
   }
-  dea_text_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
-  dea_html_number(out, fabs(value) < 1e-9 ? 0 : value, digits);
-  if (isfinite(error)) {
-    dea_text_add(out, " \302\261 ");
-    dea_html_number(out, error, 1);
-  }
-  dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
 }
 
 static void add_card(struct dea_text *out, const char *what, double value, const char *unit,
@@ -33,7 +31,7 @@ static void add_event(struct dea_text *out, const struct dea_curve *path, enum d
                       const char *what)
 {
   const struct dea_event *event = dea_curve_first_event(path, kind);
-  add_card(out, what, event != NULL ? 1e-3 * event->point.voltage_V : NAN, "kV", 4);
+  add_card(out, what, event != NULL ? 1e-3 * event->point.voltage_V : NAN, "kV", DIGITS_FIRM);
 }
 
 /* Cards of one point. heading: what it is. */
@@ -42,17 +40,19 @@ static void add_cards(struct dea_report *report, const struct dea_load_point *p,
 {
   struct dea_text *out = &report->text;
   bool bound = dea_load_point_bounds(p);
+  int digits = dea_load_point_trusted(p) ? DIGITS_FIRM : DIGITS_DOUBTED;
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
-  add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", 3);
+  add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", digits);
   add_card_with(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m,
-                1e6 * p->centre_z_error_m, "\302\265m", 4);
+                1e6 * p->centre_z_error_m, "\302\265m", digits);
   add_card_with(out, bound ? "fibre tip, at most" : "fibre tip", 1e6 * p->fibre_tip_z_m,
-                1e6 * p->fibre_tip_z_error_m, "\302\265m", 4);
-  add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", 3);
-  add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", 3);
-  add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", 3);
-  add_card(out, "breakdown probability, at most", 100 * p->breakdown_probability, "%", 2);
+                1e6 * p->fibre_tip_z_error_m, "\302\265m", digits);
+  add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", digits);
+  add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", digits);
+  add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", DIGITS_DOUBTED);
+  add_card(out, "breakdown probability, at most", 100 * p->breakdown_probability, "%",
+           DIGITS_DOUBTED);
   dea_text_add(out, "</dl>");
 }
 
@@ -153,7 +153,7 @@ static void add_limit(struct dea_text *out, const char *model, const char *what,
 static const struct {
   enum dea_event_kind kind;
   const char *what;
-} limits[] = {{DEA_EVENT_SLACK, "loss of tension"},
+} limits[] = {{DEA_EVENT_SLACK, "first loss of tension"},
               {DEA_EVENT_BREAKDOWN, "breakdown"},
               {DEA_EVENT_PULL_IN, "pull-in"},
               {DEA_EVENT_SNAP_BACK, "snap-back"}};
@@ -210,7 +210,7 @@ static void add_worst(struct dea_text *out, const struct dea_curve *sweep,
     dea_html_number(out, tension, 3);
     dea_text_add(out, " N/m at ");
     dea_html_number(out, 1e-3 * tension_V, 4);
-    dea_text_add(out, " kV%s", tension < 0 ? ": the film is slack there" : "");
+    dea_text_add(out, " kV%s", tension < 0 ? ": a part of the film is slack there" : "");
   }
   if (path != NULL && path->count > 0) {
     add_unmet(out, path);
