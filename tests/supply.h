@@ -98,11 +98,12 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
 {
   char text[64];
   s->commands++;
-  if (sscanf(line->text, "VOLT %lf", &s->set_V) == 1) {
+  const char *word = strncmp(line->text, "C1:", 3) == 0 ? line->text + 3 : line->text;
+  if (sscanf(word, "VOLT %lf", &s->set_V) == 1 || sscanf(word, "BSWV OFST,%lf", &s->set_V) == 1) {
     return;
   }
-  if (strcmp(line->text, "OUTP ON") == 0 || strcmp(line->text, "OUTP OFF") == 0) {
-    s->on = line->text[6] == 'N';
+  if (strcmp(word, "OUTP ON") == 0 || strcmp(word, "OUTP OFF") == 0) {
+    s->on = word[6] == 'N';
   } else if (strcmp(line->text, "*IDN?") == 0) {
     snprintf(text, sizeof text, "ACME,Supply,%d,1", s->serial);
     supply_answer(s, line->client, text);

@@ -576,7 +576,7 @@ static void stop_all(struct loop *loop)
   if (m->window == 0 || loop->output.played == 0 || zero->state == DEA_ZERO_UNKNOWN) {
     return;
   }
-  if (m->zero) {
+  if (m->zero && !loop->watch.contradicted) { // else it may be the channel that is wrong
     *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts};
   } else if (zero->state == DEA_ZERO_COMMANDED || isfinite(m->volts)) { // the channel is to show it
     *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts};

@@ -128,6 +128,7 @@ static bool check_voltage(struct dea_drive_watch *watch, size_t i, double asked_
   if (watch->exceeded[i] < watch->lasting) {
     return true;
   }
+  watch->contradicted = true;
   snprintf(why, DEA_WHY_ENDED_SIZE,
            "the voltage is %.4g kV where %.4g kV is asked: more than safety.voltage_error of %.4g "
            "V away; is the amplifier on, and are gain and channel right?",

@@ -19,7 +19,8 @@ struct dea_drive_watch {
   double largest_current_A;                           // by amount; NAN: none came
   struct dea_arc_watch arcs[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
   double asked_V;                                     // of the last sample
-  double cap_V[2]; // lowest and highest voltage that may be measured at all
+  double cap_V[2];   // lowest and highest voltage that may be measured at all
+  bool contradicted; // a voltage channel did not show what was asked: it may be the channel
 };
 
 /* settle_s: time that the voltage has to follow what is asked. capacitance_F: of the film; 0 or
