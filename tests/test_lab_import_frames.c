@@ -43,6 +43,71 @@ static void test_bluehill(void **state)
               "Extension", "Load");
 }
 
+/* JSON of TRIOS: columns by key, rows in any order of keys, columns of text, a missing value. */
+static void test_trios(void **state)
+{
+  (void)state;
+#define TRIOS_HEADERS                                                                              \
+  "\"ColumnHeaders\": {\"Step_id\": {\"DisplayName\": \"Step\", \"ValueType\": \"Uuid\"},"         \
+  "\"Time_s\": {\"DisplayName\": \"Time\", \"ValueType\": \"Number\", \"Unit\": {\"Name\": "       \
+  "\"s\"}},"                                                                                       \
+  "\"Gap_mm\": {\"DisplayName\": \"Gap\", \"ValueType\": \"Number\", \"Unit\": {\"Name\": "        \
+  "\"mm\"}},"                                                                                      \
+  "\"Axial force_N\": {\"DisplayName\": \"Axial force\", \"ValueType\": \"Number\","               \
+  "\"Unit\": {\"Name\": \"N\"}}},"
+#define TRIOS_ROWS                                                                                 \
+  "\"Rows\": [{\"Axial force_N\": 1.2E-3, \"Gap_mm\": 0, \"Time_s\": 0, \"Step_id\": \"a-b\"},"    \
+  "{\"Time_s\": 0.1, \"Gap_mm\": 0.167, \"Axial force_N\": 0.0243},"                               \
+  "{\"Time_s\": 0.2, \"Gap_mm\": 0.334, \"Axial force_N\": 0.0481},"                               \
+  "{\"Time_s\": 0.3, \"Gap_mm\": 0.501, \"Axial force_N\": 0.0702}]"
+  static const char map[] = "dea-import: 1\ntime: Time\ncolumns:\n"
+                            "  - {column: Gap, as: displacement}\n"
+                            "  - {column: Axial force, as: force}\n";
+  assert_pull(record_file("strip.json",
+                          "\xef\xbb\xbf{\"Schema\": {\"Url\": \"TRIOSJSONExportSchema\"},"
+                          "\"Sample\": {\"Name\": \"VHB\"}, \"Results\": {\"Unprocessed\": {},"
+                          "\"Processed\": {" TRIOS_HEADERS TRIOS_ROWS "}}}",
+                          map),
+              "Gap", "Axial force");
+  assert_pull(record_file("old.json", "{\"Results\": {" TRIOS_HEADERS TRIOS_ROWS "}}", map), "Gap",
+              "Axial force");
+  struct dea_table *table =
+      read_text("gap.json", "{\"Results\": {" TRIOS_HEADERS
+                            "\"Rows\": [{\"Time_s\": 1}, {\"Gap_mm\": null}]}}");
+  assert_int_equal(table->column_count, 3);
+  assert_true(table->columns[0].values[0] == 1 && isnan(table->columns[0].values[1]));
+  assert_true(isnan(table->columns[1].values[1]) && isnan(table->columns[2].values[0]));
+  dea_table_destroy(ctx, table);
+}
+
+static void test_trios_that_is_wrong(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text, *says;
+  } wrong[] = {
+      {"{\"Results\": {" TRIOS_HEADERS "\"Rows\": [{\"Gap_mm\": \"1,5\"}]}}",
+       "row 1: 'Gap_mm' is no number"},
+      {"{\"Results\": {" TRIOS_HEADERS "\"Rows\": [{}, 3]}}", "row 2: it is no object"},
+      {"{\"Results\": {\"Rows\": []}}", "it has no 'Results' with 'ColumnHeaders' and 'Rows'"},
+      {"{\"Results\": {\n \"Rows\": [}}", "has errors"},
+      {"{\"Results\": {\"ColumnHeaders\": {}, \"Rows\": []}}", "holds no column of numbers"},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    struct dea_table *table;
+    size_t count;
+    dea_finding_clear(ctx);
+    write_bytes("wrong.json", wrong[i].text, strlen(wrong[i].text));
+    assert_int_equal(dea_table_read(ctx, in_folder("wrong.json"), NULL, &table), DEA_E_IO);
+    assert_non_null(strstr(dea_context_message(ctx), wrong[i].says));
+    const struct dea_finding *findings = dea_finding_get(ctx, &count);
+    assert_true(count == (i == 3));
+    assert_true(count == 0 || findings[0].location.line == 2);
+    dea_context_clear(ctx);
+  }
+  dea_finding_clear(ctx);
+}
+
 /* Decimal commas, semicolons, Latin-1, kN. */
 static void test_decimal_comma(void **state)
 {
@@ -164,9 +229,14 @@ static void test_days(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bluehill),    cmocka_unit_test(test_decimal_comma),
-      cmocka_unit_test(test_gb18030),     cmocka_unit_test(test_times_as_text),
-      cmocka_unit_test(test_other_times), cmocka_unit_test(test_days),
+      cmocka_unit_test(test_bluehill),
+      cmocka_unit_test(test_trios),
+      cmocka_unit_test(test_trios_that_is_wrong),
+      cmocka_unit_test(test_decimal_comma),
+      cmocka_unit_test(test_gb18030),
+      cmocka_unit_test(test_times_as_text),
+      cmocka_unit_test(test_other_times),
+      cmocka_unit_test(test_days),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

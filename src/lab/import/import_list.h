@@ -7,6 +7,7 @@
   X(dea_import_tdms)                                                                               \
   X(dea_import_lvm)                                                                                \
   X(dea_import_mat)                                                                                \
+  X(dea_import_trios)                                                                              \
   X(dea_import_comsol)                                                                             \
   X(dea_import_csv)
 
