@@ -176,9 +176,11 @@ static dea_status make_data(struct dea_breakdown_fit *fit)
   return DEA_OK;
 }
 
-static dea_status run(struct dea_breakdown_fit *fit)
+static dea_status run(void *made, const void *file)
 {
+  struct dea_breakdown_fit *fit = made;
   struct dea_context *ctx = fit->memory.ctx;
+  fit->file = file;
   char *path = dea_path_beside(ctx, fit->file->head.file, fit->file->tests.text);
   dea_status status = path != NULL ? read_films(fit, path) : DEA_E_MEMORY;
   dea_free(ctx, path);
@@ -190,26 +192,14 @@ static dea_status run(struct dea_breakdown_fit *fit)
 dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
                                  struct dea_breakdown_fit **out)
 {
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
-  **out = (struct dea_breakdown_fit){.file = file, .memory = {.ctx = ctx}};
-  dea_status status = run(*out);
-  if (status != DEA_OK) {
-    dea_breakdown_fit_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  return DEA_OK;
+  dea_status status;
+  *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);
+  return status;
 }
 
 void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit *fit)
 {
-  if (fit != NULL) {
-    dea_arena_free(&fit->memory);
-    dea_free(ctx, fit);
-  }
+  dea_fit_frame_destroy(ctx, fit);
 }
 
 double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,

@@ -9,6 +9,7 @@
 #include "plot/plot.h"
 
 struct dea_breakdown_fit {
+  struct dea_arena memory;               // the first member
   const struct dea_breakdown_file *file; // lent
   const char *tests_file;                // interned
   char sha256[65];                       // of its bytes
@@ -18,7 +19,6 @@ struct dea_breakdown_fit {
   bool *survived;                                          // [rows]
   struct dea_weibull_data data;                            // of the above
   struct dea_weibull_fit fit;
-  struct dea_arena memory;
 };
 
 /* Reads the films and fits. What is wrong with them becomes findings with file and line, DEA_E_IO

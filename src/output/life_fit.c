@@ -240,10 +240,11 @@ static bool tells_law(const struct dea_life_fit *fit)
   return high > low;
 }
 
-static dea_status run(struct dea_life_fit *fit)
+static dea_status run(void *made, const void *data)
 {
+  struct dea_life_fit *fit = made;
   struct dea_context *ctx = fit->memory.ctx;
-  const struct dea_life_file *file = fit->file;
+  const struct dea_life_file *file = fit->file = data;
   const size_t n = fit->rows = file->specimen_count;
   fit->lives = dea_arena_alloc(&fit->memory, n, sizeof *fit->lives);
   fit->value = dea_arena_alloc(&fit->memory, n, sizeof *fit->value);
@@ -270,26 +271,14 @@ static dea_status run(struct dea_life_fit *fit)
 dea_status dea_life_fit_run(struct dea_context *ctx, const struct dea_life_file *file,
                             struct dea_life_fit **out)
 {
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
-  **out = (struct dea_life_fit){.file = file, .memory = {.ctx = ctx}};
-  dea_status status = run(*out);
-  if (status != DEA_OK) {
-    dea_life_fit_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  return DEA_OK;
+  dea_status status;
+  *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);
+  return status;
 }
 
 void dea_life_fit_destroy(struct dea_context *ctx, struct dea_life_fit *fit)
 {
-  if (fit != NULL) {
-    dea_arena_free(&fit->memory);
-    dea_free(ctx, fit);
-  }
+  dea_fit_frame_destroy(ctx, fit);
 }
 
 double dea_life_fit_bound(const struct dea_life_fit *fit, double *life)

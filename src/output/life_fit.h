@@ -9,6 +9,7 @@
 #include "plot/plot.h"
 
 struct dea_life_fit {
+  struct dea_arena memory;          // the first member
   const struct dea_life_file *file; // lent
   size_t rows, failed;
   struct dea_life *lives; // [rows]; clocks that are not known are NAN
@@ -16,7 +17,6 @@ struct dea_life_fit {
   bool *survived;         // [rows]
   bool has_law;           // false: fewer than two failures
   struct dea_weibull_fit fit;
-  struct dea_arena memory;
 };
 
 /* Words for why a life ended: "survived", "stroke", ... */

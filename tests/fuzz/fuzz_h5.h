@@ -1,15 +1,50 @@
-/* HDF5 files that are well formed and say something else than they should: a good file in which
+/* Targets that read a file from a folder of their own, and HDF5 files that are well formed and say
+ * something else than they should: a good file in which
  * objects and attributes are edited as the input says, three bytes an edit: of what, how, with
  * what. (Files with flipped bytes are HDF5's to refuse; what they then say is ours.) */
 #ifndef DEA_TESTS_FUZZ_H5_H
 #define DEA_TESTS_FUZZ_H5_H
+
+#include "base/context.h"
 
 #include <hdf5.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static char fuzz_folder[] = "/tmp/dea-fuzz-XXXXXX", fuzz_path[64];
+
+static inline void fuzz_folder_remove(void)
+{
+  remove(fuzz_path);
+  rmdir(fuzz_folder);
+}
+
+/* One context for all inputs, as reading the unit table takes longer than reading a file, and
+ * fuzz_path, that file. begin: called once with it, false on failure; NULL: nothing. _GNU_SOURCE
+ * before all headers. */
+static inline struct dea_context *fuzz_context(const char *name,
+                                               bool (*begin)(struct dea_context *ctx))
+{
+  static struct dea_context *ctx;
+  if (ctx == NULL) {
+    if (mkdtemp(fuzz_folder) == NULL || dea_context_create(NULL, &ctx) != DEA_OK) {
+      abort();
+    }
+    snprintf(fuzz_path, sizeof fuzz_path, "%s/%s", fuzz_folder, name);
+    atexit(fuzz_folder_remove);
+    if (begin != NULL && !begin(ctx)) {
+      abort();
+    }
+  }
+  return ctx;
+}
 
 enum { FUZZ_H5_OBJECTS = 256, FUZZ_H5_VALUES = 40, FUZZ_H5_EDITS = 8 };
 

@@ -1,44 +1,21 @@
 /* Fuzz target: a file of the catalogue, read and its first sets taken. Its name has to be "fuzz".
  */
 #define _GNU_SOURCE // mkdtemp, setenv
+#include "fuzz_h5.h"
 #include "material/catalogue.h"
 
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static char folder[] = "/tmp/fuzz-material-XXXXXX", path[64];
-
-static void remove_folder(void)
+static bool begin(struct dea_context *ctx)
 {
-  remove(path);
-  rmdir(folder);
-}
-
-/* One context for all inputs: reading the unit table takes longer than reading a material. */
-static struct dea_context *context(void)
-{
-  static struct dea_context *ctx;
-  if (ctx == NULL) {
-    if (mkdtemp(folder) == NULL || setenv("DEA_MATERIALS", folder, 1) != 0 ||
-        dea_context_create(NULL, &ctx) != DEA_OK) {
-      abort();
-    }
-    snprintf(path, sizeof path, "%s/fuzz.yaml", folder);
-    atexit(remove_folder);
-  }
-  return ctx;
+  (void)ctx;
+  return setenv("DEA_MATERIALS", fuzz_folder, 1) == 0;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  struct dea_context *ctx = context();
+  struct dea_context *ctx = fuzz_context("fuzz.yaml", begin);
   struct dea_catalogue_entry *entry;
   struct dea_material material;
-  FILE *out = fopen(path, "wb");
+  FILE *out = fopen(fuzz_path, "wb");
   if (out == NULL || fwrite(data, 1, size, out) != size || fclose(out) != 0) {
     abort();
   }

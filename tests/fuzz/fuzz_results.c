@@ -4,48 +4,24 @@
 #include "fuzz_h5.h"
 #include "output/results_h5.h"
 
-#include <stdlib.h>
-#include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static char folder[] = "/tmp/fuzz-results-XXXXXX", path[64];
 static struct dea_design design;
 static struct dea_result *result;
 
-static void remove_folder(void)
+static bool begin(struct dea_context *ctx)
 {
-  remove(path);
-  rmdir(folder);
-}
-
-/* One context for all inputs: reading the unit table takes longer than reading a file. */
-static struct dea_context *context(void)
-{
-  static struct dea_context *ctx;
-  if (ctx == NULL) {
-    if (mkdtemp(folder) == NULL || dea_context_create(NULL, &ctx) != DEA_OK) {
-      abort();
-    }
-    snprintf(path, sizeof path, "%s/results.h5", folder);
-    atexit(remove_folder);
-    design = fake_design();
-    if (fake_result(ctx, &design, 1, &result) != DEA_OK) {
-      abort();
-    }
-  }
-  return ctx;
+  design = fake_design();
+  return fake_result(ctx, &design, 1, &result) == DEA_OK;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  struct dea_context *ctx = context();
+  struct dea_context *ctx = fuzz_context("results.h5", begin);
   struct dea_run *run;
-  if (dea_results_h5_write(ctx, result, path) != DEA_OK) {
+  if (dea_results_h5_write(ctx, result, fuzz_path) != DEA_OK) {
     abort();
   }
-  fuzz_h5_edit_file(path, data, size);
-  dea_status status = dea_run_read(ctx, path, &run);
+  fuzz_h5_edit_file(fuzz_path, data, size);
+  dea_status status = dea_run_read(ctx, fuzz_path, &run);
   if ((status != DEA_OK && dea_context_message(ctx)[0] == '\0') || (size < 3 && status != DEA_OK)) {
     __builtin_trap(); // an error that nobody is told about, or one of a good file
   }

@@ -4,55 +4,31 @@
 
 #include "fuzz_h5.h"
 
-#include <stdlib.h>
-#include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static char folder[] = "/tmp/fuzz-state-XXXXXX", path[64];
 static const double values[] = {1, 2, 3, 4, 5};
 static struct dea_state saved;
 
-static void remove_folder(void)
+static bool begin(struct dea_context *ctx)
 {
-  remove(path);
-  rmdir(folder);
-}
-
-/* One context for all inputs. */
-static struct dea_context *context(void)
-{
-  static struct dea_context *ctx;
-  if (ctx == NULL) {
-    if (mkdtemp(folder) == NULL || dea_context_create(NULL, &ctx) != DEA_OK) {
-      abort();
-    }
-    snprintf(path, sizeof path, "%s/state.h5", folder);
-    atexit(remove_folder);
-    if (dea_state_add(ctx, &saved, "u", values, 5) != DEA_OK ||
-        dea_state_add_numbers(ctx, &saved, "model", values, 2) != DEA_OK ||
-        dea_state_add_mark(ctx, &saved, "mesh", values, sizeof values) != DEA_OK) {
-      abort();
-    }
-  }
-  return ctx;
+  return dea_state_add(ctx, &saved, "u", values, 5) == DEA_OK &&
+         dea_state_add_numbers(ctx, &saved, "model", values, 2) == DEA_OK &&
+         dea_state_add_mark(ctx, &saved, "mesh", values, sizeof values) == DEA_OK;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  struct dea_context *ctx = context();
+  struct dea_context *ctx = fuzz_context("state.h5", begin);
   struct dea_state out = {0};
   size_t points;
-  if (dea_state_file_write(ctx, "3d", &saved, 7, path) != DEA_OK) {
+  if (dea_state_file_write(ctx, "3d", &saved, 7, fuzz_path) != DEA_OK) {
     abort();
   }
-  fuzz_h5_edit_file(path, data, size);
-  dea_status counted = dea_state_file_points(ctx, path, &points);
+  fuzz_h5_edit_file(fuzz_path, data, size);
+  dea_status counted = dea_state_file_points(ctx, fuzz_path, &points);
   if (counted != DEA_OK && dea_context_message(ctx)[0] == '\0') {
     __builtin_trap(); // an error that nobody is told about
   }
   dea_context_clear(ctx);
-  dea_status status = dea_state_file_read(ctx, "3d", &saved, path, &out);
+  dea_status status = dea_state_file_read(ctx, "3d", &saved, fuzz_path, &out);
   if ((status != DEA_OK && dea_context_message(ctx)[0] == '\0') ||
       (status == DEA_OK && out.array_count != saved.array_count) ||
       (size < 3 && (status != DEA_OK || points != 7))) {
