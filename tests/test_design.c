@@ -280,8 +280,8 @@ static void test_taper_and_free_end(void **state)
       {"fibres.outer_end", "free"},     {"fibres.outer_gap", "2 mm unstretched"},
       {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"},
       {"compute.solid.side", "fibres"}, {"compute.solid.order", "3"},
-      {"compute.solid.order_z", "1"}};
-  read_good(GOOD_DESIGN, sets, 9);
+      {"compute.solid.order_z", "1"},   {"compute.solid.elements_z", "3"}};
+  read_good(GOOD_DESIGN, sets, 10);
   assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
   assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
@@ -292,6 +292,7 @@ static void test_taper_and_free_end(void **state)
   assert_close(settings.refinement, 2.5, 0, 0);
   assert_int_equal(settings.order, 3);
   assert_int_equal(settings.order_z, 1);
+  assert_int_equal(settings.elements_z, 3);
 }
 
 /* An older word of a key is read as the key; the list of values knows the key only. */

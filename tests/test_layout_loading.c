@@ -210,16 +210,16 @@ static void test_bistable(void **state)
   end(&r, device);
 }
 
-/* A round film that pressure bulges a little: p a^2/(4 T) in the middle, T = h (sigma - eps E^2).
- */
-static void test_diaphragm(void **state)
+/* A round film that pressure bulges a little: p a^2/(4 T) in the middle, T = h (sigma - eps E^2),
+ * however many elements are through it. */
+static void check_diaphragm(size_t elements)
 {
   static const double a = 20e-3, l = 1.2;
-  (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *layout = device->layout;
   dea_region_add_circle(add_region(device, "film"), 0, 0, a, false, nowhere);
   add_film(device, 0, l, l);
+  layout->plies[0].elements = elements;
   add_electrode(device, 0, false, 0, 0);
   add_electrode(device, 0, true, 0, 1);
   layout->supports[layout->support_count++] = (struct dea_layout_support){
@@ -244,6 +244,13 @@ static void test_diaphragm(void **state)
     assert_true(isnan(point(&r, row, "shift_m")));
   }
   end(&r, device);
+}
+
+static void test_diaphragm(void **state)
+{
+  (void)state;
+  check_diaphragm(0);
+  check_diaphragm(2);
 }
 
 int main(void)

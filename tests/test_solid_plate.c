@@ -306,6 +306,48 @@ static void test_what_fibres_lie_on(void **state)
   }
 }
 
+/* Elements through the film: as thick as each other at the two faces, twice as thick as the one
+ * before; what else a plate has is as it was. At the electrode's edge they are `fringe` wide. */
+static void test_elements_through_the_film(void **state)
+{
+  (void)state;
+  for (int through = 1; through <= 5; through++) {
+    struct dea_fibre_disc p = plate(4, 0, 2e-3);
+    struct dea_grid *grid;
+    double cuts[6];
+    size_t rings = 0;
+    p.through = through;
+    p.fringe = through > 1 ? 1e-6 : 0;
+    check(&p, 1e-4);
+    dea_cuts_through((size_t)through, cuts);
+    assert_close(cuts[through], 1, 0, 0);
+    for (int k = 0; k < through; k++) {
+      assert_close(cuts[k + 1] - cuts[k], cuts[through - k] - cuts[through - k - 1], 1e-12, 0);
+      double more = k < (through - 1) / 2 ? 2 : 1; // in the lower half; an even middle repeats
+      assert_true(k + 1 > through / 2 ||
+                  fabs((cuts[k + 2] - cuts[k + 1]) / (cuts[k + 1] - cuts[k]) - more) < 1e-12);
+    }
+    assert_int_equal(dea_fibre_disc_create(ctx, &p, &grid), DEA_OK);
+    double low, high;
+    heights(grid, DEA_FIBRE_DISC_FILM, 0, &low, &high);
+    assert_close(low, -0.5 * h, 0, 1e-12);
+    assert_close(high, 0.5 * h, 0, 1e-12);
+    for (size_t n = 0; n < grid->node_count; n++) { // lowest of the film, on the fibre's axis
+      const double *X = grid->X + 3 * n;
+      rings += fabs(X[1]) < 1e-9 && fabs(X[2] + 0.5 * h) < 1e-12 && fabs(X[0] - a) < 1.1e-6;
+    }
+    assert_true(through > 1 ? rings >= 5 : rings == 1); // ends and middle of the two beside it
+    dea_grid_destroy(ctx, grid);
+  }
+  struct dea_fibre_disc p = plate(4, 0, 2e-3), like = p;
+  struct dea_grid *grid;
+  p.through = 3;
+  like.through = 2;
+  assert_int_equal(dea_fibre_disc_create_like(ctx, &p, &like, &grid), DEA_E_ARGUMENT);
+  p.through = DEA_FIBRE_DISC_THROUGH_MAX + 1;
+  assert_int_equal(dea_fibre_disc_create(ctx, &p, &grid), DEA_E_ARGUMENT);
+}
+
 /* Each bond has a film element as its lower face: the same nodes in the same order. */
 static void check_bonds(const struct dea_grid *grid)
 {
@@ -426,6 +468,7 @@ int main(void)
       cmocka_unit_test(test_whole_discs),
       cmocka_unit_test(test_all_that_a_design_can_ask_for),
       cmocka_unit_test(test_what_fibres_lie_on),
+      cmocka_unit_test(test_elements_through_the_film),
       cmocka_unit_test(test_membranes),
       cmocka_unit_test(test_plates_that_cannot_be),
       cmocka_unit_test(test_each_allocation),

@@ -1,6 +1,7 @@
 /* Model 3d against the exact disc and against itself: permittivity that depends on stretch,
  * electrode layers, profile, capacitance; and what fibres of all kinds do. */
 // ctest: solid
+#include "design_text.h"
 #include "devices.h"
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
@@ -357,6 +358,27 @@ static int tear_down(void **state)
   return context_tear_down(state);
 }
 
+/* The fringe of a coupled field at rest: a disc that is longer by h ln 4/(2 pi) at its edge
+ * (docs/theory/coupled.md). Six elements through the film have it, one says that it does not. */
+static void test_fringe(void **state)
+{
+  (void)state;
+  const double pi = acos(-1);
+  struct dea_device device = plain();
+  double a = device.electrode_radius_m, h = device.film_thickness_m;
+  double wanted = pow(1 + h * log(4) / (2 * pi) / a, 2);
+  for (int through = 1; through <= 6; through += 5) {
+    const struct dea_model_settings settings = {
+        .film = DEA_FILM_SOLID, .field = DEA_FIELD_COUPLED, .elements_z = through};
+    dea_finding_clear(ctx);
+    struct dea_load_point point = solve(solid, &device, &settings, 0);
+    double excess = point.capacitance_F * h / (2.8 * DEA_EPSILON_0 * pi * a * a) - wanted;
+    assert_true(through == 1 ? excess > 5e-3 : fabs(excess) < 2e-4);
+    bool warned = find_finding(ctx, DEA_WARNING, "compute.solid.elements_z: 6") != NULL;
+    assert_true(warned == (through == 1));
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -367,6 +389,7 @@ int main(void)
       cmocka_unit_test(test_electrode_layers),
       cmocka_unit_test(test_profile),
       cmocka_unit_test(test_capacitance_of_the_whole),
+      cmocka_unit_test(test_fringe),
       cmocka_unit_test(test_charge),
       cmocka_unit_test(test_number_of_fibres),
       cmocka_unit_test(test_kinds_of_fibres),

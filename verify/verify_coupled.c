@@ -62,17 +62,13 @@ static int constituent_of(const void *self, int region, int ply)
   return ply < (int)through ? 0 : FIBRE;
 }
 
-/* Thicknesses of the film's elements, which double from both faces up to eight times. */
+/* The film's elements as plies of their own, as model 3d cuts its film. */
 static void set_plies(struct dea_ply *plies)
 {
-  double sum = 0;
+  double cuts[THROUGH_MAX + 1];
+  dea_cuts_through(through, cuts);
   for (size_t k = 0; k < through; k++) {
-    size_t from_face = k < through - 1 - k ? k : through - 1 - k;
-    plies[k] = (struct dea_ply){exp2(fmin((double)from_face, 3)), 1, 2};
-    sum += plies[k].thickness_m;
-  }
-  for (size_t k = 0; k < through; k++) {
-    plies[k].thickness_m *= h_m / sum;
+    plies[k] = (struct dea_ply){h_m * (cuts[k + 1] - cuts[k]), 1, 2};
   }
   plies[through] = (struct dea_ply){fibre_m, 2, 2};
 }
@@ -223,7 +219,7 @@ int main(int argc, char **argv)
       "one, in um, and the difference in %.\n\n"
       "| elements | unknowns | capacitance | V/h, 100 V | coupled | | 1 kV | coupled | | 2 kV | "
       "coupled | |\n|---|---|---|---|---|---|---|---|---|---|---|---|");
-  for (through = 1; through <= 4; through *= small ? 4 : 2) {
+  for (through = 1; through <= (small ? 4 : 16); through *= small ? 4 : 2) {
     row();
   }
   if (!small) {

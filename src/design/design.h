@@ -146,6 +146,7 @@ struct dea_design {
       struct dea_choice buckling_branch;  // enum dea_buckling_branch
       struct dea_choice field;            // enum dea_solid_electrostatics
       struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
+      struct dea_quantity elements_z;     // through the film
       struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes
       struct {                            // meshes by the estimated error of a monitor
         bool asked;

@@ -97,6 +97,17 @@ static const struct dea_field fields[] = {
      .default_text = "2",
      .doc = "order of the elements through the thickness of each layer",
      .example = "3"},
+    {.key = "elements_z",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(elements_z),
+     .unit = "1",
+     .min = 1,
+     .max = 16,
+     .default_text = "1",
+     .doc = "elements through the thickness of the film, thinner towards its faces; `field: "
+            "coupled` needs 6 and grades the mesh to the electrode's edge as well (of devices made "
+            "of `plies`: of each that has no `elements` of its own)",
+     .example = "6"},
     {.key = "field",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(field),

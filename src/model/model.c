@@ -28,6 +28,7 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
       .refinement = design->compute.solid.refinement.si,
       .order = (int)design->compute.solid.order.si,
       .order_z = (int)design->compute.solid.order_z.si,
+      .elements_z = (int)design->compute.solid.elements_z.si,
   };
   if (design->compute.solid.adapt.asked) {
     settings.adapt.monitor = design->compute.solid.adapt.monitor.text;

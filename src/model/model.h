@@ -35,6 +35,7 @@ struct dea_model_settings {
   double refinement;                        // of the mesh; up to 1: the coarsest
   int order;                                // of the elements in the plane, 1 to 3; 0: 2
   int order_z;                              // through the thickness of a layer, the same
+  int elements_z;           // through the film of a disc, or a ply that does not say; 0: 1
   const double (*sizes)[3]; // of elements of a free mesh: [size_count] x, y, size there [m]; lent
   size_t size_count;        // until the model is made; 0: by the refinement
   struct {                  // meshes of a layout by the error of a monitor

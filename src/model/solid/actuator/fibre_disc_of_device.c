@@ -1,6 +1,8 @@
 /* From a device to its plate. */
 #include "model/solid/actuator/actuator.h"
 
+#include "model/solid/mesh/cuts.h"
+
 #include <math.h>
 
 /* Sizes of elements over the electrode radius at refinement 1, which each refinement more halves
@@ -17,6 +19,7 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
   *out = (struct dea_fibre_disc){
       .order = settings->order > 0 ? settings->order : 2,
       .order_z = settings->order_z > 0 ? settings->order_z : 2,
+      .through = settings->elements_z > 0 ? settings->elements_z : 1,
       .membrane = settings->film == DEA_FILM_MEMBRANE,
       .fibres = d->fibre_count,
       .sectors = 1,
@@ -35,6 +38,12 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
       .edge = (d->fibre_count > 0 ? 1 : 4) * edge_share * a * finer,
       .beside = beside_share * a * finer,
   };
+  if (settings->field == DEA_FIELD_COUPLED && out->through > 1 &&
+      out->through <= DEA_FIBRE_DISC_THROUGH_MAX) { // elements at the edge as wide as thick
+    double cuts[DEA_FIBRE_DISC_THROUGH_MAX + 1];
+    dea_cuts_through((size_t)out->through, cuts);
+    out->fringe = d->film_thickness_m * cuts[1] * finer;
+  }
   if (d->film.law->anisotropic) { // its direction turns with the angle around the centre
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d does not know films with a direction of their own (law '%s') yet",

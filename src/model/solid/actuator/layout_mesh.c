@@ -305,7 +305,10 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_model_settin
     bool surface = mesh->membrane && mesh->dielectric[p];
     plies[p] = (struct dea_ply){
         .thickness_m = surface ? 0 : l->plies[p].thickness_m,
-        .count = l->plies[p].elements > 0 && !surface ? l->plies[p].elements : 1,
+        .count = surface                    ? 1
+                 : l->plies[p].elements > 0 ? l->plies[p].elements
+                 : settings->elements_z > 0 ? (size_t)settings->elements_z
+                                            : 1,
         .order_z = settings->order_z > 0 ? settings->order_z : 2,
     };
   }

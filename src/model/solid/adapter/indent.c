@@ -8,7 +8,8 @@
 static const double stiffness_Pa_per_m = 1e10;
 static const double first_step_m = 20e-6, largest_step_m = 200e-6, growth = 1.6;
 
-/* Faces that the probe may touch: the film's and, from above, those of electrodes and fibres. */
+/* Faces that the probe may touch: the film's and, from above, those of electrodes and fibres. Of
+ * several elements through the film the outermost one's. */
 struct choice {
   const struct dea_actuator *actuator;
   bool from_above;
@@ -21,7 +22,10 @@ static bool select_face(const void *self, int region, int ply, const double midd
   bool inside = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
   bool layers = p->electrode_thickness > 0 && !p->membrane;
   int covered = inside && layers ? DEA_FIBRE_DISC_TOP : DEA_FIBRE_DISC_FILM;
-  (void)middle;
+  bool outermost = p->membrane || fabs(middle[2]) > 0.5 * p->film_thickness * (1 - 1e-6);
+  if (!outermost) {
+    return false;
+  }
   if (choice->from_above) {
     return ply == (fibre ? DEA_FIBRE_DISC_FIBRE_PLY : covered);
   }

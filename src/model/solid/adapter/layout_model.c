@@ -315,15 +315,32 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_model *model, s
 struct face_of {
   const struct dea_model *model;
   const struct dea_layout_pressure *pressure;
+  double height_m; // of the face, z
 };
+
+/* z of the lower or upper face of a ply, which is flat. */
+static double face_height(const struct dea_grid *grid, size_t ply, bool top)
+{
+  double out = NAN;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    if ((size_t)grid->ply[e] == ply) {
+      int last = dea_grid_nodes_of(grid, e) - 1;
+      double z = grid->X[3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(top ? last : 0)] + 2];
+      out = top ? fmax(out, z) : fmin(out, z); // of NAN and a number: the number
+    }
+  }
+  return out;
+}
 
 static bool is_loaded(const void *self, int region, int ply, const double middle[3])
 {
   const struct face_of *of = self;
   const struct dea_layout_mesh *mesh = &of->model->mesh;
   size_t group = mesh->group[of->pressure->region];
-  (void)middle;
-  return (size_t)ply == of->pressure->ply && group != DEA_LAYOUT_NONE &&
+  // between the elements through a ply there are faces too
+  bool outermost = fabs(middle[2] - of->height_m) <
+                   1e-6 * of->model->layout->plies[of->pressure->ply].thickness_m;
+  return (size_t)ply == of->pressure->ply && outermost && group != DEA_LAYOUT_NONE &&
          mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
 }
 
@@ -331,7 +348,8 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
 static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model, size_t i)
 {
   const struct dea_layout_pressure *pressure = &model->layout->pressures[i];
-  const struct face_of of = {model, pressure};
+  const struct face_of of = {model, pressure,
+                             face_height(model->mesh.grid, pressure->ply, pressure->top)};
   struct dea_surface **surface = &model->surfaces[i];
   if (model->mesh.group[pressure->region] == DEA_LAYOUT_NONE) {
     return DEA_OK;

@@ -23,6 +23,7 @@
 
 static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+enum { resolved = 6 }; // elements through the film from which a coupled field is (coupled.md)
 
 struct dea_model {
   struct dea_standing at; // first (standing.h)
@@ -76,13 +77,16 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
                                whole ? "the whole disc"
                                      : "one sector of the actuator; it is blind to motions that "
                                        "break its symmetry (compute.solid.domain: disc)"));
-  if (model->actuator.settings.field == DEA_FIELD_COUPLED) {
-    DEA_TRY(ctx, dea_finding_add(
-                     ctx, DEA_WARNING, (struct dea_location){0},
-                     "model 3d: one element through the film does not resolve the coupled field at "
-                     "the electrode's edge: capacitance comes out up to 0.8 %% too large, and what "
-                     "a fibre tip there loses against V/h is not to be trusted, not even in its "
-                     "sign (docs/theory/coupled.md)"));
+  if (model->actuator.settings.field == DEA_FIELD_COUPLED && p->through < resolved) {
+    DEA_TRY(ctx,
+            dea_finding_add(
+                ctx, DEA_WARNING, (struct dea_location){0},
+                "model 3d: %d element%s through the film do%s not resolve the coupled field at "
+                "the electrode's edge: capacitance comes out too large (by 0.8 %% with one), "
+                "and what a fibre tip there loses against V/h is not to be trusted, not even "
+                "in its sign; compute.solid.elements_z: %d resolves it "
+                "(docs/theory/coupled.md)",
+                p->through, p->through > 1 ? "s" : "", p->through > 1 ? "" : "es", resolved));
   }
   if (p->membrane) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},

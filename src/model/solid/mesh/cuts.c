@@ -48,3 +48,16 @@ size_t dea_cuts_graded(double length, double first, double last, double widest, 
   cuts[count] = 1;
   return count;
 }
+
+void dea_cuts_through(size_t count, double *cuts)
+{
+  cuts[0] = 0;
+  for (size_t k = 0; k < count; k++) {
+    size_t from_face = k < count - 1 - k ? k : count - 1 - k;
+    cuts[k + 1] = cuts[k] + (double)(1 << (from_face < 3 ? from_face : 3));
+  }
+  for (size_t k = 0; k < count; k++) {
+    cuts[k] /= cuts[count];
+  }
+  cuts[count] = 1;
+}

@@ -10,4 +10,8 @@
 size_t dea_cuts_graded(double length, double first, double last, double widest, size_t max,
                        double *cuts);
 
+/* Cuts of [0, 1] into `count` elements, at least one, through a layer between two faces: from each
+ * face each is twice as thick as the one before it, up to eight times. cuts: [count + 1]. */
+void dea_cuts_through(size_t count, double *cuts);
+
 #endif

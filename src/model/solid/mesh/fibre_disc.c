@@ -109,7 +109,8 @@ static dea_status check_disc(struct dea_context *ctx, const struct dea_fibre_dis
   double frame = p->frame_radius, N = p->fibres > 0 ? p->fibres : 4;
   if (!(p->electrode_radius > 0 && p->electrode_radius < frame && p->film_thickness >= 0 &&
         p->size > 0 && p->edge > 0) ||
-      p->fibres < 0 || p->sectors < 1 || p->sectors > dea_fibre_disc_sectors(p)) {
+      p->fibres < 0 || p->through > DEA_FIBRE_DISC_THROUGH_MAX || p->sectors < 1 ||
+      p->sectors > dea_fibre_disc_sectors(p)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh of a plate takes an electrode inside the frame");
   }
   if (p->fibres == 0) {
@@ -287,9 +288,12 @@ static dea_status too_many(struct dea_context *ctx)
 static double size_at(const struct dea_fibre_disc *p, double radius)
 {
   double close = same * p->frame_radius;
+  bool electrode = fabs(radius - p->electrode_radius) < close;
+  if (electrode && p->fringe > 0) {
+    return fmin(p->fringe, fmin(p->edge, p->size));
+  }
   bool end =
-      fabs(radius - p->electrode_radius) < close ||
-      (p->fibres > 0 && fabs(radius - p->tip_radius) < close) ||
+      electrode || (p->fibres > 0 && fabs(radius - p->tip_radius) < close) ||
       (p->fibres > 0 && fabs(radius - p->outer_radius) < close && radius < p->frame_radius - close);
   return end ? fmin(p->edge, p->size) : 2 * p->size;
 }
@@ -404,7 +408,12 @@ static bool present_membrane(const void *self, int region, int ply)
   return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
 }
 
-/* Plies of a thickness have one element through it. */
+static size_t film_elements(const struct dea_fibre_disc *p)
+{
+  return p->through > 1 && !p->membrane ? (size_t)p->through : 1;
+}
+
+/* Plies of a thickness have one element through it, but for the film. */
 static struct dea_ply sheet_of(const struct dea_fibre_disc *p, double thickness)
 {
   return (struct dea_ply){thickness, thickness > 0 ? 1 : 0, p->order_z};
@@ -423,6 +432,10 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *
       [DEA_FIBRE_DISC_GLUE] = sheet_of(p, fibres ? p->glue_thickness : 0),
       [DEA_FIBRE_DISC_FIBRE_PLY] = sheet_of(p, fibres ? p->fibre_thickness : 0),
   };
+  double film_cuts[DEA_FIBRE_DISC_THROUGH_MAX + 1];
+  const double *cuts[DEA_FIBRE_DISC_PLIES] = {[DEA_FIBRE_DISC_FILM] = film_cuts};
+  plies[DEA_FIBRE_DISC_FILM].count = film_elements(p);
+  dea_cuts_through(film_elements(p), film_cuts);
   const size_t skips[DEA_FIBRE_DISC_PLIES] = {[DEA_FIBRE_DISC_GLUE] = on_top ? 0 : 1};
   double bottom = -0.5 * p->film_thickness - p->electrode_thickness;
   if (p->membrane) {
@@ -432,6 +445,7 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *
   const struct dea_stack stack = {.plies = plies,
                                   .count = DEA_FIBRE_DISC_PLIES,
                                   .skips = skips,
+                                  .cuts = cuts,
                                   .present = p->membrane ? present_membrane
                                              : on_top    ? present_on_top
                                                          : present_beside,
@@ -480,8 +494,9 @@ static bool alike(const struct lines *a, const struct lines *b)
 {
   const struct dea_fibre_disc *p = a->plate, *q = b->plate;
   return p->order == q->order && p->order_z == q->order_z && p->fibres == q->fibres &&
-         p->membrane == q->membrane && p->sectors == q->sectors && p->end == q->end &&
-         inside(p) == inside(q) && a->circle_count == b->circle_count;
+         film_elements(p) == film_elements(q) && p->membrane == q->membrane &&
+         p->sectors == q->sectors && p->end == q->end && inside(p) == inside(q) &&
+         a->circle_count == b->circle_count;
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *plate,

@@ -12,6 +12,7 @@ enum dea_fibre_disc_end { DEA_FIBRE_DISC_CLAMPED, DEA_FIBRE_DISC_HINGED };
 
 struct dea_fibre_disc {
   int order, order_z; // of the elements
+  int through;        // elements through the film, as dea_cuts_through has them; 0: 1
   bool membrane;      // the film is a surface at z = 0 (docs/theory/membrane.md)
   int fibres;         // N, evenly spread; 0: none
   /* Domain: so many sectors of pi/N (pi/4 without fibres) from the first fibre's axis; each second
@@ -27,6 +28,7 @@ struct dea_fibre_disc {
       size; // of elements in the plane, up to which they grow; twice of that outside the electrode
   double
       edge; // of elements at the electrode edge and the ends of fibres; about doubling from there
+  double fringe; // at the electrode edge instead of `edge`, where that is larger; 0: none
   double beside; // of elements between two fibres, along the electrode edge; 0: size
 };
 
@@ -63,7 +65,7 @@ dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre
  * where the parts of the two do not lie in the same order. */
 dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_fibre_disc *plate,
                                       const struct dea_fibre_disc *like, struct dea_grid **out);
-enum { DEA_FIBRE_DISC_LINE_MAX = 256 };
+enum { DEA_FIBRE_DISC_LINE_MAX = 256, DEA_FIBRE_DISC_THROUGH_MAX = 16 };
 
 /* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at
  * dea_fibre_disc_angle. 0 in the whole disc. */

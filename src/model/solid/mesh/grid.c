@@ -35,6 +35,13 @@ static struct ply_place ply_place(const struct dea_stack *stack, size_t s)
   return at;
 }
 
+/* Share of its thickness at which the k-th element of a ply begins. */
+static double ply_cut(const struct dea_stack *stack, size_t s, size_t k)
+{
+  return stack->cuts != NULL && stack->cuts[s] != NULL ? stack->cuts[s][k]
+                                                       : (double)k / (double)stack->plies[s].count;
+}
+
 /* Nodes of a level. */
 static void place_level(const struct dea_plane_mesh *m, size_t levels, size_t level, double z,
                         struct dea_grid *grid)
@@ -92,11 +99,12 @@ static void extrude(const struct dea_plane_mesh *m, const struct dea_stack *stac
     }
     for (size_t k = 0; k < ply->count; k++) {
       size_t level[DEA_HEX_ORDER_MAX + 1];
-      double step = ply->thickness_m / (double)ply->count;
+      double from = ply->thickness_m * ply_cut(stack, s, k);
+      double step = ply->thickness_m * ply_cut(stack, s, k + 1) - from;
       for (int l = 0; l <= order_z; l++) {
         size_t up = k * (size_t)order_z + (size_t)l;
         level[l] = up == 0 ? place.bottom : place.own + up - 1;
-        place_level(m, levels, level[l], place.z + ((double)k + 0.5 * (1 + at[l])) * step, grid);
+        place_level(m, levels, level[l], place.z + from + 0.5 * (1 + at[l]) * step, grid);
       }
       extrude_layer(m, levels, level, order_z, stack, (int)s, grid);
     }

@@ -21,6 +21,9 @@ struct dea_stack {
   /* A ply need not lie on the one before it in the list: how many it passes over, [count]; NULL:
    * none. */
   const size_t *skips;
+  /* Where a ply is cut into its elements, [count][its count + 1] from 0 to 1; NULL, or NULL of a
+   * ply: into equal ones. */
+  const double *const *cuts;
   bool (*present)(const void *self, int region, int ply); // a ply in a region; NULL: all in all
   const void *self;
   double bottom_m;
